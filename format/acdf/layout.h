@@ -1,0 +1,150 @@
+/* The on-disk layout of .acdf files, version 1, as plain C (C99, C++17, CUDA). SPEC.md is the authority;
+ * this header restates its tables so that a reader can map the bytes. All integers and IEEE-754 numbers
+ * are little-endian. Offsets are counted from the start of what holds them; nothing is a pointer. */
+#ifndef ACDF_LAYOUT_H
+#define ACDF_LAYOUT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define ACDF_VERSION_MAJOR 1
+#define ACDF_VERSION_MINOR 0
+
+/* SPEC.md §2. A high bit (7-bit transports), CR LF and LF (text mode), SUB (DOS `type`). */
+#define ACDF_MAGIC_BYTES                                                                                           \
+    { 0xAB, 'A', 'C', 'D', 'F', ' ', ' ', 0xBB, 0x0D, 0x0A, 0x1A, 0x0A }
+
+enum {
+    ACDF_MAGIC_SIZE = 12,
+    ACDF_ALIGNMENT = 64, /* every payload starts at a multiple of this */
+    ACDF_MAX_CHUNKS = 64,
+    ACDF_MAX_AXES = 8,
+    ACDF_MAX_DEPTH = 64, /* curves on a path from a root to a cell */
+    ACDF_MAX_SEGMENTS = 0xFFFFF
+};
+
+typedef enum AcdfKind {
+    ACDF_KIND_ENVIRONMENT = 1,
+    ACDF_KIND_LOCAL = 2,
+    ACDF_KIND_BRDF = 3,
+    ACDF_KIND_TABLE = 4
+} AcdfKind;
+
+typedef enum AcdfCodec { ACDF_CODEC_NONE = 0, ACDF_CODEC_ZLIB = 1 } AcdfCodec;
+
+/* How sampled coordinates become directions (SPEC.md §6). */
+typedef enum AcdfParameterization {
+    ACDF_PARAM_LATLONG = 1,    /* columns in phi, rows in theta; density uniform in z = cos(theta) */
+    ACDF_PARAM_HALF_ANGLE = 2, /* reserved for BRDFs */
+    ACDF_PARAM_TABLE = 3       /* reserved for N-dimensional tables */
+} AcdfParameterization;
+
+typedef enum AcdfFit { ACDF_FIT_UNIFORM = 1, ACDF_FIT_CDF = 2, ACDF_FIT_PDF = 3, ACDF_FIT_VARIANCE = 4 } AcdfFit;
+
+typedef enum AcdfFilter { ACDF_FILTER_NEAREST = 0, ACDF_FILTER_BILINEAR = 1 } AcdfFilter;
+typedef enum AcdfUpAxis { ACDF_UP_Z = 2 } AcdfUpAxis;
+typedef enum AcdfHandedness { ACDF_RIGHT_HANDED = 0 } AcdfHandedness;
+typedef enum AcdfAxisRole { ACDF_AXIS_SAMPLED = 0, ACDF_AXIS_INDEXED = 1 } AcdfAxisRole;
+
+/* How integer positions on an axis map to its coordinate (SPEC.md §5.2). */
+typedef enum AcdfAxisMeasure {
+    ACDF_MEASURE_LINEAR = 0, /* low + (high - low) * position / resolution */
+    ACDF_MEASURE_COSINE = 1  /* cos of that: positions are equal steps of an angle */
+} AcdfAxisMeasure;
+
+#define ACDF_FOURCC(a, b, c, d) ((uint32_t)(a) | (uint32_t)(b) << 8 | (uint32_t)(c) << 16 | (uint32_t)(d) << 24)
+#define ACDF_CHUNK_DESCRIPTION ACDF_FOURCC('D', 'E', 'S', 'C')
+#define ACDF_CHUNK_BINS ACDF_FOURCC('B', 'I', 'N', 'S')
+#define ACDF_CHUNK_TREE ACDF_FOURCC('T', 'R', 'E', 'E')
+#define ACDF_CHUNK_METADATA ACDF_FOURCC('M', 'E', 'T', 'A')
+
+#define ACDF_CHUNK_FLAG_CRITICAL 1u
+
+/* Offset 0 of the file; the chunk table follows at once. */
+typedef struct AcdfHeader {
+    uint8_t magic[ACDF_MAGIC_SIZE];
+    uint16_t version_major;
+    uint16_t version_minor;
+    uint64_t file_length;
+    uint32_t kind;
+    uint32_t required_features; /* version 1.0 defines none: a set bit is refused */
+    uint32_t optional_features; /* unknown bits are ignored */
+    uint32_t chunk_count;
+    uint32_t reserved[5];
+    uint32_t header_crc; /* CRC-32 of the 60 bytes before it, then of the chunk table */
+} AcdfHeader;
+
+typedef struct AcdfChunk {
+    uint32_t type;
+    uint32_t flags;
+    uint32_t codec;
+    uint32_t crc; /* CRC-32 of the stored bytes */
+    uint64_t offset;
+    uint64_t stored_length;
+    uint64_t raw_length;
+    uint64_t reserved;
+} AcdfChunk;
+
+/* Chunk DESC: this, then `axis_count` axis records. */
+typedef struct AcdfDescription {
+    uint32_t parameterization;
+    uint32_t fit;
+    uint32_t filter;
+    uint32_t up_axis;
+    uint32_t handedness;
+    uint32_t axis_count;
+    uint32_t bin_count;
+    uint32_t reserved;
+    double channel_weights[3]; /* target = weights . (r, g, b) */
+    double total;              /* integral of the target: over the sphere in W/m^2-like units of L * sr */
+} AcdfDescription;
+
+typedef struct AcdfAxis {
+    uint8_t name[16]; /* UTF-8, zero-padded */
+    uint32_t role;
+    uint32_t measure;
+    uint32_t resolution; /* positions run from 0 to resolution */
+    uint32_t reserved;
+    double low; /* coordinate at position 0 */
+    double high;
+} AcdfAxis;
+
+/* Chunk BINS: one record a bin. */
+typedef struct AcdfBin {
+    uint32_t root; /* word offset of the bin's first curve in TREE */
+    float share;   /* this bin's integral over `total` */
+} AcdfBin;
+
+/* Chunk TREE: curves, packed one after the other, each a whole number of 32-bit words (SPEC.md §5.4):
+ *   uint32 header; cumulative[n-1]; positions[n-1]; links[n] (if any); tilts[n] (if any); zero padding.
+ * Each array starts at the next multiple of its element's size. */
+#define ACDF_CURVE_AXIS_MASK 0x0000000Fu
+#define ACDF_CURVE_WIDE_CUMULATIVE 0x00000010u /* uint32 out of 2^32-1, else uint16 out of 2^16-1 */
+#define ACDF_CURVE_WIDE_POSITIONS 0x00000020u  /* uint32, else uint16 */
+#define ACDF_CURVE_LINKS_SHIFT 6
+#define ACDF_CURVE_LINKS_MASK 0x000000C0u
+#define ACDF_CURVE_TILTED 0x00000100u
+#define ACDF_CURVE_RESERVED_MASK 0x00000E00u
+#define ACDF_CURVE_SEGMENTS_SHIFT 12
+
+typedef enum AcdfLinks { ACDF_LINKS_NONE = 0, ACDF_LINKS_16 = 1, ACDF_LINKS_32 = 2 } AcdfLinks;
+
+#ifdef __cplusplus
+#define ACDF_STATIC_ASSERT(condition) static_assert(condition, #condition)
+#else
+#define ACDF_STATIC_ASSERT(condition) _Static_assert(condition, #condition)
+#endif
+ACDF_STATIC_ASSERT(sizeof(AcdfHeader) == 64);
+ACDF_STATIC_ASSERT(offsetof(AcdfHeader, file_length) == 16);
+ACDF_STATIC_ASSERT(offsetof(AcdfHeader, chunk_count) == 36);
+ACDF_STATIC_ASSERT(offsetof(AcdfHeader, header_crc) == 60);
+ACDF_STATIC_ASSERT(sizeof(AcdfChunk) == 48);
+ACDF_STATIC_ASSERT(offsetof(AcdfChunk, offset) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfDescription) == 64);
+ACDF_STATIC_ASSERT(offsetof(AcdfDescription, channel_weights) == 32);
+ACDF_STATIC_ASSERT(offsetof(AcdfDescription, total) == 56);
+ACDF_STATIC_ASSERT(sizeof(AcdfAxis) == 48);
+ACDF_STATIC_ASSERT(offsetof(AcdfAxis, low) == 32);
+ACDF_STATIC_ASSERT(sizeof(AcdfBin) == 8);
+
+#endif

@@ -1,0 +1,79 @@
+/* The C interface of the reader: open a file here, then draw and evaluate with acdf/sample.h.
+ *
+ *   AcdfError error;
+ *   AcdfFile* file = acdf_open("probe.acdf", &error);
+ *   AcdfEnvironment sky;
+ *   if (!file || !acdf_environment(file, &sky)) { ... error.message ... }
+ *   AcdfDirectionSample s = acdf_environment_sample(&sky, u0, u1);   // s.direction, s.pdf in sr^-1
+ *   float p = acdf_environment_pdf(&sky, s.direction);
+ *   acdf_close(file);                                                // `sky` ends with it
+ *
+ * The safety contract is that of acdf/reader.h: any bytes may be passed in; a file that was accepted can be
+ * sampled for ever without reading outside it. An open file is never changed: any number of threads may use
+ * it at once. Every function but acdf_close takes only open files, not null. */
+#ifndef ACDF_ACDF_H
+#define ACDF_ACDF_H
+
+#include <acdf/layout.h>
+#include <acdf/sample.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct AcdfFile AcdfFile;
+
+/* What kind of failure; the numbers are stable, and those of acdf::ErrorCode. */
+typedef enum AcdfErrorCode {
+    ACDF_OK = 0,
+    ACDF_CANNOT_OPEN = 1,
+    ACDF_CANNOT_READ = 2,
+    ACDF_OUT_OF_MEMORY = 3,
+    ACDF_LIMIT_EXCEEDED = 4,
+    ACDF_MALFORMED = 5,  /* breaks the rule `rule` of SPEC.md */
+    ACDF_UNSUPPORTED = 6 /* a newer or unknown version, kind, feature or critical chunk */
+} AcdfErrorCode;
+
+typedef struct AcdfError {
+    AcdfErrorCode code;
+    int rule;          /* number of the broken rule of SPEC.md, 0 if none */
+    uint64_t offset;   /* byte in the file where it shows */
+    char message[240]; /* one line, UTF-8, terminated: what is wrong and where */
+} AcdfError;
+
+/* Reads and checks the file at `path`. Null on failure. `error` may be null; it is written on success too. */
+AcdfFile* acdf_open(const char* path, AcdfError* error);
+
+/* Checks `size` bytes at `data`, which must stay as they are until acdf_close: uncompressed chunks are used
+ * in place (where `data` is aligned to 4 bytes). Null on failure. */
+AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error);
+
+/* Ends `file` and every view and pointer taken from it. Null is allowed. */
+void acdf_close(AcdfFile* file);
+
+/* The view of an environment file. Returns 1, or 0 (and `out` unset) where the file is of another kind. */
+int acdf_environment(const AcdfFile* file, AcdfEnvironment* out);
+
+AcdfKind acdf_kind(const AcdfFile* file);
+uint64_t acdf_size(const AcdfFile* file); /* bytes of the whole file */
+const AcdfHeader* acdf_header(const AcdfFile* file);
+const AcdfDescription* acdf_description(const AcdfFile* file);
+const AcdfAxis* acdf_axis(const AcdfFile* file, uint32_t axis); /* null where axis >= axis_count */
+const AcdfBin* acdf_bin(const AcdfFile* file, uint32_t bin);    /* null where bin >= bin_count */
+
+/* UTF-8, not terminated; `data` is null where there is none. */
+typedef struct AcdfText {
+    const char* data;
+    size_t size;
+} AcdfText;
+
+uint32_t acdf_metadata_count(const AcdfFile* file);
+/* Pair i. Returns 1, or 0 (and key, value unset) where i >= the count. */
+int acdf_metadata_pair(const AcdfFile* file, uint32_t i, AcdfText* key, AcdfText* value);
+/* The value of `key`; data is null where the file has no such key. */
+AcdfText acdf_metadata_value(const AcdfFile* file, const char* key);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,130 @@
+// Loads and checks .acdf files. C++17, no exceptions, no RTTI; needs zlib alone.
+//
+//   acdf::File file;
+//   if (acdf::Status status = acdf::File::open("probe.acdf", file); !status.ok()) { ... status.message ... }
+//   acdf::EnvironmentView sky = file.environment();
+//   acdf::DirectionSample s = sky.sample(u0, u1);     // s.direction, s.pdf in sr^-1
+//   float p = sky.pdf(s.direction);
+//
+// Safety: `open` and `from_memory` accept any bytes. They check every rule of format/SPEC.md that memory
+// safety and a correct density need, in time linear in the size, and never read outside what they are given.
+// A file that was accepted can be sampled for ever without reading outside it. Memory: at most four times the
+// file and its inflated chunks, and 1 MiB; the limits are checked before any of it is allocated.
+#pragma once
+
+#include <acdf/sample.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace acdf {
+
+/// What kind of failure; the numbers are stable.
+enum class ErrorCode : int {
+    none = 0,
+    cannot_open = 1,
+    cannot_read = 2,
+    out_of_memory = 3,
+    limit_exceeded = 4,
+    malformed = 5,   ///< breaks a rule of SPEC.md: see Status::rule
+    unsupported = 6, ///< a newer or unknown version, kind, feature or critical chunk
+};
+
+/// The outcome of loading: a value, never an exception.
+struct Status {
+    ErrorCode code = ErrorCode::none;
+    int rule = 0;             ///< number of the broken rule of SPEC.md, 0 if none
+    std::uint64_t offset = 0; ///< byte in the file where it shows
+    char message[240] = {};   ///< one line, UTF-8: what is wrong and where
+
+    bool ok() const noexcept { return code == ErrorCode::none; }
+};
+
+/// Limits checked before anything is allocated.
+struct Limits {
+    std::uint64_t max_file_bytes = std::uint64_t{1} << 32;
+    std::uint64_t max_inflated_bytes = std::uint64_t{1} << 30; ///< sum over compressed chunks
+};
+
+using DirectionSample = AcdfDirectionSample;
+
+/// A probability density over the sphere. A few words by value; valid while its File (and, for
+/// `from_memory`, the bytes) lives. All functions are const, thread-safe, allocate and throw nothing.
+class EnvironmentView {
+public:
+    explicit EnvironmentView(const AcdfEnvironment& data) noexcept : data_(data) {}
+
+    /// Draws a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
+    DirectionSample sample(double u0, double u1) const noexcept { return acdf_environment_sample(&data_, u0, u1); }
+    /// Density in sr^-1 of a unit direction; 0 where none falls, for NaN and for non-unit directions.
+    float pdf(const float direction[3]) const noexcept { return acdf_environment_pdf(&data_, direction); }
+    /// The random numbers that draw `direction`; false where the density is 0.
+    bool invert(const float direction[3], double u[2]) const noexcept {
+        return acdf_environment_invert(&data_, direction, u) != 0;
+    }
+    /// Integral of the sampled function over the sphere (luminance times sr): for light selection.
+    double total() const noexcept { return data_.total; }
+    /// The plain data, for acdf/sample.h in another language or on a GPU.
+    const AcdfEnvironment& data() const noexcept { return data_; }
+
+private:
+    AcdfEnvironment data_;
+};
+
+/// A key or value of the metadata: UTF-8, not terminated.
+struct Text {
+    const char* data = nullptr;
+    std::size_t size = 0;
+};
+
+/// A checked file. Movable, not copyable.
+class File {
+public:
+    File() noexcept = default;
+    ~File();
+    File(File&& other) noexcept;
+    File& operator=(File&& other) noexcept;
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+
+    /// Reads and checks the regular file at `path`. On failure `file` is left empty.
+    static Status open(const char* path, File& file, const Limits& limits = {}) noexcept;
+    /// Checks `size` bytes at `data`. They are used in place, and must outlive `file`, unless they are not
+    /// aligned to 8 bytes (then copied). Compressed chunks are inflated into memory of the file's own.
+    static Status from_memory(const void* data, std::size_t size, File& file, const Limits& limits = {}) noexcept;
+
+    bool empty() const noexcept { return bytes_ == nullptr; }
+    // Everything below asks for a file that is not empty.
+    AcdfKind kind() const noexcept { return static_cast<AcdfKind>(header().kind); }
+    const AcdfHeader& header() const noexcept { return *reinterpret_cast<const AcdfHeader*>(bytes_); }
+    const AcdfDescription& description() const noexcept { return *description_; }
+    const AcdfAxis& axis(std::uint32_t i) const noexcept { return axes_[i]; }
+    const AcdfBin& bin(std::uint32_t i) const noexcept { return bins_[i]; }
+    /// Chunk TREE, and its size in 32-bit words.
+    const std::uint8_t* tree() const noexcept { return tree_; }
+    std::uint32_t tree_words() const noexcept { return tree_words_; }
+    std::uint64_t size() const noexcept { return size_; }
+
+    /// Metadata pairs; `count` is 0 where the file carries none.
+    std::uint32_t metadata_count() const noexcept { return metadata_count_; }
+    void metadata(std::uint32_t i, Text& key, Text& value) const noexcept;
+    /// The value of `key`, empty where absent.
+    Text metadata(const char* key) const noexcept;
+
+    /// The view of an environment file: only where kind() == ACDF_KIND_ENVIRONMENT.
+    EnvironmentView environment() const noexcept;
+
+private:
+    const std::uint8_t* bytes_ = nullptr;
+    std::uint64_t size_ = 0;
+    const AcdfDescription* description_ = nullptr;
+    const AcdfAxis* axes_ = nullptr;
+    const AcdfBin* bins_ = nullptr;
+    const std::uint8_t* tree_ = nullptr;
+    std::uint32_t tree_words_ = 0;
+    const std::uint8_t* metadata_ = nullptr;
+    std::uint32_t metadata_count_ = 0;
+    void* owned_[2] = {nullptr, nullptr}; // the file's bytes; inflated chunks
+};
+
+} // namespace acdf

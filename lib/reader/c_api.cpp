@@ -1,0 +1,92 @@
+// The C interface: acdf::File behind an opaque pointer. malloc and not new, so that a C program that links the
+// reader needs no C++ runtime library.
+#include <acdf/acdf.h>
+#include <acdf/reader.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <utility>
+
+struct AcdfFile {
+    acdf::File file;
+};
+
+static_assert(sizeof(AcdfError::message) == sizeof(acdf::Status::message));
+static_assert(ACDF_UNSUPPORTED == static_cast<int>(acdf::ErrorCode::unsupported));
+
+namespace {
+
+void report(const acdf::Status& status, AcdfError* error) {
+    if (!error) return;
+    error->code = static_cast<AcdfErrorCode>(status.code);
+    error->rule = status.rule;
+    error->offset = status.offset;
+    std::memcpy(error->message, status.message, sizeof(status.message));
+}
+
+AcdfFile* keep(const acdf::Status& status, acdf::File& file, AcdfError* error) {
+    report(status, error);
+    if (!status.ok()) return nullptr;
+    if (void* place = std::malloc(sizeof(AcdfFile))) return new (place) AcdfFile{std::move(file)};
+    acdf::Status failure;
+    failure.code = acdf::ErrorCode::out_of_memory;
+    std::memcpy(failure.message, "out of memory", sizeof("out of memory"));
+    report(failure, error);
+    return nullptr;
+}
+
+} // namespace
+
+AcdfFile* acdf_open(const char* path, AcdfError* error) {
+    acdf::File file;
+    const acdf::Status status = acdf::File::open(path, file);
+    return keep(status, file, error);
+}
+
+AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error) {
+    acdf::File file;
+    const acdf::Status status = acdf::File::from_memory(data, size, file);
+    return keep(status, file, error);
+}
+
+void acdf_close(AcdfFile* file) {
+    if (!file) return;
+    file->~AcdfFile();
+    std::free(file);
+}
+
+int acdf_environment(const AcdfFile* file, AcdfEnvironment* out) {
+    if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
+    *out = file->file.environment().data();
+    return 1;
+}
+
+AcdfKind acdf_kind(const AcdfFile* file) { return file->file.kind(); }
+uint64_t acdf_size(const AcdfFile* file) { return file->file.size(); }
+const AcdfHeader* acdf_header(const AcdfFile* file) { return &file->file.header(); }
+const AcdfDescription* acdf_description(const AcdfFile* file) { return &file->file.description(); }
+
+const AcdfAxis* acdf_axis(const AcdfFile* file, uint32_t axis) {
+    return axis < file->file.description().axis_count ? &file->file.axis(axis) : nullptr;
+}
+
+const AcdfBin* acdf_bin(const AcdfFile* file, uint32_t bin) {
+    return bin < file->file.description().bin_count ? &file->file.bin(bin) : nullptr;
+}
+
+uint32_t acdf_metadata_count(const AcdfFile* file) { return file->file.metadata_count(); }
+
+int acdf_metadata_pair(const AcdfFile* file, uint32_t i, AcdfText* key, AcdfText* value) {
+    if (i >= file->file.metadata_count()) return 0;
+    acdf::Text k, v;
+    file->file.metadata(i, k, v);
+    *key = {k.data, k.size};
+    *value = {v.data, v.size};
+    return 1;
+}
+
+AcdfText acdf_metadata_value(const AcdfFile* file, const char* key) {
+    const acdf::Text value = file->file.metadata(key);
+    return {value.data, value.size};
+}

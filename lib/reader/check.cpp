@@ -1,0 +1,407 @@
+// The file as a container: header, chunk table, payloads.
+#include "checker.h"
+
+#include <zlib.h>
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace acdf {
+
+static_assert(sizeof(std::size_t) == 8, "files may exceed 4 GiB: a 64-bit machine is needed");
+
+void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
+    if (stopped_) return;
+    Finding finding;
+    char detail[160];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(detail, sizeof detail, format, arguments);
+    va_end(arguments);
+    finding.rule = find_rule(rule);
+    finding.offset = offset;
+    finding.detail = detail;
+    ++(finding.rule->severity == Severity::error ? verdict_.errors : verdict_.warnings);
+    if (!sink_(finding, context_)) stopped_ = true;
+}
+
+namespace {
+
+using u8 = std::uint8_t;
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using ull = unsigned long long; // for printf
+
+constexpr u8 magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
+
+u32 crc(u32 seed, const u8* bytes, u64 size) { return static_cast<u32>(crc32_z(seed, bytes, size)); }
+
+// ---- header ---------------------------------------------------------------------------------------------
+
+struct Signature {
+    const char* bytes;
+    std::size_t size;
+    const char* text;
+};
+
+// What people pass by mistake, and what transfers do to the magic.
+constexpr Signature signatures[] = {
+    {"\x76\x2f\x31\x01", 4, "this is an OpenEXR image; `acdf env` makes an .acdf file of it"},
+    {"#?RADIANCE", 10, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
+    {"#?RGBE", 6, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
+    {"\x89PNG", 4, "this is a PNG image, which holds no radiance"},
+    {"\x93NUMPY", 6, "this is a NumPy array; `acdf table` makes an .acdf file of it"},
+    {"II*\0", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
+    {"MM\0*", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
+    {"tensor_file", 11, "this is an RGL .bsdf file; `acdf brdf` makes an .acdf file of it"},
+    {"\x1f\x8b", 2, "this is a gzip file; inflate it first"},
+    {"\xab\x41\x43\x44\x46  \xbb\x0a\x1a\x0a", 11,
+     "a transfer in text mode turned CR LF into LF; transfer it as binary"},
+    {"\xab\x41\x43\x44\x46  \xbb\x0d\x0d\x0a", 11,
+     "a transfer in text mode turned LF into CR LF; transfer it as binary"},
+    {"\x2b\x41\x43\x44\x46  \x3b", 8, "a transfer cut the highest bit of each byte; transfer it as binary"},
+    {"\xab\x41\x43\x44\x46", 5, "it starts like an .acdf file, but its magic is damaged"},
+};
+
+const char* what_is_it(const u8* bytes, u64 size) {
+    for (const Signature& s : signatures)
+        if (size >= s.size && std::memcmp(bytes, s.bytes, s.size) == 0) return s.text;
+    u32 dims[3];
+    constexpr u64 merl_size = 12 + u64{3} * 8 * 90 * 90 * 180;
+    if (size == merl_size) {
+        std::memcpy(dims, bytes, sizeof dims);
+        if (dims[0] == 90 && dims[1] == 90 && dims[2] == 180)
+            return "this is a MERL BRDF; `acdf brdf` makes an .acdf file of it";
+    }
+    return "this is not an .acdf file";
+}
+
+// False where the rest cannot be read with any meaning.
+bool check_start(const u8* bytes, u64 size, Report& report) {
+    if (size != 0 && std::memcmp(bytes, magic, size < sizeof magic ? size : sizeof magic) != 0) {
+        report.add(2002, 0, "%s", what_is_it(bytes, size));
+        return false;
+    }
+    if (size < sizeof(AcdfHeader)) {
+        report.add(2001, size, "the file has %llu bytes", static_cast<ull>(size));
+        return false;
+    }
+    const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
+    if (header.version_major != ACDF_VERSION_MAJOR) {
+        report.add(2003, offsetof(AcdfHeader, version_major), "version %u.%u needs a %s reader",
+                   header.version_major, header.version_minor,
+                   header.version_major > ACDF_VERSION_MAJOR ? "newer" : "pre-release");
+        return false;
+    }
+    return true;
+}
+
+void check_file_length(const AcdfHeader& header, u64 size, Report& report) {
+    const u64 length = header.file_length;
+    if (length == size) return;
+    if (length > size)
+        report.add(2005, offsetof(AcdfHeader, file_length), "truncated: %llu bytes of %llu are there",
+                   static_cast<ull>(size), static_cast<ull>(length));
+    else
+        report.add(2005, offsetof(AcdfHeader, file_length), "%llu extra bytes after the %llu of the file",
+                   static_cast<ull>(size - length), static_cast<ull>(length));
+}
+
+bool check_header(const u8* bytes, u64 size, Report& report) {
+    if (!check_start(bytes, size, report)) return false;
+    const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
+    const u64 table_end = sizeof(AcdfHeader) + u64{header.chunk_count} * sizeof(AcdfChunk);
+    const bool count_ok = header.chunk_count >= 1 && header.chunk_count <= ACDF_MAX_CHUNKS;
+    const bool table_ok = count_ok && table_end <= size;
+    if (table_ok) {
+        const u32 expected = crc(crc(0, bytes, offsetof(AcdfHeader, header_crc)), bytes + sizeof(AcdfHeader),
+                                 table_end - sizeof(AcdfHeader));
+        if (expected != header.header_crc)
+            report.add(2004, offsetof(AcdfHeader, header_crc),
+                       "%08x is stored, %08x is right: header or chunk table are damaged", header.header_crc,
+                       expected);
+    }
+    check_file_length(header, size, report);
+    if (header.kind < ACDF_KIND_ENVIRONMENT || header.kind > ACDF_KIND_TABLE)
+        report.add(2006, offsetof(AcdfHeader, kind), "kind %u is unknown", header.kind);
+    for (u32 bit = 0; bit < 32; ++bit)
+        if (header.required_features >> bit & 1)
+            report.add(2007, offsetof(AcdfHeader, required_features),
+                       "feature bit %u is unknown: a newer reader is needed", bit);
+    for (u32 i = 0; i < 5; ++i)
+        if (header.reserved[i] != 0)
+            report.add(2008, offsetof(AcdfHeader, reserved) + 4 * i, "it is %08x", header.reserved[i]);
+    if (!table_ok)
+        report.add(3001, offsetof(AcdfHeader, chunk_count),
+                   count_ok ? "the table of %u chunks ends after the file" : "%u chunks", header.chunk_count);
+    return table_ok;
+}
+
+// ---- chunk table ----------------------------------------------------------------------------------------
+
+constexpr u32 known_types[known_chunks] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE,
+                                           ACDF_CHUNK_METADATA};
+
+int known_chunk(u32 type) {
+    for (int i = 0; i < known_chunks; ++i)
+        if (known_types[i] == type) return i;
+    return -1;
+}
+
+struct ChunkName {
+    char text[5];
+    explicit ChunkName(u32 type) {
+        for (int i = 0; i < 4; ++i) {
+            const char c = static_cast<char>(type >> 8 * i);
+            text[i] = c >= 32 && c < 127 ? c : '?';
+        }
+        text[4] = 0;
+    }
+};
+
+struct Table {
+    const AcdfChunk* chunks;
+    u32 count;
+    bool inside[ACDF_MAX_CHUNKS]; // the payload lies in the file, where it should
+    bool legal;                   // so do all: the gaps between them are padding
+
+    u64 offset_of(u32 i) const { return sizeof(AcdfHeader) + u64{i} * sizeof(AcdfChunk); }
+    u64 end() const { return offset_of(count); }
+};
+
+void check_type_and_flags(const Table& table, u32 i, Report& report) {
+    const AcdfChunk& chunk = table.chunks[i];
+    const int known = known_chunk(chunk.type);
+    const u64 at = table.offset_of(i);
+    const ChunkName name(chunk.type);
+    const bool critical = chunk.flags & ACDF_CHUNK_FLAG_CRITICAL;
+    if (known < 0 && critical)
+        report.add(3002, at, "the critical chunk '%s' (%08x) is unknown: a newer reader is needed", name.text,
+                   chunk.type);
+    for (u32 j = 0; j < i; ++j)
+        if (table.chunks[j].type == chunk.type) {
+            report.add(3003, at, "chunks %u and %u are both '%s'", j, i, name.text);
+            break;
+        }
+    if (chunk.codec > ACDF_CODEC_ZLIB)
+        report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
+    if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
+        report.add(3009, at + offsetof(AcdfChunk, flags), "flags %08x of '%s'", chunk.flags, name.text);
+    else if (known >= 0 && critical != (known != chunk_metadata))
+        report.add(3009, at + offsetof(AcdfChunk, flags), "'%s' is marked %s", name.text,
+                   critical ? "critical" : "ancillary");
+    if (chunk.reserved != 0)
+        report.add(3009, at + offsetof(AcdfChunk, reserved), "`reserved` of '%s' is not zero", name.text);
+}
+
+// Returns the end of the payload; `expected` is where it must start.
+u64 check_place(Table& table, u32 i, u64 expected, u64 size, Report& report) {
+    const AcdfChunk& chunk = table.chunks[i];
+    const u64 at = table.offset_of(i);
+    const ChunkName name(chunk.type);
+    table.inside[i] = true;
+    if (chunk.offset != expected) {
+        report.add(3006, at + offsetof(AcdfChunk, offset), "'%s' starts at byte %llu instead of %llu", name.text,
+                   static_cast<ull>(chunk.offset), static_cast<ull>(expected));
+        table.inside[i] = false;
+    }
+    if (chunk.offset > size || chunk.stored_length > size - chunk.offset) {
+        report.add(3007, at + offsetof(AcdfChunk, stored_length),
+                   "'%s' has %llu bytes from byte %llu, the file %llu", name.text,
+                   static_cast<ull>(chunk.stored_length), static_cast<ull>(chunk.offset), static_cast<ull>(size));
+        table.inside[i] = false;
+        table.legal = false;
+        return expected;
+    }
+    if (!table.inside[i]) table.legal = false;
+    return chunk.offset + chunk.stored_length;
+}
+
+void check_lengths(const Table& table, u32 i, Report& report) {
+    const AcdfChunk& chunk = table.chunks[i];
+    const u64 at = table.offset_of(i) + offsetof(AcdfChunk, raw_length);
+    const ChunkName name(chunk.type);
+    if (chunk.codec == ACDF_CODEC_NONE && chunk.raw_length != chunk.stored_length)
+        report.add(3010, at, "'%s': %llu stored, %llu raw", name.text, static_cast<ull>(chunk.stored_length),
+                   static_cast<ull>(chunk.raw_length));
+    // Division, so that nothing overflows. The longest match of deflate makes 258 bytes of 2 bits.
+    if (chunk.codec == ACDF_CODEC_ZLIB && chunk.raw_length / 1032 > chunk.stored_length)
+        report.add(3011, at, "'%s': %llu bytes cannot come from %llu", name.text,
+                   static_cast<ull>(chunk.raw_length), static_cast<ull>(chunk.stored_length));
+}
+
+void check_table(Table& table, const AcdfHeader& header, u64 size, Report& report) {
+    u64 end = table.end();
+    table.legal = true;
+    for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
+        check_type_and_flags(table, i, report);
+        end = check_place(table, i, round_up(end, ACDF_ALIGNMENT), size, report);
+        check_lengths(table, i, report);
+    }
+    for (const u32 type : known_types) {
+        bool found = type == ACDF_CHUNK_METADATA;
+        for (u32 i = 0; i < table.count; ++i) found = found || table.chunks[i].type == type;
+        if (!found) report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(type).text);
+    }
+    end = round_up(end, ACDF_ALIGNMENT);
+    if (table.legal && header.file_length != end)
+        report.add(3008, offsetof(AcdfHeader, file_length), "`file_length` is %llu, the chunks end at %llu",
+                   static_cast<ull>(header.file_length), static_cast<ull>(end));
+}
+
+// ---- payloads -------------------------------------------------------------------------------------------
+
+void check_padding(const Table& table, const u8* bytes, u64 size, Report& report) {
+    u64 begin = table.end();
+    for (u32 i = 0; i <= table.count && !report.stopped(); ++i) {
+        const u64 rounded = round_up(begin, ACDF_ALIGNMENT);
+        const u64 end = rounded < size ? rounded : size;
+        for (u64 at = begin; at < end; ++at)
+            if (bytes[at] != 0) {
+                report.add(4002, at, "it is %02x", bytes[at]);
+                break;
+            }
+        if (i < table.count) begin = table.chunks[i].offset + table.chunks[i].stored_length;
+    }
+}
+
+void check_crcs(const Table& table, const u8* bytes, Report& report) {
+    for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
+        const AcdfChunk& chunk = table.chunks[i];
+        if (!table.inside[i]) continue;
+        const u32 right = crc(0, bytes + chunk.offset, chunk.stored_length);
+        if (right != chunk.crc)
+            report.add(4001, chunk.offset, "'%s' is damaged: %08x is stored, %08x is right",
+                       ChunkName(chunk.type).text, chunk.crc, right);
+    }
+}
+
+// Inflates a whole zlib stream to exactly `size` bytes; null, or what is wrong.
+const char* inflate_exactly(const u8* in, u64 in_size, u8* out, u64 out_size) {
+    constexpr u64 step = u64{1} << 30; // zlib counts in 32 bits
+    z_stream stream = {};
+    if (inflateInit(&stream) != Z_OK) return "zlib cannot start";
+    stream.next_in = const_cast<u8*>(in);
+    stream.next_out = out;
+    u64 in_left = in_size, out_left = out_size;
+    int result = Z_OK;
+    while (result == Z_OK) {
+        const uInt in_now = static_cast<uInt>(in_left < step ? in_left : step);
+        const uInt out_now = static_cast<uInt>(out_left < step ? out_left : step);
+        stream.avail_in = in_now;
+        stream.avail_out = out_now;
+        result = inflate(&stream, Z_NO_FLUSH);
+        in_left -= in_now - stream.avail_in;
+        out_left -= out_now - stream.avail_out;
+        if (result == Z_OK && stream.avail_in == in_now && stream.avail_out == out_now) break; // no progress
+    }
+    inflateEnd(&stream);
+    if (result != Z_STREAM_END) return out_left == 0 ? "it goes on after `raw_length`" : "the stream is damaged";
+    if (out_left != 0) return "it ends before `raw_length`";
+    return in_left != 0 ? "bytes follow the stream" : nullptr;
+}
+
+bool is_compressed(const Table& table, u32 i) {
+    const AcdfChunk& chunk = table.chunks[i];
+    return table.inside[i] && chunk.codec == ACDF_CODEC_ZLIB && known_chunk(chunk.type) >= 0 &&
+           chunk.raw_length / 1032 <= chunk.stored_length;
+}
+
+// Memory for all compressed chunks in one block, each part at a multiple of 64; false where there is none.
+bool allocate_inflated(const Table& table, const Limits& limits, Report& report, Parts& parts) {
+    u64 sum = 0, block = 0;
+    for (u32 i = 0; i < table.count; ++i) {
+        if (!is_compressed(table, i)) continue;
+        const u64 length = table.chunks[i].raw_length;
+        if (length > limits.max_inflated_bytes - sum) {
+            report.add(3012, table.offset_of(i) + offsetof(AcdfChunk, raw_length),
+                       "more than the limit of %llu bytes", static_cast<ull>(limits.max_inflated_bytes));
+            return false;
+        }
+        sum += length;
+        block += round_up(length, ACDF_ALIGNMENT);
+    }
+    if (block == 0) return true;
+    parts.inflated = std::aligned_alloc(ACDF_ALIGNMENT, block);
+    if (!parts.inflated) report.add(1003, 0, "%llu bytes for inflated chunks", static_cast<ull>(block));
+    return parts.inflated != nullptr;
+}
+
+void read_payloads(const Table& table, const u8* bytes, const Limits& limits, Report& report, Parts& parts,
+                   Payloads& payloads) {
+    const bool have_memory = allocate_inflated(table, limits, report, parts);
+    u8* block = static_cast<u8*>(parts.inflated);
+    for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
+        const AcdfChunk& chunk = table.chunks[i];
+        const int known = known_chunk(chunk.type);
+        if (known < 0 || !table.inside[i] || payloads.of[known].data) continue;
+        Payload payload{bytes + chunk.offset, chunk.stored_length, chunk.offset, false};
+        if (chunk.codec == ACDF_CODEC_NONE && chunk.raw_length == chunk.stored_length) payloads.of[known] = payload;
+        if (!is_compressed(table, i) || !have_memory) continue;
+        static u8 nothing; // zlib wants an address even for no bytes
+        u8* const out = chunk.raw_length ? block : &nothing;
+        payload = {out, chunk.raw_length, chunk.offset, true};
+        if (const char* wrong = inflate_exactly(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length)) {
+            report.add(4003, chunk.offset, "'%s': %s", ChunkName(chunk.type).text, wrong);
+            continue;
+        }
+        block += round_up(chunk.raw_length, ACDF_ALIGNMENT);
+        payloads.of[known] = payload;
+    }
+}
+
+} // namespace
+
+Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context,
+              Parts& parts) noexcept {
+    Report report(sink, context);
+    if (!check_header(bytes, size, report) || report.stopped()) return report.verdict();
+    const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
+    Table table = {};
+    table.chunks = reinterpret_cast<const AcdfChunk*>(bytes + sizeof(AcdfHeader));
+    table.count = header.chunk_count;
+    check_table(table, header, size, report);
+    if (table.legal && !report.stopped()) check_padding(table, bytes, size, report);
+    if (!report.stopped()) check_crcs(table, bytes, report);
+    Payloads payloads;
+    if (!report.stopped()) read_payloads(table, bytes, limits, report, parts, payloads);
+    const Payload& description = payloads.of[chunk_description];
+    if (description.data && !report.stopped()) check_description(description, header.kind, report, parts);
+    if (payloads.of[chunk_metadata].data && !report.stopped())
+        check_metadata(payloads.of[chunk_metadata], report, parts);
+    if (!parts.description || report.stopped()) return report.verdict();
+    check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], report, parts);
+    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped()) check_environment(description, report, parts);
+    return report.verdict();
+}
+
+Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
+                 const Limits& limits) noexcept {
+    const u8* data = static_cast<const u8*>(bytes);
+    void* copy = nullptr;
+    Parts parts;
+    Verdict verdict;
+    if (size > limits.max_file_bytes) {
+        Report report(sink, context);
+        report.add(1004, 0, "%llu bytes, the limit is %llu", static_cast<ull>(size),
+                   static_cast<ull>(limits.max_file_bytes));
+        return report.verdict();
+    }
+    if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
+        copy = std::malloc(size ? size : 1);
+        if (!copy) {
+            Report report(sink, context);
+            report.add(1003, 0, "%llu bytes for a copy", static_cast<ull>(size));
+            return report.verdict();
+        }
+        data = static_cast<const u8*>(std::memcpy(copy, bytes, size));
+    }
+    verdict = check(data, size, limits, sink, context, parts);
+    std::free(parts.inflated);
+    std::free(copy);
+    return verdict;
+}
+
+} // namespace acdf

@@ -1,0 +1,60 @@
+// Every check of a file, once: `File` stops at the first error, `acdf validate` reports all.
+#pragma once
+
+#include "rules.h"
+
+#include <type_traits>
+
+namespace acdf {
+
+/// A broken rule.
+struct Finding {
+    const Rule* rule = nullptr;
+    std::uint64_t offset = 0; ///< byte in the file; for a compressed chunk that of its first stored byte
+    const char* detail = "";  ///< what was found and, if it helps, what to do; valid during the call
+};
+
+/// Called for each finding; returns false to stop.
+using FindingSink = bool (*)(const Finding& finding, void* context);
+
+struct Verdict {
+    std::uint64_t errors = 0, warnings = 0;
+    bool valid() const noexcept { return errors == 0; }
+};
+
+/// Reports every finding that the checks can go on to, in the order of the rules' ranges. Any bytes, at any
+/// alignment; reads nothing outside them; linear in the size and in what the compressed chunks inflate to.
+Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
+                 const Limits& limits = {}) noexcept;
+
+/// The same with any callable `sink(const Finding&)` that returns void, or bool (false: stop).
+template <class Sink>
+Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits& limits = {}) {
+    using Target = std::remove_reference_t<Sink>;
+    return validate(
+        bytes, size,
+        [](const Finding& finding, void* context) -> bool {
+            Target& target = *static_cast<Target*>(context);
+            if constexpr (std::is_same_v<decltype(target(finding)), void>) return target(finding), true;
+            else return target(finding);
+        },
+        const_cast<void*>(static_cast<const void*>(&sink)), limits);
+}
+
+/// Where the parts of a file lie once found: what `File` keeps.
+struct Parts {
+    const AcdfDescription* description = nullptr;
+    const AcdfAxis* axes = nullptr; ///< description->axis_count
+    const AcdfBin* bins = nullptr;  ///< description->bin_count
+    const std::uint8_t* tree = nullptr;
+    std::uint32_t tree_words = 0;
+    const std::uint8_t* metadata = nullptr; ///< the payload of META after its count; null where absent
+    std::uint32_t metadata_count = 0;
+    void* inflated = nullptr; ///< block of the inflated chunks, from std::aligned_alloc; the caller frees it
+};
+
+/// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.
+Verdict check(const std::uint8_t* bytes, std::uint64_t size, const Limits& limits, FindingSink sink, void* context,
+              Parts& parts) noexcept;
+
+} // namespace acdf

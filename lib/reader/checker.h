@@ -1,0 +1,59 @@
+// Inside the checks: what check*.cpp share. Not installed.
+#pragma once
+
+#include "check.h"
+
+namespace acdf {
+
+/// Collects findings: counts them, passes them to the sink, and falls silent once the sink says stop.
+class Report {
+public:
+    Report(FindingSink sink, void* context) noexcept : sink_(sink), context_(context) {}
+
+#if defined(__GNUC__)
+    __attribute__((format(printf, 4, 5)))
+#endif
+    void
+    add(int rule, std::uint64_t offset, const char* format, ...) noexcept;
+
+    bool stopped() const noexcept { return stopped_; }
+    const Verdict& verdict() const noexcept { return verdict_; }
+
+private:
+    FindingSink sink_;
+    void* context_;
+    Verdict verdict_;
+    bool stopped_ = false;
+};
+
+/// The bytes of one chunk, inflated if they were compressed. `data` is null where they cannot be read.
+struct Payload {
+    const std::uint8_t* data = nullptr;
+    std::uint64_t size = 0;
+    std::uint64_t file_offset = 0;
+    bool inflated = false;
+
+    /// The byte of the file that stands for byte `position` of the payload.
+    std::uint64_t at(std::uint64_t position) const noexcept {
+        return inflated ? file_offset : file_offset + position;
+    }
+};
+
+enum KnownChunk { chunk_description, chunk_bins, chunk_tree, chunk_metadata, known_chunks };
+
+struct Payloads {
+    Payload of[known_chunks];
+};
+
+inline std::uint64_t round_up(std::uint64_t n, std::uint64_t to) noexcept { return (n + to - 1) / to * to; }
+
+/// DESC. Sets parts.description and parts.axes if its length is right.
+void check_description(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+/// META. Sets parts.metadata if it is well-formed.
+void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
+/// BINS and TREE; needs parts.description. Sets parts.bins, parts.tree.
+void check_tree(const Payload& bins, const Payload& tree, Report& report, Parts& parts) noexcept;
+/// What the kind asks of axes and bins; needs parts.description.
+void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept;
+
+} // namespace acdf

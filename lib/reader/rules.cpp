@@ -1,0 +1,109 @@
+#include "rules.h"
+
+namespace acdf {
+
+namespace {
+constexpr Severity error = Severity::error;
+constexpr Severity warning = Severity::warning;
+constexpr ErrorCode malformed = ErrorCode::malformed;
+constexpr ErrorCode unsupported = ErrorCode::unsupported;
+} // namespace
+
+// Ascending by number. SPEC.md §8 carries the same table; a test compares the two.
+const Rule rules[] = {
+    {1001, error, ErrorCode::cannot_open, "open", "The file can be opened for reading."},
+    {1002, error, ErrorCode::cannot_read, "read", "The file is a regular file and all its bytes can be read."},
+    {1003, error, ErrorCode::out_of_memory, "memory",
+     "There is memory for the file, its inflated chunks and the checks."},
+    {1004, error, ErrorCode::limit_exceeded, "file-limit", "The file is no larger than the reader's limit."},
+
+    {2001, error, malformed, "header-size", "The file holds a whole header of 64 bytes."},
+    {2002, error, malformed, "magic", "The file starts with the 12 bytes of the magic."},
+    {2003, error, unsupported, "version", "The major version is 1."},
+    {2004, error, malformed, "header-crc", "`header_crc` is the CRC-32 of bytes 0 to 59 and of the chunk table."},
+    {2005, error, malformed, "file-length", "`file_length` is the size of the file."},
+    {2006, error, unsupported, "kind", "`kind` is one of those of §2.1."},
+    {2007, error, unsupported, "required-feature", "No bit of `required_features` is set."},
+    {2008, error, malformed, "header-reserved", "The reserved bytes of the header are zero."},
+
+    {3001, error, malformed, "chunk-count", "There are 1 to 64 chunks and the file holds their whole table."},
+    {3002, error, unsupported, "critical-chunk", "A critical chunk is of a known type."},
+    {3003, error, malformed, "duplicate-chunk", "No two chunks are of one type."},
+    {3004, error, malformed, "missing-chunk", "The chunks DESC, BINS and TREE are there."},
+    {3005, error, unsupported, "codec", "`codec` is 0 (none) or 1 (zlib)."},
+    {3006, error, malformed, "chunk-offset",
+     "A payload starts at the first multiple of 64 after what comes before it, in the table's order."},
+    {3007, error, malformed, "chunk-bounds", "A payload lies inside the file."},
+    {3008, error, malformed, "file-end", "`file_length` is the end of the last payload, rounded up to 64."},
+    {3009, error, malformed, "chunk-flags",
+     "Only flag bit 0 may be set; it is set for DESC, BINS and TREE and clear for META; `reserved` is zero."},
+    {3010, error, malformed, "raw-length", "With codec 0, `raw_length` equals `stored_length`."},
+    {3011, error, malformed, "deflate-ratio",
+     "With codec 1, `raw_length` is less than 1032 (`stored_length` + 1)."},
+    {3012, error, ErrorCode::limit_exceeded, "inflate-limit",
+     "The compressed chunks inflate to no more than the reader's limit."},
+
+    {4001, error, malformed, "chunk-crc", "`crc` is the CRC-32 of the stored bytes."},
+    {4002, error, malformed, "padding", "The bytes between payloads and after the last one are zero."},
+    {4003, error, malformed, "zlib-stream",
+     "With codec 1, the stored bytes are one whole zlib stream of `raw_length` bytes."},
+    {4004, error, malformed, "payload-length",
+     "DESC is 64 + 48 `axis_count` bytes long and BINS is 8 `bin_count` bytes long."},
+
+    {5001, error, unsupported, "parameterization", "`parameterization` is one of those of §4.1."},
+    {5002, error, unsupported, "fit", "`fit` is one of those of §4.1."},
+    {5003, error, unsupported, "filter", "`filter` is one of those of §4.1."},
+    {5004, error, unsupported, "up-axis", "`up_axis` is 2 (z)."},
+    {5005, error, unsupported, "handedness", "`handedness` is 0 (right-handed)."},
+    {5006, error, malformed, "axis-count", "`axis_count` is 1 to 8."},
+    {5007, error, malformed, "bin-count", "`bin_count` is at least 1."},
+    {5008, error, malformed, "description-reserved", "The reserved fields of DESC are zero."},
+    {5009, error, malformed, "channel-weights", "The channel weights are finite and not negative."},
+    {5010, error, malformed, "total", "`total` is finite and positive."},
+    {5011, error, malformed, "axis-name",
+     "The name of an axis is UTF-8, not empty, padded with zero bytes, and no other axis has it."},
+    {5012, error, malformed, "axis-role",
+     "`role` is 0 (sampled) or 1 (indexed), and one axis at least is sampled."},
+    {5013, error, malformed, "axis-measure", "`measure` is 0 (linear) or 1 (cosine)."},
+    {5014, error, malformed, "axis-resolution", "`resolution` is 1 to 2147483647."},
+    {5015, error, malformed, "axis-range", "`low` and `high` are finite and differ."},
+    {5016, error, malformed, "parameterization-kind", "The parameterization is that of the kind."},
+    {5017, error, malformed, "metadata",
+     "META is as §4.4 says: lengths within the chunk, nothing left over, at most 1024 pairs, "
+     "keys of 1 to 255 bytes, all UTF-8."},
+    {5018, error, malformed, "duplicate-key", "No two metadata keys are equal."},
+
+    {6001, error, malformed, "tree-length", "TREE is 1 to 4294967295 whole words long."},
+    {6002, error, malformed, "curve-end", "A curve ends inside TREE."},
+    {6003, error, malformed, "curve-axis", "The axis of a curve is a sampled axis."},
+    {6004, error, malformed, "curve-header",
+     "The reserved bits of a curve's header are zero and its link code is not 3."},
+    {6005, error, malformed, "curve-segments", "A curve has at least one segment."},
+    {6006, error, malformed, "knot-order", "The positions of a curve are strictly increasing."},
+    {6007, error, malformed, "knot-range",
+     "The positions of a curve lie strictly inside the range of its axis, on every path to the curve."},
+    {6008, error, malformed, "cumulative-order", "The cumulative values of a curve never decrease."},
+    {6009, error, malformed, "link", "A link leads to the start of a later curve."},
+    {6010, error, malformed, "root", "The root of a bin is the start of a curve."},
+    {6011, error, malformed, "curve-padding", "The padding inside and after a curve is zero."},
+    {6012, warning, ErrorCode::none, "unreachable-curve",
+     "A curve is reached from a root (else its bytes are wasted)."},
+    {6013, error, malformed, "tilt", "No tilt is -32768."},
+    {6014, error, malformed, "tilt-split", "Below a segment of nonzero tilt no curve is on the same axis."},
+    {6015, error, malformed, "dark-link", "A segment of probability 0 ends."},
+    {6016, error, malformed, "depth", "A path from a root to a cell passes at most 64 curves."},
+    {6017, error, malformed, "bin-share", "`share` is finite and not negative."},
+
+    {7001, error, malformed, "environment-axes",
+     "An environment has the two axes of §6.1, with resolutions of at most 65536."},
+    {7002, error, malformed, "environment-bins", "An environment has one bin."},
+};
+const std::size_t rule_count = sizeof rules / sizeof rules[0];
+
+const Rule* find_rule(int number) noexcept {
+    for (const Rule& rule : rules)
+        if (rule.number == number) return &rule;
+    return nullptr;
+}
+
+} // namespace acdf
