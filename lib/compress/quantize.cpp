@@ -1,0 +1,97 @@
+#include "compress/quantize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+constexpr std::uint64_t kNarrow = 0xFFFF, kWide = 0xFFFFFFFF;
+constexpr std::uint64_t kSmallestWide = 256; // of 2^32: 2^-24
+
+QuantizedCurve accumulate(const std::vector<std::uint64_t>& shares, bool wide) {
+    QuantizedCurve out{wide, {}};
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
+        sum += shares[i];
+        out.cumulative.push_back(static_cast<std::uint32_t>(sum));
+    }
+    return out;
+}
+
+} // namespace
+
+std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std::uint64_t maximum,
+                                     std::uint64_t smallest) {
+    const std::size_t n = probability.size();
+    std::vector<std::uint64_t> shares(n, 0);
+    // Raising small shares to the floor leaves less for the others, which may then fall below it in turn.
+    std::vector<bool> at_floor(n, false);
+    std::uint64_t left = maximum;
+    double scale = 0.0;
+    for (bool changed = true; changed;) {
+        changed = false;
+        double mass = 0.0;
+        for (std::size_t i = 0; i < n; ++i)
+            if (!at_floor[i]) mass += probability[i];
+        scale = mass > 0.0 ? static_cast<double>(left) / mass : 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (at_floor[i] || !(probability[i] > 0.0) || probability[i] * scale >= double(smallest)) continue;
+            if (left < smallest) throw std::invalid_argument("more segments than probabilities to give them");
+            at_floor[i] = true;
+            shares[i] = smallest;
+            left -= smallest;
+            changed = true;
+        }
+    }
+    std::vector<std::size_t> free;
+    std::vector<double> remainder(n, 0.0);
+    std::uint64_t given = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (at_floor[i] || !(probability[i] > 0.0)) continue;
+        const double ideal = probability[i] * scale;
+        shares[i] = std::max(smallest, static_cast<std::uint64_t>(ideal));
+        remainder[i] = ideal - static_cast<double>(shares[i]);
+        given += shares[i];
+        free.push_back(i);
+    }
+    // Every share is at the floor: the first of the most probable ones takes what is left.
+    if (free.empty()) {
+        shares[static_cast<std::size_t>(std::max_element(probability.begin(), probability.end()) -
+                                        probability.begin())] += left;
+        return shares;
+    }
+    std::stable_sort(free.begin(), free.end(),
+                     [&](std::size_t a, std::size_t b) { return remainder[a] > remainder[b]; });
+    for (std::size_t k = 0; given < left; k = (k + 1) % free.size(), ++given) ++shares[free[k]];
+    for (std::size_t k = free.size(); given > left; k = k == 0 ? free.size() : k) { // rounding of `ideal` upwards
+        --k;
+        if (shares[free[k]] > smallest) --shares[free[k]], --given;
+    }
+    return shares;
+}
+
+double quantization_excess(const std::vector<double>& probability, const std::vector<std::uint64_t>& shares) {
+    const double maximum = static_cast<double>(std::accumulate(shares.begin(), shares.end(), std::uint64_t{0}));
+    double excess = 0.0;
+    for (std::size_t i = 0; i < probability.size(); ++i) {
+        if (shares[i] == 0) continue;
+        const double q = static_cast<double>(shares[i]) / maximum, difference = probability[i] - q;
+        excess += difference * difference / q;
+    }
+    return excess;
+}
+
+QuantizedCurve quantize(const std::vector<double>& probability, double tolerance) {
+    const auto lit = static_cast<std::uint64_t>(
+        std::count_if(probability.begin(), probability.end(), [](double p) { return p > 0.0; }));
+    if (lit <= kNarrow) {
+        const std::vector<std::uint64_t> shares = apportion(probability, kNarrow, 1);
+        if (quantization_excess(probability, shares) <= tolerance) return accumulate(shares, false);
+    }
+    return accumulate(apportion(probability, kWide, kSmallestWide), true);
+}
+
+} // namespace acdf::compress

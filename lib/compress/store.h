@@ -1,0 +1,55 @@
+// From a cascade to the bytes of an .acdf file (format/SPEC.md).
+#pragma once
+
+#include "compress/cascade.h"
+
+#include <acdf/layout.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace acdf::compress {
+
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+struct AxisDescription {
+    std::string name; ///< UTF-8, at most 15 bytes
+    AcdfAxisRole role = ACDF_AXIS_SAMPLED;
+    AcdfAxisMeasure measure = ACDF_MEASURE_LINEAR;
+    std::uint32_t resolution = 1;
+    double low = 0.0, high = 1.0;
+};
+
+/// What a file says of itself beside its curves.
+struct Description {
+    AcdfKind kind = ACDF_KIND_ENVIRONMENT;
+    AcdfParameterization parameterization = ACDF_PARAM_LATLONG;
+    AcdfFit fit = ACDF_FIT_VARIANCE;
+    AcdfFilter filter = ACDF_FILTER_NEAREST;
+    double channel_weights[3] = {0.2126, 0.7152, 0.0722};
+    double total = 1.0;
+    std::vector<AxisDescription> axes;
+    std::vector<float> shares{1.0f}; ///< one a root: its integral over `total`
+    Metadata metadata;
+};
+
+/// An environment of columns x rows texels in the lat-long parameterization.
+Description environment_description(std::uint32_t columns, std::uint32_t rows);
+
+/// The bytes of chunk TREE and the word offset of each root in it.
+struct EncodedTree {
+    std::vector<std::uint8_t> bytes;
+    std::vector<std::uint32_t> roots;
+};
+
+/// Quantizes and packs the curves in the order given, each narrow where that adds at most `tolerance`, weighted
+/// by how often the curve is reached, to E[(f/p)^2]. Throws std::invalid_argument where the cascade breaks a
+/// limit of the format.
+EncodedTree encode_tree(const Cascade& cascade, double tolerance = 2e-6);
+
+/// The whole file. The same arguments give the same bytes.
+std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description,
+                                AcdfCodec codec = ACDF_CODEC_NONE);
+
+} // namespace acdf::compress

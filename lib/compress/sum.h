@@ -1,0 +1,23 @@
+// A sum whose result does not depend on the order of its terms beyond rounding of the last bits.
+#pragma once
+
+#include <cmath>
+
+namespace acdf::compress {
+
+/// Compensated summation (Neumaier 1974): the error stays near 1e-16 of the sum of magnitudes, however many
+/// terms are added.
+class Sum {
+public:
+    void add(double term) {
+        const double total = sum_ + term;
+        compensation_ += std::abs(sum_) >= std::abs(term) ? (sum_ - total) + term : (term - total) + sum_;
+        sum_ = total;
+    }
+    double value() const { return sum_ + compensation_; }
+
+private:
+    double sum_ = 0.0, compensation_ = 0.0;
+};
+
+} // namespace acdf::compress
