@@ -1,0 +1,30 @@
+// How far a stored density is from its target, by summation over every texel: no samples, no noise.
+#pragma once
+
+#include "compress/target.h"
+
+#include <acdf/reader.h>
+
+#include <cstdint>
+
+namespace acdf::measure {
+
+/// p is the stored density, f the target, p* = f / (integral of f) the perfect density; both in sr^-1.
+struct Accuracy {
+    /// Variance of one sample of the estimator f/p, over (integral of f)^2. Infinite with a support violation.
+    double relative_variance = 0.0;
+    /// The same for the full-resolution table of marginal and conditional CDFs.
+    double relative_variance_full_cdf = 0.0;
+    double rms_pdf_error = 0.0;           ///< sqrt of the mean over the sphere of (p - p*)^2, sr^-1
+    double kl_divergence = 0.0;           ///< integral of p* ln(p*/p), nats
+    double max_weight = 0.0;              ///< largest f/p over its mean
+    std::uint64_t support_violations = 0; ///< texels with f > 0 and p = 0
+    std::uint64_t cells = 0;
+    double total = 0.0; ///< integral of f
+};
+
+/// Compares an environment file with a target of the same resolution (rows are theta, columns phi). Throws
+/// std::invalid_argument where the resolutions differ or the target has no energy.
+Accuracy measure_environment(const File& file, const compress::Target& target);
+
+} // namespace acdf::measure
