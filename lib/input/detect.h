@@ -1,0 +1,23 @@
+// Which layout an image has: what the user says, what the file says, or what its shape and texels prove.
+#pragma once
+
+#include "input/image.h"
+#include "input/projection.h"
+
+#include <string>
+
+namespace acdf::input {
+
+struct Detected {
+    Layout layout = Layout::latlong;
+    std::string reason; ///< for a person
+};
+
+/// Decides, or throws Error (naming `path`, the shape and the options) where the image is not what `projection`
+/// needs, or, for Projection::automatic, where nothing proves one layout. Never guesses from the file's name.
+Detected detect_layout(const std::string& path, const Image& image, Projection projection);
+
+/// The projection a layout belongs to.
+Projection projection_of(Layout layout);
+
+} // namespace acdf::input

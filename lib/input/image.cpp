@@ -1,0 +1,244 @@
+#include "input/image.h"
+
+#include "input/transfer.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <new>
+
+namespace acdf::input {
+namespace {
+
+constexpr std::int64_t max_pixels = std::int64_t{1} << 30;
+
+// No codec packs more than this many pixels into a byte (deflate reaches 1032 bytes a byte), so a header that
+// claims more is damaged or hostile: refused before memory is asked for. Small images pass.
+constexpr std::int64_t max_pixels_per_byte = 10'000;
+constexpr std::int64_t small_image_pixels = std::int64_t{1} << 24;
+
+std::string shape(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+// ---- channels ---------------------------------------------------------------------------------------
+
+struct Channels {
+    int index[3] = {0, 0, 0}; // all equal: grey
+    bool grey() const { return index[0] == index[1] && index[1] == index[2]; }
+    bool in_order() const { return index[1] == index[0] + 1 && index[2] == index[0] + 2; }
+};
+
+std::string list(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size() && i < 12; ++i) text += (i ? ", " : "") + names[i];
+    return names.size() > 12 ? text + ", ..." : text;
+}
+
+std::string lower(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+int find_channel(const std::vector<std::string>& names, const std::string& name) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (lower(names[i]) == lower(name)) return static_cast<int>(i);
+    return -1;
+}
+
+bool is_no_colour(const std::string& name) {
+    const std::string n = lower(name);
+    return n == "a" || n == "alpha" || n == "z" || n == "zback";
+}
+
+// R, G and B of the first layer that has them ("" or "beauty."), else the only channel that is a colour.
+bool choose_channels(const OIIO::ImageSpec& spec, Channels& channels) {
+    const std::vector<std::string>& names = spec.channelnames;
+    if (names.size() != static_cast<std::size_t>(spec.nchannels)) return false;
+    for (const std::string& name : names) {
+        const std::string n = lower(name);
+        const bool ends_in_r = n == "r" || (n.size() > 2 && n.compare(n.size() - 2, 2, ".r") == 0);
+        if (!ends_in_r) continue;
+        const std::string layer = name.substr(0, name.size() - 1);
+        const int r = find_channel(names, name), g = find_channel(names, layer + "g");
+        const int b = find_channel(names, layer + "b");
+        if (g < 0 || b < 0) continue;
+        channels.index[0] = r;
+        channels.index[1] = g;
+        channels.index[2] = b;
+        return true;
+    }
+    int colours = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (is_no_colour(names[i]) && names.size() > 1) continue;
+        std::fill_n(channels.index, 3, static_cast<int>(i));
+        ++colours;
+    }
+    return colours == 1;
+}
+
+// ---- windows ----------------------------------------------------------------------------------------
+
+struct Window {
+    int x = 0, y = 0, width = 0, height = 0;
+    bool operator==(const Window& o) const {
+        return x == o.x && y == o.y && width == o.width && height == o.height;
+    }
+    bool contains(const Window& o) const {
+        return o.x >= x && o.y >= y && std::int64_t{o.x} + o.width <= std::int64_t{x} + width &&
+               std::int64_t{o.y} + o.height <= std::int64_t{y} + height;
+    }
+};
+
+Window data_window(const OIIO::ImageSpec& spec) { return {spec.x, spec.y, spec.width, spec.height}; }
+
+Window display_window(const OIIO::ImageSpec& spec) {
+    if (spec.full_width <= 0 || spec.full_height <= 0) return data_window(spec);
+    return {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
+}
+
+bool overlap(const Window& a, const Window& b) {
+    return std::int64_t{a.x} < std::int64_t{b.x} + b.width && std::int64_t{b.x} < std::int64_t{a.x} + a.width &&
+           std::int64_t{a.y} < std::int64_t{b.y} + b.height && std::int64_t{b.y} < std::int64_t{a.y} + a.height;
+}
+
+// ---- reading ----------------------------------------------------------------------------------------
+
+class Reader {
+public:
+    Reader(const std::string& path, int threads) : path_(path) {
+        input_ = OIIO::ImageInput::open(path);
+        if (!input_) fail("no image that can be read (" + OIIO::geterror() + "); give an .exr, .hdr, .tif or .tx");
+        input_->threads(threads);
+    }
+
+    Image read() {
+        check_spec();
+        Image image;
+        image.tag = environment_tag();
+        const Window data = data_window(spec()), display = display_window(spec());
+        image.width = display.width;
+        image.height = display.height;
+        read_windows(data, display, image);
+        add_part_warning(image);
+        linearize(image, spec());
+        return image;
+    }
+
+private:
+    const OIIO::ImageSpec& spec() const { return input_->spec(); }
+
+    [[noreturn]] void fail(const std::string& what) const { throw input_error(path_, what); }
+
+    void check_size(const Window& window) const {
+        const std::int64_t pixels = std::int64_t{window.width} * window.height;
+        const std::string size = shape(window.width, window.height);
+        if (window.width <= 0 || window.height <= 0) fail("its size " + size + " is not a size; the file is damaged");
+        if (pixels > max_pixels) fail("it has " + size + " pixels, more than 2^30; resize it, or the file is damaged");
+        std::error_code ignored;
+        const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path_, ignored));
+        if (!ignored && pixels > small_image_pixels && pixels / max_pixels_per_byte > bytes)
+            fail("its header claims " + size + " pixels in a file of " + std::to_string(bytes) +
+                 " bytes; the file is damaged");
+    }
+
+    void check_spec() {
+        const OIIO::ImageSpec& s = spec();
+        if (s.deep) fail("it is a deep image; flatten it (oiiotool IN --flatten -o OUT)");
+        if (s.depth > 1) fail("it is a volume, not an image; give a lat-long or another projection");
+        check_size(data_window(s));
+        check_size(display_window(s));
+        if (s.get_int_attribute("Orientation", 1) != 1)
+            fail("it is stored rotated or flipped; turn it upright (oiiotool IN --reorient -o OUT)");
+        if (!overlap(data_window(s), display_window(s)))
+            fail("its data window lies outside its display window; crop it (oiiotool IN --fullpixels -o OUT)");
+        if (!choose_channels(s, channels_))
+            fail("its channels are " + list(s.channelnames) + ", where R, G, B or a single one is needed; "
+                 "rename or choose them (oiiotool IN --ch R=...,G=...,B=... -o OUT)");
+    }
+
+    EnvironmentTag environment_tag() const {
+        const std::string format = lower(spec().get_string_attribute("textureformat"));
+        if (format.find("latlong") != std::string::npos) return EnvironmentTag::latlong;
+        if (format.find("cubeface") != std::string::npos) return EnvironmentTag::cube;
+        return EnvironmentTag::none;
+    }
+
+    void read_windows(const Window& data, const Window& display, Image& image) {
+        const std::size_t display_floats = std::size_t{3} * static_cast<std::size_t>(display.width) *
+                                           static_cast<std::size_t>(display.height);
+        if (display.contains(data)) {
+            // Straight into place. OpenEXR: pixels of the display window without data are black.
+            image.rgb.assign(display_floats, 0.0f);
+            read_channels(image.rgb.data() + offset(data.x - display.x, data.y - display.y, display.width),
+                          display.width);
+            if (!(data == display))
+                image.warnings.push_back("the file holds " + shape(data.width, data.height) + " of " +
+                                         shape(display.width, display.height) + " pixels; the rest is black");
+            return;
+        }
+        std::vector<float> all(std::size_t{3} * static_cast<std::size_t>(data.width) *
+                               static_cast<std::size_t>(data.height));
+        read_channels(all.data(), data.width);
+        image.rgb.assign(display_floats, 0.0f);
+        const int x0 = std::max(data.x, display.x), x1 = std::min(data.x + data.width, display.x + display.width);
+        const int y0 = std::max(data.y, display.y), y1 = std::min(data.y + data.height, display.y + display.height);
+        for (int y = y0; y < y1; ++y)
+            std::copy_n(all.data() + offset(x0 - data.x, y - data.y, data.width), 3 * (x1 - x0),
+                        image.rgb.data() + offset(x0 - display.x, y - display.y, display.width));
+        image.warnings.push_back("the file holds pixels outside its display window; they are not used");
+    }
+
+    static std::size_t offset(int x, int y, int width) {
+        return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+    }
+
+    // Reads the data window into RGB pixels with rows of `row_pixels`, at `first`.
+    void read_channels(float* first, int row_pixels) {
+        const OIIO::stride_t pixel = 3 * sizeof(float), row = pixel * row_pixels;
+        const auto read = [&](int begin, int end, float* at) {
+            if (!input_->read_image(0, 0, begin, end, OIIO::TypeDesc::FLOAT, at, pixel, row))
+                fail("its pixels cannot be read (" + input_->geterror() + "); the file is cut short or damaged");
+        };
+        if (channels_.in_order()) return read(channels_.index[0], channels_.index[0] + 3, first);
+        const int count = channels_.grey() ? 1 : 3;
+        for (int c = 0; c < count; ++c) read(channels_.index[c], channels_.index[c] + 1, first + c);
+        if (!channels_.grey()) return;
+        const Window data = data_window(spec());
+        for (int y = 0; y < data.height; ++y) {
+            float* at = first + offset(0, y, row_pixels);
+            for (int x = 0; x < data.width; ++x) at[3 * x + 1] = at[3 * x + 2] = at[3 * x];
+        }
+    }
+
+    void add_part_warning(Image& image) {
+        if (input_->seek_subimage(1, 0)) image.warnings.push_back("the file has several parts; the first is used");
+        input_->geterror(); // a missing second part is no error
+        input_->seek_subimage(0, 0);
+    }
+
+    std::string path_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+    Channels channels_;
+};
+
+} // namespace
+
+Error input_error(const std::string& path, const std::string& what) {
+    std::string text = path + ": " + what;
+    for (char& c : text)
+        if (c == '\n' || c == '\r' || c == '\t') c = ' ';
+    return Error(text);
+}
+
+Image read_image(const std::string& path, int threads) {
+    try {
+        return Reader(path, threads).read();
+    } catch (const std::bad_alloc&) {
+        throw input_error(path, "there is not enough memory for its pixels; resize it");
+    }
+}
+
+} // namespace acdf::input

@@ -1,0 +1,51 @@
+// Reads environment maps of any common projection into one form: lat-long radiance.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace acdf::input {
+
+/// Anything wrong with an input: one line that names the file, what is wrong and what would help.
+struct Error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+enum class Projection { automatic, latlong, angular, mirrorball, cube_cross, octahedral };
+
+/// "latlong", "angular", "mirrorball", "cube-cross", "octahedral", "auto".
+const char* to_string(Projection projection);
+
+struct ProbeOptions {
+    Projection projection = Projection::automatic;
+    int threads = 0; ///< 0: all cores
+};
+
+/// Texels with channels that are no radiance. Those channels are set to 0, and each texel is counted once, as
+/// the first of nan, infinite, negative that it has. `x`, `y`: the first in the source, row by row from the top.
+struct BadTexels {
+    std::uint64_t nan = 0, infinite = 0, negative = 0;
+    int x = -1, y = -1;
+};
+
+/// A probe as lat-long RGB radiance in the frame of docs/conventions.md: row 0 touches +z, column 0 begins
+/// at phi = +pi and phi falls along the columns (the image as seen from inside, unmirrored).
+struct Probe {
+    int width = 0, height = 0;
+    std::vector<float> rgb;    ///< height x width x 3, finite, >= 0
+    std::string source_name;   ///< file name without folders
+    std::string source_sha256; ///< of the file's bytes, hex
+    int source_width = 0, source_height = 0;
+    Projection projection = Projection::latlong; ///< what was used, never `automatic`
+    std::string projection_reason;               ///< why, for a person: "2:1 shape", "envmap attribute"
+    BadTexels bad;
+    std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
+};
+
+/// Reads any image OpenImageIO reads. Throws Error.
+Probe read_probe(const std::string& path, const ProbeOptions& options = {});
+
+} // namespace acdf::input

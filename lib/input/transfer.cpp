@@ -1,0 +1,53 @@
+#include "input/transfer.h"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace acdf::input {
+namespace {
+
+// 0: sRGB; 1: linear; else a power law.
+double declared_gamma(const OIIO::ImageSpec& spec, bool& declared) {
+    std::string space = spec.get_string_attribute("oiio:ColorSpace");
+    for (char& c : space)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    declared = true;
+    if (space == "srgb") return 0.0;
+    if (space == "linear" || space == "scene_linear") return 1.0;
+    if (space.rfind("gamma", 0) == 0) {
+        const double gamma = std::strtod(space.c_str() + 5, nullptr); // also "gammacorrected2.2": see below
+        if (gamma > 0.1 && gamma < 10.0) return gamma;
+        const double attribute = spec.get_float_attribute("oiio:Gamma", 0.0f);
+        if (attribute > 0.1 && attribute < 10.0) return attribute;
+    }
+    declared = false;
+    return 1.0;
+}
+
+// IEC 61966-2-1.
+double srgb_to_linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+
+} // namespace
+
+void linearize(Image& image, const OIIO::ImageSpec& spec) {
+    const bool integer = spec.format.basetype != OIIO::TypeDesc::HALF &&
+                         spec.format.basetype != OIIO::TypeDesc::FLOAT &&
+                         spec.format.basetype != OIIO::TypeDesc::DOUBLE;
+    bool declared = false;
+    double gamma = declared_gamma(spec, declared);
+    if (integer && !declared) gamma = 0.0;
+    const std::string curve = gamma == 0.0   ? "the sRGB curve undone"
+                              : gamma == 1.0 ? "taken as linear"
+                                             : "a gamma of " + std::to_string(gamma) + " undone";
+    if (integer)
+        image.warnings.push_back("integer pixels end at 1, so bright lights are clipped; " + curve);
+    else if (gamma != 1.0)
+        image.warnings.push_back("the file declares a transfer function; " + curve);
+    if (gamma == 1.0) return;
+    for (float& v : image.rgb) {
+        if (!(v > 0.0f)) continue; // bad texels are counted later
+        v = static_cast<float>(gamma == 0.0 ? srgb_to_linear(v) : std::pow(static_cast<double>(v), gamma));
+    }
+}
+
+} // namespace acdf::input
