@@ -1,0 +1,231 @@
+// acdf env: an environment map to an .acdf file.
+#include "commands.h"
+#include "environment.h"
+#include "format_names.h"
+#include "help.h"
+#include "options.h"
+#include "output.h"
+#include "probe_options.h"
+#include "sizes.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace acdf::tools {
+namespace {
+
+struct Options {
+    std::string probe, output;
+    input::ProbeOptions input;
+    EnvironmentOptions environment;
+    std::string knots;
+    CLI::Option *cells_given = nullptr, *knots_given = nullptr, *eps_given = nullptr, *gradient_given = nullptr,
+                *conditional_given = nullptr;
+    int threads = 0;
+    bool json = false, quiet = false, force = false;
+};
+
+/// "64x32": segments of curves over phi and over theta.
+bool parse_knots(const std::string& text, std::uint32_t& phi, std::uint32_t& theta) {
+    unsigned a = 0, b = 0;
+    int end = 0;
+    if (std::sscanf(text.c_str(), "%7ux%7u%n", &a, &b, &end) != 2 || static_cast<std::size_t>(end) != text.size())
+        return false;
+    phi = a;
+    theta = b;
+    return a >= 1 && b >= 1 && a <= ACDF_MAX_SEGMENTS && b <= ACDF_MAX_SEGMENTS;
+}
+
+/// Options that belong to another fit are a mistake, not something to ignore.
+void check_combination(Options& options) {
+    const auto refuse = [](const CLI::Option* given, const char* what) {
+        if (given->count() > 0) throw CLI::ValidationError(given->get_name(), what);
+    };
+    compress::FitOptions& fit = options.environment.fit;
+    if (fit.fit == ACDF_FIT_VARIANCE) {
+        refuse(options.knots_given, "is for --fit uniform, cdf and pdf; use --cells with --fit variance");
+        refuse(options.eps_given, "is for --fit cdf and pdf");
+        refuse(options.gradient_given, "is for --fit cdf and pdf: --fit variance needs no such help");
+        refuse(options.conditional_given, "is for --fit uniform, cdf and pdf");
+        return;
+    }
+    refuse(options.cells_given, "is for --fit variance; use --knots with the other fits");
+    if (fit.fit == ACDF_FIT_UNIFORM) {
+        refuse(options.eps_given, "is for --fit cdf and pdf");
+        refuse(options.gradient_given, "is for --fit cdf and pdf");
+    }
+    if (options.knots_given->count() > 0) {
+        if (!parse_knots(options.knots, fit.column_segments, fit.row_segments))
+            throw CLI::ValidationError("--knots", "needs two counts such as 64x64 (phi x theta)");
+    } else if (options.eps_given->count() > 0) {
+        fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
+    }
+}
+
+nlohmann::ordered_json report(const Options& options, const input::Probe& probe, const Environment& result) {
+    const measure::Accuracy& a = result.accuracy;
+    return {{"file", options.output},
+            {"source", options.probe},
+            {"projection", input::to_string(probe.projection)},
+            {"projection_reason", probe.projection_reason},
+            {"resolution", {probe.width, probe.height}},
+            {"bad_texels",
+             {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
+            {"fit", fit_name(options.environment.fit.fit)},
+            {"order", to_string(result.order)},
+            {"bytes", result.bytes.size()},
+            {"cells", a.cells},
+            {"total", a.total},
+            {"relative_variance", a.relative_variance},
+            {"rms_pdf_error", a.rms_pdf_error},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"support_violations", a.support_violations}};
+}
+
+void verify_bytes(const std::uint8_t* data, std::size_t size) {
+    File file;
+    if (const Status status = File::from_memory(data, size, file); !status.ok())
+        throw Failure(std::string("what was written does not read back: ") + status.message);
+}
+
+void run(Options& options) {
+    check_combination(options);
+    std::unique_ptr<tbb::global_control> limit;
+    if (options.threads > 0)
+        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      static_cast<std::size_t>(options.threads));
+    Output output(options.output, options.force, {options.probe}); // refuses early, before the work
+
+    input::Probe probe = load_probe(options.probe, options.input, options.quiet);
+    const compress::Target target = luminance_target(options.probe, probe);
+    probe.rgb = {}; // the target is all that is needed from here
+    Environment result;
+    {
+        ProgressBar bar(options.quiet);
+        const Source source{probe.source_name, probe.source_sha256, input::to_string(probe.projection)};
+        result = build_environment(target, source, options.environment, bar.callback());
+    }
+    output.write(result.bytes.data(), result.bytes.size());
+    output.commit(verify_bytes);
+
+    std::FILE* out = options.output == "-" ? stderr : stdout;
+    if (options.json) std::fprintf(out, "%s\n", report(options, probe, result).dump(2).c_str());
+    else if (!options.quiet)
+        std::fprintf(out, "%s: %s, %llu cells, relative variance %.4g (%s fit, %s first)\n", options.output.c_str(),
+                     to_readable_size(result.bytes.size()).c_str(),
+                     static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
+                     fit_name(options.environment.fit.fit).c_str(), to_string(result.order));
+}
+
+void add_fit_options(CLI::App& command, Options& options) {
+    compress::FitOptions& fit = options.environment.fit;
+    const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
+                                              {"cdf", ACDF_FIT_CDF},
+                                              {"pdf", ACDF_FIT_PDF},
+                                              {"variance", ACDF_FIT_VARIANCE}};
+    command
+        .add_option(
+            "--fit", fit.fit,
+            "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
+            "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
+            "uniform (equal steps, to compare with)")
+        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->option_text("NAME [variance]")
+        ->group("Fit");
+    const std::map<std::string, int> orders{{"auto", 0}, {"phi", 1}, {"z", 2}};
+    command
+        .add_option_function<int>(
+            "--order",
+            [&options](int order) {
+                if (order != 0) options.environment.order = order == 1 ? compress::Order::phi : compress::Order::z;
+            },
+            "Which axis is split first: phi, z, or auto (fit both ways, keep the more accurate; twice the time)")
+        ->transform(CLI::CheckedTransformer(orders).description(""))
+        ->option_text("NAME [auto]")
+        ->group("Fit");
+    options.cells_given =
+        command.add_option("--cells", fit.cells, "Cells in all, for --fit variance: about 4 bytes each")
+            ->check(CLI::Range(1u, 1u << 28))
+            ->option_text("N [4096]")
+            ->group("Size and accuracy");
+    options.knots_given =
+        command
+            .add_option("--knots", options.knots,
+                        "Segments of a curve over phi and over theta, for --fit uniform, cdf and pdf (at most this "
+                        "many with --eps)")
+            ->option_text("AxB [64x64]")
+            ->group("Size and accuracy");
+    options.eps_given = command
+                            .add_option("--eps", fit.epsilon,
+                                        "Stop adding knots once no curve deviates by more: from the CDF for --fit "
+                                        "cdf, from the density relative to its peak for --fit pdf")
+                            ->check(CLI::Range(0.0, 1.0))
+                            ->option_text("E")
+                            ->group("Size and accuracy");
+    options.gradient_given =
+        command
+            .add_option("--gradient", fit.gradient_knots,
+                        "Extra knots of the first curve where the map changes across it, for --fit cdf and pdf: "
+                        "helps where lights at different heights share a region (ibid., eq. 5)")
+            ->check(CLI::Range(0u, 1u << 20))
+            ->option_text("N [0]")
+            ->group("Fit");
+    const std::map<std::string, compress::Conditional> conditionals{{"energy", compress::Conditional::energy},
+                                                                    {"mean", compress::Conditional::mean}};
+    options.conditional_given =
+        command
+            .add_option("--conditional", fit.conditional,
+                        "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "
+                        "(all alike, as ibid., eq. 4, is printed)")
+            ->transform(CLI::CheckedTransformer(conditionals).description(""))
+            ->option_text("NAME [energy]")
+            ->group("Fit");
+}
+
+} // namespace
+
+void add_env(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<Options>();
+    CLI::App& command = *program.add_subcommand("env", "Compress an environment map: directions by what they emit");
+    command.add_option("PROBE", options->probe, "The environment map: any image OpenImageIO reads")
+        ->required()
+        ->type_name("")
+        ->group("Input");
+    add_projection(command, options->input.projection);
+    add_output(command, options->output, options->force, "The .acdf file to write")->required();
+    add_fit_options(command, *options);
+    const std::map<std::string, AcdfCodec> codecs{{"none", ACDF_CODEC_NONE}, {"zlib", ACDF_CODEC_ZLIB}};
+    command
+        .add_option(
+            "--compress", options->environment.codec,
+            "none: usable in place, mapped or linked into a program; zlib: smaller to ship, inflated at load")
+        ->transform(CLI::CheckedTransformer(codecs).description(""))
+        ->option_text("NAME [none]")
+        ->group("Output");
+    command
+        .add_option("--threads", options->threads, "Threads to use; the file is the same for any number of them")
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N [all cores]")
+        ->group("Output");
+    add_json(command, options->json);
+    add_quiet(command, options->quiet);
+    command.footer(
+        help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
+                    "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
+                    "acdf env probe.exr -o probe.acdf\n"
+                    "acdf env probe.hdr -o probe.acdf --cells 16384 --compress zlib\n"
+                    "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
+                    "acdf env probe.exr -o paper.acdf --fit cdf --knots 64x64 --order z --gradient 16"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,262 @@
+// acdf info: what is inside a file, in a form for people or as JSON.
+#include "commands.h"
+#include "file_input.h"
+#include "format_names.h"
+#include "help.h"
+#include "options.h"
+#include "sizes.h"
+
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <cstdio>
+#include <map>
+
+namespace acdf::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char accuracy_prefix[] = "accuracy.";
+
+struct Options {
+    std::vector<std::string> files;
+    bool json = false;
+};
+
+// ---- what the tree holds -------------------------------------------------------------------------------
+
+struct TreeCounts {
+    std::uint64_t curves = 0;
+    std::uint64_t cells = 0; // segments that end; one of a shared curve counts once
+    std::uint64_t tilted = 0;
+};
+
+// Words from a curve's header to the next curve's.
+std::uint32_t curve_words(const AcdfCurve& curve, const std::uint8_t* base) {
+    const std::uint8_t* end =
+        curve.positions + std::size_t{curve.segments - 1} * (acdf_wide_positions(&curve) ? 4 : 2);
+    if (curve.links) {
+        const bool wide = (curve.header & ACDF_CURVE_LINKS_MASK) >> ACDF_CURVE_LINKS_SHIFT == ACDF_LINKS_32;
+        end = curve.links + std::size_t{curve.segments} * (wide ? 4 : 2);
+    }
+    if (curve.tilts) end = curve.tilts + std::size_t{curve.segments} * 2;
+    return static_cast<std::uint32_t>((end - base + 3) / 4);
+}
+
+TreeCounts count_tree(const File& file) {
+    TreeCounts counts;
+    for (std::uint32_t at = 0; at < file.tree_words();) {
+        const AcdfCurve curve = acdf_curve_at(file.tree(), at);
+        ++counts.curves;
+        if (curve.tilts) ++counts.tilted;
+        for (std::uint32_t i = 0; i < curve.segments; ++i)
+            if (acdf_curve_link(&curve, i) == 0) ++counts.cells;
+        at += curve_words(curve, file.tree() + std::size_t{at} * 4);
+    }
+    return counts;
+}
+
+// ---- parts of the report -------------------------------------------------------------------------------
+
+std::string to_string(Text text) { return text.data ? std::string(text.data, text.size) : std::string(); }
+
+std::string axis_name(const AcdfAxis& axis) {
+    const char* name = reinterpret_cast<const char*>(axis.name);
+    return std::string(name, strnlen(name, sizeof(axis.name)));
+}
+
+// A number of the metadata as a number, anything else as text.
+Json metadata_value(const std::string& text) {
+    double number = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, number);
+    if (error != std::errc{} || rest != end) return text;
+    std::uint64_t integer = 0;
+    const auto [integer_rest, integer_error] = std::from_chars(text.data(), end, integer);
+    if (integer_error == std::errc{} && integer_rest == end) return integer;
+    return number;
+}
+
+Json axes_json(const File& file) {
+    Json axes = Json::array();
+    for (std::uint32_t i = 0; i < file.description().axis_count; ++i) {
+        const AcdfAxis& axis = file.axis(i);
+        axes.push_back({{"name", axis_name(axis)},
+                        {"role", role_name(axis.role)},
+                        {"measure", measure_name(axis.measure)},
+                        {"resolution", axis.resolution},
+                        {"low", axis.low},
+                        {"high", axis.high}});
+    }
+    return axes;
+}
+
+Json chunks_json(const File& file) {
+    Json chunks = Json::array();
+    const AcdfHeader& header = file.header();
+    const auto* table = reinterpret_cast<const AcdfChunk*>(&header + 1);
+    for (std::uint32_t i = 0; i < header.chunk_count; ++i)
+        chunks.push_back({{"type", chunk_name(table[i].type)},
+                          {"codec", codec_name(table[i].codec)},
+                          {"offset", table[i].offset},
+                          {"stored", table[i].stored_length},
+                          {"raw", table[i].raw_length}});
+    return chunks;
+}
+
+// Keys "accuracy.NAME" and "source.NAME" as objects, the others as they are.
+void add_metadata(const File& file, Json& report) {
+    Json source = Json::object(), accuracy = Json::object(), other = Json::object();
+    for (std::uint32_t i = 0; i < file.metadata_count(); ++i) {
+        Text key_text, value_text;
+        file.metadata(i, key_text, value_text);
+        const std::string key = to_string(key_text), value = to_string(value_text);
+        if (key.rfind("source.", 0) == 0) source[key.substr(7)] = value;
+        else if (key.rfind(accuracy_prefix, 0) == 0)
+            accuracy[key.substr(sizeof(accuracy_prefix) - 1)] = metadata_value(value);
+        else if (key != "tool" && key != "options") other[key] = value;
+    }
+    report["source"] = source;
+    report["tool"] = to_string(file.metadata("tool"));
+    report["options"] = to_string(file.metadata("options"));
+    report["accuracy"] = accuracy;
+    if (!other.empty()) report["metadata"] = other;
+}
+
+Json describe(const std::string& path, const File& file) {
+    const AcdfHeader& header = file.header();
+    const AcdfDescription& description = file.description();
+    const TreeCounts counts = count_tree(file);
+    Json report;
+    report["file"] = path;
+    report["kind"] = kind_name(header.kind);
+    report["version"] = std::to_string(header.version_major) + "." + std::to_string(header.version_minor);
+    report["bytes"] = file.size();
+    report["bins"] = description.bin_count;
+    report["cells"] = counts.cells;
+    report["curves"] = counts.curves;
+    report["axes"] = axes_json(file);
+    report["fit"] = fit_name(description.fit);
+    report["filter"] = filter_name(description.filter);
+    report["parameterization"] = parameterization_name(description.parameterization);
+    report["channel_weights"] = description.channel_weights;
+    report["total"] = description.total;
+    report["chunks"] = chunks_json(file);
+    add_metadata(file, report);
+    return report;
+}
+
+// ---- for people ----------------------------------------------------------------------------------------
+
+void line(const char* name, const std::string& value) {
+    if (!value.empty()) std::printf("  %-12s %s\n", name, value.c_str());
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.6g", value);
+    return text;
+}
+
+std::string text_of(const Json& value) {
+    return value.is_string()         ? value.get<std::string>()
+           : value.is_number_float() ? number(value.get<double>())
+                                     : value.dump();
+}
+
+std::string target_text(const Json& report) {
+    const Json& w = report["channel_weights"];
+    return number(w[0]) + " r + " + number(w[1]) + " g + " + number(w[2]) + " b, looked up " +
+           text_of(report["filter"]) + "; integral " + number(report["total"]);
+}
+
+std::string source_text(const Json& source) {
+    std::string text;
+    for (const auto& [key, value] : source.items()) {
+        if (!text.empty()) text += ", ";
+        text += key == "name" ? text_of(value) : key + " " + text_of(value);
+    }
+    return text;
+}
+
+void print_table(const char* name, const Json& object) {
+    for (const auto& [key, value] : object.items()) {
+        std::printf("  %-12s %-28s %s\n", name, key.c_str(), text_of(value).c_str());
+        name = "";
+    }
+}
+
+void print(const Json& report) {
+    const std::uint64_t bytes = report["bytes"];
+    std::printf("%s: %s, format %s, %llu bytes (%s)\n", text_of(report["file"]).c_str(),
+                text_of(report["kind"]).c_str(), text_of(report["version"]).c_str(),
+                static_cast<unsigned long long>(bytes), to_readable_size(bytes).c_str());
+    line("target", target_text(report));
+    line("fit", text_of(report["fit"]) + "; stored: " + text_of(report["cells"]) + " cells in " +
+                    text_of(report["curves"]) + " curves, " + text_of(report["bins"]) +
+                    (report["bins"] == 1 ? " bin" : " bins"));
+    line("source", source_text(report["source"]));
+    line("made by", text_of(report["tool"]));
+    line("options", text_of(report["options"]));
+    const char* name = "axes";
+    for (const Json& axis : report["axes"]) {
+        line(name, text_of(axis["name"]) + " (" + text_of(axis["role"]) + ", " + text_of(axis["measure"]) + "), " +
+                       text_of(axis["resolution"]) + " steps from " + number(axis["low"]) + " to " +
+                       number(axis["high"]));
+        name = "";
+    }
+    name = "chunks";
+    for (const Json& chunk : report["chunks"]) {
+        const bool packed = chunk["codec"] != "none";
+        line(name, text_of(chunk["type"]) + " at " + text_of(chunk["offset"]) + ", " + text_of(chunk["stored"]) +
+                       " bytes" +
+                       (packed ? " (" + text_of(chunk["codec"]) + ", " + text_of(chunk["raw"]) + " raw)" : ""));
+        name = "";
+    }
+    print_table("accuracy", report["accuracy"]);
+    if (report.contains("metadata")) print_table("metadata", report["metadata"]);
+}
+
+// One bad file does not hide what the others hold; it does decide the exit code.
+int run(const Options& options) {
+    Json reports = Json::array();
+    int exit_code = exit_done;
+    for (const std::string& path : options.files) {
+        try {
+            const LoadedFile loaded = load_file(path);
+            reports.push_back(describe(path, loaded.file));
+            if (options.json) continue;
+            if (reports.size() > 1) std::printf("\n");
+            print(reports.back());
+        } catch (const Failure& failure) {
+            std::fprintf(stderr, "acdf: %s\n", failure.what());
+            exit_code = exit_failed;
+        }
+    }
+    if (options.json && !reports.empty())
+        std::printf("%s\n", (options.files.size() == 1 ? reports[0] : reports).dump(2).c_str());
+    return exit_code;
+}
+
+} // namespace
+
+void add_info(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand(
+        "info", "Show what is inside: size, cells, axes, source, and the accuracy measured when it was built");
+    command->add_option("FILE", options->files, "The .acdf files to describe (- is stdin)")
+        ->required()
+        ->type_name("");
+    add_json(*command, options->json);
+    command->footer(help_footer(
+        "The accuracy is that of the build, stored in the file: the source is not needed. `acdf measure` computes "
+        "it "
+        "anew. A cell is a part of the sphere of constant (or linear) density; one that bins share counts once.",
+        "acdf info sky.acdf\n"
+        "acdf info --json sky.acdf | jq .accuracy.relative_variance\n"
+        "acdf info --json *.acdf | jq -r '.[] | [.file, .bytes, .cells] | @tsv'"));
+    command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+} // namespace acdf::tools

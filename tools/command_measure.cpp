@@ -1,0 +1,107 @@
+// acdf measure: how accurate a file is, by summation over its source.
+#include "commands.h"
+#include "environment.h"
+#include "file_input.h"
+#include "help.h"
+#include "options.h"
+#include "probe_options.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace acdf::tools {
+namespace {
+
+struct Options {
+    std::string file, source;
+    input::ProbeOptions input;
+    bool json = false, quiet = false;
+};
+
+nlohmann::ordered_json report(const Options& options, const File& file, const measure::Accuracy& a) {
+    return {{"file", options.file},
+            {"source", options.source},
+            {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"relative_variance_full_cdf", a.relative_variance_full_cdf},
+            {"rms_pdf_error", a.rms_pdf_error},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"support_violations", a.support_violations},
+            {"bytes", file.size()},
+            {"cells", a.cells},
+            {"bins", file.description().bin_count},
+            {"total", a.total}};
+}
+
+void print_text(const Options& options, const File& file, const measure::Accuracy& a) {
+    std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
+    std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("    full-resolution CDF  %.6g\n", a.relative_variance_full_cdf);
+    std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
+    std::printf("  RMS error of the pdf   %.6g   sr^-1\n", a.rms_pdf_error);
+    std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
+    std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
+    std::printf("  cells                  %" PRIu64 "\n", a.cells);
+    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+}
+
+void remark_on_source(const Options& options, const File& file, const input::Probe& probe) {
+    const Text hash = file.metadata("source.sha256");
+    if (hash.size > 0 && std::string(hash.data, hash.size) != probe.source_sha256 && !options.quiet)
+        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", options.file.c_str(),
+                     options.source.c_str());
+}
+
+void run(const Options& options) {
+    const LoadedFile loaded = load_environment(options.file, "measure");
+    const input::Probe probe = load_probe(options.source, options.input, options.quiet);
+    remark_on_source(options, loaded.file, probe);
+    const double* weights = loaded.file.description().channel_weights;
+    const compress::Target target = compress::environment_target(
+        probe.rgb.data(), static_cast<std::uint32_t>(probe.width), static_cast<std::uint32_t>(probe.height),
+        {weights[0], weights[1], weights[2]});
+    const AcdfAxis &phi = loaded.file.axis(ACDF_AXIS_PHI), &theta = loaded.file.axis(ACDF_AXIS_THETA);
+    if (phi.resolution != target.columns || theta.resolution != target.rows)
+        throw Failure(options.source + ": is " + std::to_string(target.columns) + "x" +
+                      std::to_string(target.rows) + " as a lat-long map, but " + options.file + " was made from " +
+                      std::to_string(phi.resolution) + "x" + std::to_string(theta.resolution) +
+                      "; measure against the source it was made from");
+    if (!(compress::integral(target) > 0.0))
+        throw Failure(options.source + ": the probe is black; there is nothing to measure");
+    const measure::Accuracy accuracy = measure::measure_environment(loaded.file, target);
+    if (options.json) std::printf("%s\n", report(options, loaded.file, accuracy).dump(2).c_str());
+    else print_text(options, loaded.file, accuracy);
+}
+
+} // namespace
+
+void add_measure(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<Options>();
+    CLI::App& command =
+        *program.add_subcommand("measure", "How noisy a file's samples are, exactly, by summation over its source");
+    command.add_option("FILE", options->file, "The .acdf file (- is stdin)")
+        ->required()
+        ->type_name("")
+        ->group("Input");
+    command.add_option("--against", options->source, "The probe it stands for, usually the one it was made from")
+        ->required()
+        ->type_name("PROBE")
+        ->group("Input");
+    add_projection(command, options->input.projection);
+    add_json(command, options->json);
+    add_quiet(command, options->quiet);
+    command.footer(help_footer("No samples are drawn, so the figures carry no noise of their own.",
+                               "acdf measure probe.acdf --against probe.exr\n"
+                               "acdf measure probe.acdf --against probe.exr --json | jq .relative_variance"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools

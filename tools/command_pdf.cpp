@@ -1,0 +1,107 @@
+// acdf pdf: densities of given directions.
+#include "commands.h"
+#include "directions_csv.h"
+#include "file_input.h"
+#include "help.h"
+#include "options.h"
+#include "output.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+
+namespace acdf::tools {
+namespace {
+
+struct Options {
+    std::string file;
+    std::string directions = "-";
+    std::string output = "-";
+    bool normalize = false, csv = false, force = false;
+};
+
+std::string density_line(const EnvironmentView& view, std::array<double, 3> v, const Options& options) {
+    if (options.normalize) {
+        const double length = std::hypot(v[0], v[1], v[2]);
+        for (double& x : v) x /= length; // 0/0 is NaN: density 0
+    }
+    const float direction[3] = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+    const double pdf = static_cast<double>(view.pdf(direction));
+    char text[96];
+    if (options.csv)
+        std::snprintf(text, sizeof(text), "%.9g,%.9g,%.9g,%.9g\n", static_cast<double>(direction[0]),
+                      static_cast<double>(direction[1]), static_cast<double>(direction[2]), pdf);
+    else std::snprintf(text, sizeof(text), "%.9g\n", pdf);
+    return text;
+}
+
+void evaluate(const EnvironmentView& view, std::istream& in, const Options& options, Output& output) {
+    const std::string name = options.directions == "-" ? "stdin" : options.directions;
+    DirectionParser parser;
+    std::string line;
+    if (options.csv) output.write("x,y,z,pdf\n");
+    for (std::uint64_t number = 1; std::getline(in, line); ++number) {
+        try {
+            if (const auto direction = parser.parse(line)) output.write(density_line(view, *direction, options));
+        } catch (const Failure& failure) {
+            throw Failure(name + ": line " + std::to_string(number) + ": " + failure.what());
+        }
+    }
+    if (in.bad()) throw Failure(name + ": cannot read: " + std::strerror(errno));
+}
+
+void run(const Options& options) {
+    if (options.file == "-" && options.directions == "-")
+        throw CLI::ValidationError("FILE", "the .acdf file and the directions cannot both come from stdin");
+    Output output(options.output, options.force, {options.file, options.directions});
+    const LoadedFile loaded = load_environment(options.file, "pdf");
+    std::ifstream file;
+    if (options.directions != "-") {
+        file.open(options.directions);
+        if (!file || file.peek() == std::ifstream::traits_type::eof()) {
+            const int error = errno;
+            if (!file.is_open() || error == EISDIR)
+                throw Failure(options.directions + ": cannot open: " + std::strerror(error));
+        }
+    }
+    evaluate(loaded.file.environment(), options.directions == "-" ? std::cin : file, options, output);
+    output.commit();
+}
+
+} // namespace
+
+void add_pdf(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        program.add_subcommand("pdf", "Evaluate the density of directions given on stdin or in a file");
+    command->add_option("FILE", options->file, "The .acdf file to evaluate (- is stdin)")
+        ->required()
+        ->type_name("");
+    command
+        ->add_option("DIRECTIONS", options->directions,
+                     "Text with one direction a line: x y z or x,y,z (- or nothing is stdin). A CSV with a header "
+                     "line may have more columns: x, y and z are found by name")
+        ->type_name("");
+    command
+        ->add_flag("--normalize", options->normalize,
+                   "Scale directions to unit length first. Without it a direction that is not of unit length has "
+                   "density 0, as in a renderer, where it tells of a mistake")
+        ->group("Evaluation");
+    command->add_flag("--csv", options->csv, "Print x,y,z,pdf instead of the density alone")->group("Output");
+    add_output(*command, options->output, options->force, "The file to write, stdout by default");
+    command->footer(help_footer("One density a line, per steradian, in the order of the directions; 0 where no "
+                                "sample can fall. Blank lines and "
+                                "what follows a # are skipped.",
+                                "echo '0 0 1' | acdf pdf sky.acdf\n"
+                                "acdf pdf sky.acdf directions.csv --csv -o densities.csv\n"
+                                "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf"));
+    command->callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools

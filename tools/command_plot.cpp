@@ -1,0 +1,234 @@
+// acdf plot: a density in false colours, as in Lawrence et al. 2005, Fig. 5 and 9.
+#include "commands.h"
+#include "environment.h"
+#include "file_input.h"
+#include "format_names.h"
+#include "help.h"
+#include "options.h"
+#include "output.h"
+#include "plot_colour.h"
+#include "plot_image.h"
+#include "plot_knots.h"
+#include "plot_legend.h"
+#include "probe_options.h"
+#include "sizes.h"
+
+#include "measure/cells.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+namespace acdf::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    std::string file, output, range;
+    input::ProbeOptions input;
+    input::Layout layout = input::Layout::latlong;
+    int width = 0; // 0: by the resolution
+    bool knots = true, legend = true, quiet = false, force = false;
+};
+
+constexpr int smallest_width = 16, largest_width = 8192;
+
+/// What is plotted, and what its title says.
+struct Source {
+    LoadedFile stored;       // of an .acdf file, else empty
+    compress::Target target; // of a probe, else empty
+    Density density;
+    std::uint32_t columns = 0, rows = 0;
+    std::vector<std::string> title;
+};
+
+/// By the name, or the first bytes where it is named otherwise.
+bool is_stored(const std::string& path) {
+    if (path == "-" || fs::path(path).extension() == ".acdf") return true;
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return false;
+    constexpr unsigned char magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
+    char start[ACDF_MAGIC_SIZE] = {};
+    std::ifstream(path, std::ios::binary).read(start, sizeof start);
+    return std::equal(std::begin(magic), std::end(magic), start,
+                      [](unsigned char a, char b) { return a == static_cast<unsigned char>(b); });
+}
+
+std::string shown_name(const std::string& path) {
+    return path == "-" ? "stdin" : fs::path(path).filename().string();
+}
+
+void load_stored(const Options& options, Source& source) {
+    source.stored = load_environment(options.file, "plot");
+    const File& file = source.stored.file;
+    source.density = density_of(file.environment());
+    source.columns = file.axis(ACDF_AXIS_PHI).resolution;
+    source.rows = file.axis(ACDF_AXIS_THETA).resolution;
+    std::uint64_t cells = 0;
+    measure::for_each_cell(file, file.bin(0).root, [&](const measure::Cell&) { ++cells; });
+    source.title = {shown_name(options.file), fit_name(file.description().fit) + " fit",
+                    std::to_string(cells) + (cells == 1 ? " cell" : " cells"), to_readable_size(file.size())};
+    const Text variance = file.metadata("accuracy.relative_variance");
+    const std::string text(variance.data ? variance.data : "", variance.size);
+    if (double value = 0.0; std::sscanf(text.c_str(), "%lf", &value) == 1) {
+        char rounded[64];
+        std::snprintf(rounded, sizeof rounded, "relative variance %.3g", value);
+        source.title.emplace_back(rounded);
+    }
+}
+
+void load_image(const Options& options, Source& source) {
+    const input::Probe probe = load_probe(options.file, options.input, options.quiet);
+    source.target = luminance_target(options.file, probe);
+    source.density = density_of(source.target);
+    source.columns = source.target.columns;
+    source.rows = source.target.rows;
+    source.title = {shown_name(options.file), "full resolution",
+                    std::to_string(source.columns) + " x " + std::to_string(source.rows)};
+}
+
+input::Map picture_map(const Options& options, const Source& source) {
+    if (options.width > 0) return plot_map(options.layout, options.width);
+    // A pixel a grid step where that is neither tiny nor huge.
+    const bool latlong = options.layout == input::Layout::latlong;
+    const int steps = static_cast<int>(std::min<std::uint32_t>(latlong ? source.columns : source.rows, 1u << 20));
+    return plot_map(options.layout, latlong ? std::clamp(steps, 512, 2048) : std::clamp(steps, 512, 1024));
+}
+
+DensityRange chosen_range(const Options& options, const DensityImage& image) {
+    if (!options.range.empty()) return *parse_range(options.range);
+    const DensityRange range = automatic_range(image);
+    if (!options.quiet)
+        std::fprintf(stderr, "%s: colours span %s sr^-1; --range sets them, for pictures to compare\n",
+                     options.output.c_str(), to_string(range).c_str());
+    return range;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string text;
+    for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+    return text;
+}
+
+std::vector<std::uint8_t> draw_png(const Options& options, const Source& source, const DensityImage& image) {
+    const DensityRange range = chosen_range(options, image);
+    OIIO::ImageBuf picture = false_colour(image, range);
+    if (options.knots && !source.stored.file.empty())
+        draw_knots(picture, knot_opacity(source.stored.file.environment(), image.map));
+    if (options.legend) {
+        const std::string font = find_font();
+        if (font.empty() && !options.quiet)
+            std::fprintf(stderr,
+                         "%s: no font was found, so the legend has no text; installing DejaVu Sans "
+                         "(fonts-dejavu-core) would help\n",
+                         options.output.c_str());
+        const bool zero = std::find(image.density.begin(), image.density.end(), 0.0f) != image.density.end();
+        picture = add_legend(picture, {source.title, range, zero}, font);
+    }
+    return encode_png(picture, {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + "; colours span " +
+                                                          to_string(range) + " sr^-1, logarithmic"});
+}
+
+bool is_exr(const std::string& path) {
+    std::string extension = fs::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != ".exr" && extension != ".png" && path != "-")
+        throw CLI::ValidationError("--output", "needs a name that ends in .png (picture) or .exr (numbers)");
+    return extension == ".exr";
+}
+
+void run(const Options& options) {
+    const bool exr = is_exr(options.output);
+    if (!options.range.empty() && !parse_range(options.range))
+        throw CLI::ValidationError("--range", "needs two densities such as 1e-3:100, 0 < MIN < MAX");
+    Output output(options.output, options.force, {options.file}); // refuses early, before the work
+
+    Source source;
+    if (is_stored(options.file)) load_stored(options, source);
+    else load_image(options, source);
+    const DensityImage image = draw_density(picture_map(options, source), source.density);
+    const std::vector<std::uint8_t> bytes =
+        exr ? encode_exr(image, {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + ", sr^-1"})
+            : draw_png(options, source, image);
+    output.write(bytes.data(), bytes.size());
+    output.commit();
+}
+
+void add_picture_options(CLI::App& command, Options& options) {
+    const std::map<std::string, input::Layout> layouts{{"latlong", input::Layout::latlong},
+                                                       {"angular", input::Layout::angular}};
+    command
+        .add_option(
+            "--projection", options.layout,
+            "How the picture lays out directions: latlong (a 2:1 map: all cells at a glance) or angular (the "
+            "unit disc of Debevec's light probes and of Lawrence et al. 2005, Fig. 5: less distorted around "
+            "the middle, which is +x as in the lat-long map)")
+        ->transform(CLI::CheckedTransformer(layouts).description(""))
+        ->option_text("NAME [latlong]")
+        ->group("Picture");
+    command
+        .add_option(
+            "--width", options.width,
+            "Pixels across the density, without the legend. By default a pixel for each grid step, within 512 "
+            "and 2048 (angular: 1024)")
+        ->check(CLI::Range(smallest_width, largest_width).description(""))
+        ->option_text("N")
+        ->group("Picture");
+    command
+        .add_option(
+            "--range", options.range,
+            "Densities in sr^-1 of the first and the last colour, such as 1e-3:100. Give it where pictures are "
+            "to be compared; by default it fits this picture, leaving out outliers")
+        ->option_text("MIN:MAX")
+        ->group("Picture");
+    command
+        .add_flag(
+            "--knots,!--no-knots", options.knots,
+            "Draw the borders of cells (default) or leave them out; they fade where cells are too small to see")
+        ->group("Picture");
+    command
+        .add_flag("--legend,!--no-legend", options.legend,
+                  "Add a title and a colour bar (default), or write the density alone, to place in a figure")
+        ->group("Picture");
+}
+
+} // namespace
+
+void add_plot(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<Options>();
+    CLI::App& command =
+        *program.add_subcommand("plot", "Show a density in false colours, and the cells that hold it");
+    command
+        .add_option("FILE", options->file,
+                    "An .acdf environment file (- is stdin), or a probe, whose own density is then shown at full "
+                    "resolution")
+        ->required()
+        ->type_name("")
+        ->group("Input");
+    add_projection(command, options->input.projection, "--probe-projection");
+    add_picture_options(command, *options);
+    add_output(command, options->output, options->force,
+               "The picture to write: .png, or .exr for the densities themselves as floats, for other programs")
+        ->required();
+    add_quiet(command, options->quiet);
+    command.footer(
+        help_footer("Colours follow the logarithm of the density per steradian, from violet over green to red; "
+                    "dark grey is density "
+                    "0, where no sample ever falls. Each pixel shows the density of the direction at its centre.",
+                    "acdf plot sky.acdf -o sky.png\n"
+                    "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
+                    "acdf plot sky.acdf -o sky.exr --width 4096"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools

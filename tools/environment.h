@@ -1,0 +1,48 @@
+// From a probe to the bytes of an environment file: target, fit, cascade, file, and its exact accuracy.
+#pragma once
+
+#include "compress/fit.h"
+#include "compress/store.h"
+#include "input/probe.h"
+#include "measure/accuracy.h"
+#include "progress.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// What `acdf env` was asked for, beside the probe.
+struct EnvironmentOptions {
+    compress::FitOptions fit;             ///< its `order` is used where `order` here is set
+    std::optional<compress::Order> order; ///< empty: fit both ways and keep the more accurate
+    AcdfCodec codec = ACDF_CODEC_NONE;
+};
+
+struct Environment {
+    std::vector<std::uint8_t> bytes; ///< the whole file
+    measure::Accuracy accuracy;      ///< of the stored density, after quantization
+    compress::Order order = compress::Order::z;
+};
+
+/// Where a probe came from, for the metadata.
+struct Source {
+    std::string name, sha256, projection;
+};
+
+/// Throws std::invalid_argument where the target has no energy.
+Environment build_environment(const compress::Target& target, const Source& source,
+                              const EnvironmentOptions& options, const Progress& progress = {});
+
+/// The target of a probe with Rec. 709 luminance. Throws Failure, naming `path`, where it has no energy.
+compress::Target luminance_target(const std::string& path, const input::Probe& probe);
+
+/// Reads a probe and tells on stderr, unless `quiet`, what was assumed and what was mended. Throws Failure.
+input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
+
+/// "phi" or "z".
+const char* to_string(compress::Order order);
+
+} // namespace acdf::tools

@@ -1,0 +1,27 @@
+// Reading .acdf files and their bytes for the subcommands.
+#pragma once
+
+#include <acdf/reader.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// All bytes of the file at `path`, or of stdin for "-". Throws Failure.
+std::vector<std::uint8_t> read_bytes(const std::string& path);
+
+/// A checked file and the bytes it lies in.
+struct LoadedFile {
+    std::vector<std::uint8_t> bytes;
+    File file;
+};
+
+/// Throws Failure, which names the file, the broken rule and what would help.
+LoadedFile load_file(const std::string& path);
+
+/// As load_file, and fails where the file is no environment; `command` is named in the message.
+LoadedFile load_environment(const std::string& path, const char* command);
+
+} // namespace acdf::tools

@@ -1,0 +1,30 @@
+// Options that several subcommands share, so that they read and behave the same everywhere.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace acdf::tools {
+
+inline CLI::Option* add_json(CLI::App& command, bool& json) {
+    return command.add_flag("--json", json, "Report as JSON, for scripts: keys are stable, numbers are exact")
+        ->group("Output");
+}
+
+inline CLI::Option* add_quiet(CLI::App& command, bool& quiet) {
+    return command.add_flag("-q,--quiet", quiet, "Say nothing on stderr but errors: no progress bar, no remarks")
+        ->group("Output");
+}
+
+/// -o and --force. `what` says what the file holds, for example "The .acdf file to write".
+inline CLI::Option* add_output(CLI::App& command, std::string& path, bool& force, const std::string& what) {
+    command
+        .add_flag("-f,--force", force,
+                  "Replace an existing output. Without it nothing is ever overwritten, so that a slip of the "
+                  "shell's history costs no data")
+        ->group("Output");
+    return command.add_option("-o,--output", path, what + " (- is stdout)")->type_name("FILE")->group("Output");
+}
+
+} // namespace acdf::tools

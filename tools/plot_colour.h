@@ -1,0 +1,25 @@
+// False colours for densities.
+#pragma once
+
+#include "plot_density.h"
+#include "plot_range.h"
+
+#include <OpenImageIO/imagebuf.h>
+
+#include <array>
+
+namespace acdf::tools {
+
+/// sRGB, in [0, 1] as it is displayed.
+using Colour = std::array<float, 3>;
+
+/// Density 0: no sample ever falls there. A neutral grey that the colour map does not contain.
+constexpr Colour zero_colour = {0.25f, 0.25f, 0.25f};
+/// Outside of the disc, and around the picture.
+constexpr Colour background = {1.0f, 1.0f, 1.0f};
+
+/// RGB floats as displayed: the logarithm of the density from violet (range.low) over green to red (range.high),
+/// zero_colour where it is 0, background where nothing is shown.
+OIIO::ImageBuf false_colour(const DensityImage& image, const DensityRange& range);
+
+} // namespace acdf::tools

@@ -1,0 +1,49 @@
+#include "plot_density.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace acdf::tools {
+
+Density density_of(const EnvironmentView& view) {
+    return [view](const float direction[3]) { return view.pdf(direction); };
+}
+
+Density density_of(const compress::Target& target) {
+    const double scale = 1.0 / compress::integral(target);
+    const input::Map grid{input::Layout::latlong, static_cast<int>(target.columns), static_cast<int>(target.rows)};
+    return [&target, scale, grid](const float d[3]) {
+        const input::ImagePoint p = input::to_image(grid, {d[0], d[1], d[2]});
+        const auto column = static_cast<std::uint32_t>(p.u * grid.width);
+        const auto row = static_cast<std::uint32_t>(p.v * grid.height);
+        return static_cast<float>(static_cast<double>(target.row(row)[column]) * scale);
+    };
+}
+
+input::Map plot_map(input::Layout layout, int width) {
+    return {layout, width, layout == input::Layout::latlong ? std::max(width / 2, 1) : width};
+}
+
+bool pixel_direction(const input::Map& map, double x, double y, float direction[3]) {
+    input::Direction d;
+    if (!input::to_direction(map, x / map.width, y / map.height, d)) return false;
+    direction[0] = static_cast<float>(d.x);
+    direction[1] = static_cast<float>(d.y);
+    direction[2] = static_cast<float>(d.z);
+    return true;
+}
+
+DensityImage draw_density(const input::Map& map, const Density& density) {
+    DensityImage image{map, {}};
+    const auto width = static_cast<std::size_t>(map.width);
+    image.density.assign(width * static_cast<std::size_t>(map.height), shows_nothing);
+    tbb::parallel_for(0, map.height, [&](int y) {
+        float* row = image.density.data() + static_cast<std::size_t>(y) * width;
+        for (int x = 0; x < map.width; ++x)
+            if (float direction[3]; pixel_direction(map, x + 0.5, y + 0.5, direction)) row[x] = density(direction);
+    });
+    return image;
+}
+
+} // namespace acdf::tools
