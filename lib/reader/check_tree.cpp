@@ -170,11 +170,12 @@ void check_segments(const Tree& tree, u32 word, const AcdfCurve& curve, const Cu
     }
 }
 
-// Depth is counted up to one past the limit: what lies deeper is not reported again.
+// A wrong root or link leaves curves unreached: that is told once, there. Depth is counted up to one past the
+// limit: what lies deeper is not told again.
 void check_reach(const Tree& tree, u32 word, Report& report) {
     u32& b = tree.marks[word].b;
     const u32 depth = b & 0xFFFF;
-    if (depth == 0) report.add(6012, tree.at(word), "the curve at word %u", word);
+    if (depth == 0 && report.verdict().errors == 0) report.add(6012, tree.at(word), "the curve at word %u", word);
     if (depth == ACDF_MAX_DEPTH + 1) report.add(6016, tree.at(word), "the curve at word %u is the 65th", word);
     if (depth > ACDF_MAX_DEPTH + 1) b = (b & 0xFFFF0000u) | (ACDF_MAX_DEPTH + 2);
 }
@@ -275,7 +276,7 @@ void check_tree(const Payload& bins, const Payload& payload, Report& report, Par
         report.add(6001, payload.at(0), "it has %llu bytes", static_cast<ull>(payload.size));
         return;
     }
-    if (!bins_ok) return;
+    if (!bins_ok || parts.description->bin_count == 0) return;
     // Two words of scratch for each word that is really there.
     Mark* marks = static_cast<Mark*>(std::calloc(words, sizeof(Mark)));
     if (!marks) {

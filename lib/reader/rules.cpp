@@ -50,9 +50,9 @@ const Rule rules[] = {
     {4004, error, malformed, "payload-length",
      "DESC is 64 + 48 `axis_count` bytes long and BINS is 8 `bin_count` bytes long."},
 
-    {5001, error, unsupported, "parameterization", "`parameterization` is one of those of §4.1."},
-    {5002, error, unsupported, "fit", "`fit` is one of those of §4.1."},
-    {5003, error, unsupported, "filter", "`filter` is one of those of §4.1."},
+    {5001, error, unsupported, "parameterization", "`parameterization` is one of those of §5.1."},
+    {5002, error, unsupported, "fit", "`fit` is one of those of §5.1."},
+    {5003, error, unsupported, "filter", "`filter` is one of those of §5.1."},
     {5004, error, unsupported, "up-axis", "`up_axis` is 2 (z)."},
     {5005, error, unsupported, "handedness", "`handedness` is 0 (right-handed)."},
     {5006, error, malformed, "axis-count", "`axis_count` is 1 to 8."},
@@ -69,7 +69,7 @@ const Rule rules[] = {
     {5015, error, malformed, "axis-range", "`low` and `high` are finite and differ."},
     {5016, error, malformed, "parameterization-kind", "The parameterization is that of the kind."},
     {5017, error, malformed, "metadata",
-     "META is as §4.4 says: lengths within the chunk, nothing left over, at most 1024 pairs, "
+     "META is as §5.5 says: lengths within the chunk, nothing left over, at most 1024 pairs, "
      "keys of 1 to 255 bytes, all UTF-8."},
     {5018, error, malformed, "duplicate-key", "No two metadata keys are equal."},
 

@@ -88,36 +88,16 @@ ACDF_FN uint32_t acdf_load(const uint8_t* array, uint32_t index, int wide) {
     return wide ? ((const uint32_t*)(const void*)array)[index] : ((const uint16_t*)(const void*)array)[index];
 }
 
-/* All ones where value <= key, else 0. From the borrow of a subtraction: of a comparison some compilers make a
- * branch, which is mispredicted every other time. */
-ACDF_FN uint32_t acdf_mask_le(uint32_t value, uint32_t key) {
-    return (uint32_t)(((uint64_t)key - value) >> 63) - 1u;
-}
-
-/* How many of `count` nondecreasing values are <= key: a binary search without branches on the data. */
-ACDF_FN uint32_t acdf_upper_bound16(const uint16_t* array, uint32_t count, uint32_t key) {
-    uint32_t base = 0;
-    if (count == 0) return 0;
-    while (count > 1) {
-        const uint32_t half = count / 2;
-        base += half & acdf_mask_le(array[base + half - 1], key);
-        count -= half;
-    }
-    return base + (1 & acdf_mask_le(array[base], key));
-}
-ACDF_FN uint32_t acdf_upper_bound32(const uint32_t* array, uint32_t count, uint32_t key) {
-    uint32_t base = 0;
-    if (count == 0) return 0;
-    while (count > 1) {
-        const uint32_t half = count / 2;
-        base += half & acdf_mask_le(array[base + half - 1], key);
-        count -= half;
-    }
-    return base + (1 & acdf_mask_le(array[base], key));
-}
+/* How many of `count` nondecreasing values are <= key: a binary search without branches. */
 ACDF_FN uint32_t acdf_upper_bound(const uint8_t* array, uint32_t count, int wide, uint32_t key) {
-    return wide ? acdf_upper_bound32((const uint32_t*)(const void*)array, count, key)
-                : acdf_upper_bound16((const uint16_t*)(const void*)array, count, key);
+    uint32_t base = 0;
+    if (count == 0) return 0;
+    while (count > 1) {
+        const uint32_t half = count / 2;
+        base += acdf_load(array, base + half - 1, wide) <= key ? half : 0;
+        count -= half;
+    }
+    return base + (acdf_load(array, base, wide) <= key ? 1 : 0);
 }
 
 ACDF_FN int acdf_wide_cumulative(const AcdfCurve* c) { return (c->header & ACDF_CURVE_WIDE_CUMULATIVE) != 0; }
@@ -169,7 +149,6 @@ ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, A
         const double maximum = (double)acdf_curve_maximum(&curve);
         double scaled = u[axis] * maximum;
         uint32_t i, low, width, link;
-        if (!(scaled > 0.0)) scaled = 0.0; /* also NaN */
         if (scaled >= maximum) scaled = maximum * (1.0 - 0x1p-53);
         /* Segments of probability 0 are never entered: the bound lies above all equal values. */
         i = acdf_upper_bound(curve.cumulative, curve.segments - 1, acdf_wide_cumulative(&curve), (uint32_t)scaled);
@@ -221,31 +200,11 @@ ACDF_FN double acdf_tilt_sample(double tilt, double u) {
 ACDF_FN double acdf_tilt_cdf(double tilt, double t) { return t + tilt * (t * t - t); }
 ACDF_FN double acdf_tilt_density(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
 
-/* ---- the sphere (SPEC.md §6.1) ---------------------------------------------------------------------- */
-
-typedef struct AcdfEnvironment {
-    const uint8_t* tree; /* chunk TREE */
-    uint32_t root;
-    uint32_t columns; /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi */
-    uint32_t rows;    /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi */
-    double total;     /* integral of the target over the sphere */
-} AcdfEnvironment;
-
-typedef struct AcdfDirectionSample {
-    float direction[3]; /* unit, towards the light */
-    float pdf;          /* sr^-1, finite and > 0 */
-} AcdfDirectionSample;
-
-enum { ACDF_AXIS_PHI = 0, ACDF_AXIS_THETA = 1 };
-
-#define ACDF_PI 3.14159265358979323846
-/* A sample stays this angle (radians) inside its cell: rounding the direction to float, and normalising it
- * again, then cannot carry it over the border, and pdf() agrees with sample(). */
-#define ACDF_BORDER 0x1p-22
-
 /* ---- elementary functions ---------------------------------------------------------------------------
  * Written out so that every machine draws the same directions and finds the same cells, which its libm would
  * not grant, and because two atan2 calls would cost more than the rest. */
+
+#define ACDF_PI 3.14159265358979323846
 
 /* Polynomials of degree 7 and 3 in q, summed as a tree: short chains of dependent operations. */
 ACDF_FN double acdf_polynomial4(double q, double c0, double c1, double c2, double c3) {
@@ -297,6 +256,27 @@ ACDF_FN double acdf_atan2pi(double y, double x) {
     return y < 0.0 ? -turn : turn;
 }
 
+/* ---- the sphere (SPEC.md §6.1) ---------------------------------------------------------------------- */
+
+typedef struct AcdfEnvironment {
+    const uint8_t* tree; /* chunk TREE */
+    uint32_t root;
+    uint32_t columns; /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi */
+    uint32_t rows;    /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi */
+    double total;     /* integral of the target over the sphere */
+} AcdfEnvironment;
+
+typedef struct AcdfDirectionSample {
+    float direction[3]; /* unit, towards the light */
+    float pdf;          /* sr^-1, finite and > 0 */
+} AcdfDirectionSample;
+
+enum { ACDF_AXIS_PHI = 0, ACDF_AXIS_THETA = 1 };
+
+/* A sample stays this angle (radians) inside its cell: rounding the direction to float, and normalising it
+ * again, then cannot carry it over the border, and pdf() agrees with sample(). */
+#define ACDF_BORDER 0x1p-22
+
 /* z = cos(theta) at a row position in [0, rows]: 1 - 2 sin(theta/2)^2, exact at the poles. */
 ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
     const int south = 2 * (uint64_t)row > rows;
@@ -304,8 +284,6 @@ ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
     const double z = 1.0 - 2.0 * s * s;
     return south ? -z : z;
 }
-
-/* ---- the sphere (SPEC.md §6.1), continued ----------------------------------------------------------- */
 
 /* Density per steradian of a cell of probability p over `width` columns and a difference dz of cosines;
  * `shape` is the product of its tilt densities. */
@@ -324,8 +302,8 @@ ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, 
     double u[2];
     AcdfRange range[2];
     double p, tx, tz, x, z, z0, z1, sin_theta, sine, cosine, border;
-    u[0] = u0;
-    u[1] = u1;
+    u[0] = u0 > 0.0 ? (u0 < 1.0 ? u0 : 1.0) : 0.0; /* also NaN */
+    u[1] = u1 > 0.0 ? (u1 < 1.0 ? u1 : 1.0) : 0.0;
     range[0].low = range[1].low = 0;
     range[0].high = env->columns;
     range[1].high = env->rows;
@@ -333,7 +311,7 @@ ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, 
     p = acdf_tree_sample(env->tree, env->root, u, range);
 
     tx = acdf_tilt_sample(range[0].tilt, u[0]);
-    border = ACDF_BORDER * (double)env->columns / (2.0 * ACDF_PI);
+    border = (double)env->columns * (ACDF_BORDER / (2.0 * ACDF_PI));
     x = (double)range[0].low + tx * (double)(range[0].high - range[0].low);
     x = acdf_clamp(x, (double)range[0].low + border, (double)range[0].high - border);
 
@@ -356,9 +334,9 @@ ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, 
     return out;
 }
 
-/* Where a direction falls: its cell, the fractions t[axis] across it (t[1] in z) and, if `strata` is not
- * null, the random numbers that lead there. Returns the cell's probability; 0 for directions that are NaN
- * or whose length differs from 1 by more than about 5e-4. */
+/* Where a direction falls: its cell and, if `strata` is not null, the random numbers that lead there; if that
+ * or a tilt asks for them, also the fractions t[axis] across the cell (t[1] in z). Returns the cell's
+ * probability; 0 for directions that are NaN or whose length differs from 1 by more than about 5e-4. */
 ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float direction[3], AcdfRange range[2],
                                      double t[2], double dz[1], AcdfStratum* strata) {
     const double x = direction[0], y = direction[1], z = direction[2];
@@ -382,6 +360,8 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     z0 = acdf_row_z(range[1].low, env->rows);
     z1 = acdf_row_z(range[1].high, env->rows);
     dz[0] = z0 - z1;
+    t[0] = t[1] = 0.5;
+    if (!strata && range[0].tilt == 0.0 && range[1].tilt == 0.0) return p;
     t[0] = acdf_clamp((column - (double)range[0].low) / (double)(range[0].high - range[0].low), 0.0, 1.0);
     cap = sin2 / (length * (length + fabs(z))); /* 1 - |cos(theta)|, exact near the poles where z is not */
     t[1] = acdf_clamp((z0 - (z < 0.0 ? cap - 1.0 : 1.0 - cap)) / dz[0], 0.0, 1.0);

@@ -1,0 +1,42 @@
+// Writes the seeds of fuzz_reader: small valid files that use everything. make_corpus FOLDER
+#include "reader_files.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+using namespace acdf_test;
+
+namespace {
+
+void write(const std::filesystem::path& path, const Bytes& bytes) {
+    std::ofstream out(path, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (!out) std::fprintf(stderr, "cannot write %s\n", path.c_str());
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) return std::fprintf(stderr, "usage: make_corpus FOLDER\n"), 2;
+    const std::filesystem::path folder = argv[1];
+    std::filesystem::create_directories(folder);
+    EnvironmentSpec complete = complete_environment();
+    write(folder / "smallest", EnvironmentSpec().encode());
+    write(folder / "complete", complete.encode());
+    write(folder / "local", local_file().encode());
+    write(folder / "chain", chain(64).encode());
+    complete.zlib = true;
+    write(folder / "compressed", complete.encode());
+    for (std::uint32_t seed = 0; seed < 12; ++seed) {
+        RandomOptions options;
+        options.columns = seed % 2 ? 65536 : 64;
+        options.rows = seed % 3 ? 33 : 65536;
+        options.depth = 2 + static_cast<int>(seed % 4);
+        options.segments = 4;
+        EnvironmentSpec spec = RandomTree(seed, options).make();
+        spec.zlib = seed % 4 == 0;
+        write(folder / ("tree" + std::to_string(seed)), spec.encode());
+    }
+    return 0;
+}

@@ -1,0 +1,31 @@
+# Tests of lib/reader and format/.
+find_package(ZLIB REQUIRED)
+
+# Each public header alone, as the languages it is written for.
+foreach(header layout sample)
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/header_${header}.c)
+    file(CONFIGURE OUTPUT ${source} CONTENT "#include <acdf/${header}.h>\nint acdf_header_${header};\n")
+    list(APPEND acdf_header_sources ${source})
+endforeach()
+foreach(header layout sample reader)
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/header_${header}.cpp)
+    file(CONFIGURE OUTPUT ${source} CONTENT "#include <acdf/${header}.h>\nextern \"C\" int acdf_header_${header}_cpp;\n")
+    list(APPEND acdf_header_sources ${source})
+endforeach()
+add_library(acdf_test_headers OBJECT ${acdf_header_sources})
+target_link_libraries(acdf_test_headers PRIVATE acdf_reader acdf_options)
+set_target_properties(acdf_test_headers PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+
+add_library(acdf_test_c99 OBJECT reader_c99.c)
+target_link_libraries(acdf_test_c99 PRIVATE acdf_reader acdf_options)
+set_target_properties(acdf_test_c99 PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+
+acdf_add_test(test_reader_sampling
+    SOURCES reader_sampling.cpp $<TARGET_OBJECTS:acdf_test_c99>
+    LIBRARIES acdf_reader ZLIB::ZLIB)
+add_dependencies(test_reader_sampling acdf_test_headers)
+acdf_add_test(test_reader_rules SOURCES reader_rules.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
+acdf_add_test(test_reader_load SOURCES reader_load.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
+acdf_add_test(test_reader_spec SOURCES reader_spec.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
+acdf_add_test(test_reader_memory SOURCES reader_memory.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
+target_link_options(test_reader_memory PRIVATE -Wl,--wrap=malloc,--wrap=calloc,--wrap=aligned_alloc)

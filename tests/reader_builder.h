@@ -1,0 +1,278 @@
+// Writes .acdf files from format/SPEC.md alone: it knows nothing of acdf/layout.h. It checks nothing, so that
+// tests can write broken files too.
+#pragma once
+
+#include <zlib.h>
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace acdf_test {
+
+using Bytes = std::vector<std::uint8_t>;
+
+inline void put16(Bytes& out, std::uint32_t v) {
+    for (int i = 0; i < 2; ++i) out.push_back(static_cast<std::uint8_t>(v >> 8 * i));
+}
+inline void put32(Bytes& out, std::uint32_t v) {
+    for (int i = 0; i < 4; ++i) out.push_back(static_cast<std::uint8_t>(v >> 8 * i));
+}
+inline void put64(Bytes& out, std::uint64_t v) {
+    for (int i = 0; i < 8; ++i) out.push_back(static_cast<std::uint8_t>(v >> 8 * i));
+}
+inline void put_double(Bytes& out, double v) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &v, 8);
+    put64(out, bits);
+}
+inline void put_float(Bytes& out, float v) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &v, 4);
+    put32(out, bits);
+}
+inline void put_text(Bytes& out, const std::string& text) { out.insert(out.end(), text.begin(), text.end()); }
+inline void pad_to(Bytes& out, std::size_t multiple) {
+    while (out.size() % multiple != 0) out.push_back(0);
+}
+inline std::uint64_t get(const Bytes& bytes, std::size_t at, int size) {
+    std::uint64_t v = 0;
+    for (int i = 0; i < size; ++i) v |= std::uint64_t{bytes[at + static_cast<std::size_t>(i)]} << 8 * i;
+    return v;
+}
+inline void set(Bytes& bytes, std::size_t at, int size, std::uint64_t v) {
+    for (int i = 0; i < size; ++i) bytes[at + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(v >> 8 * i);
+}
+
+/// CRC-32 (SPEC.md §1), bit by bit.
+inline std::uint32_t crc32_of(const std::uint8_t* data, std::size_t size, std::uint32_t seed = 0) {
+    std::uint32_t crc = ~seed;
+    for (std::size_t i = 0; i < size; ++i) {
+        crc ^= data[i];
+        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0u);
+    }
+    return ~crc;
+}
+
+// ---- trees ----------------------------------------------------------------------------------------------
+
+struct CurveSpec {
+    std::uint32_t axis = 0;
+    bool wide_cumulative = false, wide_positions = false;
+    int link_width = 0;                    ///< 0 (all segments end), 16 or 32 bits
+    std::vector<std::uint32_t> cumulative; ///< interior values
+    std::vector<std::uint32_t> positions;  ///< interior knots
+    std::vector<int> children;             ///< with links: one a segment, index of a curve or -1
+    std::vector<int> tilts;                ///< empty, or one a segment
+
+    std::uint32_t maximum() const { return wide_cumulative ? 0xFFFFFFFFu : 0xFFFFu; }
+    std::size_t segments() const { return positions.size() + 1; }
+    std::uint32_t header() const {
+        return axis | (wide_cumulative ? 0x10u : 0u) | (wide_positions ? 0x20u : 0u) |
+               (link_width == 0    ? 0u
+                : link_width == 16 ? 0x40u
+                                   : 0x80u) |
+               (tilts.empty() ? 0u : 0x100u) | static_cast<std::uint32_t>(segments()) << 12;
+    }
+    std::uint32_t child_at(std::size_t i) const { return static_cast<std::uint32_t>(children[i]); }
+};
+
+/// One curve; `starts` gives the word offset of each curve of the tree.
+inline Bytes encode(const CurveSpec& curve, std::size_t self, const std::vector<std::uint32_t>& starts) {
+    Bytes out;
+    put32(out, curve.header());
+    for (auto v : curve.cumulative) curve.wide_cumulative ? put32(out, v) : put16(out, v);
+    pad_to(out, curve.wide_positions ? 4 : 2);
+    for (auto v : curve.positions) curve.wide_positions ? put32(out, v) : put16(out, v);
+    if (curve.link_width == 32) pad_to(out, 4);
+    for (std::size_t i = 0; curve.link_width != 0 && i < curve.segments(); ++i) {
+        const std::uint32_t link = curve.children[i] < 0 ? 0 : starts[curve.child_at(i)] - starts[self];
+        curve.link_width == 32 ? put32(out, link) : put16(out, link);
+    }
+    for (int tilt : curve.tilts) put16(out, static_cast<std::uint32_t>(tilt) & 0xFFFF);
+    pad_to(out, 4);
+    return out;
+}
+
+/// Curves in file order, and where each starts.
+struct TreeSpec {
+    std::vector<CurveSpec> curves;
+    std::vector<std::uint32_t> starts;
+
+    Bytes encode() {
+        starts.assign(curves.size() + 1, 0);
+        for (std::size_t i = 0; i < curves.size(); ++i)
+            starts[i + 1] =
+                starts[i] + static_cast<std::uint32_t>(acdf_test::encode(curves[i], i, starts).size() / 4);
+        Bytes out;
+        for (std::size_t i = 0; i < curves.size(); ++i) {
+            const Bytes curve = acdf_test::encode(curves[i], i, starts);
+            out.insert(out.end(), curve.begin(), curve.end());
+        }
+        return out;
+    }
+};
+
+// ---- chunks ---------------------------------------------------------------------------------------------
+
+struct AxisSpec {
+    std::string name;
+    std::uint32_t role = 0, measure = 0, resolution = 1;
+    double low = 0.0, high = 1.0;
+};
+
+inline constexpr double pi = 3.14159265358979323846;
+
+struct DescriptionSpec {
+    std::uint32_t parameterization = 1, fit = 4, filter = 0, up_axis = 2, handedness = 0, bin_count = 1;
+    double weights[3] = {0.2126, 0.7152, 0.0722};
+    double total = 1.0;
+    std::vector<AxisSpec> axes = {{"phi", 0, 0, 1, pi, -pi}, {"theta", 0, 1, 1, 0.0, pi}};
+
+    Bytes encode() const {
+        Bytes out;
+        for (auto v : {parameterization, fit, filter, up_axis, handedness, static_cast<std::uint32_t>(axes.size()),
+                       bin_count, 0u})
+            put32(out, v);
+        for (double w : weights) put_double(out, w);
+        put_double(out, total);
+        for (const AxisSpec& axis : axes) {
+            const std::size_t start = out.size();
+            put_text(out, axis.name);
+            out.resize(start + 16, 0);
+            for (auto v : {axis.role, axis.measure, axis.resolution, 0u}) put32(out, v);
+            put_double(out, axis.low);
+            put_double(out, axis.high);
+        }
+        return out;
+    }
+};
+
+struct BinSpec {
+    std::uint32_t root = 0;
+    float share = 1.0f;
+};
+
+inline Bytes encode(const std::vector<BinSpec>& bins) {
+    Bytes out;
+    for (const BinSpec& bin : bins) {
+        put32(out, bin.root);
+        put_float(out, bin.share);
+    }
+    return out;
+}
+
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+inline Bytes encode(const Metadata& metadata) {
+    Bytes out;
+    put32(out, static_cast<std::uint32_t>(metadata.size()));
+    for (const auto& [key, value] : metadata)
+        for (const std::string* text : {&key, &value}) {
+            put32(out, static_cast<std::uint32_t>(text->size()));
+            put_text(out, *text);
+        }
+    return out;
+}
+
+struct ChunkSpec {
+    std::string type; ///< four letters
+    Bytes raw;
+    std::uint32_t flags = 1;
+    bool zlib = false;
+};
+
+inline Bytes deflated(const Bytes& raw) {
+    uLongf size = compressBound(static_cast<uLong>(raw.size()));
+    Bytes out(size);
+    compress2(out.data(), &size, raw.data(), static_cast<uLong>(raw.size()), 9);
+    out.resize(size);
+    return out;
+}
+
+// ---- files ----------------------------------------------------------------------------------------------
+
+inline constexpr std::size_t header_size = 64, chunk_size = 48;
+inline std::size_t chunk_at(std::size_t i) { return header_size + i * chunk_size; }
+
+/// Writes the header's CRC anew.
+inline void seal_header(Bytes& file) {
+    const std::uint64_t count = get(file, 36, 4);
+    const std::uint32_t crc = crc32_of(file.data(), 60);
+    const std::size_t left = file.size() - header_size;
+    const std::size_t table = count <= left / chunk_size ? static_cast<std::size_t>(count) * chunk_size : left;
+    set(file, 60, 4, crc32_of(file.data() + header_size, table, crc));
+}
+
+/// Writes all CRCs anew, as far as chunks lie inside the file.
+inline void seal(Bytes& file) {
+    const std::uint64_t count = get(file, 36, 4);
+    for (std::size_t i = 0; i < count && chunk_at(i + 1) <= file.size(); ++i) {
+        const std::uint64_t offset = get(file, chunk_at(i) + 16, 8), stored = get(file, chunk_at(i) + 24, 8);
+        if (offset > file.size() || stored > file.size() - offset) continue;
+        set(file, chunk_at(i) + 12, 4, crc32_of(file.data() + offset, static_cast<std::size_t>(stored)));
+    }
+    seal_header(file);
+}
+
+struct FileSpec {
+    std::uint32_t kind = 1, minor = 0;
+    std::vector<ChunkSpec> chunks;
+
+    Bytes encode() const {
+        Bytes file = {0xAB, 'A', 'C', 'D', 'F', ' ', ' ', 0xBB, 0x0D, 0x0A, 0x1A, 0x0A};
+        put16(file, 1);
+        put16(file, minor);
+        put64(file, 0); // file_length, below
+        put32(file, kind);
+        put32(file, 0);
+        put32(file, 0);
+        put32(file, static_cast<std::uint32_t>(chunks.size()));
+        file.resize(header_size, 0);
+        file.resize(chunk_at(chunks.size()), 0);
+        for (std::size_t i = 0; i < chunks.size(); ++i) {
+            const ChunkSpec& chunk = chunks[i];
+            const Bytes stored = chunk.zlib ? deflated(chunk.raw) : chunk.raw;
+            pad_to(file, 64);
+            std::memcpy(file.data() + chunk_at(i), chunk.type.data(), 4);
+            set(file, chunk_at(i) + 4, 4, chunk.flags);
+            set(file, chunk_at(i) + 8, 4, chunk.zlib ? 1 : 0);
+            set(file, chunk_at(i) + 16, 8, file.size());
+            set(file, chunk_at(i) + 24, 8, stored.size());
+            set(file, chunk_at(i) + 32, 8, chunk.raw.size());
+            file.insert(file.end(), stored.begin(), stored.end());
+        }
+        pad_to(file, 64);
+        set(file, 16, 8, file.size());
+        seal(file);
+        return file;
+    }
+};
+
+/// An environment file with everything that SPEC.md asks of one.
+struct EnvironmentSpec {
+    std::uint32_t columns = 1, rows = 1;
+    TreeSpec tree = {{CurveSpec{}}, {}};
+    std::size_t root = 0; ///< index of a curve
+    Metadata metadata;    ///< no chunk META if empty
+    bool zlib = false;
+    double total = 1.0;
+
+    FileSpec file() {
+        DescriptionSpec description;
+        description.axes[0].resolution = columns;
+        description.axes[1].resolution = rows;
+        description.total = total;
+        const Bytes curves = tree.encode();
+        FileSpec file;
+        file.chunks = {{"DESC", description.encode(), 1, zlib},
+                       {"BINS", acdf_test::encode(std::vector<BinSpec>{{tree.starts[root], 1.0f}}), 1, zlib},
+                       {"TREE", curves, 1, zlib}};
+        if (!metadata.empty()) file.chunks.push_back({"META", acdf_test::encode(metadata), 0, zlib});
+        return file;
+    }
+    Bytes encode() { return file().encode(); }
+};
+
+} // namespace acdf_test

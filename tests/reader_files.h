@@ -1,0 +1,99 @@
+// Small files from which the tests of the reader make broken ones.
+#pragma once
+
+#include "reader_random.h"
+
+#include <functional>
+
+namespace acdf_test {
+
+/// Three curves that use every array. Bytes of TREE:
+///   0 header  4 cumulative[2]  8 positions[2]  12 links[3] of 16 bits  18 padding   curve 0, axis 0, 5 words
+///   20 header 24 cumulative[1] 28 positions[1] 32 links[2] of 32 bits               curve 1, axis 1, 5 words
+///   40 header 44 tilts[1]  46 padding                                               curve 2, axis 0, 2 words
+/// Curve 2 has two parents: segment 1 of curve 0 and segment 1 of curve 1.
+inline EnvironmentSpec complete_environment() {
+    EnvironmentSpec spec;
+    spec.columns = spec.rows = 8;
+    CurveSpec root = even_curve(0, {3, 6});
+    root.cumulative = {20000, 40000};
+    root.link_width = 16;
+    root.children = {1, 2, -1};
+    CurveSpec rows = even_curve(1, {2});
+    rows.wide_cumulative = rows.wide_positions = true;
+    rows.cumulative = {0x80000000};
+    rows.link_width = 32;
+    rows.children = {-1, 2};
+    CurveSpec tilted = even_curve(0, {});
+    tilted.tilts = {1000};
+    spec.tree = {{root, rows, tilted}, {}};
+    spec.metadata = {{"tool", "test 1"}, {"source.name", "härbour.exr"}};
+    return spec;
+}
+inline FileSpec complete_file() { return complete_environment().file(); }
+
+/// The same tree with a third axis, which is indexed; kind 2 has no rules of its own yet.
+inline FileSpec local_file() {
+    FileSpec file = complete_file();
+    DescriptionSpec description;
+    description.axes[0].resolution = description.axes[1].resolution = 8;
+    description.axes.push_back({"nor", 1, 0, 1, 0.0, 1.0});
+    file.kind = 2;
+    file.chunks[0].raw = description.encode();
+    return file;
+}
+
+/// `length` curves of one segment, each the child of the one before.
+inline EnvironmentSpec chain(int length) {
+    EnvironmentSpec spec;
+    spec.tree.curves.clear();
+    for (int i = 0; i < length; ++i) {
+        CurveSpec curve = even_curve(0, {});
+        if (i + 1 < length) {
+            curve.link_width = 16;
+            curve.children = {i + 1};
+        }
+        spec.tree.curves.push_back(curve);
+    }
+    return spec;
+}
+
+inline std::size_t record_of(const Bytes& file, const char* type) {
+    for (std::size_t i = 0; i < get(file, 36, 4); ++i)
+        if (std::memcmp(file.data() + chunk_at(i), type, 4) == 0) return chunk_at(i);
+    return 0;
+}
+inline std::size_t payload_of(const Bytes& file, const char* type) {
+    return static_cast<std::size_t>(get(file, record_of(file, type) + 16, 8));
+}
+
+inline Bytes truncated(Bytes file, std::size_t size) {
+    file.resize(size);
+    return file;
+}
+
+inline std::function<Bytes()> metadata_file(const Metadata& metadata) {
+    return [metadata] {
+        EnvironmentSpec spec = complete_environment();
+        spec.metadata = metadata;
+        return spec.encode();
+    };
+}
+
+/// META last and compressed; `change(raw, stored, raw_length)` before it is written.
+inline std::function<Bytes()> zlib_metadata(std::function<void(Bytes&, Bytes&, std::uint64_t&)> change) {
+    return [change] {
+        FileSpec spec = complete_file();
+        Bytes raw = spec.chunks[3].raw, stored = deflated(raw);
+        std::uint64_t raw_length = raw.size();
+        change(raw, stored, raw_length);
+        spec.chunks[3].raw = stored;
+        Bytes file = spec.encode();
+        set(file, record_of(file, "META") + 8, 4, 1);
+        set(file, record_of(file, "META") + 32, 8, raw_length);
+        seal_header(file);
+        return file;
+    };
+}
+
+} // namespace acdf_test

@@ -1,0 +1,104 @@
+// What the reader allocates: its calls are caught by the linker (--wrap), zlib's and the test's are not.
+#include "reader_files.h"
+
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace {
+bool counting = false;
+std::size_t calls = 0, bytes_taken = 0;
+
+void count(std::size_t bytes) {
+    if (!counting) return;
+    ++calls;
+    bytes_taken += bytes;
+}
+} // namespace
+
+extern "C" {
+void* __real_malloc(std::size_t size);
+void* __real_calloc(std::size_t n, std::size_t size);
+void* __real_aligned_alloc(std::size_t alignment, std::size_t size);
+void* __wrap_malloc(std::size_t size) { return count(size), __real_malloc(size); }
+void* __wrap_calloc(std::size_t n, std::size_t size) { return count(n * size), __real_calloc(n, size); }
+void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
+    return count(size), __real_aligned_alloc(alignment, size);
+}
+}
+
+using namespace acdf_test;
+
+namespace {
+
+struct Counted {
+    Counted() {
+        calls = bytes_taken = 0;
+        counting = true;
+    }
+    ~Counted() { counting = false; }
+};
+
+// 200000 curves of one word: the tree with the most scratch a byte.
+EnvironmentSpec large() {
+    EnvironmentSpec spec;
+    spec.tree.curves.assign(200000, CurveSpec{});
+    return spec;
+}
+
+TEST(Allocation, isBelowFourTimesTheFile) {
+    for (bool zlib : {false, true}) {
+        EnvironmentSpec spec = large();
+        spec.zlib = zlib;
+        Bytes bytes = spec.encode();
+        bytes.insert(bytes.begin(), 1, 0); // at an odd address: it must be copied
+        const std::size_t size = bytes.size() - 1, in_memory = size + (zlib ? 4 * spec.tree.curves.size() : 0);
+        acdf::File file;
+        {
+            Counted counted;
+            ASSERT_TRUE(acdf::File::from_memory(bytes.data() + 1, size, file).ok());
+        }
+        EXPECT_GT(bytes_taken, size); // the copy, so that the count is known to count
+        EXPECT_LE(bytes_taken, 4 * in_memory);
+    }
+}
+
+TEST(Allocation, inPlaceOnlyTheScratchOfTheChecks) {
+    const Bytes bytes = large().encode();
+    acdf::File file;
+    Counted counted;
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    EXPECT_EQ(calls, 1u);
+    EXPECT_LE(bytes_taken, 2 * bytes.size());
+}
+
+TEST(Allocation, nothingForWhatIsRefusedBefore) {
+    EnvironmentSpec spec = large();
+    spec.zlib = true; // 800 kB from about 1 kB
+    const Bytes bytes = spec.encode();
+    acdf::Limits limits;
+    limits.max_inflated_bytes = 100000;
+    acdf::File file;
+    Counted counted;
+    EXPECT_EQ(acdf::File::from_memory(bytes.data(), bytes.size(), file, limits).rule, 3012);
+    EXPECT_EQ(calls, 0u);
+    limits.max_file_bytes = 100;
+    EXPECT_EQ(acdf::File::from_memory(bytes.data() + 1, bytes.size(), file, limits).rule, 1004);
+    EXPECT_EQ(calls, 0u);
+}
+
+TEST(Allocation, noneWhileSampling) {
+    const Bytes bytes = complete_environment().encode();
+    acdf::File file;
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    const acdf::EnvironmentView view = file.environment();
+    Counted counted;
+    float sum = 0.0f;
+    for (int i = 0; i < 1000; ++i) sum += view.pdf(view.sample(i / 1000.0, 0.3).direction);
+    EXPECT_GT(sum, 0.0f);
+    EXPECT_EQ(calls, 0u);
+}
+
+} // namespace

@@ -1,0 +1,226 @@
+// A slow decoder that follows format/SPEC.md word by word, for environment files: it shares nothing with
+// lib/reader, so that a misreading in one of the two shows. It expects valid files.
+#pragma once
+
+#include <zlib.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace acdf_reference {
+
+using Bytes = std::vector<std::uint8_t>;
+
+inline std::uint64_t number(const Bytes& b, std::size_t at, int size) {
+    std::uint64_t v = 0;
+    for (int i = size - 1; i >= 0; --i) v = v << 8 | b.at(at + static_cast<std::size_t>(i));
+    return v;
+}
+inline double f64(const Bytes& b, std::size_t at) {
+    const std::uint64_t bits = number(b, at, 8);
+    double v;
+    std::memcpy(&v, &bits, 8);
+    return v;
+}
+
+struct Cell {
+    double low[2] = {0, 0}, high[2] = {0, 0}; // positions on axis 0 and 1
+    double tilt[2] = {0, 0};
+    double p = 1.0;
+};
+
+struct Sample {
+    Cell cell;
+    double direction[3];
+    double pdf;
+};
+
+// SPEC.md §5.4
+struct Curve {
+    std::size_t axis;
+    double maximum;
+    std::vector<double> cumulative;    // n + 1, ends included
+    std::vector<double> positions;     // n + 1, the ends unset
+    std::vector<std::size_t> children; // word offsets, 0: ends
+    std::vector<double> tilts;         // empty if not tilted
+
+    std::size_t n() const { return children.size(); }
+};
+
+class Environment {
+public:
+    explicit Environment(const Bytes& file) {
+        const std::size_t chunks = number(file, 36, 4);
+        for (std::size_t i = 0; i < chunks; ++i) read_chunk(file, 64 + 48 * i);
+        columns = static_cast<double>(number(description_, 64 + 24, 4));
+        rows = static_cast<double>(number(description_, 64 + 48 + 24, 4));
+        total = f64(description_, 56);
+        root = number(bins_, 0, 4);
+    }
+
+    double columns, rows, total;
+    std::size_t root;
+
+    Curve curve(std::size_t word) const {
+        const std::size_t start = 4 * word, header = number(tree_, start, 4), n = header >> 12;
+        const int c = header >> 4 & 1 ? 4 : 2, p = header >> 5 & 1 ? 4 : 2,
+                  l = header >> 6 & 3 ? (header >> 6 & 2 ? 4 : 2) : 0;
+        std::size_t at = start + 4;
+        const auto next = [&](int size) {
+            while ((at - start) % static_cast<std::size_t>(size) != 0) ++at;
+            at += static_cast<std::size_t>(size);
+            return number(tree_, at - static_cast<std::size_t>(size), size);
+        };
+        Curve out;
+        out.axis = header & 15;
+        out.maximum = c == 4 ? 4294967295.0 : 65535.0;
+        out.cumulative.push_back(0.0);
+        for (std::size_t i = 1; i < n; ++i) out.cumulative.push_back(static_cast<double>(next(c)));
+        out.cumulative.push_back(out.maximum);
+        out.positions.push_back(0.0);
+        for (std::size_t i = 1; i < n; ++i) out.positions.push_back(static_cast<double>(next(p)));
+        out.positions.push_back(0.0);
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::size_t link = l != 0 ? next(l) : 0;
+            out.children.push_back(link != 0 ? word + link : 0);
+        }
+        for (std::size_t i = 0; i < n && (header >> 8 & 1); ++i)
+            out.tilts.push_back(static_cast<std::int16_t>(next(2)) / 32768.0);
+        return out;
+    }
+
+    // SPEC.md §6.2: v in [0, M), `choose` finds the segment.
+    Cell walk(const std::function<std::size_t(const Curve&, const Cell&)>& choose) const {
+        Cell cell;
+        cell.high[0] = columns;
+        cell.high[1] = rows;
+        for (std::size_t word = root;;) {
+            const Curve c = curve(word);
+            const std::size_t i = choose(c, cell);
+            enter(c, i, cell);
+            if (cell.p == 0.0) return cell;
+            if (c.children[i] == 0) break;
+            word = c.children[i];
+        }
+        cell.p = std::max(cell.p, std::ldexp(1.0, -1000));
+        return cell;
+    }
+
+    Sample sample(double u0, double u1) const {
+        double u[2] = {u0, u1};
+        for (double& v : u) v = v > 0.0 ? std::min(v, 1.0) : 0.0;
+        Sample s;
+        s.cell = walk([&](const Curve& c, const Cell&) {
+            double v = u[c.axis] * c.maximum;
+            if (v >= c.maximum) v = c.maximum * (1.0 - std::ldexp(1.0, -53));
+            std::size_t i = 0;
+            while (!(c.cumulative[i] <= v && v < c.cumulative[i + 1])) ++i;
+            u[c.axis] = (v - c.cumulative[i]) / (c.cumulative[i + 1] - c.cumulative[i]);
+            return i;
+        });
+        const double t0 = solve(s.cell.tilt[0], u[0]), t1 = solve(s.cell.tilt[1], u[1]);
+        const double beta = std::ldexp(1.0, -22), x0 = s.cell.low[0], x1 = s.cell.high[0];
+        const double z0 = z_of(s.cell.low[1]), z1 = z_of(s.cell.high[1]);
+        double x = x0 + t0 * (x1 - x0), z = z0 + t1 * (z1 - z0);
+        const double bx = beta * columns / (2 * M_PI), bz = beta * std::sqrt(1 - z * z);
+        x = std::min(std::max(x, x0 + bx), x1 - bx);
+        z = std::min(std::max(z, z1 + bz), z0 - bz);
+        z = std::min(std::max(z, -1 + beta * beta / 2), 1 - beta * beta / 2);
+        const double phi = M_PI - 2 * M_PI * x / columns, sine = std::sqrt(1 - z * z);
+        s.direction[0] = sine * std::cos(phi);
+        s.direction[1] = sine * std::sin(phi);
+        s.direction[2] = z;
+        s.pdf = density(s.cell, t0, t1);
+        return s;
+    }
+
+    // SPEC.md §6.3 and §6.4
+    double pdf(const double (&d)[3], Cell* found = nullptr) const {
+        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        if (!(std::fabs(length - 1.0) < 0.0005)) return 0.0;
+        const double sine = std::hypot(d[0], d[1]);
+        double column = columns * (0.5 - (sine > 0 ? std::atan2(d[1], d[0]) : 0.0) / (2 * M_PI));
+        if (column >= columns) column = 0.0;
+        const double row = rows * std::atan2(sine, d[2]) / M_PI;
+        const double square[2] = {std::floor(column), std::min(std::floor(row), rows - 1)};
+        const Cell cell = find(square);
+        if (found) *found = cell;
+        if (cell.p == 0.0) return 0.0;
+        const double t0 = (column - cell.low[0]) / (cell.high[0] - cell.low[0]);
+        const double z0 = z_of(cell.low[1]), z1 = z_of(cell.high[1]);
+        const double t1 = (z0 - std::cos(std::atan2(sine, d[2]))) / (z0 - z1);
+        return density(cell, std::min(std::max(t0, 0.0), 1.0), std::min(std::max(t1, 0.0), 1.0));
+    }
+
+    Cell find(const double (&square)[2]) const {
+        return walk([&](const Curve& c, const Cell&) {
+            std::size_t i = 0;
+            while (i + 1 < c.n() && square[c.axis] >= c.positions[i + 1]) ++i;
+            return i;
+        });
+    }
+
+    /// Every cell, those of probability 0 included.
+    void each_cell(const std::function<void(const Cell&)>& visit) const {
+        Cell whole;
+        whole.high[0] = columns;
+        whole.high[1] = rows;
+        each_cell(root, whole, visit);
+    }
+
+    double z_of(double row) const { return std::cos(M_PI * row / rows); }
+    double solid_angle(const Cell& c) const {
+        return 2 * M_PI * (c.high[0] - c.low[0]) / columns * (z_of(c.low[1]) - z_of(c.high[1]));
+    }
+    double density(const Cell& c, double t0, double t1) const {
+        return c.p / solid_angle(c) * (1 + c.tilt[0] * (2 * t0 - 1)) * (1 + c.tilt[1] * (2 * t1 - 1));
+    }
+    static double solve(double s, double u) {
+        return s == 0 ? u : 2 * u / ((1 - s) + std::sqrt((1 - s) * (1 - s) + 4 * s * u));
+    }
+
+private:
+    void read_chunk(const Bytes& file, std::size_t at) {
+        const std::string type(file.begin() + static_cast<std::ptrdiff_t>(at),
+                               file.begin() + static_cast<std::ptrdiff_t>(at) + 4);
+        const auto begin = file.begin() + static_cast<std::ptrdiff_t>(number(file, at + 16, 8));
+        Bytes bytes(begin, begin + static_cast<std::ptrdiff_t>(number(file, at + 24, 8)));
+        if (number(file, at + 8, 4) == 1) {
+            Bytes raw(number(file, at + 32, 8));
+            uLongf size = static_cast<uLongf>(raw.size());
+            if (uncompress(raw.data(), &size, bytes.data(), static_cast<uLong>(bytes.size())) != Z_OK ||
+                size != raw.size())
+                throw std::runtime_error("zlib");
+            bytes = raw;
+        }
+        if (type == "DESC") description_ = bytes;
+        if (type == "BINS") bins_ = bytes;
+        if (type == "TREE") tree_ = bytes;
+    }
+
+    static void enter(const Curve& c, std::size_t i, Cell& cell) {
+        cell.p = cell.p * ((c.cumulative[i + 1] - c.cumulative[i]) / c.maximum);
+        if (i > 0) cell.low[c.axis] = c.positions[i];
+        if (i + 1 < c.n()) cell.high[c.axis] = c.positions[i + 1];
+        if (!c.tilts.empty()) cell.tilt[c.axis] = c.tilts[i];
+    }
+
+    void each_cell(std::size_t word, const Cell& cell, const std::function<void(const Cell&)>& visit) const {
+        const Curve c = curve(word);
+        for (std::size_t i = 0; i < c.n(); ++i) {
+            Cell inner = cell;
+            enter(c, i, inner);
+            if (c.children[i] != 0) each_cell(c.children[i], inner, visit);
+            else visit(inner);
+        }
+    }
+
+    Bytes description_, bins_, tree_;
+};
+
+} // namespace acdf_reference
