@@ -21,33 +21,42 @@ struct CubeLayout {
 constexpr Direction px{1, 0, 0}, nx{-1, 0, 0}, py{0, 1, 0}, ny{0, -1, 0}, pz{0, 0, 1}, nz{0, 0, -1};
 
 // Front +x, left +y, right -y; up and down are hinged to the front.
-constexpr CubeLayout vertical{3, 4, {{1, 1, px, ny, nz},
-                                     {0, 1, py, px, nz},
-                                     {2, 1, ny, nx, nz},
-                                     {1, 0, pz, ny, px},
-                                     {1, 2, nz, ny, nx},
-                                     {1, 3, nx, ny, pz}}}; // hinged to the foot of the down face: upside down
+constexpr CubeLayout vertical{3,
+                              4,
+                              {{1, 1, px, ny, nz},
+                               {0, 1, py, px, nz},
+                               {2, 1, ny, nx, nz},
+                               {1, 0, pz, ny, px},
+                               {1, 2, nz, ny, nx},
+                               {1, 3, nx, ny, pz}}}; // hinged to the foot of the down face: upside down
 
-constexpr CubeLayout horizontal{4, 3, {{1, 1, px, ny, nz},
-                                       {0, 1, py, px, nz},
-                                       {2, 1, ny, nx, nz},
-                                       {1, 0, pz, ny, px},
-                                       {1, 2, nz, ny, nx},
-                                       {3, 1, nx, py, nz}}};
+constexpr CubeLayout horizontal{4,
+                                3,
+                                {{1, 1, px, ny, nz},
+                                 {0, 1, py, px, nz},
+                                 {2, 1, ny, nx, nz},
+                                 {1, 0, pz, ny, px},
+                                 {1, 2, nz, ny, nx},
+                                 {3, 1, nx, py, nz}}};
 
 // ImfEnvmap.h: +X -X +Y -Y +Z -Z from the top, where OpenEXR's (X, Y, Z) is our (y, z, x).
-constexpr CubeLayout stacked{1, 6, {{0, 0, py, px, nz},
-                                    {0, 1, ny, nx, nz},
-                                    {0, 2, pz, py, nx},
-                                    {0, 3, nz, py, px},
-                                    {0, 4, px, ny, nz},
-                                    {0, 5, nx, py, nz}}};
+constexpr CubeLayout stacked{1,
+                             6,
+                             {{0, 0, py, px, nz},
+                              {0, 1, ny, nx, nz},
+                              {0, 2, pz, py, nx},
+                              {0, 3, nz, py, px},
+                              {0, 4, px, ny, nz},
+                              {0, 5, nx, py, nz}}};
 
 const CubeLayout& layout_of(const Map& map) {
     switch (map.layout) {
-    case Layout::vertical_cross: return vertical;
-    case Layout::horizontal_cross: return horizontal;
-    default: return stacked;
+    case Layout::vertical_cross:
+        return vertical;
+    case Layout::horizontal_cross:
+        return horizontal;
+    default:
+        return stacked;
     }
 }
 
@@ -80,8 +89,10 @@ int cube_face_size(const Map& map) {
     switch (map.layout) {
     case Layout::vertical_cross:
     case Layout::horizontal_cross:
-    case Layout::stacked_cube: return map.width / layout_of(map).columns;
-    default: return 0;
+    case Layout::stacked_cube:
+        return map.width / layout_of(map).columns;
+    default:
+        return 0;
     }
 }
 

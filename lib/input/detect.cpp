@@ -17,9 +17,7 @@ bool has_ratio(const Image& image, int across, int down) {
 
 bool is_square(const Image& image) { return has_ratio(image, 1, 1); }
 
-std::string shape(const Image& image) {
-    return std::to_string(image.width) + "x" + std::to_string(image.height);
-}
+std::string shape(const Image& image) { return std::to_string(image.width) + "x" + std::to_string(image.height); }
 
 // ---- what is left black -----------------------------------------------------------------------------
 
@@ -33,15 +31,16 @@ double brightness(const Image& image, int x, int y) {
     return std::max({rgb[0], rgb[1], rgb[2]});
 }
 
-// Black: a thousandth of the mean, for lossy compression.
+// Black: a thousandth of what is typical, for lossy compression. Roots, so that a sun does not set the level.
 double black_level(const Image& image) {
     double sum = 0.0;
     for (int y = 0; y < image.height; ++y) {
         double row = 0.0;
-        for (int x = 0; x < image.width; ++x) row += brightness(image, x, y);
+        for (int x = 0; x < image.width; ++x) row += std::sqrt(brightness(image, x, y));
         sum += row / image.width;
     }
-    return 1e-3 * sum / image.height;
+    const double root = sum / image.height;
+    return 1e-3 * root * root;
 }
 
 // Share of black texels among those that `select` picks; 0 where it picks none.
@@ -95,15 +94,16 @@ bool is_octahedral(const Image& image) {
     const int n = image.width;
     if (n < 16 || n % 2 != 0) return false;
     const double level = black_level(image);
-    // Mean differences between texels that touch across the fold, that touch along the image, and that are far
-    // apart on the border. The middle sixteenths, where the fold is near in the image too, prove nothing.
+    // Sums of differences between texels that touch across the fold, that touch within the image, and that are
+    // far apart on the border. Near the fold's middle all are neighbours, which proves nothing.
+    const int half = n / 2 - n / 16;
     double folded = 0.0, touching = 0.0, apart = 0.0;
     for (int side = 0; side < 4; ++side)
-        for (int i = 0; i < n / 2 - n / 16; ++i) {
+        for (int i = 0; i < half; ++i) {
             const double here = border(image, level, side, i, 0);
             folded += std::abs(here - border(image, level, side, n - 1 - i, 0));
             touching += std::abs(here - border(image, level, side, i, 1));
-            apart += std::abs(here - border(image, level, side, (i + n / 3) % n, 0));
+            apart += std::abs(here - border(image, level, side, (i + half / 2) % half, 0));
         }
     return folded <= 1.5 * touching && folded < 0.5 * apart;
 }
@@ -126,8 +126,9 @@ Detected as_asked(const std::string& path, const Image& image, Projection projec
     if (projection == Projection::latlong) return {Layout::latlong, reason};
     if (projection == Projection::cube_cross) return {cube_layout(path, image), reason};
     if (!is_square(image))
-        refuse(path, image, std::string("is not square, as ") + to_string(projection) +
-                                " is; crop it to the disc or the square, or set another --projection");
+        refuse(path, image,
+               std::string("is not square, as ") + to_string(projection) +
+                   " is; crop it to the disc or the square, or set another --projection");
     if (projection == Projection::angular) return {Layout::angular, reason};
     if (projection == Projection::mirrorball) return {Layout::mirrorball, reason};
     return {Layout::octahedral, reason};
@@ -148,22 +149,27 @@ Detected by_shape(const std::string& path, const Image& image) {
         if (!has_ratio(image, vertical ? 3 : 4, vertical ? 4 : 3)) continue;
         if (is_cross(image, layout))
             return {layout, vertical ? "3:4 shape, black beside the cross" : "4:3 shape, black beside the cross"};
-        refuse(path, image, "has the shape of a cube cross but is not black beside it; "
-                            "if it is one, set --projection cube-cross");
+        refuse(path, image,
+               "has the shape of a cube cross but is not black beside it; "
+               "if it is one, set --projection cube-cross");
     }
     if (has_ratio(image, 1, 6))
-        refuse(path, image, "may be six cube faces, but no envmap attribute says so; set --projection cube-cross "
-                            "for OpenEXR's order (+X -X +Y -Y +Z -Z)");
+        refuse(path, image,
+               "may be six cube faces, but no envmap attribute says so; set --projection cube-cross "
+               "for OpenEXR's order (+X -X +Y -Y +Z -Z)");
     if (is_square(image) && is_octahedral(image) && !is_disc(image))
         return {Layout::octahedral, "square, and the borders match when folded"};
     if (is_square(image) && is_disc(image))
-        refuse(path, image, "with black corners is an angular map or a mirror ball, and nothing in the image tells "
-                            "which; set --projection angular (as Debevec's light probes) or --projection mirrorball");
+        refuse(path, image,
+               "with black corners is an angular map or a mirror ball, and nothing in the image tells "
+               "which; set --projection angular (as Debevec's light probes) or --projection mirrorball");
     if (is_square(image))
-        refuse(path, image, "is square, but neither a disc with black corners nor a seamless octahedral map; "
-                            "set --projection angular, mirrorball or octahedral");
-    refuse(path, image, "has the shape of no known projection (lat-long is 2:1, cubes 3:4 or 4:3, discs and "
-                        "octahedral 1:1); crop it, or set --projection");
+        refuse(path, image,
+               "is square, but neither a disc with black corners nor a seamless octahedral map; "
+               "set --projection angular, mirrorball or octahedral");
+    refuse(path, image,
+           "has the shape of no known projection (lat-long is 2:1, cubes 3:4 or 4:3, discs and "
+           "octahedral 1:1); crop it, or set --projection");
 }
 
 } // namespace
@@ -175,11 +181,16 @@ Detected detect_layout(const std::string& path, const Image& image, Projection p
 
 Projection projection_of(Layout layout) {
     switch (layout) {
-    case Layout::latlong: return Projection::latlong;
-    case Layout::angular: return Projection::angular;
-    case Layout::mirrorball: return Projection::mirrorball;
-    case Layout::octahedral: return Projection::octahedral;
-    default: return Projection::cube_cross;
+    case Layout::latlong:
+        return Projection::latlong;
+    case Layout::angular:
+        return Projection::angular;
+    case Layout::mirrorball:
+        return Projection::mirrorball;
+    case Layout::octahedral:
+        return Projection::octahedral;
+    default:
+        return Projection::cube_cross;
     }
 }
 

@@ -53,10 +53,15 @@ bool is_no_colour(const std::string& name) {
     return n == "a" || n == "alpha" || n == "z" || n == "zback";
 }
 
-// R, G and B of the first layer that has them ("" or "beauty."), else the only channel that is a colour.
-bool choose_channels(const OIIO::ImageSpec& spec, Channels& channels) {
+// R, G and B of the first layer that has them ("" or "beauty."), else the only channel that is a colour. Most
+// formats name no channels (`named` false): then the first three, or with one or two the first, as grey.
+bool choose_channels(const OIIO::ImageSpec& spec, bool named, Channels& channels) {
     const std::vector<std::string>& names = spec.channelnames;
-    if (names.size() != static_cast<std::size_t>(spec.nchannels)) return false;
+    if (spec.nchannels < 1) return false;
+    if (!named || names.size() != static_cast<std::size_t>(spec.nchannels)) {
+        for (int c = 0; c < 3; ++c) channels.index[c] = spec.nchannels < 3 ? 0 : c;
+        return true;
+    }
     for (const std::string& name : names) {
         const std::string n = lower(name);
         const bool ends_in_r = n == "r" || (n.size() > 2 && n.compare(n.size() - 2, 2, ".r") == 0);
@@ -122,7 +127,7 @@ public:
         image.width = display.width;
         image.height = display.height;
         read_windows(data, display, image);
-        add_part_warning(image);
+        add_warnings(image);
         linearize(image, spec());
         return image;
     }
@@ -135,8 +140,10 @@ private:
     void check_size(const Window& window) const {
         const std::int64_t pixels = std::int64_t{window.width} * window.height;
         const std::string size = shape(window.width, window.height);
-        if (window.width <= 0 || window.height <= 0) fail("its size " + size + " is not a size; the file is damaged");
-        if (pixels > max_pixels) fail("it has " + size + " pixels, more than 2^30; resize it, or the file is damaged");
+        if (window.width <= 0 || window.height <= 0)
+            fail("its size " + size + " is not a size; the file is damaged");
+        if (pixels > max_pixels)
+            fail("it has " + size + " pixels, more than 2^30; resize it, or the file is damaged");
         std::error_code ignored;
         const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path_, ignored));
         if (!ignored && pixels > small_image_pixels && pixels / max_pixels_per_byte > bytes)
@@ -154,8 +161,10 @@ private:
             fail("it is stored rotated or flipped; turn it upright (oiiotool IN --reorient -o OUT)");
         if (!overlap(data_window(s), display_window(s)))
             fail("its data window lies outside its display window; crop it (oiiotool IN --fullpixels -o OUT)");
-        if (!choose_channels(s, channels_))
-            fail("its channels are " + list(s.channelnames) + ", where R, G, B or a single one is needed; "
+        const bool named = std::string(input_->format_name()) == "openexr";
+        if (!choose_channels(s, named, channels_))
+            fail("its channels are " + list(s.channelnames) +
+                 ", where R, G, B or a single one is needed; "
                  "rename or choose them (oiiotool IN --ch R=...,G=...,B=... -o OUT)");
     }
 
@@ -167,8 +176,8 @@ private:
     }
 
     void read_windows(const Window& data, const Window& display, Image& image) {
-        const std::size_t display_floats = std::size_t{3} * static_cast<std::size_t>(display.width) *
-                                           static_cast<std::size_t>(display.height);
+        const std::size_t display_floats =
+            std::size_t{3} * static_cast<std::size_t>(display.width) * static_cast<std::size_t>(display.height);
         if (display.contains(data)) {
             // Straight into place. OpenEXR: pixels of the display window without data are black.
             image.rgb.assign(display_floats, 0.0f);
@@ -199,7 +208,8 @@ private:
     void read_channels(float* first, int row_pixels) {
         const OIIO::stride_t pixel = 3 * sizeof(float), row = pixel * row_pixels;
         const auto read = [&](int begin, int end, float* at) {
-            if (!input_->read_image(0, 0, begin, end, OIIO::TypeDesc::FLOAT, at, pixel, row))
+            // Some readers report what is missing, but say they succeeded.
+            if (!input_->read_image(0, 0, begin, end, OIIO::TypeDesc::FLOAT, at, pixel, row) || input_->has_error())
                 fail("its pixels cannot be read (" + input_->geterror() + "); the file is cut short or damaged");
         };
         if (channels_.in_order()) return read(channels_.index[0], channels_.index[0] + 3, first);
@@ -213,7 +223,11 @@ private:
         }
     }
 
-    void add_part_warning(Image& image) {
+    void add_warnings(Image& image) {
+        if (image.tag == EnvironmentTag::latlong && spec().get_int_attribute("oiio:sampleborder") != 0)
+            image.warnings.push_back(
+                "OpenEXR puts texel centres on the poles and the seam; texels are read as areas, "
+                "at most half a texel off");
         if (input_->seek_subimage(1, 0)) image.warnings.push_back("the file has several parts; the first is used");
         input_->geterror(); // a missing second part is no error
         input_->seek_subimage(0, 0);

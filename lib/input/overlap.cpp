@@ -26,8 +26,8 @@ bool convex(const Polygon& quad) {
     int left = 0, right = 0;
     for (int i = 0; i < 4; ++i) {
         const int j = (i + 1) % 4, k = (i + 2) % 4;
-        const double turn = (quad.x[j] - quad.x[i]) * (quad.y[k] - quad.y[j]) -
-                            (quad.y[j] - quad.y[i]) * (quad.x[k] - quad.x[j]);
+        const double turn =
+            (quad.x[j] - quad.x[i]) * (quad.y[k] - quad.y[j]) - (quad.y[j] - quad.y[i]) * (quad.x[k] - quad.x[j]);
         left += turn > 0.0;
         right += turn < 0.0;
     }

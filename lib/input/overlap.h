@@ -27,8 +27,8 @@ struct Polygon {
 void clip(const Polygon& polygon, int axis, double low, double high, Polygon& clipped);
 double area(const Polygon& polygon);
 
-/// The image of `cell` under `map`, in texels; false where it is not (nearly) a convex quadrilateral: across borders
-/// of charts, at the rim of a disc, or where it is larger than a few texels.
+/// The image of `cell` under `map`, in texels; false where it is not (nearly) a convex quadrilateral: across
+/// borders of charts, at the rim of a disc, or where it is larger than a few texels.
 bool image_of(const Map& map, const SphereCell& cell, Polygon& quad);
 
 /// Calls visit(column, row, solid_angle) for the texels that `cell` overlaps. The solid angles add up to the

@@ -3,10 +3,10 @@
 #include "input/detect.h"
 #include "input/image.h"
 #include "input/resample.h"
+#include "input/threads.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <filesystem>
@@ -48,8 +48,7 @@ BadCounts repair(float* rgb, std::size_t begin, std::size_t end, BadCounts count
 BadTexels repair_texels(Image& image, int threads) {
     const std::size_t texels = image.rgb.size() / 3, grain = 1 << 16;
     BadCounts counts;
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-    arena.execute([&] {
+    with_threads(threads, [&] {
         counts = tbb::parallel_reduce(
             tbb::blocked_range<std::size_t>(0, texels, grain), BadCounts{},
             [&](const tbb::blocked_range<std::size_t>& range, const BadCounts& sum) {
@@ -82,12 +81,18 @@ void to_latlong(const Detected& detected, Image& image, int threads, Probe& prob
 
 const char* to_string(Projection projection) {
     switch (projection) {
-    case Projection::automatic: return "auto";
-    case Projection::latlong: return "latlong";
-    case Projection::angular: return "angular";
-    case Projection::mirrorball: return "mirrorball";
-    case Projection::cube_cross: return "cube-cross";
-    case Projection::octahedral: return "octahedral";
+    case Projection::automatic:
+        return "auto";
+    case Projection::latlong:
+        return "latlong";
+    case Projection::angular:
+        return "angular";
+    case Projection::mirrorball:
+        return "mirrorball";
+    case Projection::cube_cross:
+        return "cube-cross";
+    case Projection::octahedral:
+        return "octahedral";
     }
     return "unknown";
 }

@@ -30,9 +30,13 @@ Direction latlong_direction(double u, double v) {
 
 // ---- discs: a to the right and b up, in [-1, 1], r = |(a, b)| ----------------------------------------
 
+// The whole rim shows -x; any of its points will do.
+const ImagePoint rim{0.0, 0.5, 0};
+
 // Angular map: the angle from +x is pi r; the right shows -y, as one sees it from inside.
 ImagePoint angular_point(const Direction& d) {
     const double s = std::hypot(d.y, d.z);
+    if (s == 0.0 && d.x < 0.0) return rim;
     const double scale = s > 0.0 ? std::atan2(s, d.x) / (pi * s) : 0.0;
     return point(0.5 - 0.5 * scale * d.y, 0.5 - 0.5 * scale * d.z);
 }
@@ -48,7 +52,8 @@ Direction angular_direction(double a, double b) {
 ImagePoint mirrorball_point(const Direction& d) {
     const double s2 = d.y * d.y + d.z * d.z;
     const double one_plus_x = d.x > 0.0 ? 1.0 + d.x : s2 / (1.0 - d.x); // no cancellation near -x
-    const double scale = one_plus_x > 0.0 ? 1.0 / std::sqrt(2.0 * one_plus_x) : 0.0;
+    if (one_plus_x == 0.0) return rim;
+    const double scale = 1.0 / std::sqrt(2.0 * one_plus_x);
     return point(0.5 + 0.5 * scale * d.y, 0.5 - 0.5 * scale * d.z);
 }
 
@@ -123,25 +128,35 @@ Direction octahedral_direction(double u, double v) {
 
 ImagePoint to_image(const Map& map, const Direction& d) {
     switch (map.layout) {
-    case Layout::latlong: return latlong_point(d);
-    case Layout::angular: return angular_point(d);
-    case Layout::mirrorball: return mirrorball_point(d);
-    case Layout::octahedral: return octahedral_point(d);
-    default: return cube_point(map, d);
+    case Layout::latlong:
+        return latlong_point(d);
+    case Layout::angular:
+        return angular_point(d);
+    case Layout::mirrorball:
+        return mirrorball_point(d);
+    case Layout::octahedral:
+        return octahedral_point(d);
+    default:
+        return cube_point(map, d);
     }
 }
 
 bool to_direction(const Map& map, double u, double v, Direction& d) {
     const double a = 2.0 * u - 1.0, b = 1.0 - 2.0 * v;
     switch (map.layout) {
-    case Layout::latlong: d = latlong_direction(u, v); return true;
-    case Layout::octahedral: d = octahedral_direction(u, v); return true;
+    case Layout::latlong:
+        d = latlong_direction(u, v);
+        return true;
+    case Layout::octahedral:
+        d = octahedral_direction(u, v);
+        return true;
     case Layout::angular:
     case Layout::mirrorball:
         if (!(a * a + b * b <= 1.0)) return false;
         d = map.layout == Layout::angular ? angular_direction(a, b) : mirrorball_direction(a, b);
         return true;
-    default: return cube_direction(map, u, v, d);
+    default:
+        return cube_direction(map, u, v, d);
     }
 }
 
@@ -152,10 +167,13 @@ double texel_solid_angle(const Map& map, int column, int row) {
         const double middle = pi * (row + 0.5) / map.height, half = 0.5 * pi / map.height;
         return 2.0 * std::sin(middle) * std::sin(half) * (2.0 * pi / map.width);
     }
-    case Layout::octahedral: return 4.0 * pi / map.width / map.height;
+    case Layout::octahedral:
+        return 4.0 * pi / map.width / map.height;
     case Layout::angular:
-    case Layout::mirrorball: return disc_solid_angle(map, column, row);
-    default: return cube_solid_angle(map, column, row);
+    case Layout::mirrorball:
+        return disc_solid_angle(map, column, row);
+    default:
+        return cube_solid_angle(map, column, row);
     }
 }
 
@@ -164,11 +182,18 @@ int latlong_width(const Map& map) {
     // cube has four faces around; the other two preserve area, and a texel is sqrt(4 pi / texels) wide.
     double around = map.width;
     switch (map.layout) {
-    case Layout::latlong: return map.width;
-    case Layout::angular: break;
-    case Layout::mirrorball: around = 0.5 * pi * map.width; break;
-    case Layout::octahedral: around = std::sqrt(pi) * map.width; break;
-    default: around = 4.0 * cube_face_size(map);
+    case Layout::latlong:
+        return map.width;
+    case Layout::angular:
+        break;
+    case Layout::mirrorball:
+        around = 0.5 * pi * map.width;
+        break;
+    case Layout::octahedral:
+        around = std::sqrt(pi) * map.width;
+        break;
+    default:
+        around = 4.0 * cube_face_size(map);
     }
     int width = 4;
     while (width < around) width *= 2;

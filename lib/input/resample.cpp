@@ -1,10 +1,10 @@
 #include "input/resample.h"
 
 #include "input/overlap.h"
+#include "input/threads.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <cfloat>
@@ -39,7 +39,8 @@ private:
         return static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
     }
     std::size_t index(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(map_.width) + static_cast<std::size_t>(column);
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(map_.width) +
+               static_cast<std::size_t>(column);
     }
 
     template <typename Function>
@@ -58,7 +59,8 @@ private:
     void add_coverage(int row) {
         for (int column = 0; column < width_; ++column)
             for_each_overlap(map_, texel(column, row), max_halvings, [&](int x, int y, double omega) {
-                covered_[index(x, y)].fetch_add(static_cast<std::uint64_t>(omega * units), std::memory_order_relaxed);
+                covered_[index(x, y)].fetch_add(static_cast<std::uint64_t>(omega * units),
+                                                std::memory_order_relaxed);
             });
     }
 
@@ -81,12 +83,14 @@ private:
                 for (int c = 0; c < 3; ++c) sum[c] += omega * source[c];
                 total += omega;
             });
-            for (int c = 0; c < 3; ++c) result[result_index(column, row) + static_cast<std::size_t>(c)] = to_float(sum[c] / total);
+            for (int c = 0; c < 3; ++c)
+                result[result_index(column, row) + static_cast<std::size_t>(c)] = to_float(sum[c] / total);
         }
     }
 
     std::size_t result_index(int column, int row) const {
-        return 3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column));
+        return 3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(column));
     }
 
     // Slivers at the rim of a disc may have been missed by all: each goes where its middle points.
@@ -125,8 +129,7 @@ private:
 
 std::vector<float> resample_to_latlong(const Map& map, std::vector<float> rgb, int width, int threads) {
     std::vector<float> result;
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-    arena.execute([&] { result = Resampler(map, rgb, width).run(); });
+    with_threads(threads, [&] { result = Resampler(map, rgb, width).run(); });
     return result;
 }
 

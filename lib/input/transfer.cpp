@@ -39,10 +39,8 @@ void linearize(Image& image, const OIIO::ImageSpec& spec) {
     const std::string curve = gamma == 0.0   ? "the sRGB curve undone"
                               : gamma == 1.0 ? "taken as linear"
                                              : "a gamma of " + std::to_string(gamma) + " undone";
-    if (integer)
-        image.warnings.push_back("integer pixels end at 1, so bright lights are clipped; " + curve);
-    else if (gamma != 1.0)
-        image.warnings.push_back("the file declares a transfer function; " + curve);
+    if (integer) image.warnings.push_back("integer pixels end at 1, so bright lights are clipped; " + curve);
+    else if (gamma != 1.0) image.warnings.push_back("the file declares a transfer function; " + curve);
     if (gamma == 1.0) return;
     for (float& v : image.rgb) {
         if (!(v > 0.0f)) continue; // bad texels are counted later

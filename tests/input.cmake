@@ -1,0 +1,14 @@
+# Reading environment maps. OpenEXR's own mapping functions (ImfEnvmap.h) are an oracle for its layouts.
+if(TARGET acdf_input)
+    find_package(OpenEXR REQUIRED)
+    acdf_add_test(test_input
+        SOURCES
+            input_conventions.cpp
+            input_detect.cpp
+            input_files.cpp
+            input_hostile.cpp
+            input_probes.cpp
+            input_projection.cpp
+            input_resample.cpp
+        LIBRARIES acdf_input OpenImageIO::OpenImageIO OpenEXR::OpenEXR OpenEXR::OpenEXRUtil)
+endif()
