@@ -1,0 +1,180 @@
+// Writes the golden files of the present version: for each NAME.acdf a NAME.txt of samples.
+//
+//   make_golden OUTDIR
+//
+// The files in tests/golden/ were made by it and are frozen with each release: a reader of any later version
+// must draw the same samples from them, bit for bit. A line of the text is
+//
+//   u0 u1  x y z  pdf
+//
+// in hexadecimal floating point (C99 %a). None of the files is symmetric, so that a mirrored, turned or
+// transposed frame shows.
+#include "compress/fit.h"
+#include "compress/store.h"
+
+#include <acdf/reader.h>
+
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace acdf::compress;
+
+struct Golden {
+    std::string name;
+    std::vector<std::uint8_t> bytes;
+};
+
+constexpr std::uint32_t kPhi = ACDF_AXIS_PHI, kTheta = ACDF_AXIS_THETA;
+
+Golden golden(const char* name, const Cascade& cascade, const Description& description,
+              AcdfCodec codec = ACDF_CODEC_NONE) {
+    return {name, store(encode_tree(cascade), description, codec)};
+}
+
+/// One cell: the whole sphere.
+Golden smallest() {
+    Description description = environment_description(1, 1);
+    description.total = 12.566370614359172; // 4 pi: radiance 1
+    return golden("smallest", {{{kTheta, {}, {1.0}, {}, {}}}, {0}}, description);
+}
+
+/// One lit texel, column 2 of 8 and row 1 of 4: phi from pi/4 to pi/2, theta from pi/4 to pi/2. Its first and
+/// last segments are dark.
+Golden one_texel() {
+    const Cascade cascade = {
+        {{kTheta, {1, 2}, {0.0, 1.0, 0.0}, {-1, 1, -1}, {}}, {kPhi, {2, 3}, {0.0, 1.0, 0.0}, {}, {}}}, {0}};
+    return golden("one_texel", cascade, environment_description(8, 4));
+}
+
+/// A target without symmetry: small integers, so that it is the same on every machine.
+Target integer_target(std::uint32_t columns, std::uint32_t rows) {
+    std::vector<float> rgb;
+    for (std::uint32_t r = 0; r < rows; ++r)
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            const std::uint32_t noise = (c * 7 + r * 13 + c * r * 3) % 11;
+            rgb.insert(rgb.end(), {float(noise), float(c), c == 9 && r == 2 ? 500.0f : float(r * r)});
+        }
+    return environment_target(rgb.data(), columns, rows, {0.25, 0.5, 0.25});
+}
+
+Golden fitted(const char* name, AcdfFit fit_kind, Order order, AcdfCodec codec) {
+    const Target target = integer_target(12, 7);
+    FitOptions options;
+    options.fit = fit_kind;
+    options.order = order;
+    options.cells = 24;
+    options.column_segments = 6;
+    options.row_segments = 4;
+    Description description = environment_description(12, 7);
+    description.fit = fit_kind;
+    description.total = integral(target);
+    description.channel_weights[0] = description.channel_weights[2] = 0.25;
+    description.channel_weights[1] = 0.5;
+    description.metadata = {{"generator", "make_golden"}, {"note", "a target of small integers, 12 x 7"}};
+    return golden(name, fit(target, options), description, codec);
+}
+
+/// Densities that are linear across a segment, on either axis and on both.
+Golden tilted() {
+    const Cascade cascade = {{{kPhi, {3, 10}, {0.25, 0.5, 0.25}, {1, -1, 2}, {0.5, -0.75, 0.0}},
+                              {kTheta, {4}, {0.375, 0.625}, {}, {-0.9375, 0.25}},
+                              {kTheta, {1, 7}, {0.125, 0.375, 0.5}, {}, {0.0, 0.999, -0.5}}},
+                             {0}};
+    Description description = environment_description(16, 9);
+    description.fit = ACDF_FIT_PDF;
+    return golden("tilted", cascade, description);
+}
+
+/// theta, phi, theta, phi: a tree that returns to both axes, and branches that end at every depth.
+Golden deep() {
+    const Cascade cascade = {{{kTheta, {6, 20}, {0.25, 0.5, 0.25}, {-1, 1, 2}, {}},
+                              {kPhi, {10, 11, 40}, {0.125, 0.625, 0.125, 0.125}, {-1, -1, 3, -1}, {}},
+                              {kPhi, {50}, {0.75, 0.25}, {4, -1}, {}},
+                              {kTheta, {8, 9}, {0.25, 0.25, 0.5}, {-1, 5, -1}, {}},
+                              {kTheta, {21, 30}, {0.0, 0.875, 0.125}, {}, {}},
+                              {kPhi, {12, 13}, {0.0625, 0.875, 0.0625}, {}, {}}},
+                             {0}};
+    return golden("deep", cascade, environment_description(64, 32));
+}
+
+/// One curve that three segments share.
+Golden shared_child() {
+    const Cascade cascade = {{{kTheta, {2, 3, 5}, {0.125, 0.25, 0.5, 0.125}, {1, 2, 1, 1}, {}},
+                              {kPhi, {1, 4}, {0.5, 0.125, 0.375}, {}, {}},
+                              {kPhi, {7}, {0.0, 1.0}, {}, {}}},
+                             {0}};
+    return golden("shared_child", cascade, environment_description(10, 6));
+}
+
+/// The largest grid, and probabilities that need 32 bits.
+Golden wide() {
+    const Cascade cascade = {{{kTheta, {30000, 50001}, {1e-6, 0.5, 0.499999}, {-1, 1, -1}, {}},
+                              {kPhi, {5, 32768, 65535}, {1e-7, 0.25, 0.5, 0.2499999}, {}, {}}},
+                             {0}};
+    return golden("wide", cascade, environment_description(65536, 65536));
+}
+
+// ---- samples --------------------------------------------------------------------------------------------
+
+/// The corners, then a sequence with full mantissas (a 64-bit linear congruential generator; Knuth 1997, §3.3.4).
+std::vector<std::pair<double, double>> random_numbers() {
+    std::vector<std::pair<double, double>> numbers = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {0.5, 0.5}};
+    std::uint64_t state = 2005;
+    const auto next = [&] {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return static_cast<double>(state >> 11) * 0x1p-53;
+    };
+    while (numbers.size() < 16) {
+        const double u0 = next(), u1 = next();
+        numbers.push_back({u0, u1});
+    }
+    return numbers;
+}
+
+std::string samples(const Golden& golden) {
+    acdf::File file;
+    const acdf::Status status = acdf::File::from_memory(golden.bytes.data(), golden.bytes.size(), file);
+    if (!status.ok()) throw std::runtime_error(golden.name + ": " + status.message);
+    std::string text;
+    for (const auto& [u0, u1] : random_numbers()) {
+        const acdf::DirectionSample s = file.environment().sample(u0, u1);
+        char line[200];
+        std::snprintf(line, sizeof line, "%a %a  %a %a %a  %a\n", u0, u1, double{s.direction[0]},
+                      double{s.direction[1]}, double{s.direction[2]}, double{s.pdf});
+        text += line;
+    }
+    return text;
+}
+
+void write(const std::string& path, const void* data, std::size_t size) {
+    std::ofstream out(path, std::ios::binary);
+    out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    if (!out.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: make_golden OUTDIR (which exists)\n");
+        return 2;
+    }
+    const std::string folder = std::string(argv[1]) + "/";
+    for (const Golden& golden :
+         {smallest(), one_texel(), fitted("untilted", ACDF_FIT_VARIANCE, Order::z, ACDF_CODEC_NONE),
+          fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB), tilted(), deep(), shared_child(), wide()}) {
+        const std::string text = samples(golden);
+        write(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
+        write(folder + golden.name + ".txt", text.data(), text.size());
+    }
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "make_golden: %s\n", error.what());
+    return 1;
+}

@@ -1,0 +1,28 @@
+if(NOT TARGET acdf_compress)
+    return()
+endif()
+find_package(rapidcheck REQUIRED)
+
+acdf_add_test(test_compress
+    SOURCES
+        compress_curve.cpp
+        compress_join.cpp
+        compress_polyline.cpp
+        compress_quantize.cpp
+        compress_regional.cpp
+        compress_store.cpp
+        compress_two_lights.cpp
+        compress_variance.cpp
+        compress_seed.cpp
+    LIBRARIES acdf_measure rapidcheck)
+acdf_add_test(test_compress_fits
+    SOURCES compress_checks.cpp compress_fits.cpp
+    LIBRARIES acdf_measure)
+acdf_add_test(test_compress_probes
+    SOURCES compress_checks.cpp compress_probes.cpp
+    LIBRARIES acdf_input acdf_measure)
+acdf_add_test(test_compress_golden
+    SOURCES compress_golden.cpp
+    LIBRARIES acdf_compress)
+target_compile_definitions(test_compress_golden PRIVATE ACDF_MAKE_GOLDEN="$<TARGET_FILE:make_golden>")
+add_dependencies(test_compress_golden make_golden)
