@@ -23,11 +23,12 @@ struct Options {
     std::string probe, output;
     input::ProbeOptions input;
     EnvironmentOptions environment;
-    std::string knots;
-    CLI::Option *cells_given = nullptr, *knots_given = nullptr, *eps_given = nullptr, *gradient_given = nullptr,
-                *conditional_given = nullptr;
+    std::string knots, budget;
+    const CLI::App* command = nullptr;
     int threads = 0;
     bool json = false, quiet = false, force = false;
+
+    bool given(const char* option) const { return command->get_option(option)->count() > 0; }
 };
 
 /// "64x32": segments of curves over phi and over theta.
@@ -41,30 +42,68 @@ bool parse_knots(const std::string& text, std::uint32_t& phi, std::uint32_t& the
     return a >= 1 && b >= 1 && a <= ACDF_MAX_SEGMENTS && b <= ACDF_MAX_SEGMENTS;
 }
 
-/// Options that belong to another fit are a mistake, not something to ignore.
-void check_combination(Options& options) {
-    const auto refuse = [](const CLI::Option* given, const char* what) {
-        if (given->count() > 0) throw CLI::ValidationError(given->get_name(), what);
-    };
-    compress::FitOptions& fit = options.environment.fit;
-    if (fit.fit == ACDF_FIT_VARIANCE) {
-        refuse(options.knots_given, "is for --fit uniform, cdf and pdf; use --cells with --fit variance");
-        refuse(options.eps_given, "is for --fit cdf and pdf");
-        refuse(options.gradient_given, "is for --fit cdf and pdf: --fit variance needs no such help");
-        refuse(options.conditional_given, "is for --fit uniform, cdf and pdf");
-        return;
+/// Which fits an option belongs to: with another it is a mistake, not something to ignore.
+struct OnlyFor {
+    const char* option;
+    bool uniform, cdf, pdf, variance;
+    const char* message;
+};
+constexpr OnlyFor only_for[] = {
+    {"--cells", false, false, false, true, "is for --fit variance; use --knots with the other fits"},
+    {"--budget", false, false, false, true, "is for --fit variance; use --knots with the other fits"},
+    {"--target-variance", false, false, false, true,
+     "is for --fit variance; use --eps or --knots with the other fits"},
+    {"--shape", false, false, false, true, "is for --fit variance; the other fits have two levels"},
+    {"--knots", true, true, true, false, "is for --fit uniform, cdf and pdf; use --cells or --budget"},
+    {"--conditional", true, true, true, false, "is for --fit uniform, cdf and pdf"},
+    {"--eps", false, true, true, false, "is for --fit cdf and pdf; use --target-variance with --fit variance"},
+    {"--gradient", false, true, true, false, "is for --fit cdf and pdf; --fit variance needs no such help"},
+};
+
+bool allows(const OnlyFor& rule, AcdfFit fit) {
+    switch (fit) {
+    case ACDF_FIT_UNIFORM:
+        return rule.uniform;
+    case ACDF_FIT_CDF:
+        return rule.cdf;
+    case ACDF_FIT_PDF:
+        return rule.pdf;
+    default:
+        return rule.variance;
     }
-    refuse(options.cells_given, "is for --fit variance; use --knots with the other fits");
-    if (fit.fit == ACDF_FIT_UNIFORM) {
-        refuse(options.eps_given, "is for --fit cdf and pdf");
-        refuse(options.gradient_given, "is for --fit cdf and pdf");
-    }
-    if (options.knots_given->count() > 0) {
+}
+
+void set_goal(const Options& options, compress::FitOptions& fit) {
+    int goals = 0;
+    for (const char* option : {"--cells", "--budget", "--target-variance"}) goals += options.given(option);
+    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
+    const bool only_cells = fit.shape == compress::Shape::cascade;
+    if (only_cells && goals > 0 && !options.given("--cells"))
+        throw CLI::ValidationError("--shape cascade", "is sized by --cells");
+    if (options.given("--target-variance")) fit.goal.kind = compress::Goal::Kind::variance;
+    if (!options.given("--budget")) return;
+    const auto bytes = parse_size(options.budget);
+    if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 64KiB, 2MB or 20000");
+    fit.goal.kind = compress::Goal::Kind::budget;
+    fit.goal.budget = *bytes;
+}
+
+void set_knots(const Options& options, compress::FitOptions& fit) {
+    if (options.given("--knots")) {
         if (!parse_knots(options.knots, fit.column_segments, fit.row_segments))
             throw CLI::ValidationError("--knots", "needs two counts such as 64x64 (phi x theta)");
-    } else if (options.eps_given->count() > 0) {
+    } else if (options.given("--eps")) {
         fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
     }
+}
+
+void check_options(Options& options) {
+    compress::FitOptions& fit = options.environment.fit;
+    for (const OnlyFor& rule : only_for)
+        if (options.given(rule.option) && !allows(rule, fit.fit))
+            throw CLI::ValidationError(rule.option, rule.message);
+    if (fit.fit == ACDF_FIT_VARIANCE) set_goal(options, fit);
+    else set_knots(options, fit);
 }
 
 nlohmann::ordered_json report(const Options& options, const input::Probe& probe, const Environment& result) {
@@ -77,7 +116,7 @@ nlohmann::ordered_json report(const Options& options, const input::Probe& probe,
             {"bad_texels",
              {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
             {"fit", fit_name(options.environment.fit.fit)},
-            {"order", to_string(result.order)},
+            {"order", result.order ? to_string(*result.order) : "free"},
             {"bytes", result.bytes.size()},
             {"cells", a.cells},
             {"total", a.total},
@@ -95,7 +134,7 @@ void verify_bytes(const std::uint8_t* data, std::size_t size) {
 }
 
 void run(Options& options) {
-    check_combination(options);
+    check_options(options);
     std::unique_ptr<tbb::global_control> limit;
     if (options.threads > 0)
         limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
@@ -109,7 +148,11 @@ void run(Options& options) {
     {
         ProgressBar bar(options.quiet);
         const Source source{probe.source_name, probe.source_sha256, input::to_string(probe.projection)};
-        result = build_environment(target, source, options.environment, bar.callback());
+        try {
+            result = build_environment(target, source, options.environment, bar.callback());
+        } catch (const std::runtime_error& error) { // the goal is out of reach
+            throw Failure(options.probe + ": " + error.what());
+        }
     }
     output.write(result.bytes.data(), result.bytes.size());
     output.commit(verify_bytes);
@@ -117,10 +160,11 @@ void run(Options& options) {
     std::FILE* out = options.output == "-" ? stderr : stdout;
     if (options.json) std::fprintf(out, "%s\n", report(options, probe, result).dump(2).c_str());
     else if (!options.quiet)
-        std::fprintf(out, "%s: %s, %llu cells, relative variance %.4g (%s fit, %s first)\n", options.output.c_str(),
+        std::fprintf(out, "%s: %s, %llu cells, relative variance %.4g (%s fit%s)\n", options.output.c_str(),
                      to_readable_size(result.bytes.size()).c_str(),
                      static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
-                     fit_name(options.environment.fit.fit).c_str(), to_string(result.order));
+                     fit_name(options.environment.fit.fit).c_str(),
+                     result.order ? (std::string(", ") + to_string(*result.order) + " first").c_str() : "");
 }
 
 void add_fit_options(CLI::App& command, Options& options) {
@@ -138,54 +182,79 @@ void add_fit_options(CLI::App& command, Options& options) {
         ->transform(CLI::CheckedTransformer(fits).description(""))
         ->option_text("NAME [variance]")
         ->group("Fit");
+    const std::map<std::string, compress::Shape> shapes{{"tree", compress::Shape::tree},
+                                                        {"cascade", compress::Shape::cascade}};
+    command
+        .add_option(
+            "--shape", fit.shape,
+            "What --fit variance makes: tree (refines any segment along any axis: less noise for its size) or "
+            "cascade (two levels, as in the paper: a sample takes less time)")
+        ->transform(CLI::CheckedTransformer(shapes).description(""))
+        ->option_text("NAME [tree]")
+        ->group("Fit");
     const std::map<std::string, int> orders{{"auto", 0}, {"phi", 1}, {"z", 2}};
     command
         .add_option_function<int>(
             "--order",
-            [&options](int order) {
-                if (order != 0) options.environment.order = order == 1 ? compress::Order::phi : compress::Order::z;
+            [&fit](int order) {
+                if (order != 0) fit.order = order == 1 ? compress::Order::phi : compress::Order::z;
             },
-            "Which axis is split first: phi, z, or auto (fit both ways, keep the more accurate; twice the time)")
+            "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
+            "file is "
+            "kept, in twice the time; a tree takes the axis that gains more)")
         ->transform(CLI::CheckedTransformer(orders).description(""))
         ->option_text("NAME [auto]")
         ->group("Fit");
-    options.cells_given =
-        command.add_option("--cells", fit.cells, "Cells in all, for --fit variance: about 4 bytes each")
-            ->check(CLI::Range(1u, 1u << 28))
-            ->option_text("N [4096]")
-            ->group("Size and accuracy");
-    options.knots_given =
-        command
-            .add_option("--knots", options.knots,
-                        "Segments of a curve over phi and over theta, for --fit uniform, cdf and pdf (at most this "
-                        "many with --eps)")
-            ->option_text("AxB [64x64]")
-            ->group("Size and accuracy");
-    options.eps_given = command
-                            .add_option("--eps", fit.epsilon,
-                                        "Stop adding knots once no curve deviates by more: from the CDF for --fit "
-                                        "cdf, from the density relative to its peak for --fit pdf")
-                            ->check(CLI::Range(0.0, 1.0))
-                            ->option_text("E")
-                            ->group("Size and accuracy");
-    options.gradient_given =
-        command
-            .add_option("--gradient", fit.gradient_knots,
-                        "Extra knots of the first curve where the map changes across it, for --fit cdf and pdf: "
-                        "helps where lights at different heights share a region (ibid., eq. 5)")
-            ->check(CLI::Range(0u, 1u << 20))
-            ->option_text("N [0]")
-            ->group("Fit");
+    command.add_option("--cells", fit.goal.cells, "Cells in all: about 4 bytes each")
+        ->check(CLI::Range(1u, 1u << 28))
+        ->option_text("N [4096]")
+        ->group("Size and accuracy");
+    command
+        .add_option(
+            "--budget", options.budget,
+            "The most accurate file of at most this size, such as 64KiB or 20kB: for a fixed place in a cache, "
+            "or a download")
+        ->option_text("SIZE")
+        ->group("Size and accuracy");
+    command
+        .add_option(
+            "--target-variance", fit.goal.variance,
+            "The smallest file whose samples have at most this relative variance: 0.01 is a tenth of the mean "
+            "as standard deviation of one sample")
+        ->check(CLI::PositiveNumber)
+        ->option_text("V")
+        ->group("Size and accuracy");
+    command
+        .add_option(
+            "--knots", options.knots,
+            "Segments of a curve over phi and over theta, for --fit uniform, cdf and pdf (at most this many "
+            "with --eps)")
+        ->option_text("AxB [64x64]")
+        ->group("Size and accuracy");
+    command
+        .add_option(
+            "--eps", fit.epsilon,
+            "Stop adding knots once no curve deviates by more: from the CDF for --fit cdf, from the density "
+            "relative to its peak for --fit pdf")
+        ->check(CLI::Range(0.0, 1.0))
+        ->option_text("E")
+        ->group("Size and accuracy");
+    command
+        .add_option("--gradient", fit.gradient_knots,
+                    "Extra knots of the first curve where the map changes across it, for --fit cdf and pdf: helps "
+                    "where lights at different heights share a region (ibid., eq. 5)")
+        ->check(CLI::Range(0u, 1u << 20))
+        ->option_text("N [0]")
+        ->group("Fit");
     const std::map<std::string, compress::Conditional> conditionals{{"energy", compress::Conditional::energy},
                                                                     {"mean", compress::Conditional::mean}};
-    options.conditional_given =
-        command
-            .add_option("--conditional", fit.conditional,
-                        "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "
-                        "(all alike, as ibid., eq. 4, is printed)")
-            ->transform(CLI::CheckedTransformer(conditionals).description(""))
-            ->option_text("NAME [energy]")
-            ->group("Fit");
+    command
+        .add_option("--conditional", fit.conditional,
+                    "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "
+                    "(all alike, as ibid., eq. 4, is printed)")
+        ->transform(CLI::CheckedTransformer(conditionals).description(""))
+        ->option_text("NAME [energy]")
+        ->group("Fit");
 }
 
 } // namespace
@@ -193,6 +262,7 @@ void add_fit_options(CLI::App& command, Options& options) {
 void add_env(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<Options>();
     CLI::App& command = *program.add_subcommand("env", "Compress an environment map: directions by what they emit");
+    options->command = &command;
     command.add_option("PROBE", options->probe, "The environment map: any image OpenImageIO reads")
         ->required()
         ->type_name("")
@@ -219,7 +289,8 @@ void add_env(CLI::App& program, int& exit_code) {
         help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
                     "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
                     "acdf env probe.exr -o probe.acdf\n"
-                    "acdf env probe.hdr -o probe.acdf --cells 16384 --compress zlib\n"
+                    "acdf env probe.hdr -o probe.acdf --budget 64KiB\n"
+                    "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
                     "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
                     "acdf env probe.exr -o paper.acdf --fit cdf --knots 64x64 --order z --gradient 16"));
     command.callback([options, &exit_code] {

@@ -29,30 +29,17 @@ struct Options {
 struct TreeCounts {
     std::uint64_t curves = 0;
     std::uint64_t cells = 0; // segments that end; one of a shared curve counts once
-    std::uint64_t tilted = 0;
 };
-
-// Words from a curve's header to the next curve's.
-std::uint32_t curve_words(const AcdfCurve& curve, const std::uint8_t* base) {
-    const std::uint8_t* end =
-        curve.positions + std::size_t{curve.segments - 1} * (acdf_wide_positions(&curve) ? 4 : 2);
-    if (curve.links) {
-        const bool wide = (curve.header & ACDF_CURVE_LINKS_MASK) >> ACDF_CURVE_LINKS_SHIFT == ACDF_LINKS_32;
-        end = curve.links + std::size_t{curve.segments} * (wide ? 4 : 2);
-    }
-    if (curve.tilts) end = curve.tilts + std::size_t{curve.segments} * 2;
-    return static_cast<std::uint32_t>((end - base + 3) / 4);
-}
 
 TreeCounts count_tree(const File& file) {
     TreeCounts counts;
-    for (std::uint32_t at = 0; at < file.tree_words();) {
-        const AcdfCurve curve = acdf_curve_at(file.tree(), at);
+    for (std::uint32_t at = 0; at < file.tree_units();) {
+        AcdfCurve curve;
+        const std::size_t next = acdf_curve_decode(file.tree(), at, &curve);
         ++counts.curves;
-        if (curve.tilts) ++counts.tilted;
         for (std::uint32_t i = 0; i < curve.segments; ++i)
             if (acdf_curve_link(&curve, i) == 0) ++counts.cells;
-        at += curve_words(curve, file.tree() + std::size_t{at} * 4);
+        at = static_cast<std::uint32_t>(next);
     }
     return counts;
 }
@@ -115,11 +102,11 @@ void add_metadata(const File& file, Json& report) {
         if (key.rfind("source.", 0) == 0) source[key.substr(7)] = value;
         else if (key.rfind(accuracy_prefix, 0) == 0)
             accuracy[key.substr(sizeof(accuracy_prefix) - 1)] = metadata_value(value);
-        else if (key != "tool" && key != "options") other[key] = value;
+        else if (key != "tool" && key != "fit.options") other[key] = value;
     }
     report["source"] = source;
     report["tool"] = to_string(file.metadata("tool"));
-    report["options"] = to_string(file.metadata("options"));
+    report["options"] = to_string(file.metadata("fit.options"));
     report["accuracy"] = accuracy;
     if (!other.empty()) report["metadata"] = other;
 }

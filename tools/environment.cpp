@@ -2,6 +2,7 @@
 
 #include "commands.h"
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <stdexcept>
@@ -11,34 +12,48 @@ namespace {
 
 using compress::Order;
 
-std::string number(double value) {
+std::string number(double value, const char* format = "%.9g") {
     char text[32];
-    std::snprintf(text, sizeof text, "%.9g", value);
+    std::snprintf(text, sizeof text, format, value);
     return text;
 }
 
+std::string goal_text(const compress::Goal& goal) {
+    switch (goal.kind) {
+    case compress::Goal::Kind::budget:
+        return "--budget " + std::to_string(goal.budget);
+    case compress::Goal::Kind::variance:
+        return "--target-variance " + number(goal.variance);
+    default:
+        return "--cells " + std::to_string(goal.cells);
+    }
+}
+
 /// The options that shaped the file, in the words of the command line.
-std::string option_text(const compress::FitOptions& fit, Order order) {
-    std::string text = "--order " + std::string(to_string(order));
-    if (fit.fit == ACDF_FIT_VARIANCE) return text + " --cells " + std::to_string(fit.cells);
-    text += " --knots " + std::to_string(fit.column_segments) + "x" + std::to_string(fit.row_segments);
+std::string option_text(const compress::FitOptions& fit) {
+    std::string text = fit.order ? "--order " + std::string(to_string(*fit.order)) + " " : "";
+    if (fit.fit == ACDF_FIT_VARIANCE)
+        return text + (fit.shape == compress::Shape::cascade ? "--shape cascade " : "") + goal_text(fit.goal);
+    text += "--knots " + std::to_string(fit.column_segments) + "x" + std::to_string(fit.row_segments);
     if (fit.epsilon > 0.0) text += " --eps " + number(fit.epsilon);
     if (fit.gradient_knots > 0) text += " --gradient " + std::to_string(fit.gradient_knots);
     if (fit.conditional == compress::Conditional::mean) text += " --conditional mean";
     return text;
 }
 
-compress::Metadata metadata(const Source& source, const compress::FitOptions& fit, Order order,
+compress::Metadata metadata(const Source& source, const compress::FitOptions& fit,
                             const measure::Accuracy& accuracy) {
+    // A fixed width: what accuracy is reached must not change the size that a budget is compared with.
+    const auto fixed = [](double value) { return number(std::clamp(value, 0.0, 9.99e99), "%.8e"); };
     return {{"tool", "acdf " ACDF_VERSION},
-            {"fit.options", option_text(fit, order)},
+            {"fit.options", option_text(fit)},
             {"source.name", source.name},
             {"source.sha256", source.sha256},
             {"source.projection", source.projection},
-            {"accuracy.relative_variance", number(accuracy.relative_variance)},
-            {"accuracy.rms_pdf_error", number(accuracy.rms_pdf_error)},
-            {"accuracy.kl_divergence", number(accuracy.kl_divergence)},
-            {"accuracy.max_weight", number(accuracy.max_weight)}};
+            {"accuracy.relative_variance", fixed(accuracy.relative_variance)},
+            {"accuracy.rms_pdf_error", fixed(accuracy.rms_pdf_error)},
+            {"accuracy.kl_divergence", fixed(accuracy.kl_divergence)},
+            {"accuracy.max_weight", fixed(accuracy.max_weight)}};
 }
 
 measure::Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {
@@ -48,25 +63,42 @@ measure::Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const co
     return measure::measure_environment(file, target);
 }
 
-Environment build_in_order(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
-                           Order order, double total, const Progress& progress) {
+Environment build_once(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
+                       double total, const Progress& progress) {
+    compress::Description description = compress::environment_description(target.columns, target.rows);
+    description.fit = options.fit.fit;
+    description.total = total;
+    description.metadata = metadata(source, options.fit, {});
+
     compress::FitOptions fit = options.fit;
-    fit.order = order;
+    fit.file_size = [&](const compress::EncodedTree& tree) {
+        return std::uint64_t{compress::store(tree, description, options.codec).size()};
+    };
     fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };
-    const compress::EncodedTree tree = compress::encode_tree(compress::fit(target, fit));
-
-    compress::Description description = compress::environment_description(target.columns, target.rows);
-    description.fit = fit.fit;
-    description.total = total;
+    const compress::EncodedTree tree = compress::fit(target, fit).tree;
     Environment out;
-    out.order = order;
+    out.order = fit.order;
     out.accuracy = measure_bytes(compress::store(tree, description), target);
-    description.metadata = metadata(source, fit, order, out.accuracy);
+    description.metadata = metadata(source, options.fit, out.accuracy);
     out.bytes = compress::store(tree, description, options.codec);
     if (progress) progress(1.0, "measuring");
     return out;
+}
+
+/// Both orders; `progress` covers them in turn.
+Environment build_better(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
+                         double total, const Progress& progress) {
+    const auto build = [&](Order order, double begin) {
+        EnvironmentOptions one = options;
+        one.fit.order = order;
+        return build_once(target, source, one, total, [&progress, begin](double share, const char* what) {
+            if (progress) progress(begin + 0.5 * share, what);
+        });
+    };
+    Environment z = build(Order::z, 0.0), phi = build(Order::phi, 0.5);
+    return phi.accuracy.relative_variance < z.accuracy.relative_variance ? phi : z;
 }
 
 } // namespace
@@ -77,15 +109,9 @@ Environment build_environment(const compress::Target& target, const Source& sour
                               const EnvironmentOptions& options, const Progress& progress) {
     const double total = compress::integral(target);
     if (!(total > 0.0)) throw std::invalid_argument("a target without energy");
-    if (options.order) return build_in_order(target, source, options, *options.order, total, progress);
-    const auto part = [&](double begin) {
-        return [&progress, begin](double share, const char* what) {
-            if (progress) progress(begin + 0.5 * share, what);
-        };
-    };
-    Environment z = build_in_order(target, source, options, Order::z, total, part(0.0));
-    Environment phi = build_in_order(target, source, options, Order::phi, total, part(0.5));
-    return phi.accuracy.relative_variance < z.accuracy.relative_variance ? phi : z;
+    const bool tree = options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == compress::Shape::tree;
+    return tree || options.fit.order ? build_once(target, source, options, total, progress)
+                                     : build_better(target, source, options, total, progress);
 }
 
 compress::Target luminance_target(const std::string& path, const input::Probe& probe) {

@@ -16,15 +16,14 @@ namespace acdf::tools {
 
 /// What `acdf env` was asked for, beside the probe.
 struct EnvironmentOptions {
-    compress::FitOptions fit;             ///< its `order` is used where `order` here is set
-    std::optional<compress::Order> order; ///< empty: fit both ways and keep the more accurate
+    compress::FitOptions fit; ///< without an order, fits of two levels are made both ways, the better one kept
     AcdfCodec codec = ACDF_CODEC_NONE;
 };
 
 struct Environment {
     std::vector<std::uint8_t> bytes; ///< the whole file
     measure::Accuracy accuracy;      ///< of the stored density, after quantization
-    compress::Order order = compress::Order::z;
+    std::optional<compress::Order> order; ///< which axis was split first, where that was tried or asked for
 };
 
 /// Where a probe came from, for the metadata.
@@ -32,7 +31,7 @@ struct Source {
     std::string name, sha256, projection;
 };
 
-/// Throws std::invalid_argument where the target has no energy.
+/// Throws std::invalid_argument where the target has no energy, std::runtime_error where the goal is out of reach.
 Environment build_environment(const compress::Target& target, const Source& source,
                               const EnvironmentOptions& options, const Progress& progress = {});
 

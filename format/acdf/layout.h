@@ -111,23 +111,20 @@ typedef struct AcdfAxis {
 
 /* Chunk BINS: one record a bin. */
 typedef struct AcdfBin {
-    uint32_t root; /* word offset of the bin's first curve in TREE */
+    uint32_t root; /* offset of the bin's first curve in TREE, in units of two bytes */
     float share;   /* this bin's integral over `total` */
 } AcdfBin;
 
-/* Chunk TREE: curves, packed one after the other, each a whole number of 32-bit words (SPEC.md §5.4):
- *   uint32 header; cumulative[n-1]; positions[n-1]; links[n] (if any); tilts[n] (if any); zero padding.
- * Each array starts at the next multiple of its element's size. */
-#define ACDF_CURVE_AXIS_MASK 0x0000000Fu
-#define ACDF_CURVE_WIDE_CUMULATIVE 0x00000010u /* uint32 out of 2^32-1, else uint16 out of 2^16-1 */
-#define ACDF_CURVE_WIDE_POSITIONS 0x00000020u  /* uint32, else uint16 */
-#define ACDF_CURVE_LINKS_SHIFT 6
-#define ACDF_CURVE_LINKS_MASK 0x000000C0u
-#define ACDF_CURVE_TILTED 0x00000100u
-#define ACDF_CURVE_RESERVED_MASK 0x00000E00u
-#define ACDF_CURVE_SEGMENTS_SHIFT 12
-
-typedef enum AcdfLinks { ACDF_LINKS_NONE = 0, ACDF_LINKS_16 = 1, ACDF_LINKS_32 = 2 } AcdfLinks;
+/* Chunk TREE: curves, packed one after the other, each a whole number of 16-bit units (SPEC.md §5.4):
+ *   uint16 header; [uint32 segments, as two uint16]; cumulative[n-1]; positions[n-1]; links[n] (if any);
+ *   tilts[n] (if any); zero padding. Each array starts at the next multiple of its element's size. */
+#define ACDF_CURVE_AXIS_MASK 0x0007u
+#define ACDF_CURVE_CUMULATIVE_CODE(header) ((header) >> 3 & 3u) /* log2 of the bytes: 0, 1 or 2 */
+#define ACDF_CURVE_POSITION_CODE(header) ((header) >> 5 & 3u)   /* the same; 0: counted from the range's low end */
+#define ACDF_CURVE_LINK_CODE(header) ((header) >> 7 & 3u)       /* 0: all segments end; else 1 + log2 of the bytes */
+#define ACDF_CURVE_TILTED 0x0200u
+#define ACDF_CURVE_SEGMENTS_SHIFT 10 /* 1 to 63 segments; 0: the count follows */
+#define ACDF_CURVE_SHORT_SEGMENTS 63u
 
 #ifdef __cplusplus
 #define ACDF_STATIC_ASSERT(condition) static_assert(condition, #condition)

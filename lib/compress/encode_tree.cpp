@@ -1,15 +1,18 @@
 #include "compress/quantize.h"
 #include "compress/store.h"
 
+#include <acdf/sample.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 namespace acdf::compress {
 namespace {
 
-/// How often sampling reaches each curve, summed over the bins (which are as likely as each other).
+/// How often sampling reaches each curve, summed over the bins (which are as
+/// likely as each other).
 std::vector<double> reach(const Cascade& cascade) {
     std::vector<double> reach(cascade.curves.size(), 0.0);
     for (std::uint32_t root : cascade.roots) reach[root] += 1.0 / static_cast<double>(cascade.roots.size());
@@ -22,75 +25,125 @@ std::vector<double> reach(const Cascade& cascade) {
     return reach;
 }
 
-/// A curve ready to be laid out.
+/// Where each curve's range begins on each axis; kMany where that depends on
+/// the way that leads to it.
+using Lows = std::array<std::uint32_t, ACDF_MAX_AXES>;
+constexpr std::uint32_t kUnset = 0xFFFFFFFFu, kMany = 0xFFFFFFFEu;
+
+void meet(Lows& known, const Lows& low) {
+    for (std::size_t axis = 0; axis < known.size(); ++axis)
+        if (known[axis] == kUnset) known[axis] = low[axis];
+        else if (known[axis] != low[axis]) known[axis] = kMany;
+}
+
+std::vector<Lows> range_lows(const Cascade& cascade) {
+    Lows unset, zero;
+    unset.fill(kUnset);
+    zero.fill(0);
+    std::vector<Lows> lows(cascade.curves.size(), unset);
+    for (std::uint32_t root : cascade.roots) meet(lows[root], zero);
+    for (std::size_t i = 0; i < cascade.curves.size(); ++i) {
+        const Curve& curve = cascade.curves[i];
+        for (std::size_t s = 0; s < curve.children.size(); ++s) {
+            if (curve.children[s] < 0) continue;
+            Lows low = lows[i];
+            if (s > 0) low[curve.axis] = curve.knots[s - 1];
+            meet(lows[static_cast<std::size_t>(curve.children[s])], low);
+        }
+    }
+    return lows;
+}
+
+/// A curve ready to be laid out. Codes are those of the header: SPEC.md,
+/// section 5.4.
 struct Packed {
     const Curve* curve = nullptr;
     QuantizedCurve probability;
-    bool wide_positions = false;
-    AcdfLinks links = ACDF_LINKS_NONE;
+    std::uint32_t position_code = 1;
+    std::uint32_t origin = 0; ///< what positions are counted from
+    std::uint32_t link_code = 0;
 };
 
-Packed pack(const Curve& curve, double tolerance) {
+Packed pack(const Curve& curve, const Lows& lows, double reach, double price) {
     if (curve.segments() > ACDF_MAX_SEGMENTS) throw std::invalid_argument("a curve of more than 1048575 segments");
-    Packed packed{&curve, quantize(curve.probability, tolerance), false, ACDF_LINKS_NONE};
-    packed.wide_positions = !curve.knots.empty() && curve.knots.back() > 0xFFFF;
+    Packed packed;
+    packed.curve = &curve;
+    packed.probability = quantize(curve.probability, reach, price);
+    const std::uint32_t last = curve.knots.empty() ? 0 : curve.knots.back(), low = lows[curve.axis];
+    if (low == kMany ? curve.knots.empty() : last - low <= 0xFF) {
+        packed.position_code = 0;
+        packed.origin = low;
+    } else if (last > 0xFFFF) {
+        packed.position_code = 2;
+    }
     const bool refined =
         std::any_of(curve.children.begin(), curve.children.end(), [](std::int32_t c) { return c >= 0; });
-    if (refined) packed.links = ACDF_LINKS_16;
+    if (refined) packed.link_code = 1;
     return packed;
 }
 
+std::size_t rounded(std::size_t size, std::size_t alignment) {
+    return (size + alignment - 1) / alignment * alignment;
+}
+
+std::size_t element_size(std::uint32_t code) { return acdf_element_size(code); }
+
+/// Offset behind a curve that begins at `offset`, both in bytes.
+std::size_t end_of(const Packed& packed, std::size_t offset) {
+    const std::size_t n = packed.curve->segments();
+    const auto array = [&](std::size_t count, std::uint32_t code) {
+        offset = rounded(offset, element_size(code)) + count * element_size(code);
+    };
+    offset += n > ACDF_CURVE_SHORT_SEGMENTS ? 6 : 2;
+    array(n - 1, packed.probability.code);
+    array(n - 1, packed.position_code);
+    if (packed.link_code > 0) array(n, packed.link_code - 1);
+    if (!packed.curve->tilts.empty()) array(n, 1);
+    return rounded(offset, 2);
+}
+
+/// Byte offsets of all curves. Links start at one byte; those that do not fit
+/// become wider, which moves what follows.
+std::vector<std::size_t> place(std::vector<Packed>& packed) {
+    std::vector<std::size_t> offset(packed.size() + 1, 0);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t i = 0; i < packed.size(); ++i) offset[i + 1] = end_of(packed[i], offset[i]);
+        for (std::size_t i = 0; i < packed.size(); ++i) {
+            if (packed[i].link_code == 0 || packed[i].link_code == 3) continue;
+            const std::size_t most = packed[i].link_code == 1 ? 0xFF : 0xFFFF;
+            for (std::int32_t child : packed[i].curve->children)
+                if (child >= 0 && (offset[static_cast<std::size_t>(child)] - offset[i]) / 2 > most) {
+                    ++packed[i].link_code;
+                    changed = true;
+                    break;
+                }
+        }
+    }
+    return offset;
+}
+
+/// Little-endian integers at the end of a growing array.
 class Block {
 public:
     explicit Block(std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
     void put(std::uint32_t value, std::size_t size) {
         for (std::size_t i = 0; i < size; ++i) bytes_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
     }
-    void align(std::size_t size) { bytes_.resize((bytes_.size() + size - 1) / size * size, 0); }
+    void align(std::size_t size) { bytes_.resize(rounded(bytes_.size(), size), 0); }
 
 private:
     std::vector<std::uint8_t>& bytes_;
 };
 
-std::size_t rounded(std::size_t size, std::size_t alignment) {
-    return (size + alignment - 1) / alignment * alignment;
-}
-
-std::uint32_t words(const Packed& packed) {
-    const std::size_t n = packed.curve->segments();
-    std::size_t size = 4 + (n - 1) * (packed.probability.wide ? 4 : 2);
-    if (packed.wide_positions) size = rounded(size, 4);
-    size += (n - 1) * (packed.wide_positions ? 4 : 2);
-    if (packed.links == ACDF_LINKS_32) size = rounded(size, 4) + n * 4;
-    if (packed.links == ACDF_LINKS_16) size += n * 2;
-    if (!packed.curve->tilts.empty()) size += n * 2;
-    return static_cast<std::uint32_t>(rounded(size, 4) / 4);
-}
-
-/// Word offsets of all curves; links that do not fit 16 bits become 32 bits wide, which moves what follows.
-std::vector<std::uint64_t> place(std::vector<Packed>& packed) {
-    std::vector<std::uint64_t> offset(packed.size() + 1, 0);
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (std::size_t i = 0; i < packed.size(); ++i) offset[i + 1] = offset[i] + words(packed[i]);
-        for (std::size_t i = 0; i < packed.size(); ++i) {
-            if (packed[i].links != ACDF_LINKS_16) continue;
-            for (std::int32_t child : packed[i].curve->children)
-                if (child >= 0 && offset[static_cast<std::size_t>(child)] - offset[i] > 0xFFFF)
-                    packed[i].links = ACDF_LINKS_32;
-            changed |= packed[i].links == ACDF_LINKS_32;
-        }
-    }
-    return offset;
-}
-
-std::uint32_t header_word(const Packed& packed) {
-    std::uint32_t header = packed.curve->axis | static_cast<std::uint32_t>(packed.curve->segments())
-                                                    << ACDF_CURVE_SEGMENTS_SHIFT;
-    if (packed.probability.wide) header |= ACDF_CURVE_WIDE_CUMULATIVE;
-    if (packed.wide_positions) header |= ACDF_CURVE_WIDE_POSITIONS;
+void write_header(const Packed& packed, Block block) {
+    const auto segments = static_cast<std::uint32_t>(packed.curve->segments());
+    const bool many = segments > ACDF_CURVE_SHORT_SEGMENTS;
+    std::uint32_t header = packed.curve->axis | packed.probability.code << 3 | packed.position_code << 5 |
+                           packed.link_code << 7 | (many ? 0 : segments << ACDF_CURVE_SEGMENTS_SHIFT);
     if (!packed.curve->tilts.empty()) header |= ACDF_CURVE_TILTED;
-    return header | static_cast<std::uint32_t>(packed.links) << ACDF_CURVE_LINKS_SHIFT;
+    block.put(header, 2);
+    if (many) block.put(segments, 4);
 }
 
 std::uint32_t stored_tilt(double tilt) {
@@ -98,38 +151,66 @@ std::uint32_t stored_tilt(double tilt) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(scaled)) & 0xFFFFu;
 }
 
-void write_curve(const Packed& packed, std::uint64_t at, const std::vector<std::uint64_t>& offset, Block block) {
-    block.put(header_word(packed), 4);
-    for (std::uint32_t value : packed.probability.cumulative) block.put(value, packed.probability.wide ? 4 : 2);
-    if (packed.wide_positions) block.align(4);
-    for (std::uint32_t knot : packed.curve->knots) block.put(knot, packed.wide_positions ? 4 : 2);
-    if (packed.links != ACDF_LINKS_NONE) {
-        const std::size_t size = packed.links == ACDF_LINKS_32 ? 4 : 2;
-        block.align(size);
-        for (std::int32_t child : packed.curve->children)
-            block.put(child < 0 ? 0 : static_cast<std::uint32_t>(offset[static_cast<std::size_t>(child)] - at),
-                      size);
-    }
-    for (double tilt : packed.curve->tilts) block.put(stored_tilt(tilt), 2);
-    block.align(4);
+void write_curve(const Packed& packed, std::size_t at, const std::vector<std::size_t>& offset, Block block) {
+    const auto array = [&](const auto& values, std::uint32_t code, auto stored) {
+        block.align(element_size(code));
+        for (const auto& value : values) block.put(stored(value), element_size(code));
+    };
+    write_header(packed, block);
+    array(packed.probability.cumulative, packed.probability.code, [](std::uint32_t value) { return value; });
+    array(packed.curve->knots, packed.position_code, [&](std::uint32_t knot) { return knot - packed.origin; });
+    if (packed.link_code > 0)
+        array(packed.curve->children, packed.link_code - 1, [&](std::int32_t child) {
+            return child < 0 ? 0u : static_cast<std::uint32_t>((offset[static_cast<std::size_t>(child)] - at) / 2);
+        });
+    if (!packed.curve->tilts.empty()) array(packed.curve->tilts, 1, stored_tilt);
+    block.align(2);
 }
 
 } // namespace
 
-EncodedTree encode_tree(const Cascade& cascade, double tolerance) {
+EncodedTree encode_tree(const Cascade& cascade, double price) {
     const std::vector<double> weight = reach(cascade);
+    const std::vector<Lows> lows = range_lows(cascade);
     std::vector<Packed> packed;
     packed.reserve(cascade.curves.size());
     for (std::size_t i = 0; i < cascade.curves.size(); ++i)
-        packed.push_back(pack(cascade.curves[i], weight[i] > 0.0 ? tolerance / weight[i] : 1.0));
-    const std::vector<std::uint64_t> offset = place(packed);
-    if (offset.back() > 0xFFFFFFFFu) throw std::invalid_argument("a tree of more than 16 GiB");
+        packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price));
+    const std::vector<std::size_t> offset = place(packed);
+    if (offset.back() / 2 > 0xFFFFFFFFu) throw std::invalid_argument("a tree of more than 8 GiB");
 
     EncodedTree tree;
-    tree.bytes.reserve(offset.back() * 4);
+    tree.bytes.reserve(offset.back());
     for (std::size_t i = 0; i < packed.size(); ++i) write_curve(packed[i], offset[i], offset, Block(tree.bytes));
-    for (std::uint32_t root : cascade.roots) tree.roots.push_back(static_cast<std::uint32_t>(offset[root]));
+    for (std::uint32_t root : cascade.roots) tree.roots.push_back(static_cast<std::uint32_t>(offset[root] / 2));
     return tree;
+}
+
+double stored_excess(const Cascade& cascade, const EncodedTree& tree) {
+    struct Visit {
+        std::uint32_t curve, offset;
+        double probability, stored;
+    };
+    double sum = 0.0;
+    std::vector<Visit> stack;
+    for (std::size_t bin = 0; bin < cascade.roots.size(); ++bin)
+        stack.push_back({cascade.roots[bin], tree.roots[bin], 1.0, 1.0});
+    while (!stack.empty()) {
+        const Visit visit = stack.back();
+        stack.pop_back();
+        const Curve& curve = cascade.curves[visit.curve];
+        const AcdfCurve stored = acdf_curve_at(tree.bytes.data(), visit.offset);
+        const double maximum = acdf_curve_maximum(&stored);
+        for (std::uint32_t s = 0; s < stored.segments; ++s) {
+            const double p = visit.probability * curve.probability[s];
+            const double q = visit.stored *
+                             (acdf_curve_cumulative(&stored, s + 1) - acdf_curve_cumulative(&stored, s)) / maximum;
+            const std::uint32_t link = acdf_curve_link(&stored, s);
+            if (link == 0) sum += p > 0.0 ? p * (p / q) : 0.0;
+            else stack.push_back({static_cast<std::uint32_t>(curve.children[s]), visit.offset + link, p, q});
+        }
+    }
+    return sum / static_cast<double>(cascade.roots.size());
 }
 
 } // namespace acdf::compress

@@ -2,17 +2,24 @@
 #pragma once
 
 #include "compress/cascade.h"
+#include "compress/store.h"
 #include "compress/target.h"
 
 #include <acdf/layout.h>
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 namespace acdf::compress {
 
-/// Which axis is split first; the other one is refined within each of its segments.
+/// Which axis is split first.
 enum class Order { phi, z };
+
+/// Whether the variance fit may refine a segment along any axis, as deep as it pays, or makes two levels: a
+/// marginal, and a conditional in each of its segments. Trees are more accurate for their size, cascades faster
+/// to sample.
+enum class Shape { tree, cascade };
 
 /// How the rows of a region of the marginal are averaged into one conditional. The paper's eq. 4 gives every
 /// row the same weight; weighting rows by their energy is the region's own conditional, and costs less.
@@ -21,10 +28,25 @@ enum class Conditional { energy, mean };
 /// Called from one thread at a time with the finished share in [0, 1].
 using Progress = std::function<void(double)>;
 
+/// Size of the file that a tree would make.
+using FileSize = std::function<std::uint64_t(const EncodedTree&)>;
+
+/// What the tree of the variance fit is to reach.
+struct Goal {
+    enum class Kind { cells, budget, variance };
+
+    Kind kind = Kind::cells;
+    std::uint32_t cells = 4096; ///< cells: at most so many
+    std::uint64_t budget = 0;   ///< budget: the file takes at most so many bytes
+    double variance = 0.0;      ///< variance: the stored density's relative variance is at most this
+};
+
 struct FitOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
-    Order order = Order::z;
-    std::uint32_t cells = 4096;                    ///< variance: cells in all
+    std::optional<Order> order;                    ///< empty: as the fit sees fit (a tree), else phi
+    Shape shape = Shape::tree;                     ///< variance
+    Goal goal;                                     ///< variance; a cascade takes cells alone
+    FileSize file_size;                            ///< needed for a budget; by default the bytes of the tree
     std::uint32_t column_segments = 64;            ///< uniform, cdf, pdf: segments of a curve over columns (phi)
     std::uint32_t row_segments = 64;               ///< the same over rows (theta)
     double epsilon = 0.0;                          ///< cdf, pdf: see CurveBudget
@@ -33,14 +55,25 @@ struct FitOptions {
     Progress progress;
 };
 
-/// Fits `target` (rows are theta, columns phi; integral > 0). Deterministic for any number of threads.
-Cascade fit(const Target& target, const FitOptions& options);
+/// A fit, and how it is stored.
+struct Fitted {
+    Cascade cascade;
+    EncodedTree tree;
+};
+
+/// Fits `target` (rows are theta, columns phi; integral > 0). Deterministic for any number of threads. Throws
+/// std::invalid_argument where the target has no energy, and std::runtime_error where the goal is out of reach:
+/// the message says what can be had.
+Fitted fit(const Target& target, const FitOptions& options);
 
 /// Fits uniform, cdf and pdf: marginal over the target's rows, one conditional over columns for each region
 /// between its knots (Lawrence et al. 2005, §5).
 Cascade fit_regional(const Target& target, const FitOptions& options);
 
+/// The minimum-variance tree of any depth: docs/method.md.
+Fitted fit_tree(const Target& target, const FitOptions& options);
+
 /// The minimum-variance cascade of fixed depth: docs/method.md.
-Cascade fit_variance(const Target& target, const FitOptions& options);
+Cascade fit_variance_cascade(const Target& target, const FitOptions& options);
 
 } // namespace acdf::compress

@@ -1,4 +1,5 @@
-// The paper's cascade: marginal, then one conditional for each region of the marginal.
+// The paper's cascade: marginal, then one conditional for each region of the
+// marginal.
 #include "compress/fit.h"
 #include "compress/fit_curve.h"
 #include "compress/sum.h"
@@ -34,7 +35,8 @@ Distribution marginal_distribution(const Target& target) {
     return marginal;
 }
 
-/// How much f changes across each border between rows: the integral of |df/dx| dy over that step (eq. 5).
+/// How much f changes across each border between rows: the integral of |df/dx|
+/// dy over that step (eq. 5).
 std::vector<double> gradient(const Target& target) {
     std::vector<double> g(target.rows - 1);
     tbb::parallel_for(std::uint32_t{1}, target.rows, [&](std::uint32_t r) {
@@ -47,7 +49,8 @@ std::vector<double> gradient(const Target& target) {
     return g;
 }
 
-/// `count` stratified samples of the gradient's CDF, as row borders; some may coincide.
+/// `count` stratified samples of the gradient's CDF, as row borders; some may
+/// coincide.
 std::vector<std::uint32_t> gradient_knots(const Target& target, std::uint32_t count) {
     std::vector<std::uint32_t> knots;
     if (target.rows < 2 || count == 0) return knots;
@@ -83,8 +86,9 @@ Curve with_knots(const Distribution& distribution, Curve curve, const std::vecto
     return curve;
 }
 
-/// The mean over the region's rows of their conditional densities, each weighted by its energy or (eq. 4) by
-/// its extent alone; dark rows have no conditional and are left out.
+/// The mean over the region's rows of their conditional densities, each
+/// weighted by its energy or (eq. 4) by its extent alone; dark rows have no
+/// conditional and are left out.
 Distribution regional_conditional(const Target& target, const Distribution& marginal, Conditional weighting,
                                   std::uint32_t begin, std::uint32_t end) {
     Distribution conditional{std::vector<double>(target.columns, 0.0), target.column_measure};

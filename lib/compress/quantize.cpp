@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint64_t kNarrow = 0xFFFF, kWide = 0xFFFFFFFF;
-constexpr std::uint64_t kSmallestWide = 256; // of 2^32: 2^-24
+constexpr std::uint64_t kMaximum[] = {0xFF, 0xFFFF, 0xFFFFFFFF};
+constexpr std::uint64_t kSmallest[] = {1, 1, 256}; // 256 of 2^32: 2^-24
 
-QuantizedCurve accumulate(const std::vector<std::uint64_t>& shares, bool wide) {
-    QuantizedCurve out{wide, {}};
+QuantizedCurve accumulate(const std::vector<std::uint64_t>& shares, std::uint32_t code) {
+    QuantizedCurve out{code, {}};
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
         sum += shares[i];
@@ -27,7 +28,8 @@ std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std
                                      std::uint64_t smallest) {
     const std::size_t n = probability.size();
     std::vector<std::uint64_t> shares(n, 0);
-    // Raising small shares to the floor leaves less for the others, which may then fall below it in turn.
+    // Raising small shares to the floor leaves less for the others, which may
+    // then fall below it in turn.
     std::vector<bool> at_floor(n, false);
     std::uint64_t left = maximum;
     double scale = 0.0;
@@ -57,7 +59,8 @@ std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std
         given += shares[i];
         free.push_back(i);
     }
-    // Every share is at the floor: the first of the most probable ones takes what is left.
+    // Every share is at the floor: the first of the most probable ones takes what
+    // is left.
     if (free.empty()) {
         shares[static_cast<std::size_t>(std::max_element(probability.begin(), probability.end()) -
                                         probability.begin())] += left;
@@ -84,14 +87,23 @@ double quantization_excess(const std::vector<double>& probability, const std::ve
     return excess;
 }
 
-QuantizedCurve quantize(const std::vector<double>& probability, double tolerance) {
+QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price) {
     const auto lit = static_cast<std::uint64_t>(
         std::count_if(probability.begin(), probability.end(), [](double p) { return p > 0.0; }));
-    if (lit <= kNarrow) {
-        const std::vector<std::uint64_t> shares = apportion(probability, kNarrow, 1);
-        if (quantization_excess(probability, shares) <= tolerance) return accumulate(shares, false);
+    const double values = static_cast<double>(probability.size() - 1);
+    QuantizedCurve best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t code = 0; code < 3; ++code) {
+        if (lit > kMaximum[code]) continue;
+        const double bytes = values * static_cast<double>(1u << code);
+        if (bytes * price >= least) break; // wider ones cost more even without any excess
+        const std::vector<std::uint64_t> shares = apportion(probability, kMaximum[code], kSmallest[code]);
+        const double cost = bytes * price + reach * quantization_excess(probability, shares);
+        if (cost >= least) continue;
+        least = cost;
+        best = accumulate(shares, code);
     }
-    return accumulate(apportion(probability, kWide, kSmallestWide), true);
+    return best;
 }
 
 } // namespace acdf::compress

@@ -6,9 +6,9 @@
 
 namespace acdf::compress {
 
-/// Cumulative integers of a curve: interior values only, out of `wide ? 2^32 - 1 : 2^16 - 1`.
+/// Cumulative integers of a curve: interior values only, out of 2^8 - 1, 2^16 - 1 or 2^32 - 1.
 struct QuantizedCurve {
-    bool wide = false;
+    std::uint32_t code = 0; ///< log2 of the bytes of a value: 0, 1 or 2
     std::vector<std::uint32_t> cumulative;
 };
 
@@ -21,8 +21,8 @@ std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std
 /// What sampling with shares q instead of p adds to E[(f/p)^2]: the sum of (p - q)^2 / q.
 double quantization_excess(const std::vector<double>& probability, const std::vector<std::uint64_t>& shares);
 
-/// 16 bits where that adds at most `tolerance`, else 32. With 32 bits every share is at least 2^-24, so that
-/// a 24-bit random number reaches it.
-QuantizedCurve quantize(const std::vector<double>& probability, double tolerance);
+/// The width that costs least: `price` a byte, and `reach` times its quantization_excess. With 32 bits every
+/// share is at least 2^-24, so that a 24-bit random number reaches it.
+QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price);
 
 } // namespace acdf::compress

@@ -13,7 +13,8 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 template <class T>
-void append(Bytes& bytes, const T& value) { // of a little-endian machine, which CMake checks
+void append(Bytes& bytes,
+            const T& value) { // of a little-endian machine, which CMake checks
     const auto* data = reinterpret_cast<const std::uint8_t*>(&value);
     bytes.insert(bytes.end(), data, data + sizeof value);
 }
@@ -93,7 +94,7 @@ Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
         chunk.type = payload.type;
         chunk.flags = payload.flags;
         chunk.raw_length = payload.raw.size();
-        if (codec == ACDF_CODEC_ZLIB) {
+        if (codec == ACDF_CODEC_ZLIB && payload.type != ACDF_CHUNK_METADATA) {
             Bytes small = deflated(payload.raw);
             if (small.size() < payload.raw.size()) { // a chunk that would grow is stored as it is
                 chunk.codec = ACDF_CODEC_ZLIB;

@@ -47,7 +47,7 @@ struct Parts {
     const AcdfAxis* axes = nullptr; ///< description->axis_count
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
-    std::uint32_t tree_words = 0;
+    std::uint32_t tree_units = 0;
     const std::uint8_t* metadata = nullptr; ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
     void* inflated = nullptr; ///< block of the inflated chunks, from std::aligned_alloc; the caller frees it

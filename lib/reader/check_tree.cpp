@@ -17,115 +17,153 @@ using ull = unsigned long long;
 
 constexpr u32 unreached = 0xFFFFFFFF;
 
-// What is known of the curve that starts at a word; 8 bytes a word, used twice with different meanings.
+// What is known of a curve, used twice with different meanings. Since there is at most one curve for every four
+// bytes (rule 6018), these 12 bytes a curve are at most three times the file.
 struct Mark {
-    u32 a, b;
+    u32 a, b, c;
+};
+
+// Where curves start, as bits, and how many start before each run of 64 units: a curve's index in constant time.
+struct Starts {
+    u64* bits;
+    u32* before;
+
+    bool at(u32 unit) const { return bits[unit / 64] >> (unit % 64) & 1; }
+    u32 index(u32 unit) const {
+        const u64 lower = bits[unit / 64] & ((u64{1} << (unit % 64)) - 1);
+        return before[unit / 64] + static_cast<u32>(__builtin_popcountll(lower));
+    }
 };
 
 struct Tree {
     const Payload& payload;
     const Parts& parts;
-    u32 words;
+    u32 units;
+    Starts starts;
     Mark* marks;
 
     const u8* data() const { return payload.data; }
-    u64 at(u32 word, u64 byte = 0) const { return payload.at(u64{word} * 4 + byte); }
+    u64 at(u32 unit) const { return payload.at(u64{unit} * 2); }
+    u64 at(const u8* byte) const { return payload.at(static_cast<u64>(byte - payload.data)); }
     bool sampled(u32 axis) const {
         return axis < parts.description->axis_count && parts.axes[axis].role == ACDF_AXIS_SAMPLED;
     }
+    bool starts_at(u64 unit) const { return unit < units && starts.at(static_cast<u32>(unit)); }
+    Mark& mark(u32 unit) const { return marks[starts.index(unit)]; }
 };
 
-/// Byte ranges of the arrays of a curve: where each begins and ends, from the curve's start.
-struct CurveExtent {
-    u32 cumulative_end, positions, positions_end, links, links_end, tilts, end; // `end` is a whole word
-};
+u32 unit_at(const Payload& payload, u32 unit) { return reinterpret_cast<const u16*>(payload.data)[unit]; }
 
-CurveExtent extent_of(u32 header) {
-    const u32 segments = header >> ACDF_CURVE_SEGMENTS_SHIFT;
-    const u32 cumulative_size = header & ACDF_CURVE_WIDE_CUMULATIVE ? 4 : 2;
-    const u32 position_size = header & ACDF_CURVE_WIDE_POSITIONS ? 4 : 2;
-    const u32 links = (header & ACDF_CURVE_LINKS_MASK) >> ACDF_CURVE_LINKS_SHIFT;
-    const u32 link_size = links == ACDF_LINKS_32 ? 4 : 2;
-    CurveExtent e;
-    e.cumulative_end = 4 + (segments - 1) * cumulative_size;
-    e.positions = acdf_align(e.cumulative_end, position_size);
-    e.positions_end = e.positions + (segments - 1) * position_size;
-    e.links = links == ACDF_LINKS_NONE ? e.positions_end : acdf_align(e.positions_end, link_size);
-    e.links_end = links == ACDF_LINKS_NONE ? e.links : e.links + segments * link_size;
-    e.tilts = e.links_end; // even already
-    e.end = acdf_align(e.tilts + (header & ACDF_CURVE_TILTED ? 2 * segments : 0), 4);
-    return e;
-}
-
-u32 header_at(const Tree& tree, u32 word) { return *reinterpret_cast<const u32*>(tree.data() + 4 * u64{word}); }
-
-/// Calls `visit(word, curve, extent)` for each curve in file order.
+/// Calls `visit(unit, curve)` for each curve in file order.
 template <class Visit>
 void for_each_curve(const Tree& tree, const Report& report, Visit visit) {
-    for (u32 word = 0; word < tree.words && !report.stopped();) {
-        const CurveExtent extent = extent_of(header_at(tree, word));
-        visit(word, acdf_curve_at(tree.data(), word), extent);
-        word += extent.end / 4;
+    for (u32 unit = 0; unit < tree.units && !report.stopped();) {
+        AcdfCurve curve;
+        const std::size_t next = acdf_curve_decode(tree.data(), unit, &curve);
+        visit(unit, curve);
+        unit = static_cast<u32>(next);
     }
 }
 
 // ---- first pass: where curves start ---------------------------------------------------------------------
 
-// False where the start of the next curve cannot be found.
-bool find_curves(const Tree& tree, Report& report) {
-    for (u32 word = 0; word < tree.words;) {
-        const u32 header = header_at(tree, word);
-        const u32 links = (header & ACDF_CURVE_LINKS_MASK) >> ACDF_CURVE_LINKS_SHIFT;
-        if ((header & ACDF_CURVE_RESERVED_MASK) != 0 || links > ACDF_LINKS_32) {
-            report.add(6004, tree.at(word), "the header of the curve at word %u is %08x", word, header);
+bool header_is_legal(u32 header) {
+    return ACDF_CURVE_CUMULATIVE_CODE(header) <= 2 && ACDF_CURVE_POSITION_CODE(header) <= 2;
+}
+
+// The number of segments, 0 where it is missing, too large or written in the wrong form.
+u32 segments_of(const Payload& payload, u32 units, u32 unit) {
+    const u32 few = unit_at(payload, unit) >> ACDF_CURVE_SEGMENTS_SHIFT;
+    if (few != 0) return few;
+    if (units - unit < 3) return 0;
+    const u32 many = unit_at(payload, unit + 1) | unit_at(payload, unit + 2) << 16;
+    return many > ACDF_CURVE_SHORT_SEGMENTS && many <= ACDF_MAX_SEGMENTS ? many : 0;
+}
+
+// Marks the starts. False where the start of the next curve cannot be found; else `curves` are counted.
+bool find_curves(const Payload& payload, u32 units, u64* bits, u32& curves, Report& report) {
+    curves = 0;
+    for (u32 unit = 0; unit < units;) {
+        const u64 at = payload.at(u64{unit} * 2);
+        if (++curves > units / 2 + 1) {
+            report.add(6018, at, "the curve at unit %u is number %u, TREE has %llu bytes", unit, curves,
+                       static_cast<ull>(payload.size));
             return false;
         }
-        if (header >> ACDF_CURVE_SEGMENTS_SHIFT == 0) {
-            report.add(6005, tree.at(word), "the curve at word %u has none", word);
+        const u32 header = unit_at(payload, unit);
+        if (!header_is_legal(header)) {
+            report.add(6004, at, "the header of the curve at unit %u is %04x", unit, header);
             return false;
         }
-        const u32 size = extent_of(header).end / 4;
-        if (size > tree.words - word) {
-            report.add(6002, tree.at(word), "the curve at word %u is %u words long, %u are left", word, size,
-                       tree.words - word);
+        if (segments_of(payload, units, unit) == 0) {
+            report.add(6005, at, "the curve at unit %u", unit);
             return false;
         }
-        tree.marks[word].a = 1;
-        word += size;
+        AcdfCurve curve;
+        const std::size_t next = acdf_curve_decode(payload.data, unit, &curve);
+        if (next > units) {
+            report.add(6002, at, "the curve at unit %u ends at unit %llu of %u", unit, static_cast<ull>(next),
+                       units);
+            return false;
+        }
+        bits[unit / 64] |= u64{1} << (unit % 64);
+        unit = static_cast<u32>(next);
     }
     return true;
 }
 
-// ---- second pass: each curve by itself, and its links ---------------------------------------------------
-// Mark::a is 1 where a curve starts. Mark::b holds the depth (0: unreached) in bits 0-15, and in bits 16-31
-// the axes that are tilted above.
-
-void check_zero(const Tree& tree, u32 word, u32 begin, u32 end, Report& report) {
-    const u8* base = tree.data() + 4 * u64{word};
-    for (u32 i = begin; i < end; ++i)
-        if (base[i] != 0) report.add(6011, tree.at(word, i), "the curve at word %u: it is %02x", word, base[i]);
+void count_before(u32 units, const Starts& starts) {
+    u32 count = 0;
+    for (u32 i = 0; i <= units / 64; ++i) {
+        starts.before[i] = count;
+        count += static_cast<u32>(__builtin_popcountll(starts.bits[i]));
+    }
 }
 
-void check_values(const Tree& tree, u32 word, const AcdfCurve& curve, const CurveExtent& e, Report& report) {
+// ---- second pass: each curve by itself, and its links ---------------------------------------------------
+// Mark::b holds the depth (0: unreached) in bits 0-15, and in bits 16-31 the axes that are tilted above.
+
+// Padding lies between an array's end and the next one's start.
+void check_zero(const Tree& tree, u32 unit, const u8* begin, const u8* end, Report& report) {
+    for (const u8* p = begin; p < end; ++p)
+        if (*p != 0) report.add(6011, tree.at(p), "the curve at unit %u: it is %02x", unit, *p);
+}
+
+void check_padding(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& report) {
+    const u32 interior = curve.segments - 1, header = curve.header;
+    const u32 header_size = header >> ACDF_CURVE_SEGMENTS_SHIFT ? 2 : 6;
+    const u8* end = tree.data() + u64{unit} * 2 + header_size;
+    const auto pass = [&](const u8* array, u64 bytes) {
+        check_zero(tree, unit, end, array, report);
+        end = array + bytes;
+    };
+    pass(curve.cumulative, u64{interior} * acdf_element_size(ACDF_CURVE_CUMULATIVE_CODE(header)));
+    pass(curve.positions, u64{interior} * acdf_element_size(ACDF_CURVE_POSITION_CODE(header)));
+    if (curve.links) pass(curve.links, u64{curve.segments} * acdf_element_size(ACDF_CURVE_LINK_CODE(header) - 1));
+    if (curve.tilts) pass(curve.tilts, u64{curve.segments} * 2);
+    check_zero(tree, unit, end, tree.data() + acdf_align(static_cast<std::size_t>(end - tree.data()), 2), report);
+}
+
+void check_values(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& report) {
     const u32 axis = acdf_curve_axis(&curve);
-    if (!tree.sampled(axis)) report.add(6003, tree.at(word), "the curve at word %u is on axis %u", word, axis);
-    check_zero(tree, word, e.cumulative_end, e.positions, report);
-    check_zero(tree, word, e.positions_end, e.links, report);
-    check_zero(tree, word, e.tilts + (curve.tilts ? 2 * curve.segments : 0), e.end, report);
-    u32 previous = 0;
+    if (!tree.sampled(axis)) report.add(6003, tree.at(unit), "the curve at unit %u is on axis %u", unit, axis);
+    check_padding(tree, unit, curve, report);
+    const u32 position_code = ACDF_CURVE_POSITION_CODE(curve.header);
+    u32 previous = 0, before = 0;
     for (u32 i = 0; i + 1 < curve.segments; ++i) {
-        const u32 cumulative = acdf_load(curve.cumulative, i, acdf_wide_cumulative(&curve));
-        const u32 position = acdf_load(curve.positions, i, acdf_wide_positions(&curve));
-        if (i > 0 && position <= acdf_load(curve.positions, i - 1, acdf_wide_positions(&curve))) {
-            report.add(6006, tree.at(word, e.positions), "the curve at word %u: knot %u is at %u", word, i + 1,
+        const u32 cumulative = acdf_curve_cumulative(&curve, i + 1);
+        const u32 position = acdf_load(curve.positions, i, position_code);
+        if (i > 0 && position <= before) {
+            report.add(6006, tree.at(curve.positions), "the curve at unit %u: knot %u is at %u", unit, i + 1,
                        position);
             break;
         }
         if (cumulative < previous) {
-            report.add(6008, tree.at(word, 4), "the curve at word %u: %u at knot %u, %u before", word, cumulative,
-                       i + 1, previous);
+            report.add(6008, tree.at(curve.cumulative), "the curve at unit %u: %u at knot %u, %u before", unit,
+                       cumulative, i + 1, previous);
             break;
         }
+        before = position;
         previous = cumulative;
     }
 }
@@ -142,94 +180,97 @@ Segment segment_of(const AcdfCurve& curve, u32 i) {
     return {high - low, acdf_curve_link(&curve, i), tilt};
 }
 
-void check_segments(const Tree& tree, u32 word, const AcdfCurve& curve, const CurveExtent& e, Report& report) {
-    const u32 depth = tree.marks[word].b & 0xFFFF;
-    const u32 tilted = tree.marks[word].b >> 16;
+// Hands depth and tilts down a link.
+void reach(Mark& child, u32 depth, u32 tilted) {
+    const u32 known = child.b & 0xFFFF, deeper = depth + 1;
+    child.b = (child.b >> 16 | tilted) << 16 | (known > deeper ? known : deeper);
+}
+
+void check_segments(const Tree& tree, u32 unit, const AcdfCurve& curve, Report& report) {
+    const u32 depth = tree.mark(unit).b & 0xFFFF;
+    const u32 tilted = tree.mark(unit).b >> 16;
     const u32 axis = acdf_curve_axis(&curve);
-    const u32 link_size = (e.links_end - e.links) / curve.segments;
-    if (tilted >> axis & 1) report.add(6014, tree.at(word), "the curve at word %u is on axis %u", word, axis);
+    const u32 link_size = curve.links ? acdf_element_size(ACDF_CURVE_LINK_CODE(curve.header) - 1) : 0;
+    if (tilted >> axis & 1) report.add(6014, tree.at(unit), "the curve at unit %u is on axis %u", unit, axis);
     for (u32 i = 0; i < curve.segments; ++i) {
         const Segment s = segment_of(curve, i);
         if (s.tilt == -32768)
-            report.add(6013, tree.at(word, e.tilts + 2 * u64{i}), "the curve at word %u, segment %u", word, i);
+            report.add(6013, tree.at(curve.tilts + 2 * u64{i}), "the curve at unit %u, segment %u", unit, i);
         if (s.link == 0) continue;
-        const u64 at = tree.at(word, e.links + u64{i} * link_size);
-        const u64 target = u64{word} + s.link;
-        if (s.probability == 0) report.add(6015, at, "the curve at word %u, segment %u, has a child", word, i);
-        if (target >= tree.words || tree.marks[target].a != 1) {
-            report.add(6009, at, "the curve at word %u, segment %u, links to word %llu", word, i,
+        const u64 at = tree.at(curve.links + u64{i} * link_size);
+        const u64 target = u64{unit} + s.link;
+        if (s.probability == 0) report.add(6015, at, "the curve at unit %u, segment %u, has a child", unit, i);
+        if (!tree.starts_at(target)) {
+            report.add(6009, at, "the curve at unit %u, segment %u, links to unit %llu", unit, i,
                        static_cast<ull>(target));
             continue;
         }
-        if (depth == 0) continue;
-        Mark& child = tree.marks[target];
-        const u32 child_depth = child.b & 0xFFFF, deeper = depth + 1;
-        u32 child_tilted = child.b >> 16 | tilted;
-        if (s.tilt != 0) child_tilted |= 1u << axis;
-        child.b = child_tilted << 16 | (child_depth > deeper ? child_depth : deeper);
+        if (depth > 0)
+            reach(tree.mark(static_cast<u32>(target)), depth, s.tilt != 0 ? tilted | 1u << axis : tilted);
     }
 }
 
 // A wrong root or link leaves curves unreached: that is told once, there. Depth is counted up to one past the
 // limit: what lies deeper is not told again.
-void check_reach(const Tree& tree, u32 word, Report& report) {
-    u32& b = tree.marks[word].b;
+void check_reach(const Tree& tree, u32 unit, Report& report) {
+    u32& b = tree.mark(unit).b;
     const u32 depth = b & 0xFFFF;
-    if (depth == 0 && report.verdict().errors == 0) report.add(6012, tree.at(word), "the curve at word %u", word);
-    if (depth == ACDF_MAX_DEPTH + 1) report.add(6016, tree.at(word), "the curve at word %u is the 65th", word);
+    if (depth == 0 && report.verdict().errors == 0) report.add(6012, tree.at(unit), "the curve at unit %u", unit);
+    if (depth == ACDF_MAX_DEPTH + 1) report.add(6016, tree.at(unit), "the curve at unit %u is the 65th", unit);
     if (depth > ACDF_MAX_DEPTH + 1) b = (b & 0xFFFF0000u) | (ACDF_MAX_DEPTH + 2);
 }
 
 void check_curves(const Tree& tree, Report& report) {
     for (u32 i = 0; i < tree.parts.description->bin_count; ++i) {
         const u32 root = tree.parts.bins[i].root;
-        if (root < tree.words && tree.marks[root].a == 1) tree.marks[root].b = 1; // depth 1, nothing tilted
+        if (tree.starts_at(root)) tree.mark(root).b = 1; // depth 1, nothing tilted
     }
-    for_each_curve(tree, report, [&](u32 word, const AcdfCurve& curve, const CurveExtent& extent) {
-        check_reach(tree, word, report);
-        check_values(tree, word, curve, extent, report);
-        check_segments(tree, word, curve, extent, report);
+    for_each_curve(tree, report, [&](u32 unit, const AcdfCurve& curve) {
+        check_reach(tree, unit, report);
+        check_values(tree, unit, curve, report);
+        check_segments(tree, unit, curve, report);
     });
 }
 
 // ---- third pass, once an axis: knots inside what is inherited -------------------------------------------
-// Mark::a is the largest low end, Mark::b the smallest high end over all paths to the curve: a knot lies
-// inside every path's range if it lies between these two.
+// Over all paths to a curve, Mark::a is the largest low end, b the smallest high end and c the smallest low end:
+// a knot lies inside every path's range if it lies between a and b. c tells whether the low end is the same on
+// every path, which positions that are counted from it need.
 
-void narrow(Mark& child, u32 low, u32 high) {
-    if (child.a < low) child.a = low;
+void narrow(Mark& child, u32 largest_low, u32 high, u32 smallest_low) {
+    if (child.a < largest_low) child.a = largest_low;
     if (child.b > high) child.b = high;
+    if (child.c > smallest_low) child.c = smallest_low;
 }
 
-void check_knots(const Tree& tree, u32 word, const AcdfCurve& curve, const CurveExtent& e, u32 axis,
-                 Report& report) {
-    const Mark inherited = tree.marks[word];
-    if (inherited.b == unreached) return;
+void check_knots(const Tree& tree, u32 unit, const AcdfCurve& curve, u32 axis, Report& report) {
+    const Mark inherited = tree.mark(unit);
+    if (inherited.c == unreached) return;
     const bool splits = acdf_curve_axis(&curve) == axis && curve.segments > 1;
-    const bool wide = acdf_wide_positions(&curve) != 0;
-    if (splits) {
-        const u32 first = acdf_load(curve.positions, 0, wide);
-        const u32 last = acdf_load(curve.positions, curve.segments - 2, wide);
-        if (first <= inherited.a || last >= inherited.b)
-            report.add(6007, tree.at(word, e.positions), "the curve at word %u: knots %u to %u, range %u to %u",
-                       word, first, last, inherited.a, inherited.b);
-    }
+    const u32 code = ACDF_CURVE_POSITION_CODE(curve.header);
+    const u64 origin = code == 0 ? inherited.a : 0;
+    const auto knot = [&](u32 i) { return static_cast<u32>(origin + acdf_load(curve.positions, i, code)); };
+    if (splits && code == 0 && inherited.a != inherited.c)
+        report.add(6019, tree.at(unit), "the curve at unit %u: its range begins at %u or at %u", unit, inherited.c,
+                   inherited.a);
+    if (splits && (knot(0) <= inherited.a || knot(curve.segments - 2) >= inherited.b))
+        report.add(6007, tree.at(curve.positions), "the curve at unit %u: knots %u to %u, range %u to %u", unit,
+                   knot(0), knot(curve.segments - 2), inherited.a, inherited.b);
     for (u32 i = 0; i < curve.segments; ++i) {
         const u32 link = acdf_curve_link(&curve, i);
         if (link == 0) continue;
-        const u32 low = splits && i > 0 ? acdf_load(curve.positions, i - 1, wide) : inherited.a;
-        const u32 high = splits && i + 1 < curve.segments ? acdf_load(curve.positions, i, wide) : inherited.b;
-        narrow(tree.marks[word + link], low, high);
+        const bool cut_low = splits && i > 0, cut_high = splits && i + 1 < curve.segments;
+        narrow(tree.mark(unit + link), cut_low ? knot(i - 1) : inherited.a, cut_high ? knot(i) : inherited.b,
+               cut_low ? knot(i - 1) : inherited.c);
     }
 }
 
-void check_ranges(const Tree& tree, u32 axis, Report& report) {
-    for (u32 i = 0; i < tree.words; ++i) tree.marks[i] = {0, unreached};
+void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
+    for (u32 i = 0; i < curves; ++i) tree.marks[i] = {0, unreached, unreached};
     for (u32 i = 0; i < tree.parts.description->bin_count; ++i)
-        narrow(tree.marks[tree.parts.bins[i].root], 0, tree.parts.axes[axis].resolution);
-    for_each_curve(tree, report, [&](u32 word, const AcdfCurve& curve, const CurveExtent& extent) {
-        check_knots(tree, word, curve, extent, axis, report);
-    });
+        narrow(tree.mark(tree.parts.bins[i].root), 0, tree.parts.axes[axis].resolution, 0);
+    for_each_curve(tree, report,
+                   [&](u32 unit, const AcdfCurve& curve) { check_knots(tree, unit, curve, axis, report); });
 }
 
 // ---- bins -----------------------------------------------------------------------------------------------
@@ -251,19 +292,32 @@ bool check_bins(const Payload& payload, Report& report, Parts& parts) {
 void check_roots(const Tree& tree, const Payload& bins, Report& report) {
     for (u32 i = 0; i < tree.parts.description->bin_count && !report.stopped(); ++i) {
         const u32 root = tree.parts.bins[i].root;
-        if (root >= tree.words || tree.marks[root].a != 1)
-            report.add(6010, bins.at(i * sizeof(AcdfBin)), "bin %u: word %u", i, root);
+        if (!tree.starts_at(root)) report.add(6010, bins.at(i * sizeof(AcdfBin)), "bin %u: unit %u", i, root);
     }
 }
 
-void check_marked_tree(const Tree& tree, const Payload& bins, Report& report) {
-    if (!find_curves(tree, report)) return;
+void check_marked_tree(const Tree& tree, u32 curves, const Payload& bins, Report& report) {
     const u64 errors = report.verdict().errors;
     check_roots(tree, bins, report);
     if (!report.stopped()) check_curves(tree, report);
     if (report.stopped() || report.verdict().errors != errors) return;
     for (u32 axis = 0; axis < tree.parts.description->axis_count && !report.stopped(); ++axis)
-        if (tree.sampled(axis)) check_ranges(tree, axis, report);
+        if (tree.sampled(axis)) check_ranges(tree, curves, axis, report);
+}
+
+void no_memory(const Payload& payload, u64 bytes, Report& report) {
+    report.add(1003, payload.at(0), "%llu bytes to check the tree", static_cast<ull>(bytes));
+}
+
+void check_found_curves(const Payload& bins, const Payload& payload, const Starts& starts, Report& report,
+                        const Parts& parts) {
+    u32 curves = 0;
+    if (!find_curves(payload, parts.tree_units, starts.bits, curves, report)) return;
+    count_before(parts.tree_units, starts);
+    Mark* marks = static_cast<Mark*>(std::calloc(curves, sizeof(Mark)));
+    if (!marks) return no_memory(payload, u64{curves} * sizeof(Mark), report);
+    check_marked_tree(Tree{payload, parts, parts.tree_units, starts, marks}, curves, bins, report);
+    std::free(marks);
 }
 
 } // namespace
@@ -271,22 +325,21 @@ void check_marked_tree(const Tree& tree, const Payload& bins, Report& report) {
 void check_tree(const Payload& bins, const Payload& payload, Report& report, Parts& parts) noexcept {
     const bool bins_ok = bins.data && check_bins(bins, report, parts);
     if (!payload.data || report.stopped()) return;
-    const u64 words = payload.size / 4;
-    if (payload.size == 0 || payload.size % 4 != 0 || words > 0xFFFFFFFF) {
+    const u64 units = payload.size / 2;
+    if (payload.size == 0 || payload.size % 2 != 0 || units > 0xFFFFFFFE) {
         report.add(6001, payload.at(0), "it has %llu bytes", static_cast<ull>(payload.size));
         return;
     }
     if (!bins_ok || parts.description->bin_count == 0) return;
-    // Two words of scratch for each word that is really there.
-    Mark* marks = static_cast<Mark*>(std::calloc(words, sizeof(Mark)));
-    if (!marks) {
-        report.add(1003, payload.at(0), "%llu bytes to check the tree", static_cast<ull>(words * sizeof(Mark)));
-        return;
-    }
     parts.tree = payload.data;
-    parts.tree_words = static_cast<u32>(words);
-    check_marked_tree(Tree{payload, parts, parts.tree_words, marks}, bins, report);
-    std::free(marks);
+    parts.tree_units = static_cast<u32>(units);
+    const u64 runs = units / 64 + 1;
+    const Starts starts{static_cast<u64*>(std::calloc(runs, sizeof(u64))),
+                        static_cast<u32*>(std::calloc(runs, sizeof(u32)))};
+    if (starts.bits && starts.before) check_found_curves(bins, payload, starts, report, parts);
+    else no_memory(payload, runs * (sizeof(u64) + sizeof(u32)), report);
+    std::free(starts.bits);
+    std::free(starts.before);
 }
 
 } // namespace acdf

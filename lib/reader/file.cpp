@@ -159,7 +159,7 @@ File& File::operator=(File&& other) noexcept {
     axes_ = std::exchange(other.axes_, nullptr);
     bins_ = std::exchange(other.bins_, nullptr);
     tree_ = std::exchange(other.tree_, nullptr);
-    tree_words_ = std::exchange(other.tree_words_, 0);
+    tree_units_ = std::exchange(other.tree_units_, 0);
     metadata_ = std::exchange(other.metadata_, nullptr);
     metadata_count_ = std::exchange(other.metadata_count_, 0);
     for (int i = 0; i < 2; ++i) owned_[i] = std::exchange(other.owned_[i], nullptr);
@@ -202,7 +202,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.axes_ = parts.axes;
     loaded.bins_ = parts.bins;
     loaded.tree_ = parts.tree;
-    loaded.tree_words_ = parts.tree_words;
+    loaded.tree_units_ = parts.tree_units;
     loaded.metadata_ = parts.metadata;
     loaded.metadata_count_ = parts.metadata_count;
     file = std::move(loaded);

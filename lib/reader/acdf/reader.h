@@ -100,9 +100,9 @@ public:
     const AcdfDescription& description() const noexcept { return *description_; }
     const AcdfAxis& axis(std::uint32_t i) const noexcept { return axes_[i]; }
     const AcdfBin& bin(std::uint32_t i) const noexcept { return bins_[i]; }
-    /// Chunk TREE, and its size in 32-bit words.
+    /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
     const std::uint8_t* tree() const noexcept { return tree_; }
-    std::uint32_t tree_words() const noexcept { return tree_words_; }
+    std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
 
     /// Metadata pairs; `count` is 0 where the file carries none.
@@ -121,7 +121,7 @@ private:
     const AcdfAxis* axes_ = nullptr;
     const AcdfBin* bins_ = nullptr;
     const std::uint8_t* tree_ = nullptr;
-    std::uint32_t tree_words_ = 0;
+    std::uint32_t tree_units_ = 0;
     const std::uint8_t* metadata_ = nullptr;
     std::uint32_t metadata_count_ = 0;
     void* owned_[2] = {nullptr, nullptr}; // the file's bytes; inflated chunks

@@ -36,8 +36,8 @@ typedef struct AcdfCurve {
     uint32_t header;
     uint32_t segments;
     const uint8_t* cumulative; /* segments - 1 interior values; 0 and the maximum are implied */
-    const uint8_t* positions;  /* segments - 1 interior knots; the ends are those of the enclosing range */
-    const uint8_t* links;      /* distance in words to each child; 0: the segment ends */
+    const uint8_t* positions;  /* segments - 1 interior knots; the ends are those of the range so far */
+    const uint8_t* links;      /* distance to each child; 0: the segment ends */
     const uint8_t* tilts;
 } AcdfCurve;
 
@@ -55,81 +55,129 @@ typedef struct AcdfStratum {
 ACDF_FN uint32_t acdf_curve_axis(const AcdfCurve* curve) { return curve->header & ACDF_CURVE_AXIS_MASK; }
 
 /* `size` is a power of two. */
-ACDF_FN uint32_t acdf_align(uint32_t offset, uint32_t size) { return (offset + size - 1) & ~(size - 1); }
 
-/* Decodes the curve at word offset `at`. */
+/* Bytes of an element whose size code is `code`: 1, 2 or 4. */
+ACDF_FN uint32_t acdf_element_size(uint32_t code) { return 1u << code; }
+
+/* `size` is a power of two. */
+ACDF_FN size_t acdf_align(size_t offset, uint32_t size) { return (offset + (size - 1)) & ~(size_t)(size - 1); }
+
+/* Decodes the curve at offset `at`, counted like all offsets in a tree in units of two bytes. Returns the offset
+ * of the curve that follows in the file. */
+ACDF_FN size_t acdf_curve_decode(const uint8_t* tree, uint32_t at, AcdfCurve* curve) {
+    size_t offset = 2 * (size_t)at;
+    const uint16_t* units = (const uint16_t*)(const void*)(tree + offset);
+    const uint32_t header = units[0];
+    uint32_t size;
+    curve->header = header;
+    curve->segments = header >> ACDF_CURVE_SEGMENTS_SHIFT;
+    offset += 2;
+    if (curve->segments == 0) {
+        curve->segments = units[1] | (uint32_t)units[2] << 16;
+        offset += 4;
+    }
+    size = acdf_element_size(ACDF_CURVE_CUMULATIVE_CODE(header));
+    offset = acdf_align(offset, size);
+    curve->cumulative = tree + offset;
+    offset += (size_t)(curve->segments - 1) * size;
+    size = acdf_element_size(ACDF_CURVE_POSITION_CODE(header));
+    offset = acdf_align(offset, size);
+    curve->positions = tree + offset;
+    offset += (size_t)(curve->segments - 1) * size;
+    curve->links = 0;
+    if (ACDF_CURVE_LINK_CODE(header) != 0) {
+        size = acdf_element_size(ACDF_CURVE_LINK_CODE(header) - 1);
+        offset = acdf_align(offset, size);
+        curve->links = tree + offset;
+        offset += (size_t)curve->segments * size;
+    }
+    offset = acdf_align(offset, 2);
+    curve->tilts = 0;
+    if (header & ACDF_CURVE_TILTED) {
+        curve->tilts = tree + offset;
+        offset += (size_t)curve->segments * 2;
+    }
+    return offset / 2;
+}
+
 ACDF_FN AcdfCurve acdf_curve_at(const uint8_t* tree, uint32_t at) {
     AcdfCurve curve;
-    const uint8_t* base = tree + 4 * (size_t)at;
-    const uint32_t header = *(const uint32_t*)(const void*)base;
-    const uint32_t segments = header >> ACDF_CURVE_SEGMENTS_SHIFT;
-    const uint32_t cumulative_size = (header & ACDF_CURVE_WIDE_CUMULATIVE) ? 4u : 2u;
-    const uint32_t position_size = (header & ACDF_CURVE_WIDE_POSITIONS) ? 4u : 2u;
-    const uint32_t links = (header & ACDF_CURVE_LINKS_MASK) >> ACDF_CURVE_LINKS_SHIFT;
-    uint32_t offset = 4;
-    curve.header = header;
-    curve.segments = segments;
-    curve.cumulative = base + offset;
-    offset = acdf_align(offset + (segments - 1) * cumulative_size, position_size);
-    curve.positions = base + offset;
-    offset += (segments - 1) * position_size;
-    curve.links = 0;
-    if (links != ACDF_LINKS_NONE) {
-        const uint32_t link_size = links == ACDF_LINKS_32 ? 4u : 2u;
-        offset = acdf_align(offset, link_size);
-        curve.links = base + offset;
-        offset += segments * link_size;
-    }
-    curve.tilts = (header & ACDF_CURVE_TILTED) ? base + offset + (offset & 1) : 0;
+    acdf_curve_decode(tree, at, &curve);
     return curve;
 }
 
-ACDF_FN uint32_t acdf_load(const uint8_t* array, uint32_t index, int wide) {
-    return wide ? ((const uint32_t*)(const void*)array)[index] : ((const uint16_t*)(const void*)array)[index];
+ACDF_FN uint32_t acdf_load(const uint8_t* array, uint32_t index, uint32_t code) {
+    if (code == 0) return array[index];
+    return code == 1 ? ((const uint16_t*)(const void*)array)[index] : ((const uint32_t*)(const void*)array)[index];
 }
 
-/* How many of `count` nondecreasing values are <= key: a binary search without branches. */
-ACDF_FN uint32_t acdf_upper_bound(const uint8_t* array, uint32_t count, int wide, uint32_t key) {
+/* How many of `count` nondecreasing values are <= key: binary searches without branches on the data. */
+ACDF_FN uint32_t acdf_upper_bound8(const uint8_t* array, uint32_t count, uint32_t key) {
     uint32_t base = 0;
-    if (count == 0) return 0;
     while (count > 1) {
         const uint32_t half = count / 2;
-        base += acdf_load(array, base + half - 1, wide) <= key ? half : 0;
+        base += array[base + half - 1] <= key ? half : 0;
         count -= half;
     }
-    return base + (acdf_load(array, base, wide) <= key ? 1 : 0);
+    return base + (array[base] <= key ? 1 : 0);
 }
-
-ACDF_FN int acdf_wide_cumulative(const AcdfCurve* c) { return (c->header & ACDF_CURVE_WIDE_CUMULATIVE) != 0; }
-ACDF_FN int acdf_wide_positions(const AcdfCurve* c) { return (c->header & ACDF_CURVE_WIDE_POSITIONS) != 0; }
+ACDF_FN uint32_t acdf_upper_bound16(const uint16_t* array, uint32_t count, uint32_t key) {
+    uint32_t base = 0;
+    while (count > 1) {
+        const uint32_t half = count / 2;
+        base += array[base + half - 1] <= key ? half : 0;
+        count -= half;
+    }
+    return base + (array[base] <= key ? 1 : 0);
+}
+ACDF_FN uint32_t acdf_upper_bound32(const uint32_t* array, uint32_t count, uint32_t key) {
+    uint32_t base = 0;
+    while (count > 1) {
+        const uint32_t half = count / 2;
+        base += array[base + half - 1] <= key ? half : 0;
+        count -= half;
+    }
+    return base + (array[base] <= key ? 1 : 0);
+}
+ACDF_FN uint32_t acdf_upper_bound(const uint8_t* array, uint32_t count, uint32_t code, uint32_t key) {
+    if (count == 0) return 0;
+    if (code == 0) return acdf_upper_bound8(array, count, key);
+    return code == 1 ? acdf_upper_bound16((const uint16_t*)(const void*)array, count, key)
+                     : acdf_upper_bound32((const uint32_t*)(const void*)array, count, key);
+}
 
 /* The largest cumulative value: probability 1. All ones, not a power of two, so that every value from 0 to 1
  * can be stored: a segment of probability 0 may stand first or last. 0 and the maximum themselves are implied
  * at the ends of a curve. */
 ACDF_FN uint32_t acdf_curve_maximum(const AcdfCurve* curve) {
-    return acdf_wide_cumulative(curve) ? 0xFFFFFFFFu : 0xFFFFu;
+    return 0xFFFFFFFFu >> (32 - 8 * acdf_element_size(ACDF_CURVE_CUMULATIVE_CODE(curve->header)));
 }
 
 /* Cumulative value at knot i in [0, segments]. */
 ACDF_FN uint32_t acdf_curve_cumulative(const AcdfCurve* curve, uint32_t i) {
     if (i == 0) return 0;
     if (i == curve->segments) return acdf_curve_maximum(curve);
-    return acdf_load(curve->cumulative, i - 1, acdf_wide_cumulative(curve));
+    return acdf_load(curve->cumulative, i - 1, ACDF_CURVE_CUMULATIVE_CODE(curve->header));
 }
 
-/* Narrows the range of the curve's axis to segment i. */
+/* Narrows the range of the curve's axis to segment i. Positions of one byte count from the range's low end. */
 ACDF_FN void acdf_curve_narrow(const AcdfCurve* curve, uint32_t i, AcdfRange* range) {
-    const int wide = acdf_wide_positions(curve);
-    if (i > 0) range->low = acdf_load(curve->positions, i - 1, wide);
-    if (i + 1 < curve->segments) range->high = acdf_load(curve->positions, i, wide);
+    const uint32_t code = ACDF_CURVE_POSITION_CODE(curve->header);
+    const uint32_t origin = code == 0 ? range->low : 0;
+    if (i > 0) range->low = origin + acdf_load(curve->positions, i - 1, code);
+    if (i + 1 < curve->segments) range->high = origin + acdf_load(curve->positions, i, code);
     if (curve->tilts) range->tilt = ((const int16_t*)(const void*)curve->tilts)[i] / 32768.0;
 }
 
-/* Distance in words to the child of segment i; 0 where it ends. */
+/* Which segment holds a grid step of the curve's axis. */
+ACDF_FN uint32_t acdf_curve_segment(const AcdfCurve* curve, uint32_t step, const AcdfRange* range) {
+    const uint32_t code = ACDF_CURVE_POSITION_CODE(curve->header);
+    return acdf_upper_bound(curve->positions, curve->segments - 1, code, code == 0 ? step - range->low : step);
+}
+
+/* Distance, in units of two bytes, to the child of segment i; 0 where it ends. */
 ACDF_FN uint32_t acdf_curve_link(const AcdfCurve* curve, uint32_t i) {
-    if (!curve->links) return 0;
-    return acdf_load(curve->links, i,
-                     (curve->header & ACDF_CURVE_LINKS_MASK) == (uint32_t)ACDF_LINKS_32 << ACDF_CURVE_LINKS_SHIFT);
+    return curve->links ? acdf_load(curve->links, i, ACDF_CURVE_LINK_CODE(curve->header) - 1) : 0;
 }
 
 /* ---- trees ------------------------------------------------------------------------------------------ */
@@ -151,7 +199,8 @@ ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, A
         uint32_t i, low, width, link;
         if (scaled >= maximum) scaled = maximum * (1.0 - 0x1p-53);
         /* Segments of probability 0 are never entered: the bound lies above all equal values. */
-        i = acdf_upper_bound(curve.cumulative, curve.segments - 1, acdf_wide_cumulative(&curve), (uint32_t)scaled);
+        i = acdf_upper_bound(curve.cumulative, curve.segments - 1, ACDF_CURVE_CUMULATIVE_CODE(curve.header),
+                             (uint32_t)scaled);
         low = acdf_curve_cumulative(&curve, i);
         width = acdf_curve_cumulative(&curve, i + 1) - low;
         u[axis] = (scaled - (double)low) / (double)width;
@@ -174,8 +223,7 @@ ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t
         const AcdfCurve curve = acdf_curve_at(tree, at);
         const uint32_t axis = acdf_curve_axis(&curve);
         const double maximum = (double)acdf_curve_maximum(&curve);
-        const uint32_t i =
-            acdf_upper_bound(curve.positions, curve.segments - 1, acdf_wide_positions(&curve), square[axis]);
+        const uint32_t i = acdf_curve_segment(&curve, square[axis], &range[axis]);
         const uint32_t low = acdf_curve_cumulative(&curve, i);
         const uint32_t width = acdf_curve_cumulative(&curve, i + 1) - low;
         uint32_t link;

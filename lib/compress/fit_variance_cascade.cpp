@@ -1,9 +1,12 @@
-// The cascade of fixed depth that minimises the variance, by joining cells bottom-up: docs/method.md.
+// The cascade of fixed depth that minimises the variance, by joining cells
+// bottom-up: docs/method.md.
 //
-// A cell of measure m that holds the integral E of f^2 costs C = sqrt(m E), and one sample has the relative
-// variance (sum of C)^2 / (integral of f)^2 - 1 when each cell's probability is its share of the sum. Joining
-// neighbours never lowers the sum (Cauchy-Schwarz), so rows are joined into bands, then within all bands
-// together columns into cells, always the pair that raises the sum least.
+// A cell of measure m that holds the integral E of f^2 costs C = sqrt(m E), and
+// one sample has the relative variance (sum of C)^2 / (integral of f)^2 - 1
+// when each cell's probability is its share of the sum. Joining neighbours
+// never lowers the sum (Cauchy-Schwarz), so rows are joined into bands, then
+// within all bands together columns into cells, always the pair that raises the
+// sum least.
 #include "compress/fit.h"
 #include "compress/join.h"
 #include "compress/sum.h"
@@ -18,7 +21,8 @@
 namespace acdf::compress {
 namespace {
 
-/// Rows or bands of rows; for each, the integral of f^2 over its rows at every column.
+/// Rows or bands of rows; for each, the integral of f^2 over its rows at every
+/// column.
 struct Bands {
     std::vector<std::uint32_t> begin; ///< first row of each band
     std::vector<double> measure;
@@ -41,13 +45,15 @@ Bands bands_of(const Target& target, const std::vector<std::uint32_t>& begin) {
     return bands;
 }
 
-/// The order in which borders between rows vanish, the cheapest join first: row r joins the band above it.
+/// The order in which borders between rows vanish, the cheapest join first: row
+/// r joins the band above it.
 std::vector<std::uint32_t> row_joins(const Target& target) {
     std::vector<std::uint32_t> rows(target.rows);
     for (std::uint32_t r = 0; r < target.rows; ++r) rows[r] = r;
     Bands bands = bands_of(target, rows);
     const std::uint32_t columns = target.columns;
-    const auto cost = [&](std::size_t a, std::size_t b) { // of a and b joined; of a alone where a == b
+    const auto cost = [&](std::size_t a,
+                          std::size_t b) { // of a and b joined; of a alone where a == b
         const double* ea = bands.energy.data() + a * columns;
         const double* eb = bands.energy.data() + b * columns;
         double sum = 0.0;
@@ -116,8 +122,9 @@ struct Cells {
     double total = 0.0;             ///< sum of C
 };
 
-/// Joins within all bands together, the cheapest first, until `cells` are left: what one heap over all bands
-/// would do, since each band's joins come in the same order whatever happens in the others.
+/// Joins within all bands together, the cheapest first, until `cells` are left:
+/// what one heap over all bands would do, since each band's joins come in the
+/// same order whatever happens in the others.
 void join_until(Cells& cells, std::size_t columns, std::size_t count) {
     std::vector<double> levels;
     levels.reserve(cells.history.size() * (columns - 1));
@@ -167,7 +174,8 @@ std::vector<std::uint32_t> band_starts(const std::vector<std::uint32_t>& joins, 
     return begin;
 }
 
-/// Band counts worth trying, in steps of sqrt(2), as long as a band keeps two cells on average.
+/// Band counts worth trying, in steps of sqrt(2), as long as a band keeps two
+/// cells on average.
 std::vector<std::size_t> band_counts(std::size_t rows, std::size_t cells) {
     std::vector<std::size_t> counts;
     for (double count = 4.0; count <= double(rows) && count <= double(cells) / 2.0; count *= std::sqrt(2.0))
@@ -238,14 +246,17 @@ Cascade to_cascade(const Target& target, const Cells& cells) {
 
 } // namespace
 
-Cascade fit_variance(const Target& target, const FitOptions& options) {
+Cascade fit_variance_cascade(const Target& target, const FitOptions& options) {
     const std::vector<std::uint32_t> joins = row_joins(target);
     if (options.progress) options.progress(0.3);
-    const std::vector<std::size_t> counts = band_counts(target.rows, options.cells);
+    const std::vector<std::size_t> counts = band_counts(target.rows, options.goal.cells);
     Cells best;
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-        Cells cells = join_bands(target, bands_of(target, band_starts(joins, counts[i])), options.cells);
-        if (i == 0 || cells.total < best.total) best = std::move(cells);
+    std::size_t worse = 0; // the cost falls, then rises with the number of bands:
+                           // two rises in a row are enough
+    for (std::size_t i = 0; i < counts.size() && worse < 2; ++i) {
+        Cells cells = join_bands(target, bands_of(target, band_starts(joins, counts[i])), options.goal.cells);
+        worse = i == 0 || cells.total < best.total ? 0 : worse + 1;
+        if (worse == 0) best = std::move(cells);
         if (options.progress) options.progress(0.3 + 0.7 * double(i + 1) / double(counts.size()));
     }
     return to_cascade(target, best);
