@@ -186,31 +186,4 @@ EncodedTree encode_tree(const Cascade& cascade, double price) {
     return tree;
 }
 
-double stored_excess(const Cascade& cascade, const EncodedTree& tree) {
-    struct Visit {
-        std::uint32_t curve, offset;
-        double probability, stored;
-    };
-    double sum = 0.0;
-    std::vector<Visit> stack;
-    for (std::size_t bin = 0; bin < cascade.roots.size(); ++bin)
-        stack.push_back({cascade.roots[bin], tree.roots[bin], 1.0, 1.0});
-    while (!stack.empty()) {
-        const Visit visit = stack.back();
-        stack.pop_back();
-        const Curve& curve = cascade.curves[visit.curve];
-        const AcdfCurve stored = acdf_curve_at(tree.bytes.data(), visit.offset);
-        const double maximum = acdf_curve_maximum(&stored);
-        for (std::uint32_t s = 0; s < stored.segments; ++s) {
-            const double p = visit.probability * curve.probability[s];
-            const double q = visit.stored *
-                             (acdf_curve_cumulative(&stored, s + 1) - acdf_curve_cumulative(&stored, s)) / maximum;
-            const std::uint32_t link = acdf_curve_link(&stored, s);
-            if (link == 0) sum += p > 0.0 ? p * (p / q) : 0.0;
-            else stack.push_back({static_cast<std::uint32_t>(curve.children[s]), visit.offset + link, p, q});
-        }
-    }
-    return sum / static_cast<double>(cascade.roots.size());
-}
-
 } // namespace acdf::compress

@@ -1,5 +1,7 @@
 #include "compress/fit.h"
 
+#include "compress/fit_tree.h"
+
 #include <stdexcept>
 
 namespace acdf::compress {
@@ -20,7 +22,8 @@ Cascade fit_two_levels(const Target& target, const FitOptions& options) {
 
 Fitted fit(const Target& target, const FitOptions& options) {
     if (!(integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
-    if (options.fit == ACDF_FIT_VARIANCE && options.shape == Shape::tree) return fit_tree(target, options);
+    if (options.fit == ACDF_FIT_VARIANCE && options.shape == Shape::tree)
+        return fit_trees({grid_of(target)}, options);
     Fitted out;
     out.cascade = fit_two_levels(target, options);
     out.tree = encode_tree(out.cascade);

@@ -43,13 +43,14 @@ struct Goal {
 
 struct FitOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
-    std::optional<Order> order;                    ///< empty: as the fit sees fit (a tree), else phi
-    Shape shape = Shape::tree;                     ///< variance
-    Goal goal;                                     ///< variance; a cascade takes cells alone
-    FileSize file_size;                            ///< needed for a budget; by default the bytes of the tree
-    std::uint32_t column_segments = 64;            ///< uniform, cdf, pdf: segments of a curve over columns (phi)
-    std::uint32_t row_segments = 64;               ///< the same over rows (theta)
-    double epsilon = 0.0;                          ///< cdf, pdf: see CurveBudget
+    std::optional<Order> order;         ///< empty: as the fit sees fit (a tree), else phi
+    Shape shape = Shape::tree;          ///< variance
+    Goal goal;                          ///< variance; a cascade takes cells alone
+    FileSize file_size;                 ///< needed for a budget; by default the bytes of the tree
+    double max_weight = 0.0;            ///< variance as a tree: the largest f/p over its mean; 0: no bound
+    std::uint32_t column_segments = 64; ///< uniform, cdf, pdf: segments of a curve over columns (phi)
+    std::uint32_t row_segments = 64;    ///< the same over rows (theta)
+    double epsilon = 0.0;               ///< cdf, pdf: see CurveBudget
     Conditional conditional = Conditional::energy; ///< uniform, cdf, pdf
     std::uint32_t gradient_knots = 0;              ///< cdf, pdf: extra marginal knots (Lawrence et al. 2005, eq. 5)
     Progress progress;
@@ -69,9 +70,6 @@ Fitted fit(const Target& target, const FitOptions& options);
 /// Fits uniform, cdf and pdf: marginal over the target's rows, one conditional over columns for each region
 /// between its knots (Lawrence et al. 2005, §5).
 Cascade fit_regional(const Target& target, const FitOptions& options);
-
-/// The minimum-variance tree of any depth: docs/method.md.
-Fitted fit_tree(const Target& target, const FitOptions& options);
 
 /// The minimum-variance cascade of fixed depth: docs/method.md.
 Cascade fit_variance_cascade(const Target& target, const FitOptions& options);

@@ -1,170 +1,113 @@
 // The general tree that minimises the variance for its size: docs/method.md.
 //
-// A partition is grown far beyond what will be stored, then pruned: at a price
-// per byte, each division stays only if it lowers the sum of costs by more than
-// its bytes are worth (Breiman et al. 1984, ch. 3, with bytes for leaves).
-// Since growing does not depend on the price, one partition holds the best tree
-// for every size.
-#include "compress/fit.h"
+// A partition is grown far beyond what will be stored, then pruned: at a price per byte, each division stays only
+// if it lowers the sum of costs by more than its bytes are worth (Breiman et al. 1984, ch. 3, with bytes for
+// leaves). Since growing does not depend on the price, one partition holds the best tree for every size.
+#include "compress/fit_tree.h"
+
 #include "compress/partition.h"
-#include "compress/sum.h"
+#include "compress/prune.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 namespace acdf::compress {
 namespace {
 
-// What a division is charged, in bytes: about what encode_tree makes of it.
-constexpr double kKnotBytes = 3.0;
-constexpr double kCurveBytes = 2.0;   // header, and the link that leads to it
-constexpr double kLeastBytes = 2.5;   // of any division: what could gain less at a price need not be grown for it
 constexpr double kNegligible = 1e-14; // of the sum of costs, which is at least 1: rounding, no gain
 
-/// A partition pruned at one price.
-struct Pruned {
-    std::vector<bool> divided;        ///< one a part: whether its division stays
-    std::vector<std::uint32_t> cells; ///< below each part
-};
-
-Pruned prune(const std::vector<Part>& parts, double price) {
-    Pruned out;
-    out.divided.assign(parts.size(), false);
-    std::vector<double> value(parts.size()); // cost and price of the best tree below a part
-    out.cells.assign(parts.size(), 1);
-    for (std::size_t i = parts.size(); i-- > 0;) {
-        const Part& part = parts[i];
-        value[i] = part.moments.cost();
-        if (part.split == Part::Split::none) continue;
-        double divided = price * kKnotBytes * (part.children - 1);
-        std::uint32_t count = 0;
-        for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k) {
-            divided += value[k];
-            if (out.divided[k] && parts[k].split != part.split) divided += price * kCurveBytes;
-            count += out.cells[k];
-        }
-        if (divided >= value[i]) continue;
-        value[i] = divided;
-        out.divided[i] = true;
-        out.cells[i] = count;
-    }
-    return out;
-}
-
-/// Turns what is left of a partition into curves: divisions along the same axis
-/// become one curve.
-class Flattener {
-public:
-    Flattener(const Partition& partition, const Pruned& pruned)
-        : target_(partition.target()), parts_(partition.parts()), pruned_(pruned), cost_(parts_.size(), 0.0) {
-        for (std::size_t i = parts_.size(); i-- > 0;) {
-            cost_[i] = pruned.divided[i] ? 0.0 : parts_[i].moments.cost();
-            for (std::uint32_t k = 0; pruned.divided[i] && k < parts_[i].children; ++k)
-                cost_[i] += cost_[parts_[i].first_child + k];
-        }
-    }
-
-    /// The sum of the costs of all cells.
-    double cost() const { return cost_[0]; }
-
-    Cascade cascade() const {
-        Cascade out;
-        out.roots = {0};
-        add_curve(0, out);
-        return out;
-    }
-
-private:
-    /// The parts that become the segments of a curve that starts at part i.
-    void collect(std::uint32_t i, Part::Split split, std::vector<std::uint32_t>& segments) const {
-        if (!pruned_.divided[i] || parts_[i].split != split) {
-            segments.push_back(i);
-            return;
-        }
-        for (std::uint32_t k = 0; k < parts_[i].children; ++k) collect(parts_[i].first_child + k, split, segments);
-    }
-
-    std::int32_t add_curve(std::uint32_t i, Cascade& out) const {
-        const Part::Split split = parts_[i].split;
-        std::vector<std::uint32_t> segments;
-        collect(i, split, segments);
-        const auto index = static_cast<std::int32_t>(out.curves.size());
-        out.curves.emplace_back();
-        Curve curve;
-        const bool rows = split != Part::Split::columns;
-        curve.axis = rows ? target_.row_axis : target_.column_axis;
-        for (std::size_t s = 0; s < segments.size(); ++s) {
-            const Part& part = parts_[segments[s]];
-            if (s > 0) curve.knots.push_back(rows ? part.box.row_begin : part.box.column_begin);
-            curve.probability.push_back(cost_[i] > 0.0 ? cost_[segments[s]] / cost_[i] : 1.0);
-        }
-        // Small subtrees first: most links are then short enough for one byte.
-        std::vector<std::size_t> order;
-        for (std::size_t s = 0; s < segments.size(); ++s)
-            if (pruned_.divided[segments[s]] && cost_[segments[s]] > 0.0) order.push_back(s);
-        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-            return pruned_.cells[segments[a]] < pruned_.cells[segments[b]];
-        });
-        curve.children.assign(segments.size(), -1);
-        for (std::size_t s : order) curve.children[s] = add_curve(segments[s], out);
-        out.curves[static_cast<std::size_t>(index)] = std::move(curve);
-        return index;
-    }
-
-    const Target& target_;
-    const std::vector<Part>& parts_;
-    const Pruned& pruned_;
-    std::vector<double> cost_; ///< of the cells below each part
-};
-
-/// The tree at one price, stored, and what it comes to.
+/// The trees at one price, stored, and what they come to.
 struct Candidate {
     double price = 0.0; ///< in units of the sum of costs a byte
     Fitted fitted;
     std::size_t cells = 0;
-    double variance = 0.0; ///< relative variance of the stored density
+    double variance = 0.0;   ///< relative variance of the stored density, mean over the bins
+    double max_weight = 0.0; ///< the largest f/p over its mean
 };
 
 class Search {
 public:
-    Search(const Target& target, const FitOptions& options)
-        : goal_(options.goal), options_(options), partition_(target, integral(target), first_split(options)),
-          whole_(partition_.parts().front().moments) {}
-
-    /// Grows the partition until the best tree for the price of its finest divisions is beyond the goal, or
-    /// nothing is left to divide; then moves the price to where the goal is met.
-    Fitted run() {
-        Candidate candidate = grow();
-        progress(0.6);
-        if (!beyond(candidate)) {
-            if (goal_.kind == Goal::Kind::variance) throw std::runtime_error(unreachable(candidate));
-            return std::move(candidate.fitted);
+    Search(const std::vector<Grid>& bins, const FitOptions& options) : goal_(options.goal), options_(options) {
+        for (const Grid& bin : bins) {
+            const double total = integral(bin);
+            if (!(total > 0.0)) { // nothing to sample: a curve that is never entered
+                partitions_.emplace_back();
+                continue;
+            }
+            partitions_.emplace_back(Partition(bin, total, first_split(options)));
+            const Moments& whole = partitions_.back()->parts().front().moments;
+            excess_ += whole.cost() - whole.flux;
+            cost_ = std::max(cost_, whole.cost());
         }
-        return bisect(std::move(candidate)).fitted;
+        heaviest_ = options.max_weight > 0.0 ? options.max_weight : std::numeric_limits<double>::infinity();
+    }
+
+    /// The fit that meets the goal. Where a bound on the weight is broken, by the rounding of probabilities or
+    /// because the sum of costs is above 1, it is tightened and the search begins again.
+    Fitted run() {
+        Candidate best = search();
+        for (int tries = 0; options_.max_weight > 0.0 && best.max_weight > options_.max_weight; ++tries) {
+            if (tries == 8)
+                throw std::runtime_error(out_of_reach("a largest weight", options_.max_weight, best.max_weight));
+            heaviest_ *= std::min(0.995, options_.max_weight / best.max_weight);
+            best = search();
+        }
+        return std::move(best.fitted);
     }
 
 private:
-    static Part::Split first_split(const FitOptions& options) {
-        if (!options.order) return Part::Split::none;
-        return *options.order == Order::z ? Part::Split::rows : Part::Split::columns;
+    static std::int8_t first_split(const FitOptions& options) {
+        if (!options.order) return Part::whole;
+        return *options.order == Order::z ? 0 : 1;
+    }
+
+    /// Grows the partitions until the best trees for the price of their finest divisions are beyond the goal, or
+    /// nothing is left to divide; then moves the price to where the goal is met.
+    Candidate search() {
+        Candidate candidate = grow();
+        progress(0.6);
+        if (beyond(candidate)) return bisect(std::move(candidate));
+        if (goal_.kind == Goal::Kind::variance)
+            throw std::runtime_error(out_of_reach("a relative variance", goal_.variance, candidate.variance));
+        return candidate;
     }
 
     Candidate at(double price) const {
         Candidate out;
         out.price = price;
-        const Pruned pruned = prune(partition_.parts(), price);
-        out.cells = pruned.cells[0];
+        std::vector<Pruned> pruned;
+        for (const auto& partition : partitions_) {
+            pruned.push_back(partition ? prune(partition->parts(), price, heaviest_) : Pruned{});
+            out.cells += partition ? pruned.back().cells[0] : 1;
+        }
         if (goal_.kind == Goal::Kind::cells && out.cells > goal_.cells) return out;
-        const Flattener flattener(partition_, pruned);
-        out.fitted.cascade = flattener.cascade();
-        // E[(f/p)^2] is about the square of the sum of costs, so that a byte is worth twice as much in it.
-        out.fitted.tree = encode_tree(out.fitted.cascade, 2.0 * price);
-        const double sum = flattener.cost();
-        out.variance = sum * sum * stored_excess(out.fitted.cascade, out.fitted.tree) - 1.0;
+        store_trees(pruned, out);
         return out;
+    }
+
+    void store_trees(const std::vector<Pruned>& pruned, Candidate& out) const {
+        Flattened flat;
+        for (std::size_t bin = 0; bin < partitions_.size(); ++bin)
+            if (partitions_[bin]) flatten(*partitions_[bin], pruned[bin], flat);
+            else flatten_nothing(flat);
+        // E[(f/p)^2] is about the square of the sum of costs: a byte is worth twice as much in it. `reach` in
+        // encode_tree is a mean over the bins, the price here counts each of them.
+        out.fitted.tree = encode_tree(flat.cascade, 2.0 * out.price / double(partitions_.size()));
+        std::size_t lit = 0;
+        for (std::size_t bin = 0; bin < partitions_.size(); ++bin) {
+            if (!partitions_[bin]) continue;
+            const StoredQuality quality = stored_quality(flat, bin, out.fitted.tree);
+            out.variance += flat.cost[bin] * flat.cost[bin] * quality.excess - 1.0;
+            out.max_weight = std::max(out.max_weight, quality.max_weight);
+            ++lit;
+        }
+        if (lit > 0) out.variance /= double(lit);
+        out.fitted.cascade = std::move(flat.cascade);
     }
 
     /// Whether a candidate is larger than the goal lets it be; for a variance, at least as large as needed.
@@ -183,22 +126,29 @@ private:
         return options_.file_size ? options_.file_size(candidate.fitted.tree) : candidate.fitted.tree.bytes.size();
     }
 
+    std::size_t parts() const {
+        std::size_t sum = 0;
+        for (const auto& partition : partitions_) sum += partition ? partition->parts().size() : 0;
+        return sum;
+    }
+
     Candidate grow() {
-        double finest = (whole_.cost() - whole_.flux) / 1024.0;
         Candidate candidate;
-        for (std::size_t before = 0; before != partition_.parts().size(); finest *= 0.25) {
-            before = partition_.parts().size();
-            partition_.refine(finest);
+        std::size_t before = 0;
+        for (double finest = excess_ / 1024.0; before != parts(); finest *= 0.25) {
+            before = parts();
+            for (auto& partition : partitions_)
+                if (partition) partition->refine(finest, heaviest_);
             candidate = at(finest / kLeastBytes);
             if (beyond(candidate) || finest < kNegligible) break;
         }
         return candidate;
     }
 
-    /// Halves the interval of prices, on a logarithmic scale, until the tree no longer changes.
+    /// Halves the interval of prices, on a logarithmic scale, until the trees no longer change.
     Candidate bisect(Candidate inside) const {
-        Candidate outside = at(std::max(whole_.cost(), inside.price)); // a single cell
-        if (beyond(outside)) return goal_.kind == Goal::Kind::variance ? outside : fail(outside);
+        Candidate outside = at(std::max(cost_, inside.price)); // as few cells as there can be
+        if (beyond(outside)) return goal_.kind == Goal::Kind::variance ? std::move(outside) : fail(outside);
         for (int step = 0; step < 40 && inside.cells > outside.cells + 1; ++step) {
             Candidate middle = at(std::sqrt(inside.price * outside.price));
             (beyond(middle) ? inside : outside) = std::move(middle);
@@ -208,14 +158,15 @@ private:
     }
 
     Candidate fail(const Candidate& smallest) const {
-        throw std::runtime_error("a budget of " + std::to_string(goal_.budget) +
-                                 " bytes is below the smallest file, " + std::to_string(size(smallest)) + " bytes");
+        if (goal_.kind == Goal::Kind::cells)
+            throw std::runtime_error(out_of_reach("a number of cells", goal_.cells, double(smallest.cells)));
+        throw std::runtime_error(out_of_reach("a size in bytes", double(goal_.budget), double(size(smallest))));
     }
 
-    std::string unreachable(const Candidate& finest) const {
+    static std::string out_of_reach(const char* what, double wanted, double best) {
         char text[160];
-        std::snprintf(text, sizeof text, "a relative variance of %g is out of reach; the finest tree has %.3g",
-                      goal_.variance, finest.variance);
+        std::snprintf(text, sizeof text, "%s of %.9g is out of reach; the least that can be had is %.6g", what,
+                      wanted, best);
         return text;
     }
 
@@ -225,12 +176,12 @@ private:
 
     const Goal& goal_;
     const FitOptions& options_;
-    Partition partition_;
-    Moments whole_;
+    std::vector<std::optional<Partition>> partitions_; ///< one a bin, empty where it has no energy
+    double excess_ = 0.0, cost_ = 1.0, heaviest_ = 0.0;
 };
 
 } // namespace
 
-Fitted fit_tree(const Target& target, const FitOptions& options) { return Search(target, options).run(); }
+Fitted fit_trees(const std::vector<Grid>& bins, const FitOptions& options) { return Search(bins, options).run(); }
 
 } // namespace acdf::compress

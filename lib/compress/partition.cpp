@@ -1,6 +1,7 @@
 #include "compress/partition.h"
 
 #include "compress/join.h"
+#include "compress/sum.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -12,40 +13,77 @@ namespace acdf::compress {
 namespace {
 
 constexpr std::size_t kMostParts = 8; // of one split; deeper splits along the same axis join its curve anyway
-// A split into k parts is worth its gain per knot, but not quite: with half a
-// knot on top, a bright spot is cut out by two knots at once even where the
-// first one alone gains little more per knot.
+// A split into k parts is worth its gain per knot, but not quite: with half a knot on top, a bright spot is cut
+// out by two knots at once even where the first one alone gains little more per knot.
 constexpr double kKnotOffset = 0.5;
 
-/// Sums over the rows and over the columns of a box.
-struct Projections {
-    std::vector<Moments> rows, columns;
-};
+/// For each axis of the grid, sums over the slices of a box across it.
+using Projections = std::array<std::vector<Moments>, ACDF_MAX_AXES>;
 
-void project(const Target& target, double total, const Box& box, Projections& out) {
-    const std::size_t width = box.column_end - box.column_begin;
-    out.rows.assign(box.row_end - box.row_begin, Moments{});
-    out.columns.assign(width, Moments{});
-    double column_measure = 0.0, row_measure = 0.0;
-    for (std::size_t c = 0; c < width; ++c) column_measure += target.column_measure[box.column_begin + c];
-    for (std::uint32_t r = box.row_begin; r < box.row_end; ++r) {
-        const float* row = target.row(r) + box.column_begin;
-        const double* measures = target.column_measure.data() + box.column_begin;
-        const double weight = target.row_measure[r];
-        Moments& sum = out.rows[r - box.row_begin];
-        for (std::size_t c = 0; c < width; ++c) {
-            const double f = row[c] / total;
-            const double flux = f * weight * measures[c], energy = f * flux;
-            out.columns[c].flux += flux;
-            out.columns[c].energy += energy;
-            sum.flux += flux;
-            sum.energy += energy;
+/// Calls `visit(offset, index)` for every line of the box along the last axis: where in `values` it begins, and
+/// its place on the other axes.
+template <class Visit>
+void for_each_line(const Grid& grid, const Box& box, const Visit& visit) {
+    const std::size_t last = grid.dimensions() - 1;
+    std::array<std::uint32_t, ACDF_MAX_AXES> index = box.begin;
+    for (;;) {
+        std::size_t offset = 0;
+        for (std::size_t axis = 0; axis <= last; ++axis) offset = offset * grid.shape[axis] + index[axis];
+        visit(offset, index);
+        std::size_t axis = last;
+        while (axis > 0 && ++index[axis - 1] == box.end[axis - 1]) {
+            index[axis - 1] = box.begin[axis - 1];
+            --axis;
         }
-        sum.measure = weight * column_measure;
-        row_measure += weight;
+        if (axis == 0) return;
     }
-    for (std::size_t c = 0; c < width; ++c)
-        out.columns[c].measure = row_measure * target.column_measure[box.column_begin + c];
+}
+
+/// The measure of a box on one axis.
+double extent(const Grid& grid, const Box& box, std::size_t axis) {
+    double sum = 0.0;
+    for (std::uint32_t i = box.begin[axis]; i < box.end[axis]; ++i) sum += grid.measure[axis][i];
+    return sum;
+}
+
+void set_measures(const Grid& grid, const Box& box, Projections& out) {
+    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis) {
+        double across = 1.0;
+        for (std::size_t other = 0; other < grid.dimensions(); ++other)
+            if (other != axis) across *= extent(grid, box, other);
+        out[axis].assign(box.length(axis), Moments{});
+        for (std::uint32_t i = 0; i < box.length(axis); ++i)
+            out[axis][i].measure = across * grid.measure[axis][box.begin[axis] + i];
+    }
+}
+
+void project(const Grid& grid, double total, const Box& box, Projections& out) {
+    set_measures(grid, box, out);
+    const std::size_t last = grid.dimensions() - 1, length = box.length(last);
+    const double* measures = grid.measure[last].data() + box.begin[last];
+    Moments* along = out[last].data();
+    for_each_line(grid, box, [&](std::size_t offset, const auto& index) {
+        double weight = 1.0;
+        for (std::size_t axis = 0; axis < last; ++axis) weight *= grid.measure[axis][index[axis]];
+        const float* values = grid.values + offset;
+        double line_flux = 0.0, line_energy = 0.0, line_peak = 0.0;
+        for (std::size_t i = 0; i < length; ++i) {
+            const double f = values[i] / total;
+            const double flux = f * weight * measures[i], energy = f * flux;
+            along[i].flux += flux;
+            along[i].energy += energy;
+            along[i].peak = f > along[i].peak ? f : along[i].peak;
+            line_flux += flux;
+            line_energy += energy;
+            line_peak = f > line_peak ? f : line_peak;
+        }
+        for (std::size_t axis = 0; axis < last; ++axis) {
+            Moments& slice = out[axis][index[axis] - box.begin[axis]];
+            slice.flux += line_flux;
+            slice.energy += line_energy;
+            slice.peak = line_peak > slice.peak ? line_peak : slice.peak;
+        }
+    });
 }
 
 /// A way to divide a box along one axis: where, and how much each knot gains.
@@ -54,8 +92,7 @@ struct Division {
     double gain_per_knot = -1.0;
 };
 
-/// Joins steps bottom-up to one part, then takes the number of parts whose gain
-/// per knot is largest.
+/// Joins steps bottom-up to one part, then takes the number of parts whose gain per knot is largest.
 Division divide(const std::vector<Moments>& steps, const Moments& whole) {
     Division division;
     if (steps.size() < 2) return division;
@@ -63,16 +100,15 @@ Division divide(const std::vector<Moments>& steps, const Moments& whole) {
     std::vector<double> alone(steps.size());
     double total = 0.0;
     for (std::size_t i = 0; i < steps.size(); ++i) total += alone[i] = steps[i].cost();
-    const auto joined = [&](std::size_t a, std::size_t b) {
-        Moments sum = sums[a];
-        sum.add(sums[b]);
-        return sum;
-    };
     std::vector<std::uint32_t> borders; // in the order in which they vanish
     std::vector<double> cost;           // the sum before that
     join_neighbours(
         steps.size(), steps.size() - 1,
-        [&](std::size_t a, std::size_t b) { return joined(a, b).cost() - alone[a] - alone[b]; },
+        [&](std::size_t a, std::size_t b) {
+            Moments sum = sums[a];
+            sum.add(sums[b]);
+            return sum.cost() - alone[a] - alone[b];
+        },
         [&](std::size_t a, std::size_t b, double raise) {
             borders.push_back(static_cast<std::uint32_t>(b));
             cost.push_back(total);
@@ -93,70 +129,93 @@ Division divide(const std::vector<Moments>& steps, const Moments& whole) {
     return division;
 }
 
-Box slice(const Box& box, Part::Split split, std::uint32_t begin, std::uint32_t end) {
-    Box out = box;
-    if (split == Part::Split::rows) {
-        out.row_begin = box.row_begin + begin;
-        out.row_end = box.row_begin + end;
-    } else {
-        out.column_begin = box.column_begin + begin;
-        out.column_end = box.column_begin + end;
-    }
-    return out;
+/// The axis whose division gains most a knot, or `forced` where that one can be divided at all.
+std::size_t best_axis(const std::vector<Division>& divisions, std::int8_t forced) {
+    if (forced != Part::whole && !divisions[static_cast<std::size_t>(forced)].cuts.empty())
+        return static_cast<std::size_t>(forced);
+    std::size_t best = 0;
+    for (std::size_t axis = 1; axis < divisions.size(); ++axis)
+        if (divisions[axis].gain_per_knot > divisions[best].gain_per_knot) best = axis;
+    return best;
 }
 
-/// The children of a part, by the better of the two axes, or along `forced`.
-std::vector<Part> split_part(const Target& target, double total, Part::Split forced, Part& part,
-                             Projections& scratch) {
-    project(target, total, part.box, scratch);
-    const Division by_rows = divide(scratch.rows, part.moments), by_columns = divide(scratch.columns, part.moments);
-    bool rows = by_rows.gain_per_knot >= by_columns.gain_per_knot;
-    if (forced == Part::Split::rows && !by_rows.cuts.empty()) rows = true;
-    if (forced == Part::Split::columns && !by_columns.cuts.empty()) rows = false;
-    part.split = rows ? Part::Split::rows : Part::Split::columns;
-    const std::vector<std::uint32_t>& cuts = rows ? by_rows.cuts : by_columns.cuts;
-    const std::vector<Moments>& steps = rows ? scratch.rows : scratch.columns;
+/// Divides a part and returns its children.
+std::vector<Part> split_part(const Grid& grid, double total, std::int8_t forced, Part& part, Projections& scratch) {
+    project(grid, total, part.box, scratch);
+    std::vector<Division> divisions;
+    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
+        divisions.push_back(divide(scratch[axis], part.moments));
+    const std::size_t axis = best_axis(divisions, forced);
+    part.split = static_cast<std::int8_t>(axis);
+    const std::vector<std::uint32_t>& cuts = divisions[axis].cuts;
     std::vector<Part> children;
     for (std::size_t k = 0; k <= cuts.size(); ++k) {
         const std::uint32_t begin = k == 0 ? 0 : cuts[k - 1];
-        const std::uint32_t end = k < cuts.size() ? cuts[k] : static_cast<std::uint32_t>(steps.size());
+        const std::uint32_t end = k < cuts.size() ? cuts[k] : part.box.length(axis);
         Part child;
-        child.box = slice(part.box, part.split, begin, end);
-        for (std::uint32_t i = begin; i < end; ++i) child.moments.add(steps[i]);
+        child.box = part.box;
+        child.box.begin[axis] = part.box.begin[axis] + begin;
+        child.box.end[axis] = part.box.begin[axis] + end;
+        child.depth = static_cast<std::uint8_t>(part.depth + 1);
+        for (std::uint32_t i = begin; i < end; ++i) child.moments.add(scratch[axis][i]);
         children.push_back(child);
     }
     return children;
+}
+
+bool divisible(const Grid& grid, const Part& part) {
+    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
+        if (part.box.length(axis) > 1) return part.depth <= ACDF_MAX_DEPTH;
+    return false;
 }
 
 } // namespace
 
 double Moments::cost() const { return std::sqrt(measure * energy); }
 
-Partition::Partition(const Target& target, double total, Part::Split first)
-    : target_(target), total_(total), first_(first) {
-    Part whole;
-    whole.box = {0, target.rows, 0, target.columns};
-    Projections projections;
-    project(target, total, whole.box, projections);
-    for (const Moments& row : projections.rows) whole.moments.add(row);
-    parts_.push_back(whole);
+double Moments::weight() const { return energy > 0.0 ? peak * std::sqrt(measure / energy) : 0.0; }
+
+double integral(const Grid& grid) {
+    Box all;
+    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis) all.end[axis] = grid.shape[axis];
+    const std::size_t last = grid.dimensions() - 1;
+    Sum total;
+    for_each_line(grid, all, [&](std::size_t offset, const auto& index) {
+        double weight = 1.0;
+        for (std::size_t axis = 0; axis < last; ++axis) weight *= grid.measure[axis][index[axis]];
+        Sum line;
+        for (std::size_t i = 0; i < grid.shape[last]; ++i)
+            line.add(grid.values[offset + i] * grid.measure[last][i]);
+        total.add(line.value() * weight);
+    });
+    return total.value();
 }
 
-void Partition::refine(double finest) {
-    // Level by level: the parts of a level are independent of each other.
+Partition::Partition(Grid grid, double total, std::int8_t first)
+    : grid_(std::move(grid)), total_(total), first_(first) {
+    Part everything;
+    everything.box.end.fill(1);
+    for (std::size_t axis = 0; axis < grid_.dimensions(); ++axis) everything.box.end[axis] = grid_.shape[axis];
+    Projections projections;
+    project(grid_, total, everything.box, projections);
+    for (const Moments& slice : projections[0]) everything.moments.add(slice);
+    parts_.push_back(everything);
+}
+
+void Partition::refine(double finest, double heaviest) {
     const auto open = [&](const Part& part) {
-        return part.split == Part::Split::none && part.box.texels() > 1 &&
-               part.moments.cost() - part.moments.flux > finest;
+        const bool worth = part.moments.cost() - part.moments.flux > finest || part.moments.weight() > heaviest;
+        return part.split == Part::whole && worth && divisible(grid_, part);
     };
-    std::vector<std::uint32_t> level;
+    std::vector<std::uint32_t> level; // parts of a level are independent of each other
     for (std::uint32_t i = 0; i < parts_.size(); ++i)
         if (open(parts_[i])) level.push_back(i);
     tbb::enumerable_thread_specific<Projections> scratch;
     while (!level.empty()) {
         std::vector<std::vector<Part>> children(level.size());
         tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t k) {
-            const Part::Split forced = level[k] == 0 ? first_ : Part::Split::none;
-            children[k] = split_part(target_, total_, forced, parts_[level[k]], scratch.local());
+            const std::int8_t forced = level[k] == 0 ? first_ : Part::whole;
+            children[k] = split_part(grid_, total_, forced, parts_[level[k]], scratch.local());
         });
         std::vector<std::uint32_t> next;
         for (std::size_t k = 0; k < level.size(); ++k) {

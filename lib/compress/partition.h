@@ -1,67 +1,75 @@
-// A partition of the target into boxes by repeated splits: the tree that the variance fit grows and prunes.
+// A partition of a grid into boxes by repeated splits: what the variance fit grows and prunes.
 #pragma once
 
 #include "compress/cascade.h"
-#include "compress/target.h"
+#include "compress/grid.h"
 
+#include <acdf/layout.h>
+
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace acdf::compress {
 
-/// Rows [row_begin, row_end) and columns [column_begin, column_end) of the target.
+/// Steps [begin, end) on each axis of the grid; axes that the grid lacks hold [0, 1).
 struct Box {
-    std::uint32_t row_begin = 0, row_end = 0, column_begin = 0, column_end = 0;
+    std::array<std::uint32_t, ACDF_MAX_AXES> begin{}, end{};
 
-    std::uint64_t texels() const { return std::uint64_t{row_end - row_begin} * (column_end - column_begin); }
+    std::uint32_t length(std::size_t axis) const { return end[axis] - begin[axis]; }
 };
 
-/// Integrals over a part of the target.
+/// Integrals over a part of the grid.
 struct Moments {
     double measure = 0.0;
     double energy = 0.0; ///< of f^2
     double flux = 0.0;   ///< of f
+    double peak = 0.0;   ///< the largest f
 
     void add(const Moments& other) {
         measure += other.measure;
         energy += other.energy;
         flux += other.flux;
+        peak = other.peak > peak ? other.peak : peak;
     }
     /// C: what the part adds to sqrt(E[(f/p)^2]) as one cell of the best constant density. At least `flux`,
     /// which is what it adds however finely it is divided.
     double cost() const;
+    /// The largest f/p of the part as one cell, relative to its best density: peak over root mean square.
+    double weight() const;
 };
 
 /// A box, and how it is divided: not at all, or along one axis into two parts or more.
 struct Part {
-    enum class Split : std::uint8_t { none, rows, columns };
+    static constexpr std::int8_t whole = -1;
 
     Box box;
     Moments moments;
-    Split split = Split::none;
+    std::int8_t split = whole;     ///< the axis of the grid along which it is divided
+    std::uint8_t depth = 1;        ///< curves on the way to its own, itself included
     std::uint32_t first_child = 0; ///< children lie side by side
     std::uint32_t children = 0;
 };
 
-/// Divides a target, normalised to an integral of 1. parts()[0] is everything; children come after their parents.
+/// Divides a grid, normalised to an integral of 1. parts()[0] is everything; children come after their parents.
 /// The same for any number of threads.
 class Partition {
 public:
-    /// `total` is the integral of the target, which must outlive this. `first` is the axis along which everything
-    /// is divided first, `none` to choose it as for any other part.
-    Partition(const Target& target, double total, Part::Split first = Part::Split::none);
+    /// `total` is the integral over the grid, > 0. `first` is the axis along which everything is divided first,
+    /// Part::whole to choose it as for any other part.
+    Partition(Grid grid, double total, std::int8_t first = Part::whole);
 
-    /// Divides on until no part is left whose cost could fall by more than `finest`. May be called again with a
-    /// smaller value; a part is divided in the same way whenever that happens.
-    void refine(double finest);
+    /// Divides on until no part is left whose cost could fall by more than `finest` or whose weight() is above
+    /// `heaviest`. May be called again with smaller values; a part is divided in the same way whenever that
+    /// happens.
+    void refine(double finest, double heaviest);
     const std::vector<Part>& parts() const { return parts_; }
-    const Target& target() const { return target_; }
+    const Grid& grid() const { return grid_; }
 
 private:
-    const Target& target_;
+    Grid grid_;
     double total_;
-    Part::Split first_;
+    std::int8_t first_;
     std::vector<Part> parts_;
 };
 

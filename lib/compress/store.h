@@ -48,10 +48,6 @@ struct EncodedTree {
 /// cascade breaks a limit of the format.
 EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8);
 
-/// The sum over cells of p^2/q for the cascade's probabilities p and the stored ones q: what rounding makes of
-/// E[(f/p)^2] where p is the best there is. At least 1. Infinite where q is 0 and p is not.
-double stored_excess(const Cascade& cascade, const EncodedTree& tree);
-
 /// The whole file. The same arguments give the same bytes. Metadata is never compressed: it is short, stays
 /// readable, and keeps its size whatever numbers it tells.
 std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description,

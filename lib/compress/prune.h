@@ -1,0 +1,48 @@
+// Pruning a partition at a price per byte, and turning what is left into curves.
+#pragma once
+
+#include "compress/cascade.h"
+#include "compress/partition.h"
+#include "compress/store.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace acdf::compress {
+
+// What a division is charged, in bytes: about what encode_tree makes of it.
+constexpr double kKnotBytes = 3.0;
+constexpr double kCurveBytes = 2.0; // header, and the link that leads to it
+constexpr double kLeastBytes = 2.5; // of any division: what could gain less at a price need not be grown for it
+
+/// A partition pruned at one price.
+struct Pruned {
+    std::vector<bool> divided;        ///< one a part: whether its division stays
+    std::vector<std::uint32_t> cells; ///< below each part
+};
+
+/// Keeps a division where it lowers the cost by more than `price` times its bytes, or where a cell would hold
+/// weights above `heaviest` without it.
+Pruned prune(const std::vector<Part>& parts, double price, double heaviest);
+
+/// The trees of all bins, and what belongs to their cells.
+struct Flattened {
+    Cascade cascade;
+    std::vector<std::vector<float>> weights; ///< for each curve one a segment: Moments::weight where it ends
+    std::vector<double> cost;                ///< one a bin: the sum of the costs of its cells
+};
+
+/// Appends the curves of a pruned partition as one bin. Divisions along the same axis become one curve.
+void flatten(const Partition& partition, const Pruned& pruned, Flattened& out);
+
+/// Appends a bin of one cell, for a grid without energy.
+void flatten_nothing(Flattened& out);
+
+/// What the rounding of probabilities makes of a bin.
+struct StoredQuality {
+    double excess = 1.0;     ///< the sum over cells of p^2/q for probabilities p and stored ones q; at least 1
+    double max_weight = 0.0; ///< the largest f/q over its mean
+};
+StoredQuality stored_quality(const Flattened& flat, std::size_t bin, const EncodedTree& tree);
+
+} // namespace acdf::compress
