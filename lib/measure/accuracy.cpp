@@ -2,7 +2,8 @@
 
 #include "compress/sum.h"
 #include "measure/cells.h"
-#include "measure/full_cdf.h"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,40 +56,39 @@ double range_measure(const AcdfRange& range, const std::vector<double>& measure)
     return sum.value();
 }
 
-/// Sums over cells; each adds the texels it covers.
-class Accumulator {
-public:
-    explicit Accumulator(const Target& target) : target_(target), total_(integral(target)) {
-        if (!(total_ > 0.0)) throw std::invalid_argument("a target without energy");
-    }
+/// Sums over cells. Each texel's terms are added to those of the cells before it.
+struct Sums {
+    Sum variance, square_error, kl;
+    double max_weight = 0.0;
+    std::uint64_t violations = 0;
 
-    void add(const Cell& cell) {
-        ++cells_;
+    void add(const Sums& other) {
+        variance.add(other.variance.value());
+        square_error.add(other.square_error.value());
+        kl.add(other.kl.value());
+        max_weight = std::max(max_weight, other.max_weight);
+        violations += other.violations;
+    }
+};
+
+/// One cell after the other, of a target whose integral is `total`.
+class CellSummer {
+public:
+    CellSummer(const Target& target, double total) : target_(target), total_(total) {}
+
+    void add(const Cell& cell, Sums& sums) {
         const AcdfRange &columns = cell.range[0], &rows = cell.range[1];
         const double density = cell.probability / (range_measure(columns, target_.column_measure) *
                                                    range_measure(rows, target_.row_measure));
         range_means(columns, target_.column_measure, column_means_);
         range_means(rows, target_.row_measure, row_means_);
-        for (std::uint32_t r = rows.low; r < rows.high; ++r) add_row(r, density, columns, row_means_[r - rows.low]);
-    }
-
-    Accuracy result() const {
-        Accuracy a;
-        a.total = total_;
-        a.cells = cells_;
-        a.support_violations = violations_;
-        // Around 1, so that a small variance keeps its digits: the mean of (f/p - 1)^2 under p.
-        a.relative_variance =
-            violations_ ? std::numeric_limits<double>::infinity() : std::max(0.0, variance_.value());
-        a.kl_divergence = violations_ ? std::numeric_limits<double>::infinity() : std::max(0.0, kl_.value());
-        a.rms_pdf_error = std::sqrt(std::max(0.0, square_error_.value()) / (4.0 * ACDF_PI));
-        a.max_weight = violations_ ? std::numeric_limits<double>::infinity() : max_weight_;
-        a.relative_variance_full_cdf = full_cdf_relative_variance(target_);
-        return a;
+        for (std::uint32_t r = rows.low; r < rows.high; ++r)
+            add_row(r, density, columns, row_means_[r - rows.low], sums);
     }
 
 private:
-    void add_row(std::uint32_t r, double density, const AcdfRange& columns, const StepMeans& row) {
+    void add_row(std::uint32_t r, double density, const AcdfRange& columns, const StepMeans& row,
+                 Sums& sums) const {
         const float* values = target_.row(r);
         for (std::uint32_t c = columns.low; c < columns.high; ++c) {
             const StepMeans& column = column_means_[c - columns.low];
@@ -96,17 +96,18 @@ private:
             const double measure = target_.row_measure[r] * target_.column_measure[c];
             const double p = density * column.g * row.g;
             const double p_square = density * density * column.square * row.square;
-            square_error_.add(measure * (p_square - 2.0 * p * f + f * f));
+            sums.square_error.add(measure * (p_square - 2.0 * p * f + f * f));
             if (!(density > 0.0)) {
-                violations_ += f > 0.0;
+                sums.violations += f > 0.0;
                 continue;
             }
-            // (f/p - 1)^2 p = f^2/p - 2f + p, in means over the texel.
+            // The mean of (f/p - 1)^2 under p, so that a small variance keeps its digits: f^2/p - 2f + p.
             const double reciprocal = column.reciprocal * row.reciprocal / density;
-            variance_.add(measure * (flat(column, row) ? (f - p) * (f - p) / p : f * f * reciprocal - 2.0 * f + p));
+            sums.variance.add(measure *
+                              (flat(column, row) ? (f - p) * (f - p) / p : f * f * reciprocal - 2.0 * f + p));
             if (!(f > 0.0)) continue;
-            kl_.add(measure * (f * (std::log(f / density) - column.logarithm - row.logarithm)));
-            max_weight_ = std::max(max_weight_, f / (density * column.smallest * row.smallest));
+            sums.kl.add(measure * (f * (std::log(f / density) - column.logarithm - row.logarithm)));
+            sums.max_weight = std::max(sums.max_weight, f / (density * column.smallest * row.smallest));
         }
     }
 
@@ -114,11 +115,43 @@ private:
 
     const Target& target_;
     double total_;
-    Sum variance_, square_error_, kl_;
-    double max_weight_ = 0.0;
-    std::uint64_t violations_ = 0, cells_ = 0;
     std::vector<StepMeans> column_means_, row_means_;
 };
+
+/// The cells in the order of the tree, and the first of each run that is summed at once.
+struct Work {
+    std::vector<Cell> cells;
+    std::vector<std::size_t> begin;
+};
+
+/// Runs of about the same number of texels; they do not depend on the number of threads, nor does the result.
+Work divide(const File& file) {
+    constexpr std::uint64_t kTexels = 1 << 17;
+    Work work;
+    std::uint64_t texels = kTexels;
+    for_each_cell(file, file.bin(0).root, [&](const Cell& cell) {
+        if (texels >= kTexels) {
+            work.begin.push_back(work.cells.size());
+            texels = 0;
+        }
+        const AcdfRange &columns = cell.range[0], &rows = cell.range[1];
+        texels += std::uint64_t{columns.high - columns.low} * (rows.high - rows.low);
+        work.cells.push_back(cell);
+    });
+    work.begin.push_back(work.cells.size());
+    return work;
+}
+
+Sums sum_all(const Work& work, const Target& target, double total) {
+    std::vector<Sums> parts(work.begin.size() - 1);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
+        CellSummer summer(target, total);
+        for (std::size_t i = work.begin[k]; i < work.begin[k + 1]; ++i) summer.add(work.cells[i], parts[k]);
+    });
+    Sums sums;
+    for (const Sums& part : parts) sums.add(part);
+    return sums;
+}
 
 } // namespace
 
@@ -126,9 +159,19 @@ Accuracy measure_environment(const File& file, const Target& target) {
     if (file.axis(ACDF_AXIS_PHI).resolution != target.columns ||
         file.axis(ACDF_AXIS_THETA).resolution != target.rows)
         throw std::invalid_argument("the file was made from another resolution");
-    Accumulator sums(target);
-    for_each_cell(file, file.bin(0).root, [&](const Cell& cell) { sums.add(cell); });
-    return sums.result();
+    Accuracy a;
+    a.total = integral(target);
+    if (!(a.total > 0.0)) throw std::invalid_argument("a target without energy");
+    const Work work = divide(file);
+    const Sums sums = sum_all(work, target, a.total);
+    a.cells = work.cells.size();
+    a.support_violations = sums.violations;
+    a.rms_pdf_error = std::sqrt(std::max(0.0, sums.square_error.value()) / (4.0 * ACDF_PI));
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    a.relative_variance = sums.violations > 0 ? kInfinite : std::max(0.0, sums.variance.value());
+    a.kl_divergence = sums.violations > 0 ? kInfinite : std::max(0.0, sums.kl.value());
+    a.max_weight = sums.violations > 0 ? kInfinite : sums.max_weight;
+    return a;
 }
 
 } // namespace acdf::measure

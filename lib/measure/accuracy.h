@@ -13,8 +13,6 @@ namespace acdf::measure {
 struct Accuracy {
     /// Variance of one sample of the estimator f/p, over (integral of f)^2. Infinite with a support violation.
     double relative_variance = 0.0;
-    /// The same for the full-resolution table of marginal and conditional CDFs.
-    double relative_variance_full_cdf = 0.0;
     double rms_pdf_error = 0.0;           ///< sqrt of the mean over the sphere of (p - p*)^2, sr^-1
     double kl_divergence = 0.0;           ///< integral of p* ln(p*/p), nats
     double max_weight = 0.0;              ///< largest f/p over its mean
