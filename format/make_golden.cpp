@@ -32,9 +32,8 @@ struct Golden {
 
 constexpr std::uint32_t kPhi = ACDF_AXIS_PHI, kTheta = ACDF_AXIS_THETA;
 
-Golden golden(const char* name, const Cascade& cascade, const Description& description,
-              AcdfCodec codec = ACDF_CODEC_NONE) {
-    return {name, store(encode_tree(cascade), description, codec)};
+Golden golden(const char* name, const Cascade& cascade, const Description& description, double price = 1e-8) {
+    return {name, store(encode_tree(cascade, price), description)};
 }
 
 /// One cell: the whole sphere.
@@ -60,7 +59,7 @@ Target integer_target(std::uint32_t columns, std::uint32_t rows) {
             const std::uint32_t noise = (c * 7 + r * 13 + c * r * 3) % 11;
             rgb.insert(rgb.end(), {float(noise), float(c), c == 9 && r == 2 ? 500.0f : float(r * r)});
         }
-    return environment_target(rgb.data(), columns, rows, {0.25, 0.5, 0.25});
+    return environment_target(rgb.data(), columns, rows, ChannelWeights{0.25, 0.5, 0.25});
 }
 
 Golden fitted(const char* name, AcdfFit fit_kind, Order order, AcdfCodec codec) {
@@ -68,7 +67,8 @@ Golden fitted(const char* name, AcdfFit fit_kind, Order order, AcdfCodec codec) 
     FitOptions options;
     options.fit = fit_kind;
     options.order = order;
-    options.cells = 24;
+    options.shape = Shape::cascade;
+    options.goal.cells = 24;
     options.column_segments = 6;
     options.row_segments = 4;
     Description description = environment_description(12, 7);
@@ -77,7 +77,7 @@ Golden fitted(const char* name, AcdfFit fit_kind, Order order, AcdfCodec codec) 
     description.channel_weights[0] = description.channel_weights[2] = 0.25;
     description.channel_weights[1] = 0.5;
     description.metadata = {{"generator", "make_golden"}, {"note", "a target of small integers, 12 x 7"}};
-    return golden(name, fit(target, options), description, codec);
+    return {name, store(fit(target, options).tree, description, codec)};
 }
 
 /// Densities that are linear across a segment, on either axis and on both.
@@ -117,7 +117,24 @@ Golden wide() {
     const Cascade cascade = {{{kTheta, {30000, 50001}, {1e-6, 0.5, 0.499999}, {-1, 1, -1}, {}},
                               {kPhi, {5, 32768, 65535}, {1e-7, 0.25, 0.5, 0.2499999}, {}, {}}},
                              {0}};
-    return golden("wide", cascade, environment_description(65536, 65536));
+    return golden("wide", cascade, environment_description(65536, 65536), 0.0);
+}
+
+/// More segments than the short form of a count holds, and a child behind them that takes a longer link.
+Golden many_segments() {
+    Curve many{kPhi, {}, {}, {}, {}};
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < 150; ++i) {
+        if (i > 0) many.knots.push_back(2 * i + i % 2);
+        many.probability.push_back(double(1 + i * i % 17));
+        sum += many.probability.back();
+    }
+    for (double& p : many.probability) p /= sum;
+    const Cascade cascade = {{{kTheta, {3, 5}, {0.5, 0.125, 0.375}, {1, -1, 2}, {}},
+                              std::move(many),
+                              {kPhi, {10, 290}, {0.25, 0.25, 0.5}, {}, {}}},
+                             {0}};
+    return golden("many_segments", cascade, environment_description(301, 9));
 }
 
 // ---- samples --------------------------------------------------------------------------------------------
@@ -168,7 +185,8 @@ int main(int argc, char** argv) try {
     const std::string folder = std::string(argv[1]) + "/";
     for (const Golden& golden :
          {smallest(), one_texel(), fitted("untilted", ACDF_FIT_VARIANCE, Order::z, ACDF_CODEC_NONE),
-          fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB), tilted(), deep(), shared_child(), wide()}) {
+          fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB), tilted(), deep(), shared_child(), wide(),
+          many_segments()}) {
         const std::string text = samples(golden);
         write(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
         write(folder + golden.name + ".txt", text.data(), text.size());

@@ -1,9 +1,11 @@
 // The table of docs/conventions.md, read from the page itself and checked against each program's own formula
-// for where a direction lies in its lat-long image.
+// for where a direction lies in its lat-long image; and OpenImageIO's reading of angular maps.
 #include "input/projection.h"
-#include "input_reference.h"
+#include "input_write.h"
 
 #include <OpenEXR/ImfEnvmap.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -113,6 +115,44 @@ TEST(InputConventions, OpenExrsLibraryAgrees) {
         const Uv uv = openexr(d);
         ASSERT_NEAR(pixel.x, uv.u, 1e-5);
         ASSERT_NEAR(pixel.y, uv.v, 1e-5);
+    }
+}
+
+// The lat-long image that maketx --lightprobe makes of an angular map, at the resolution of ours.
+std::vector<float> maketx_lightprobe(const Folder& folder, const Pixels& ball) {
+    const OIIO::ImageBuf buffer(rgb_spec(ball), const_cast<float*>(ball.rgb.data()));
+    const std::string path = folder.file("maketx.tx");
+    EXPECT_TRUE(OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxEnvLatlFromLightProbe, buffer, path,
+                                                 OIIO::ImageSpec()))
+        << OIIO::geterror();
+    const OIIO::ImageBuf latlong(path);
+    EXPECT_EQ(latlong.spec().width, ball.width);
+    EXPECT_EQ(latlong.spec().height, ball.width / 2);
+    std::vector<float> rgb(3 * static_cast<std::size_t>(ball.width * ball.width / 2));
+    EXPECT_TRUE(latlong.get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, rgb.data())) << latlong.geterror();
+    return rgb;
+}
+
+// Three patches, one in each channel: right of the middle, low on the left and behind, high up a little left.
+TEST(InputConventions, AngularMapsAreMaketxsLightProbes) {
+    const int n = 128, width = 6, patches[3][2] = {{88, 58}, {18, 88}, {46, 28}}; // corner: x, y
+    Pixels ball{n, n, std::vector<float>(3 * n * n, 0.0f)};
+    for (std::size_t c = 0; c < 3; ++c)
+        for (int y = 0; y < width; ++y)
+            for (int x = 0; x < width; ++x) ball.at(patches[c][0] + x, patches[c][1] + y)[c] = 1.0f;
+    const Folder folder;
+    const std::vector<float> theirs = maketx_lightprobe(folder, ball);
+    write_rgb(folder.file("ball.exr"), ball);
+    acdf::input::ProbeOptions options;
+    options.projection = acdf::input::Projection::angular;
+    const acdf::input::Probe ours = acdf::input::read_probe(folder.file("ball.exr"), options);
+    ASSERT_EQ(ours.width, n);
+    for (int c = 0; c < 3; ++c) {
+        const Vec a = mean_direction(n, ours.rgb, c), b = mean_direction(n, theirs, c);
+        EXPECT_LT(length(a - b), 0.5 * 2.0 * pi / n) << "channel " << c; // half a texel
+        EXPECT_GT(length(a - Vec{b.x, -b.y, b.z}), 0.3) << "channel " << c << " does not tell left from right";
+        EXPECT_NEAR(latlong_integral(n, n / 2, ours.rgb, c) / latlong_integral(n, n / 2, theirs, c), 1.0, 0.05)
+            << "channel " << c;
     }
 }
 

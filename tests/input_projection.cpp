@@ -55,9 +55,9 @@ TEST(InputProjection, GoldenLatlong) {
 TEST(InputProjection, GoldenAngular) {
     const Map map{Layout::angular, 8, 8};
     expect_shows(map, 0.5, 0.5, {1, 0, 0}, "centre");
-    expect_shows(map, 0.75, 0.5, {0, -1, 0}, "half way to the right: 90 degrees right");
+    expect_shows(map, 0.75, 0.5, {0, 1, 0}, "half way to the right: 90 degrees left, mirrored as in the ball");
     expect_shows(map, 0.5, 0.25, {0, 0, 1}, "half way up: zenith");
-    expect_shows(map, 0.375, 0.5, {1, 1, 0}, "a quarter to the left: 45 degrees left");
+    expect_shows(map, 0.375, 0.5, {1, -1, 0}, "a quarter to the left: 45 degrees right");
     expect_shows(map, 0.5, 0.875, {-1, 0, -1}, "three quarters down: 135 degrees, behind and below");
     Direction d;
     EXPECT_FALSE(to_direction(map, 0.01, 0.01, d));
@@ -117,6 +117,37 @@ TEST(InputProjection, AgreesWithReferences) {
             ASSERT_LT(length(vec(d) - expected), 1e-9) << c.name << " at " << u << " " << v;
         }
         EXPECT_GT(shown, 5000) << c.name;
+    }
+}
+
+// Both of Debevec's formulas say the same: the references agree with each other and with the library.
+TEST(InputProjection, AngularAgreesWithBothPublishedFormulas) {
+    std::mt19937 random(13);
+    std::uniform_real_distribution<double> uniform;
+    for (int i = 0; i < 5000; ++i) {
+        const double u = uniform(random), v = uniform(random);
+        Vec d;
+        if (!angular_reference(u, v, d)) continue;
+        double back_u, back_v;
+        angular_reference_point(d, back_u, back_v);
+        ASSERT_NEAR(back_u, u, 1e-7);
+        ASSERT_NEAR(back_v, v, 1e-7);
+        const ImagePoint p = to_image({Layout::angular, 2, 2}, direction(d));
+        ASSERT_NEAR(p.u, back_u, 1e-7);
+        ASSERT_NEAR(p.v, back_v, 1e-7);
+    }
+}
+
+// Both discs are photographs of a ball: they differ by a radial stretch, nothing is turned or mirrored.
+TEST(InputProjection, DiscsShowADirectionOnTheSameSide) {
+    std::mt19937 random(19);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 5000; ++i) {
+        const Direction d = direction(normalized({normal(random), normal(random), normal(random)}));
+        const ImagePoint angular = to_image({Layout::angular, 2, 2}, d),
+                         ball = to_image({Layout::mirrorball, 2, 2}, d);
+        const double angle = std::atan2(0.5 - angular.v, angular.u - 0.5);
+        ASSERT_NEAR(std::remainder(angle - std::atan2(0.5 - ball.v, ball.u - 0.5), 2.0 * pi), 0.0, 1e-9);
     }
 }
 

@@ -30,7 +30,7 @@ inline Vec rotated(Vec v, Vec axis, double angle) {
     return std::cos(angle) * v + std::sin(angle) * cross(axis, v) + (1.0 - std::cos(angle)) * dot(axis, v) * axis;
 }
 
-// Debevec's frame has x right, y up and looks along -z; ours looks along +x, with y left and z up.
+// Debevec's frame has x right, y up and -z ahead; ours has +x ahead, y left and z up.
 inline Vec from_debevec(Vec d) { return {-d.z, -d.x, d.y}; }
 
 // The direction a layout shows at (u, v), u right and v down in [0, 1]; false where it shows nothing.
@@ -42,15 +42,23 @@ inline bool latlong_reference(double u, double v, Vec& d) {
     return true;
 }
 
-// Light Probe Image Gallery: (0, 0, -1), turned by phi = pi r about y (up), then by atan2(v, u) about -z, such that
-// the right of the image is the viewer's right.
+// Light Probe Image Gallery, to the letter: (0, 0, -1), turned by phi = pi r about y (up), then by atan2(b, a)
+// about -z (ahead), both counterclockwise about their axis.
 inline bool angular_reference(double u, double v, Vec& d) {
     const double a = 2.0 * u - 1.0, b = 1.0 - 2.0 * v, r = std::sqrt(a * a + b * b);
     if (r > 1.0) return false;
-    // To the right, +x, that is clockwise about y; then counterclockwise as seen when looking along -z.
-    const Vec tilted = rotated({0, 0, -1}, {0, 1, 0}, -pi * r);
-    d = from_debevec(rotated(tilted, {0, 0, 1}, std::atan2(b, a)));
+    const Vec tilted = rotated({0, 0, -1}, {0, 1, 0}, pi * r);
+    d = from_debevec(rotated(tilted, {0, 0, -1}, std::atan2(b, a)));
     return true;
+}
+
+// The same page's inverse, with +z in the centre: (a, b) = r (Dx, Dy), r = acos(Dz) / (pi sqrt(Dx^2 + Dy^2)). In a
+// right-handed frame with y up, +x is then on the left of who looks at +z.
+inline void angular_reference_point(Vec d, double& u, double& v) {
+    const Vec debevec{d.y, d.z, d.x};
+    const double r = std::acos(debevec.z) / (pi * std::hypot(debevec.x, debevec.y));
+    u = 0.5 + 0.5 * r * debevec.x;
+    v = 0.5 - 0.5 * r * debevec.y;
 }
 
 // A photographer at +x looks along -x at a mirror ball; up is z, so the picture's right is +y.
@@ -189,6 +197,21 @@ inline double latlong_integral(int width, int height, const std::vector<float>& 
         sum += row * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height)) * 2.0 * pi / width;
     }
     return sum;
+}
+
+// Where the light of a channel comes from, on average.
+inline Vec mean_direction(int width, const std::vector<float>& rgb, int channel) {
+    const int height = width / 2;
+    Vec mean;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float v = rgb[3 * static_cast<std::size_t>(y * width + x) + static_cast<std::size_t>(channel)];
+            if (v == 0.0f) continue;
+            Vec d;
+            latlong_reference((x + 0.5) / width, (y + 0.5) / height, d);
+            mean = mean + static_cast<double>(v) * std::sin(pi * (y + 0.5) / height) * d;
+        }
+    return normalized(mean);
 }
 
 } // namespace acdf::test

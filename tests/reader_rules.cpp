@@ -70,6 +70,46 @@ std::function<Bytes()> with_tree(std::function<void(std::vector<CurveSpec>&)> ch
         return spec.encode();
     };
 }
+// And then one number of TREE.
+std::function<Bytes()> with_tree(std::function<void(std::vector<CurveSpec>&)> change, std::size_t at, int size,
+                                 std::uint64_t value) {
+    return [=] {
+        Bytes file = with_tree(change)();
+        set(file, payload_of(file, "TREE") + at, size, value);
+        seal(file);
+        return file;
+    };
+}
+
+// Curve 1 of the complete file with its number of segments in the long form.
+std::function<Bytes()> long_count(std::uint64_t segments) {
+    return payload_field("TREE", 12, 6, segments << 16 | 0x1D1);
+}
+
+// A curve of two segments with positions of two bytes.
+CurveSpec split(std::uint32_t axis, const std::vector<std::uint32_t>& positions) {
+    CurveSpec curve = even_curve(axis, positions);
+    curve.tilts = {1, 2};
+    return curve;
+}
+
+// One path leads to curve 2, which splits [3, 6] at 3 + step.
+std::function<Bytes()> one_byte_below_3_to_6(std::uint32_t step) {
+    return with_tree([step](std::vector<CurveSpec>& curves) {
+        curves[1].children = {-1, -1};
+        curves[2] = split(0, {3 + step});
+        curves[2].position_bytes = 1;
+        curves[2].origin = 3;
+    });
+}
+
+std::function<Bytes()> curves_of_two_bytes(std::size_t count) {
+    return [count] {
+        EnvironmentSpec spec;
+        spec.tree.curves.assign(count, CurveSpec());
+        return spec.encode();
+    };
+}
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -208,7 +248,7 @@ std::vector<Case> description_cases() {
              file.chunks[1].raw.clear();
              return file.encode();
          }},
-        {5008, "description", payload_field("DESC", 28, 4, 1)},
+        {5019, "three", payload_field("DESC", 28, 4, 3)},
         {5008, "axis", payload_field("DESC", 64 + 28, 4, 1)},
         {5009, "negative", payload_double("DESC", 32, -1e-300)},
         {5009, "infinite", payload_double("DESC", 48, infinity)},
@@ -249,78 +289,102 @@ std::vector<Case> description_cases() {
 std::vector<Case> tree_cases() {
     return {
         {6001, "empty", rebuilt([](FileSpec& f) { f.chunks[2].raw.clear(); })},
-        {6001, "half_a_word", rebuilt([](FileSpec& f) { f.chunks[2].raw.resize(50); })},
-        {6002, "segments", payload_field("TREE", 40, 4, 2 << 12 | 0x100)},
-        {6002, "all_segments", payload_field("TREE", 40, 4, 0xFFFFF1B0)},
-        {6003, "five", payload_field("TREE", 40, 4, 1 << 12 | 0x105)},
+        {6001, "half_a_unit", rebuilt([](FileSpec& f) { f.chunks[2].raw.resize(35); })},
+        {6002, "segments", payload_field("TREE", 32, 2, 2 << 10 | 0x200)},
+        {6002, "last_byte", payload_field("TREE", 32, 2, 3 << 10)},
+        {6002, "all_segments", payload_field("TREE", 12, 6, std::uint64_t{0xFFFFF} << 16 | 0x1D1)},
+        {6003, "five", payload_field("TREE", 32, 2, 1 << 10 | 0x205)},
         {6003, "indexed",
          [] {
              Bytes file = local_file().encode();
-             set(file, payload_of(file, "TREE") + 40, 4, 1 << 12 | 0x102);
+             set(file, payload_of(file, "TREE") + 32, 2, 1 << 10 | 0x202);
              seal(file);
              return file;
          }},
-        {6004, "bit_9", payload_field("TREE", 40, 4, 1 << 12 | 0x300)},
-        {6004, "bit_11", payload_field("TREE", 40, 4, 1 << 12 | 0x900)},
-        {6004, "links_3", payload_field("TREE", 40, 4, 1 << 12 | 0x1C0)},
-        {6005, "zero", payload_field("TREE", 40, 4, 0x100)},
-        {6006, "equal", payload_field("TREE", 10, 2, 3)},
-        {6006, "falling", payload_field("TREE", 10, 2, 2)},
-        {6007, "at_zero", payload_field("TREE", 8, 2, 0)},
-        {6007, "at_the_end", payload_field("TREE", 10, 2, 8)},
+        {6004, "cumulative_3", payload_field("TREE", 32, 2, 1 << 10 | 0x218)},
+        {6004, "positions_3", payload_field("TREE", 32, 2, 1 << 10 | 0x260)},
+        {6004, "both_3_and_no_count", payload_field("TREE", 32, 2, 0x278)},
+        {6005, "zero", long_count(0)},
+        {6005, "short_in_long_form", long_count(63)},
+        {6005, "too_many", long_count(1048576)},
+        {6005, "most", long_count(0xFFFFFFFF)},
+        {6005, "count_missing", payload_field("TREE", 32, 2, 0x200)},
+        {6005, "count_cut", // the last curve starts at the last unit
+         with_tree([](std::vector<CurveSpec>& curves) { curves[2].tilts.clear(); }, 32, 2, 0)},
+        {6006, "equal", payload_field("TREE", 7, 1, 3)},
+        {6006, "falling", payload_field("TREE", 7, 1, 2)},
+        {6007, "at_zero", payload_field("TREE", 6, 1, 0)},
+        {6007, "at_the_end", payload_field("TREE", 7, 1, 8)},
         {6007, "second_path", // inside [3, 6], where segment 1 leads, but not in [0, 3]
-         with_tree([](std::vector<CurveSpec>& curves) {
-             curves[2].positions = {4};
-             curves[2].cumulative = {1};
-             curves[2].tilts = {1, 2};
-         })},
+         with_tree([](std::vector<CurveSpec>& curves) { curves[2] = split(0, {4}); })},
         {6007, "first_path", // the other way round
-         with_tree([](std::vector<CurveSpec>& curves) {
-             curves[2].positions = {2};
-             curves[2].cumulative = {1};
-             curves[2].tilts = {1, 2};
-         })},
+         with_tree([](std::vector<CurveSpec>& curves) { curves[2] = split(0, {2}); })},
         {6007, "through_another_axis", // theta lies in [2, 8] below segment 1 of curve 1
+         with_tree([](std::vector<CurveSpec>& curves) { curves[2] = split(1, {2}); })},
+        {6007, "wide", // whose sum with what is inherited would wrap
          with_tree([](std::vector<CurveSpec>& curves) {
-             curves[2].axis = 1;
-             curves[2].positions = {2};
-             curves[2].cumulative = {1};
-             curves[2].tilts = {1, 2};
+             curves[2] = split(0, {0xFFFFFFFF});
+             curves[2].position_bytes = 4;
          })},
-        {6008, "falling", payload_field("TREE", 6, 2, 19999)},
-        {6009, "inside_a_curve", payload_field("TREE", 12, 2, 6)},
-        {6009, "beyond_the_tree", payload_field("TREE", 12, 2, 12)},
-        {6009, "far_beyond_the_tree", payload_field("TREE", 36, 4, 0xFFFFFFFF)},
+        {6007, "one_byte_at_the_low_end", one_byte_below_3_to_6(0)},
+        {6007, "one_byte_at_the_high_end", one_byte_below_3_to_6(3)},
+        {6007, "one_byte_beyond", one_byte_below_3_to_6(255)},
+        {6008, "falling", payload_field("TREE", 4, 2, 19999)},
+        {6009, "inside_a_curve", payload_field("TREE", 8, 1, 7)},
+        {6009, "beyond_the_tree", payload_field("TREE", 8, 1, 18)},
+        {6009, "far_beyond_the_tree", payload_field("TREE", 28, 4, 0xFFFFFFFF)},
         {6010, "inside_a_curve", payload_field("BINS", 0, 4, 1)},
         {6010, "beyond_the_tree", payload_field("BINS", 0, 4, 0xFFFFFFFF)},
-        {6011, "after_the_curve", payload_field("TREE", 18, 1, 1)},
+        {6011, "after_the_curve", payload_field("TREE", 11, 1, 1)},
+        {6011, "before_the_first_array", payload_field("TREE", 15, 1, 1)},
+        {6011, "before_the_tilts",
+         with_tree([](std::vector<CurveSpec>& curves) { curves[0].tilts = {0, 0, 0}; }, 11, 1, 1)},
         {6011, "between_arrays",
-         [] {
-             EnvironmentSpec spec = complete_environment();
-             CurveSpec& root = spec.tree.curves[0];
-             root.wide_positions = true; // behind 3 values of 2 bytes
-             root.positions = {2, 4, 6};
-             root.cumulative = {20000, 40000, 50000};
-             root.children.push_back(-1);
-             Bytes file = spec.encode();
-             file[payload_of(file, "TREE") + 4 + 3 * 2] = 1;
-             seal(file);
-             return file;
-         }},
+         with_tree(
+             [](std::vector<CurveSpec>& curves) {
+                 curves[0] = even_curve(0, {2, 4, 6}); // 3 values of 2 bytes, then one of 4
+                 curves[0].cumulative_bytes = 1;
+                 curves[0].cumulative = {80, 160, 200};
+                 curves[0].link_bytes = 1;
+                 curves[0].children = {1, 2, -1, -1};
+             },
+             5, 1, 1)},
         {6012, "last", with_tree([](std::vector<CurveSpec>& curves) { curves.push_back(even_curve(1, {4})); })},
-        {6013, "least", payload_field("TREE", 44, 2, 0x8000)},
+        {6013, "least", payload_field("TREE", 34, 2, 0x8000)},
         {6014, "grandchild", with_tree([](std::vector<CurveSpec>& curves) {
              curves[0].tilts = {5, 0, 0};
          })},
         {6014, "child", with_tree([](std::vector<CurveSpec>& curves) {
              curves[0].tilts = {0, -5, 0};
          })},
-        {6015, "first", payload_field("TREE", 4, 2, 0)},
-        {6015, "middle", payload_field("TREE", 6, 2, 20000)},
+        {6015, "first", payload_field("TREE", 2, 2, 0)},
+        {6015, "middle", payload_field("TREE", 4, 2, 20000)},
         {6016, "chain", [] { return chain(65).encode(); }},
         {6016, "long_chain", [] { return chain(200).encode(); }},
         {6017, "negative", payload_field("BINS", 4, 4, 0xBF800000)},
         {6017, "nan", payload_field("BINS", 4, 4, 0x7FC00000)},
+        {6018, "three_in_six_bytes", curves_of_two_bytes(3)},
+        {6018, "many", curves_of_two_bytes(100000)},
+        {6019, "two_parents", // ranges [3, 6] and [0, 3]: one step in is inside both
+         with_tree([](std::vector<CurveSpec>& curves) {
+             curves[2] = split(0, {1});
+             curves[2].position_bytes = 1;
+         })},
+        {6019, "through_a_curve_between", // of one segment, which inherits both ranges
+         with_tree([](std::vector<CurveSpec>& curves) {
+             curves[2] = CurveSpec();
+             curves[2].link_bytes = 1;
+             curves[2].children = {3};
+             curves.push_back(split(0, {1}));
+             curves.back().position_bytes = 1;
+         })},
+        {6019, "two_segments", // of one parent
+         with_tree([](std::vector<CurveSpec>& curves) {
+             curves[0].children = {1, 2, 2};
+             curves[1].children = {-1, -1};
+             curves[2] = split(0, {1});
+             curves[2].position_bytes = 1;
+         })},
         {7001, "one_axis",
          [] {
              EnvironmentSpec spec = chain(1);
@@ -423,8 +487,8 @@ TEST(Validate, reportsAllFindings) {
     Bytes file = complete_file().encode();
     set(file, 28, 4, 5);                                 // two feature bits
     set(file, payload_of(file, "DESC") + 56, 8, 0);      // total 0
-    set(file, payload_of(file, "TREE") + 44, 2, 0x8000); // tilt
-    set(file, payload_of(file, "TREE") + 18, 1, 7);      // curve padding
+    set(file, payload_of(file, "TREE") + 34, 2, 0x8000); // tilt
+    set(file, payload_of(file, "TREE") + 11, 1, 7);      // curve padding
     file.back() = 1;                                     // file padding
     seal(file);
     const Findings found = findings(file);

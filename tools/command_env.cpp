@@ -53,6 +53,7 @@ constexpr OnlyFor only_for[] = {
     {"--budget", false, false, false, true, "is for --fit variance; use --knots with the other fits"},
     {"--target-variance", false, false, false, true,
      "is for --fit variance; use --eps or --knots with the other fits"},
+    {"--max-weight", false, false, false, true, "is for --fit variance"},
     {"--shape", false, false, false, true, "is for --fit variance; the other fits have two levels"},
     {"--knots", true, true, true, false, "is for --fit uniform, cdf and pdf; use --cells or --budget"},
     {"--conditional", true, true, true, false, "is for --fit uniform, cdf and pdf"},
@@ -80,6 +81,8 @@ void set_goal(const Options& options, compress::FitOptions& fit) {
     const bool only_cells = fit.shape == compress::Shape::cascade;
     if (only_cells && goals > 0 && !options.given("--cells"))
         throw CLI::ValidationError("--shape cascade", "is sized by --cells");
+    if (only_cells && options.given("--max-weight"))
+        throw CLI::ValidationError("--max-weight", "is for --shape tree");
     if (options.given("--target-variance")) fit.goal.kind = compress::Goal::Kind::variance;
     if (!options.given("--budget")) return;
     const auto bytes = parse_size(options.budget);
@@ -121,6 +124,7 @@ nlohmann::ordered_json report(const Options& options, const input::Probe& probe,
             {"cells", a.cells},
             {"total", a.total},
             {"relative_variance", a.relative_variance},
+            {"least_variance", a.least_variance},
             {"rms_pdf_error", a.rms_pdf_error},
             {"kl_divergence", a.kl_divergence},
             {"max_weight", a.max_weight},
@@ -142,7 +146,7 @@ void run(Options& options) {
     Output output(options.output, options.force, {options.probe}); // refuses early, before the work
 
     input::Probe probe = load_probe(options.probe, options.input, options.quiet);
-    const compress::Target target = luminance_target(options.probe, probe);
+    const compress::Target target = probe_target(options.probe, probe, options.environment.target);
     probe.rgb = {}; // the target is all that is needed from here
     Environment result;
     {
@@ -225,6 +229,13 @@ void add_fit_options(CLI::App& command, Options& options) {
         ->option_text("V")
         ->group("Size and accuracy");
     command
+        .add_option("--max-weight", fit.max_weight,
+                    "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "
+                    "cells. It holds for whatever size is asked for, and fails where that is too small")
+        ->check(CLI::Range(1.01, 1e9))
+        ->option_text("W")
+        ->group("Size and accuracy");
+    command
         .add_option(
             "--knots", options.knots,
             "Segments of a curve over phi and over theta, for --fit uniform, cdf and pdf (at most this many "
@@ -257,6 +268,48 @@ void add_fit_options(CLI::App& command, Options& options) {
         ->group("Fit");
 }
 
+/// A name on the command line for what a renderer is noisy in.
+struct ChannelName {
+    const char* name;
+    AcdfChannels channels;
+    compress::ChannelWeights weights;
+};
+constexpr ChannelName channel_names[] = {
+    {"luminance", ACDF_CHANNELS_WEIGHTED, {}},          {"rgb", ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}},
+    {"max", ACDF_CHANNELS_LARGEST, {1.0, 1.0, 1.0}},    {"red", ACDF_CHANNELS_WEIGHTED, {1.0, 0.0, 0.0}},
+    {"green", ACDF_CHANNELS_WEIGHTED, {0.0, 1.0, 0.0}}, {"blue", ACDF_CHANNELS_WEIGHTED, {0.0, 0.0, 1.0}},
+};
+
+void add_target_options(CLI::App& command, compress::TargetOptions& target) {
+    std::vector<std::string> names;
+    for (const ChannelName& channel : channel_names) names.push_back(channel.name);
+    command
+        .add_option_function<std::string>(
+            "--channel",
+            [&target](const std::string& name) {
+                for (const ChannelName& channel : channel_names)
+                    if (name == channel.name) {
+                        target.channels = channel.channels;
+                        target.weights = channel.weights;
+                    }
+            },
+            "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
+            "coloured lights), max (the largest channel), red, green or blue alone")
+        ->check(CLI::IsMember(names).description(""))
+        ->option_text("NAME [luminance]")
+        ->group("Fit");
+    const std::map<std::string, AcdfFilter> filters{{"nearest", ACDF_FILTER_NEAREST},
+                                                    {"bilinear", ACDF_FILTER_BILINEAR}};
+    command
+        .add_option(
+            "--filter", target.filter,
+            "How your renderer looks the map up: nearest or bilinear. Set it right: a lookup that blends light "
+            "into dark texels finds light where a nearest fit has none, which is bias")
+        ->transform(CLI::CheckedTransformer(filters).description(""))
+        ->option_text("NAME [nearest]")
+        ->group("Fit");
+}
+
 } // namespace
 
 void add_env(CLI::App& program, int& exit_code) {
@@ -270,6 +323,7 @@ void add_env(CLI::App& program, int& exit_code) {
     add_projection(command, options->input.projection);
     add_output(command, options->output, options->force, "The .acdf file to write")->required();
     add_fit_options(command, *options);
+    add_target_options(command, options->environment.target);
     const std::map<std::string, AcdfCodec> codecs{{"none", ACDF_CODEC_NONE}, {"zlib", ACDF_CODEC_ZLIB}};
     command
         .add_option(

@@ -6,6 +6,7 @@
 #include "measure/full_cdf.h"
 #include "options.h"
 #include "probe_options.h"
+#include "table_measure.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,7 @@ nlohmann::ordered_json report(const Options& options, const File& file, const me
             {"source", options.source},
             {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
             {"relative_variance_full_cdf", full_cdf},
+            {"least_variance", a.least_variance},
             {"rms_pdf_error", a.rms_pdf_error},
             {"kl_divergence", a.kl_divergence},
             {"max_weight", a.max_weight},
@@ -44,6 +46,8 @@ void print_text(const Options& options, const File& file, const measure::Accurac
     std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
     std::printf("    full-resolution CDF  %.6g\n", full_cdf);
+    if (a.least_variance > 0.0)
+        std::printf("    any texel table      %.6g   at least: several channels, or a filter\n", a.least_variance);
     std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
     std::printf("  RMS error of the pdf   %.6g   sr^-1\n", a.rms_pdf_error);
     std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
@@ -59,22 +63,27 @@ void remark_on_source(const Options& options, const File& file, const input::Pro
                      options.source.c_str());
 }
 
+/// What the file says it was fitted to.
+compress::TargetOptions target_options(const File& file) {
+    const AcdfDescription& d = file.description();
+    return {{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
+            static_cast<AcdfChannels>(d.channels),
+            static_cast<AcdfFilter>(d.filter)};
+}
+
 void run(const Options& options) {
-    const LoadedFile loaded = load_environment(options.file, "measure");
+    const LoadedFile loaded = load_environment_or_table(options.file, "measure");
+    if (loaded.file.kind() == ACDF_KIND_TABLE)
+        return measure_table(options.file, loaded.file, options.source, options.json, options.quiet);
     const input::Probe probe = load_probe(options.source, options.input, options.quiet);
     remark_on_source(options, loaded.file, probe);
-    const double* weights = loaded.file.description().channel_weights;
-    const compress::Target target = compress::environment_target(
-        probe.rgb.data(), static_cast<std::uint32_t>(probe.width), static_cast<std::uint32_t>(probe.height),
-        {weights[0], weights[1], weights[2]});
+    const compress::Target target = probe_target(options.source, probe, target_options(loaded.file));
     const AcdfAxis &phi = loaded.file.axis(ACDF_AXIS_PHI), &theta = loaded.file.axis(ACDF_AXIS_THETA);
     if (phi.resolution != target.columns || theta.resolution != target.rows)
         throw Failure(options.source + ": is " + std::to_string(target.columns) + "x" +
                       std::to_string(target.rows) + " as a lat-long map, but " + options.file + " was made from " +
                       std::to_string(phi.resolution) + "x" + std::to_string(theta.resolution) +
                       "; measure against the source it was made from");
-    if (!(compress::integral(target) > 0.0))
-        throw Failure(options.source + ": the probe is black; there is nothing to measure");
     const measure::Accuracy accuracy = measure::measure_environment(loaded.file, target);
     const double full_cdf = measure::full_cdf_relative_variance(target);
     if (options.json) std::printf("%s\n", report(options, loaded.file, accuracy, full_cdf).dump(2).c_str());
@@ -91,9 +100,11 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->required()
         ->type_name("")
         ->group("Input");
-    command.add_option("--against", options->source, "The probe it stands for, usually the one it was made from")
+    command
+        .add_option("--against", options->source,
+                    "The probe, or the .npy of a table, that it stands for: usually the one it was made from")
         ->required()
-        ->type_name("PROBE")
+        ->type_name("SOURCE")
         ->group("Input");
     add_projection(command, options->input.projection);
     add_json(command, options->json);

@@ -32,8 +32,11 @@ std::string goal_text(const compress::Goal& goal) {
 /// The options that shaped the file, in the words of the command line.
 std::string option_text(const compress::FitOptions& fit) {
     std::string text = fit.order ? "--order " + std::string(to_string(*fit.order)) + " " : "";
-    if (fit.fit == ACDF_FIT_VARIANCE)
-        return text + (fit.shape == compress::Shape::cascade ? "--shape cascade " : "") + goal_text(fit.goal);
+    if (fit.fit == ACDF_FIT_VARIANCE) {
+        if (fit.shape == compress::Shape::cascade) text += "--shape cascade ";
+        if (fit.max_weight > 0.0) text += "--max-weight " + number(fit.max_weight) + " ";
+        return text + goal_text(fit.goal);
+    }
     text += "--knots " + std::to_string(fit.column_segments) + "x" + std::to_string(fit.row_segments);
     if (fit.epsilon > 0.0) text += " --eps " + number(fit.epsilon);
     if (fit.gradient_knots > 0) text += " --gradient " + std::to_string(fit.gradient_knots);
@@ -64,10 +67,15 @@ measure::Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const co
 }
 
 Environment build_once(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
-                       double total, const Progress& progress) {
+                       const Progress& progress) {
     compress::Description description = compress::environment_description(target.columns, target.rows);
     description.fit = options.fit.fit;
-    description.total = total;
+    description.total = target.total;
+    description.filter = options.target.filter;
+    description.channels = options.target.channels;
+    const compress::ChannelWeights& weights = options.target.weights;
+    const double stored_weights[3] = {weights.r, weights.g, weights.b};
+    std::copy(std::begin(stored_weights), std::end(stored_weights), description.channel_weights);
     description.metadata = metadata(source, options.fit, {});
 
     compress::FitOptions fit = options.fit;
@@ -89,11 +97,11 @@ Environment build_once(const compress::Target& target, const Source& source, con
 
 /// Both orders; `progress` covers them in turn.
 Environment build_better(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
-                         double total, const Progress& progress) {
+                         const Progress& progress) {
     const auto build = [&](Order order, double begin) {
         EnvironmentOptions one = options;
         one.fit.order = order;
-        return build_once(target, source, one, total, [&progress, begin](double share, const char* what) {
+        return build_once(target, source, one, [&progress, begin](double share, const char* what) {
             if (progress) progress(begin + 0.5 * share, what);
         });
     };
@@ -107,19 +115,21 @@ const char* to_string(Order order) { return order == Order::phi ? "phi" : "z"; }
 
 Environment build_environment(const compress::Target& target, const Source& source,
                               const EnvironmentOptions& options, const Progress& progress) {
-    const double total = compress::integral(target);
-    if (!(total > 0.0)) throw std::invalid_argument("a target without energy");
+    if (!(compress::integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
     const bool tree = options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == compress::Shape::tree;
-    return tree || options.fit.order ? build_once(target, source, options, total, progress)
-                                     : build_better(target, source, options, total, progress);
+    return tree || options.fit.order ? build_once(target, source, options, progress)
+                                     : build_better(target, source, options, progress);
 }
 
-compress::Target luminance_target(const std::string& path, const input::Probe& probe) {
+compress::Target probe_target(const std::string& path, const input::Probe& probe,
+                              const compress::TargetOptions& options) {
     compress::Target target =
         compress::environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
-                                     static_cast<std::uint32_t>(probe.height), compress::ChannelWeights{});
+                                     static_cast<std::uint32_t>(probe.height), options);
     if (!(compress::integral(target) > 0.0))
-        throw Failure(path + ": the probe is black, so there is nothing to sample; is it the right file or layer?");
+        throw Failure(path +
+                      ": the probe is black in the channels asked for, so there is nothing to sample; is it the "
+                      "right file or layer?");
     return target;
 }
 

@@ -16,13 +16,14 @@ namespace acdf::tools {
 
 /// What `acdf env` was asked for, beside the probe.
 struct EnvironmentOptions {
+    compress::TargetOptions target;
     compress::FitOptions fit; ///< without an order, fits of two levels are made both ways, the better one kept
     AcdfCodec codec = ACDF_CODEC_NONE;
 };
 
 struct Environment {
-    std::vector<std::uint8_t> bytes; ///< the whole file
-    measure::Accuracy accuracy;      ///< of the stored density, after quantization
+    std::vector<std::uint8_t> bytes;      ///< the whole file
+    measure::Accuracy accuracy;           ///< of the stored density, after quantization
     std::optional<compress::Order> order; ///< which axis was split first, where that was tried or asked for
 };
 
@@ -35,8 +36,9 @@ struct Source {
 Environment build_environment(const compress::Target& target, const Source& source,
                               const EnvironmentOptions& options, const Progress& progress = {});
 
-/// The target of a probe with Rec. 709 luminance. Throws Failure, naming `path`, where it has no energy.
-compress::Target luminance_target(const std::string& path, const input::Probe& probe);
+/// The target of a probe. Throws Failure, naming `path`, where it has no energy.
+compress::Target probe_target(const std::string& path, const input::Probe& probe,
+                              const compress::TargetOptions& options = {});
 
 /// Reads a probe and tells on stderr, unless `quiet`, what was assumed and what was mended. Throws Failure.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);

@@ -42,6 +42,12 @@ typedef enum AcdfParameterization {
 typedef enum AcdfFit { ACDF_FIT_UNIFORM = 1, ACDF_FIT_CDF = 2, ACDF_FIT_PDF = 3, ACDF_FIT_VARIANCE = 4 } AcdfFit;
 
 typedef enum AcdfFilter { ACDF_FILTER_NEAREST = 0, ACDF_FILTER_BILINEAR = 1 } AcdfFilter;
+/* Which noise the fit minimised. */
+typedef enum AcdfChannels {
+    ACDF_CHANNELS_WEIGHTED = 0, /* that of the weighted sum of the channels */
+    ACDF_CHANNELS_SEPARATE = 1, /* the sum of that of each channel */
+    ACDF_CHANNELS_LARGEST = 2   /* that of the largest channel of each texel */
+} AcdfChannels;
 typedef enum AcdfUpAxis { ACDF_UP_Z = 2 } AcdfUpAxis;
 typedef enum AcdfHandedness { ACDF_RIGHT_HANDED = 0 } AcdfHandedness;
 typedef enum AcdfAxisRole { ACDF_AXIS_SAMPLED = 0, ACDF_AXIS_INDEXED = 1 } AcdfAxisRole;
@@ -94,7 +100,7 @@ typedef struct AcdfDescription {
     uint32_t handedness;
     uint32_t axis_count;
     uint32_t bin_count;
-    uint32_t reserved;
+    uint32_t channels; /* AcdfChannels */
     double channel_weights[3]; /* target = weights . (r, g, b) */
     double total;              /* integral of the target: over the sphere in W/m^2-like units of L * sr */
 } AcdfDescription;

@@ -133,16 +133,16 @@ private:
     }
 
     Candidate grow() {
-        Candidate candidate;
-        std::size_t before = 0;
-        for (double finest = excess_ / 1024.0; before != parts(); finest *= 0.25) {
-            before = parts();
+        double finest = excess_ / 1024.0;
+        for (std::size_t before = 0;; finest *= 0.25) {
             for (auto& partition : partitions_)
                 if (partition) partition->refine(finest, heaviest_);
-            candidate = at(finest / kLeastBytes);
-            if (beyond(candidate) || finest < kNegligible) break;
+            const bool last = finest < kNegligible;
+            if (parts() == before && !last) continue; // nothing new at this price
+            before = parts();
+            Candidate candidate = at(finest / kLeastBytes);
+            if (last || beyond(candidate)) return candidate;
         }
-        return candidate;
     }
 
     /// Halves the interval of prices, on a logarithmic scale, until the trees no longer change.

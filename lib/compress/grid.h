@@ -15,6 +15,7 @@ struct Grid {
     std::vector<std::vector<double>> measure; ///< for each axis one a step, > 0
     std::vector<std::uint32_t> axes;          ///< axis numbers in the file
     const float* values = nullptr;
+    const float* peaks = nullptr; ///< largest value within each box of the grid, laid out alike; null: `values`
 
     std::size_t dimensions() const { return shape.size(); }
 };
@@ -24,7 +25,8 @@ inline Grid grid_of(const Target& target) {
     return {{target.rows, target.columns},
             {target.row_measure, target.column_measure},
             {target.row_axis, target.column_axis},
-            target.values.data()};
+            target.values.data(),
+            target.peaks.empty() ? nullptr : target.peaks.data()};
 }
 
 /// The integral of f, by compensated summation.

@@ -66,16 +66,18 @@ void project(const Grid& grid, double total, const Box& box, Projections& out) {
         double weight = 1.0;
         for (std::size_t axis = 0; axis < last; ++axis) weight *= grid.measure[axis][index[axis]];
         const float* values = grid.values + offset;
+        const float* peaks = (grid.peaks ? grid.peaks : grid.values) + offset;
         double line_flux = 0.0, line_energy = 0.0, line_peak = 0.0;
         for (std::size_t i = 0; i < length; ++i) {
             const double f = values[i] / total;
             const double flux = f * weight * measures[i], energy = f * flux;
             along[i].flux += flux;
             along[i].energy += energy;
-            along[i].peak = f > along[i].peak ? f : along[i].peak;
+            const double peak = peaks[i] / total;
+            along[i].peak = peak > along[i].peak ? peak : along[i].peak;
             line_flux += flux;
             line_energy += energy;
-            line_peak = f > line_peak ? f : line_peak;
+            line_peak = peak > line_peak ? peak : line_peak;
         }
         for (std::size_t axis = 0; axis < last; ++axis) {
             Moments& slice = out[axis][index[axis] - box.begin[axis]];

@@ -34,6 +34,7 @@ Bytes description_payload(const Description& d) {
     out.handedness = ACDF_RIGHT_HANDED;
     out.axis_count = static_cast<std::uint32_t>(d.axes.size());
     out.bin_count = static_cast<std::uint32_t>(d.shares.size());
+    out.channels = d.channels;
     std::memcpy(out.channel_weights, d.channel_weights, sizeof out.channel_weights);
     out.total = d.total;
     Bytes bytes;

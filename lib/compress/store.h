@@ -27,6 +27,7 @@ struct Description {
     AcdfParameterization parameterization = ACDF_PARAM_LATLONG;
     AcdfFit fit = ACDF_FIT_VARIANCE;
     AcdfFilter filter = ACDF_FILTER_NEAREST;
+    AcdfChannels channels = ACDF_CHANNELS_WEIGHTED;
     double channel_weights[3] = {0.2126, 0.7152, 0.0722};
     double total = 1.0;
     std::vector<AxisDescription> axes;

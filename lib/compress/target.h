@@ -1,21 +1,31 @@
 // What a fit approximates: a non-negative function, constant on each rectangle of a grid.
 #pragma once
 
+#include <acdf/layout.h>
+
 #include <cstdint>
 #include <vector>
 
 namespace acdf::compress {
 
-/// f on rows x columns, row-major; each axis carries the measure of its steps. For a probe the columns are
+/// g on rows x columns, row-major; each axis carries the measure of its steps. For a probe the columns are
 /// azimuths and the rows elevations, so that the measure of a texel is its exact solid angle.
+///
+/// g is the root mean square, over a texel and summed over channels, of the integrand f that a renderer
+/// estimates: with one channel and nearest lookup it is f itself. A density p that is constant on texels then has
+/// E[(f/p)^2] = sum over texels of g^2/p, so that fitting g minimises the noise of f whatever f is.
 struct Target {
     std::uint32_t columns = 0;
     std::uint32_t rows = 0;
-    std::vector<float> values;          ///< f >= 0, finite
+    std::vector<float> values;          ///< g >= 0, finite
+    std::vector<float> peaks;           ///< largest f in each texel; empty: as `values`
     std::vector<double> column_measure; ///< one a column, > 0
     std::vector<double> row_measure;    ///< one a row, > 0
     std::uint32_t column_axis = 0;      ///< axis numbers in the file
     std::uint32_t row_axis = 1;
+    double total = 0.0; ///< integral of f; of several channels their sum
+    /// Square of the integral of f, of several channels their sum: what E[(f/p)^2] is compared with. 0: g is f.
+    double mean_square = 0.0;
 
     const float* row(std::uint32_t r) const { return values.data() + std::size_t{r} * columns; }
 };
@@ -25,16 +35,32 @@ struct ChannelWeights {
     double r = 0.2126, g = 0.7152, b = 0.0722;
 };
 
-/// The target of a lat-long probe of `rgb` (rows x columns x 3): weighted channels, negatives as 0 channel
-/// by channel, measure dphi and dz = d cos(theta) (Lawrence et al. 2005, §3). Throws std::invalid_argument on
-/// non-finite input.
+/// What a renderer looks up, and which noise counts.
+struct TargetOptions {
+    ChannelWeights weights;
+    AcdfChannels channels = ACDF_CHANNELS_WEIGHTED; ///< the weighted sum, each channel on its own, or the largest
+    AcdfFilter filter = ACDF_FILTER_NEAREST;        ///< bilinear: wraps at the seam, clamps at the poles
+};
+
+/// The target of a lat-long probe of `rgb` (rows x columns x 3), negatives as 0 channel by channel, with measure
+/// dphi and dz = d cos(theta) (Lawrence et al. 2005, §3). Throws std::invalid_argument on non-finite input.
 Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
-                          const ChannelWeights& weights);
+                          const TargetOptions& options);
+
+/// The same with nearest lookup of the weighted sum.
+inline Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
+                                 const ChannelWeights& weights) {
+    return environment_target(rgb, columns, rows,
+                              TargetOptions{weights, ACDF_CHANNELS_WEIGHTED, ACDF_FILTER_NEAREST});
+}
 
 /// The same function with rows and columns exchanged.
 Target transposed(const Target& target);
 
-/// The integral of f, by compensated summation.
+/// The integral of g, by compensated summation.
 double integral(const Target& target);
+
+/// E[(f/p)^2] of the best density that is constant on texels, over `mean_square`: at least 1, and 1 where g is f.
+double least_second_moment(const Target& target);
 
 } // namespace acdf::compress

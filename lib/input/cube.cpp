@@ -1,5 +1,7 @@
 #include "input/cube.h"
 
+#include "input/trigonometry.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,7 +78,7 @@ const Face* face_at(const CubeLayout& layout, int column, int row) {
 }
 
 // Solid angle of [0, s] x [0, t] on the plane at distance 1.
-double corner_solid_angle(double s, double t) { return std::atan2(s * t, std::sqrt(1.0 + s * s + t * t)); }
+double corner_solid_angle(double s, double t) { return pi * half_turns(s * t, std::sqrt(1.0 + s * s + t * t)); }
 
 double rectangle_solid_angle(double s0, double s1, double t0, double t1) {
     return corner_solid_angle(s1, t1) - corner_solid_angle(s0, t1) - corner_solid_angle(s1, t0) +

@@ -3,23 +3,9 @@
 namespace acdf::input {
 namespace {
 
-// Keeps the side of `polygon` where sign * (coordinate - border) >= 0 (Sutherland and Hodgman 1974).
-void clip_half(const Polygon& polygon, int axis, double border, double sign, Polygon& kept) {
-    kept.size = 0;
-    const double* along = axis == 0 ? polygon.x : polygon.y;
-    for (int i = 0; i < polygon.size; ++i) {
-        const int j = i + 1 < polygon.size ? i + 1 : 0;
-        const double from = sign * (along[i] - border), to = sign * (along[j] - border);
-        if (from >= 0.0) {
-            kept.x[kept.size] = polygon.x[i];
-            kept.y[kept.size++] = polygon.y[i];
-        }
-        if ((from < 0.0) != (to < 0.0)) {
-            const double t = from / (from - to);
-            kept.x[kept.size] = polygon.x[i] + t * (polygon.x[j] - polygon.x[i]);
-            kept.y[kept.size++] = polygon.y[i] + t * (polygon.y[j] - polygon.y[i]);
-        }
-    }
+void add(Polygon& polygon, double x, double y) {
+    polygon.x[polygon.size] = x;
+    polygon.y[polygon.size++] = y;
 }
 
 bool convex(const Polygon& quad) {
@@ -36,10 +22,21 @@ bool convex(const Polygon& quad) {
 
 } // namespace
 
-void clip(const Polygon& polygon, int axis, double low, double high, Polygon& clipped) {
-    Polygon above;
-    clip_half(polygon, axis, low, 1.0, above);
-    clip_half(above, axis, high, -1.0, clipped);
+// Both halves of a step of I. Sutherland and G. Hodgman, "Reentrant Polygon Clipping", 1974.
+void split(const Polygon& polygon, int axis, double border, Polygon& below, Polygon& above) {
+    below.size = above.size = 0;
+    const double* along = axis == 0 ? polygon.x : polygon.y;
+    for (int i = 0; i < polygon.size; ++i) {
+        const int j = i + 1 < polygon.size ? i + 1 : 0;
+        const double from = along[i] - border, to = along[j] - border;
+        add(from < 0.0 ? below : above, polygon.x[i], polygon.y[i]);
+        if ((from < 0.0) == (to < 0.0)) continue;
+        const double t = from / (from - to);
+        const double x = polygon.x[i] + t * (polygon.x[j] - polygon.x[i]);
+        const double y = polygon.y[i] + t * (polygon.y[j] - polygon.y[i]);
+        add(below, x, y);
+        add(above, x, y);
+    }
 }
 
 double area(const Polygon& polygon) {
@@ -54,14 +51,12 @@ bool image_of(const Map& map, const SphereCell& cell, Polygon& quad) {
     // A hair inside, so that corners on a border belong to this cell's side of it.
     constexpr double hair = 1e-7;
     const double dphi = hair * (cell.phi1 - cell.phi0), dtheta = hair * (cell.theta1 - cell.theta0);
-    const double phi[2] = {cell.phi0 + dphi, cell.phi1 - dphi};
-    const double theta[2] = {cell.theta0 + dtheta, cell.theta1 - dtheta};
-    const double cosine[2] = {std::cos(phi[0]), std::cos(phi[1])}, sine[2] = {std::sin(phi[0]), std::sin(phi[1])};
+    const SineCosine phi[2] = {sine_cosine(cell.phi0 + dphi), sine_cosine(cell.phi1 - dphi)};
+    const SineCosine theta[2] = {sine_cosine(cell.theta0 + dtheta), sine_cosine(cell.theta1 - dtheta)};
     int chart = 0;
     for (int i = 0; i < 4; ++i) {
-        const int p = i == 1 || i == 2, t = i >= 2;
-        const double sin_theta = std::sin(theta[t]);
-        const ImagePoint point = to_image(map, {sin_theta * cosine[p], sin_theta * sine[p], std::cos(theta[t])});
+        const SineCosine &p = phi[i == 1 || i == 2], &t = theta[i >= 2];
+        const ImagePoint point = to_image(map, {t.sine * p.cosine, t.sine * p.sine, t.cosine});
         if (i == 0) chart = point.chart;
         if (point.chart != chart) return false;
         quad.x[i] = point.u * map.width;

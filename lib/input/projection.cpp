@@ -1,6 +1,7 @@
 #include "input/projection.h"
 
 #include "input/cube.h"
+#include "input/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,6 @@
 namespace acdf::input {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double below_one = 1.0 - 0x1p-53;
 
 // u and v stay below 1, so that floor(u * width) is always a column.
@@ -19,13 +19,12 @@ ImagePoint point(double u, double v, int chart = 0) { return {unit_interval(u), 
 // ---- lat-long: u = 1/2 - phi / 2 pi, v = theta / pi --------------------------------------------------
 
 ImagePoint latlong_point(const Direction& d) {
-    const double theta = std::atan2(std::hypot(d.x, d.y), d.z);
-    return point(0.5 - std::atan2(d.y, d.x) / (2.0 * pi), theta / pi);
+    return point(0.5 - 0.5 * half_turns(d.y, d.x), half_turns(norm(d.x, d.y), d.z));
 }
 
 Direction latlong_direction(double u, double v) {
-    const double phi = pi - 2.0 * pi * u, theta = pi * v;
-    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    const SineCosine phi = sine_cosine(1.0 - 2.0 * u), theta = sine_cosine(v);
+    return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
 }
 
 // ---- discs: a to the right and b up, in [-1, 1], r = |(a, b)| ----------------------------------------
@@ -33,18 +32,20 @@ Direction latlong_direction(double u, double v) {
 // The whole rim shows -x; any of its points will do.
 const ImagePoint rim{0.0, 0.5, 0};
 
-// Angular map: the angle from +x is pi r; the right shows -y, as one sees it from inside.
+// Angular map: the angle from +x is pi r. Made from photographs of a mirror ball, it is mirrored like them: the
+// right shows +y. Debevec's (Dx, Dy, Dz), at (a, b) = acos(Dz) / (pi |(Dx, Dy)|) (Dx, Dy), is our (y, z, x).
 ImagePoint angular_point(const Direction& d) {
-    const double s = std::hypot(d.y, d.z);
+    const double s = norm(d.y, d.z);
     if (s == 0.0 && d.x < 0.0) return rim;
-    const double scale = s > 0.0 ? std::atan2(s, d.x) / (pi * s) : 0.0;
-    return point(0.5 - 0.5 * scale * d.y, 0.5 - 0.5 * scale * d.z);
+    const double scale = s > 0.0 ? half_turns(s, d.x) / s : 0.0;
+    return point(0.5 + 0.5 * scale * d.y, 0.5 - 0.5 * scale * d.z);
 }
 
 Direction angular_direction(double a, double b) {
-    const double r = std::hypot(a, b), angle = pi * r;
-    const double scale = r > 0.0 ? std::sin(angle) / r : pi;
-    return {std::cos(angle), -scale * a, scale * b};
+    const double r = norm(a, b);
+    const SineCosine angle = sine_cosine(r);
+    const double scale = r > 0.0 ? angle.sine / r : pi;
+    return {angle.cosine, scale * a, scale * b};
 }
 
 // Mirror ball: the normal is (sqrt(1 - r^2), a, b), the camera looks from +x, and what it sees is +x mirrored
@@ -66,8 +67,8 @@ Direction mirrorball_direction(double a, double b) {
 // preserves areas.
 double disc_density(Layout layout, double a, double b) {
     if (layout == Layout::mirrorball) return 4.0;
-    const double r = std::hypot(a, b);
-    return r > 0.0 ? pi * std::sin(pi * r) / r : pi * pi;
+    const double r = norm(a, b);
+    return r > 0.0 ? pi * sine_cosine(r).sine / r : pi * pi;
 }
 
 // Integral of the density over [b0, b1] at a, by Gauss-Legendre with four nodes.
@@ -85,7 +86,7 @@ double disc_slice(Layout layout, double a, double b0, double b1) {
 double disc_solid_angle(const Map& map, int column, int row) {
     const double da = 2.0 / map.width, db = 2.0 / map.height;
     const double a0 = da * column - 1.0, b1 = 1.0 - db * row, b0 = b1 - db;
-    const double far = std::hypot(std::max(std::abs(a0), std::abs(a0 + da)), std::max(std::abs(b0), std::abs(b1)));
+    const double far = norm(std::max(std::abs(a0), std::abs(a0 + da)), std::max(std::abs(b0), std::abs(b1)));
     // Texels cut by the rim need many slices, for the chord's kink; the others are smooth.
     const int slices = far <= 1.0 ? (map.width < 64 ? 16 : 4) : 64;
     double sum = 0.0;
@@ -103,7 +104,7 @@ double disc_solid_angle(const Map& map, int column, int row) {
 ImagePoint octahedral_point(const Direction& d) {
     const double x = std::abs(d.x), y = std::abs(d.y);
     const double r = std::sqrt((x * x + y * y) / (1.0 + std::abs(d.z))); // sqrt(1 - |z|)
-    const double turn = (x > 0.0 || y > 0.0) ? std::atan2(y, x) * (2.0 / pi) : 0.5;
+    const double turn = (x > 0.0 || y > 0.0) ? 2.0 * half_turns(y, x) : 0.5;
     double b = turn * r, a = r - b;
     if (d.z < 0.0) { // the lower hemisphere lies outside the diamond, folded over its edges
         const double inner = a;
@@ -118,9 +119,9 @@ Direction octahedral_direction(double u, double v) {
     const double a = std::abs(2.0 * u - 1.0), b = std::abs(2.0 * v - 1.0);
     const double beyond = a + b - 1.0; // > 0: lower hemisphere
     const double r = 1.0 - std::abs(beyond);
-    const double phi = r > 0.0 ? ((b - a) / r + 1.0) * (pi / 4.0) : 0.0;
+    const SineCosine phi = sine_cosine(r > 0.0 ? 0.25 * ((b - a) / r + 1.0) : 0.0);
     const double sine = r * std::sqrt(2.0 - r * r), z = 1.0 - r * r;
-    const double x = sine * std::cos(phi), y = sine * std::sin(phi);
+    const double x = sine * phi.cosine, y = sine * phi.sine;
     return {u > 0.5 ? -x : x, v < 0.5 ? -y : y, beyond > 0.0 ? -z : z};
 }
 
@@ -164,8 +165,8 @@ double texel_solid_angle(const Map& map, int column, int row) {
     switch (map.layout) {
     case Layout::latlong: {
         // cos(t0) - cos(t1), written without cancellation.
-        const double middle = pi * (row + 0.5) / map.height, half = 0.5 * pi / map.height;
-        return 2.0 * std::sin(middle) * std::sin(half) * (2.0 * pi / map.width);
+        const double middle = (row + 0.5) / map.height, half = 0.5 / map.height;
+        return 2.0 * sine_cosine(middle).sine * sine_cosine(half).sine * (2.0 * pi / map.width);
     }
     case Layout::octahedral:
         return 4.0 * pi / map.width / map.height;

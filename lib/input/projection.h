@@ -12,7 +12,7 @@ namespace acdf::input {
 /// How an image is laid out; finer than Projection, which the user names.
 enum class Layout {
     latlong,
-    angular,          ///< P. Debevec's light probes: distance from the centre proportional to the angle
+    angular,          ///< P. Debevec's light probes, mirrored like the ball: distance from the centre ~ angle
     mirrorball,       ///< orthographic photograph of a mirror ball
     vertical_cross,   ///< cube, 3:4, the back face upside down at the foot
     horizontal_cross, ///< cube, 4:3, the back face at the right end

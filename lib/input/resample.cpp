@@ -13,7 +13,6 @@
 namespace acdf::input {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int max_halvings = 6;
 
 // Solid angles are added up as integers: their sum is the same in any order, so on any number of threads.
@@ -51,8 +50,8 @@ private:
     }
 
     SphereCell texel(int column, int row) const {
-        const auto phi = [&](int c) { return pi - 2.0 * pi * c / width_; };
-        const auto theta = [&](int r) { return pi * r / height_; };
+        const auto phi = [&](int c) { return 1.0 - 2.0 * c / width_; };
+        const auto theta = [&](int r) { return 1.0 * r / height_; };
         return {phi(column), phi(column + 1), theta(row), theta(row + 1)};
     }
 

@@ -71,7 +71,7 @@ struct Sums {
     }
 };
 
-/// One cell after the other, of a target whose integral is `total`.
+/// One cell after the other, of a target whose integral (of g) is `total`.
 class CellSummer {
 public:
     CellSummer(const Target& target, double total) : target_(target), total_(total) {}
@@ -92,7 +92,7 @@ private:
         const float* values = target_.row(r);
         for (std::uint32_t c = columns.low; c < columns.high; ++c) {
             const StepMeans& column = column_means_[c - columns.low];
-            const double f = values[c] / total_; // p*
+            const double f = values[c] / total_; // p*: g, normalised
             const double measure = target_.row_measure[r] * target_.column_measure[c];
             const double p = density * column.g * row.g;
             const double p_square = density * density * column.square * row.square;
@@ -107,7 +107,9 @@ private:
                               (flat(column, row) ? (f - p) * (f - p) / p : f * f * reciprocal - 2.0 * f + p));
             if (!(f > 0.0)) continue;
             sums.kl.add(measure * (f * (std::log(f / density) - column.logarithm - row.logarithm)));
-            sums.max_weight = std::max(sums.max_weight, f / (density * column.smallest * row.smallest));
+            const double peak =
+                target_.peaks.empty() ? values[c] : target_.peaks[std::size_t{r} * target_.columns + c];
+            sums.max_weight = std::max(sums.max_weight, peak / (density * column.smallest * row.smallest));
         }
     }
 
@@ -160,17 +162,21 @@ Accuracy measure_environment(const File& file, const Target& target) {
         file.axis(ACDF_AXIS_THETA).resolution != target.rows)
         throw std::invalid_argument("the file was made from another resolution");
     Accuracy a;
-    a.total = integral(target);
-    if (!(a.total > 0.0)) throw std::invalid_argument("a target without energy");
+    const double perfect = integral(target);
+    a.total = target.total > 0.0 ? target.total : perfect;
+    if (!(perfect > 0.0)) throw std::invalid_argument("a target without energy");
     const Work work = divide(file);
-    const Sums sums = sum_all(work, target, a.total);
+    const Sums sums = sum_all(work, target, perfect);
     a.cells = work.cells.size();
     a.support_violations = sums.violations;
     a.rms_pdf_error = std::sqrt(std::max(0.0, sums.square_error.value()) / (4.0 * ACDF_PI));
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    a.relative_variance = sums.violations > 0 ? kInfinite : std::max(0.0, sums.variance.value());
+    const double least = least_second_moment(target); // what was summed is relative to it
+    a.least_variance = std::max(0.0, least - 1.0);
+    a.relative_variance =
+        sums.violations > 0 ? kInfinite : std::max(0.0, sums.variance.value() * least + (least - 1.0));
     a.kl_divergence = sums.violations > 0 ? kInfinite : std::max(0.0, sums.kl.value());
-    a.max_weight = sums.violations > 0 ? kInfinite : sums.max_weight;
+    a.max_weight = sums.violations > 0 ? kInfinite : sums.max_weight / perfect * std::sqrt(least);
     return a;
 }
 

@@ -9,10 +9,13 @@
 
 namespace acdf::measure {
 
-/// p is the stored density, f the target, p* = f / (integral of f) the perfect density; both in sr^-1.
+/// p is the stored density, f the integrand, p* = g / (integral of g) the best density that is constant on texels,
+/// which is f's own for one channel and nearest lookup (compress::Target); densities are in sr^-1.
 struct Accuracy {
     /// Variance of one sample of the estimator f/p, over (integral of f)^2. Infinite with a support violation.
     double relative_variance = 0.0;
+    /// What p* has: 0 but for several channels, which no density can fit at once, and for a filter, within texels.
+    double least_variance = 0.0;
     double rms_pdf_error = 0.0;           ///< sqrt of the mean over the sphere of (p - p*)^2, sr^-1
     double kl_divergence = 0.0;           ///< integral of p* ln(p*/p), nats
     double max_weight = 0.0;              ///< largest f/p over its mean

@@ -1,16 +1,18 @@
 #include "measure/cells.h"
 
+#include <algorithm>
+
 namespace acdf::measure {
 namespace {
 
-void descend(const std::uint8_t* tree, std::uint32_t at, const Cell& cell,
-             const std::function<void(const Cell&)>& visit) {
+template <class AnyCell, class Visit>
+void descend(const std::uint8_t* tree, std::uint32_t at, const AnyCell& cell, const Visit& visit) {
     const AcdfCurve curve = acdf_curve_at(tree, at);
     const std::uint32_t axis = acdf_curve_axis(&curve);
     const double maximum = acdf_curve_maximum(&curve);
     for (std::uint32_t i = 0; i < curve.segments; ++i) {
         const std::uint32_t width = acdf_curve_cumulative(&curve, i + 1) - acdf_curve_cumulative(&curve, i);
-        Cell part = cell;
+        AnyCell part = cell;
         part.probability *= width / maximum;
         acdf_curve_narrow(&curve, i, &part.range[axis]);
         const std::uint32_t link = acdf_curve_link(&curve, i);
@@ -19,14 +21,23 @@ void descend(const std::uint8_t* tree, std::uint32_t at, const Cell& cell,
     }
 }
 
+template <std::size_t Axes>
+CellOf<Axes> whole(const File& file) {
+    CellOf<Axes> cell = {};
+    for (std::uint32_t axis = 0; axis < std::min<std::size_t>(Axes, file.description().axis_count); ++axis)
+        cell.range[axis] = {0, file.axis(axis).resolution, 0.0};
+    cell.probability = 1.0;
+    return cell;
+}
+
 } // namespace
 
 void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit) {
-    Cell whole;
-    whole.range[0] = {0, file.axis(0).resolution, 0.0};
-    whole.range[1] = {0, file.axis(1).resolution, 0.0};
-    whole.probability = 1.0;
-    descend(file.tree(), root, whole, visit);
+    descend(file.tree(), root, whole<2>(file), visit);
+}
+
+void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit) {
+    descend(file.tree(), root, whole<ACDF_MAX_AXES>(file), visit);
 }
 
 } // namespace acdf::measure

@@ -7,14 +7,21 @@
 
 namespace acdf::measure {
 
-/// A cell of a two-axis tree: ranges on axis 0 and 1 in grid positions, and its probability.
-struct Cell {
-    AcdfRange range[2];
+/// A cell of a tree of up to `Axes` axes: its range on each in grid positions, and its probability.
+template <std::size_t Axes>
+struct CellOf {
+    AcdfRange range[Axes];
     double probability = 0.0; ///< exactly what acdf_tree_sample returns there
 };
+using Cell = CellOf<2>;
+using TableCell = CellOf<ACDF_MAX_AXES>;
 
 /// Calls `visit` for every cell under `root`, those of probability 0 included. The cells partition
 /// [0, columns) x [0, rows).
 void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit);
+
+/// The same for a tree of any number of axes; on indexed axes, and on those that the file lacks, the range is
+/// of no meaning.
+void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit);
 
 } // namespace acdf::measure

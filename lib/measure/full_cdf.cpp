@@ -64,15 +64,16 @@ std::uint64_t FullCdf::bytes() const {
 
 double full_cdf_relative_variance(const compress::Target& target) {
     const FullCdf cdf(target);
-    const double total = compress::integral(target);
-    compress::Sum variance;
+    const double perfect = compress::integral(target);
+    compress::Sum variance; // around that of the perfect density, so that a small one keeps its digits
     for (std::uint32_t r = 0; r < target.rows; ++r)
         for (std::uint32_t c = 0; c < target.columns; ++c) {
-            const double f = target.row(r)[c] / total, p = cdf.pdf(c, r);
+            const double f = target.row(r)[c] / perfect, p = cdf.pdf(c, r);
             if (f > 0.0 && !(p > 0.0)) return std::numeric_limits<double>::infinity();
             if (p > 0.0) variance.add(target.row_measure[r] * target.column_measure[c] * (f - p) * (f - p) / p);
         }
-    return variance.value();
+    const double least = compress::least_second_moment(target);
+    return variance.value() * least + (least - 1.0);
 }
 
 } // namespace acdf::measure

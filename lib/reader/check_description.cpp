@@ -85,6 +85,7 @@ constexpr Choice choices[] = {
     {5001, offsetof(AcdfDescription, parameterization), ACDF_PARAM_LATLONG, ACDF_PARAM_TABLE},
     {5002, offsetof(AcdfDescription, fit), ACDF_FIT_UNIFORM, ACDF_FIT_VARIANCE},
     {5003, offsetof(AcdfDescription, filter), ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR},
+    {5019, offsetof(AcdfDescription, channels), ACDF_CHANNELS_WEIGHTED, ACDF_CHANNELS_LARGEST},
     {5004, offsetof(AcdfDescription, up_axis), ACDF_UP_Z, ACDF_UP_Z},
     {5005, offsetof(AcdfDescription, handedness), ACDF_RIGHT_HANDED, ACDF_RIGHT_HANDED},
 };
@@ -105,8 +106,6 @@ void check_fields(const Payload& payload, const AcdfDescription& d, u32 kind, Re
         d.parameterization <= ACDF_PARAM_TABLE && d.parameterization != parameterization_of(kind))
         report.add(5016, payload.at(0), "parameterization %u with kind %u", d.parameterization, kind);
     if (d.bin_count < 1) report.add(5007, payload.at(offsetof(AcdfDescription, bin_count)), "there is no bin");
-    if (d.reserved != 0)
-        report.add(5008, payload.at(offsetof(AcdfDescription, reserved)), "it is %08x", d.reserved);
     for (u32 i = 0; i < 3; ++i)
         if (!std::isfinite(d.channel_weights[i]) || d.channel_weights[i] < 0.0)
             report.add(5009, payload.at(offsetof(AcdfDescription, channel_weights) + 8 * i), "weight %u is %g", i,

@@ -18,9 +18,9 @@ using ull = unsigned long long;
 constexpr u32 unreached = 0xFFFFFFFF;
 
 // What is known of a curve, used twice with different meanings. Since there is at most one curve for every four
-// bytes (rule 6018), these 12 bytes a curve are at most three times the file.
+// bytes (rule 6018), these 8 bytes a curve are at most twice the tree, and `Starts` takes 3/32 of it.
 struct Mark {
-    u32 a, b, c;
+    u32 a, b;
 };
 
 // Where curves start, as bits, and how many start before each run of 64 units: a curve's index in constant time.
@@ -80,7 +80,8 @@ u32 segments_of(const Payload& payload, u32 units, u32 unit) {
     return many > ACDF_CURVE_SHORT_SEGMENTS && many <= ACDF_MAX_SEGMENTS ? many : 0;
 }
 
-// Marks the starts. False where the start of the next curve cannot be found; else `curves` are counted.
+// Marks the starts; a header is decoded only once its codes and its count are known to be legal, and nothing behind
+// the count is read. False where the start of the next curve cannot be found; else `curves` are counted.
 bool find_curves(const Payload& payload, u32 units, u64* bits, u32& curves, Report& report) {
     curves = 0;
     for (u32 unit = 0; unit < units;) {
@@ -233,42 +234,60 @@ void check_curves(const Tree& tree, Report& report) {
 }
 
 // ---- third pass, once an axis: knots inside what is inherited -------------------------------------------
-// Over all paths to a curve, Mark::a is the largest low end, b the smallest high end and c the smallest low end:
-// a knot lies inside every path's range if it lies between a and b. c tells whether the low end is the same on
-// every path, which positions that are counted from it need.
+// Over all paths to a curve, Mark::a is the largest low end and Mark::b the smallest high end: a knot lies inside
+// every path's range if it lies between them. Positions are below 2^31 (rule 5014), so the highest bit of Mark::a is
+// free: it tells that paths disagree on the low end, which positions that are counted from it must not.
 
-void narrow(Mark& child, u32 largest_low, u32 high, u32 smallest_low) {
-    if (child.a < largest_low) child.a = largest_low;
+constexpr u32 disagree = 0x80000000;
+
+void narrow(Mark& child, u32 low, u32 high) {
+    if (child.b == unreached) {
+        child = {low, high};
+        return;
+    }
+    const u32 known = child.a & ~disagree, other = low & ~disagree;
+    const u32 flag = (child.a | low) & disagree;
+    child.a = (known > other ? known : other) | (known != other ? disagree : flag);
     if (child.b > high) child.b = high;
-    if (child.c > smallest_low) child.c = smallest_low;
+}
+
+// False where a knot is wrong: what lies below would only be wrong for the same reason.
+bool knots_are_inside(const Tree& tree, u32 unit, const AcdfCurve& curve, const Mark& inherited, Report& report) {
+    const u32 code = ACDF_CURVE_POSITION_CODE(curve.header), low = inherited.a & ~disagree;
+    if (code == 0 && inherited.a & disagree) {
+        report.add(6019, tree.at(unit), "the curve at unit %u: its range begins at %u or before", unit, low);
+        return false;
+    }
+    const u32 origin = code == 0 ? low : 0; // the sum is below 2^31 + 256
+    const u32 first = origin + acdf_load(curve.positions, 0, code);
+    const u32 last = origin + acdf_load(curve.positions, curve.segments - 2, code);
+    if (first > low && last < inherited.b) return true;
+    report.add(6007, tree.at(curve.positions), "the curve at unit %u: knots %u to %u, range %u to %u", unit, first, last,
+               low, inherited.b);
+    return false;
 }
 
 void check_knots(const Tree& tree, u32 unit, const AcdfCurve& curve, u32 axis, Report& report) {
     const Mark inherited = tree.mark(unit);
-    if (inherited.c == unreached) return;
+    if (inherited.b == unreached) return;
     const bool splits = acdf_curve_axis(&curve) == axis && curve.segments > 1;
-    const u32 code = ACDF_CURVE_POSITION_CODE(curve.header);
-    const u64 origin = code == 0 ? inherited.a : 0;
-    const auto knot = [&](u32 i) { return static_cast<u32>(origin + acdf_load(curve.positions, i, code)); };
-    if (splits && code == 0 && inherited.a != inherited.c)
-        report.add(6019, tree.at(unit), "the curve at unit %u: its range begins at %u or at %u", unit, inherited.c,
-                   inherited.a);
-    if (splits && (knot(0) <= inherited.a || knot(curve.segments - 2) >= inherited.b))
-        report.add(6007, tree.at(curve.positions), "the curve at unit %u: knots %u to %u, range %u to %u", unit,
-                   knot(0), knot(curve.segments - 2), inherited.a, inherited.b);
+    if (splits && !knots_are_inside(tree, unit, curve, inherited, report)) return;
     for (u32 i = 0; i < curve.segments; ++i) {
         const u32 link = acdf_curve_link(&curve, i);
         if (link == 0) continue;
-        const bool cut_low = splits && i > 0, cut_high = splits && i + 1 < curve.segments;
-        narrow(tree.mark(unit + link), cut_low ? knot(i - 1) : inherited.a, cut_high ? knot(i) : inherited.b,
-               cut_low ? knot(i - 1) : inherited.c);
+        AcdfRange range = {inherited.a & ~disagree, inherited.b, 0.0};
+        if (splits) acdf_curve_narrow(&curve, i, &range);
+        const bool own_low = splits && i > 0; // the same on every path
+        narrow(tree.mark(unit + link), own_low ? range.low : inherited.a, range.high);
     }
 }
 
 void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
-    for (u32 i = 0; i < curves; ++i) tree.marks[i] = {0, unreached, unreached};
+    const u32 resolution = tree.parts.axes[axis].resolution;
+    if (resolution == 0 || resolution >= disagree) return; // rule 5014
+    for (u32 i = 0; i < curves; ++i) tree.marks[i] = {0, unreached};
     for (u32 i = 0; i < tree.parts.description->bin_count; ++i)
-        narrow(tree.mark(tree.parts.bins[i].root), 0, tree.parts.axes[axis].resolution, 0);
+        narrow(tree.mark(tree.parts.bins[i].root), 0, resolution);
     for_each_curve(tree, report,
                    [&](u32 unit, const AcdfCurve& curve) { check_knots(tree, unit, curve, axis, report); });
 }

@@ -234,4 +234,10 @@ EnvironmentView File::environment() const noexcept {
                             axes_[ACDF_AXIS_THETA].resolution, description_->total});
 }
 
+TableView File::table() const noexcept {
+    u32 indexed = 0;
+    while (axes_[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
+    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total});
+}
+
 } // namespace acdf

@@ -12,6 +12,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
 
 install(EXPORT acdfTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT reader)

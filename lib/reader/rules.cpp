@@ -72,6 +72,7 @@ const Rule rules[] = {
      "META is as §5.5 says: lengths within the chunk, nothing left over, at most 1024 pairs, "
      "keys of 1 to 255 bytes, all UTF-8."},
     {5018, error, malformed, "duplicate-key", "No two metadata keys are equal."},
+    {5019, error, unsupported, "channels", "`channels` is one of those of §5.1."},
 
     {6001, error, malformed, "tree-length", "TREE is 1 to 4294967294 units of two bytes long."},
     {6002, error, malformed, "curve-end", "A curve ends inside TREE."},

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <acdf/sample.h>
+#include <acdf/table.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -71,6 +72,47 @@ private:
     AcdfEnvironment data_;
 };
 
+/// A probability density over the sampled axes of a table, one for each bin of its indexed axes. A few words by
+/// value; valid while its File lives. All functions are const, thread-safe, allocate and throw nothing.
+/// `index` has one number a indexed axis, in [0, resolution), and may be null where there is none; u and x have one
+/// number a sampled axis.
+class TableView {
+public:
+    explicit TableView(const AcdfTable& data) noexcept : data_(data) {}
+
+    std::uint32_t indexed_count() const noexcept { return data_.indexed_count; }
+    std::uint32_t sampled_count() const noexcept { return acdf_table_sampled_count(&data_); }
+    /// Sampled axis i: its name, range and steps.
+    const AcdfAxis& sampled_axis(std::uint32_t i) const noexcept { return data_.axes[data_.indexed_count + i]; }
+
+    /// Draws x, in the units of the axes; u in [0, 1]. Returns the density there, per product of those units, finite
+    /// and > 0; 0 (and x unset) where the bin has no energy or an index is out of range.
+    double sample(const std::uint32_t* index, const double* u, double* x) const noexcept {
+        return acdf_table_sample(&data_, index, u, x);
+    }
+    /// Density of x; exactly that of `sample` for what it returned. 0 where none falls, outside the axes' ranges
+    /// and for NaN.
+    double pdf(const std::uint32_t* index, const double* x) const noexcept {
+        return acdf_table_pdf(&data_, index, x);
+    }
+    /// The random numbers that draw x; false where the density is 0.
+    bool invert(const std::uint32_t* index, const double* x, double* u) const noexcept {
+        return acdf_table_invert(&data_, index, x, u) != 0;
+    }
+    /// Sum over the bins of the integral of the table over its sampled axes.
+    double total() const noexcept { return data_.total; }
+    /// What part of `total` a bin holds: to choose a bin by its energy. 0 where an index is out of range.
+    double share(const std::uint32_t* index) const noexcept {
+        const AcdfBin* bin = acdf_table_bin(&data_, index);
+        return bin ? static_cast<double>(bin->share) : 0.0;
+    }
+    /// The plain data, for acdf/table.h in another language or on a GPU.
+    const AcdfTable& data() const noexcept { return data_; }
+
+private:
+    AcdfTable data_;
+};
+
 /// A key or value of the metadata: UTF-8, not terminated.
 struct Text {
     const char* data = nullptr;
@@ -113,6 +155,8 @@ public:
 
     /// The view of an environment file: only where kind() == ACDF_KIND_ENVIRONMENT.
     EnvironmentView environment() const noexcept;
+    /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
+    TableView table() const noexcept;
 
 private:
     const std::uint8_t* bytes_ = nullptr;

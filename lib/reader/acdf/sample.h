@@ -54,8 +54,6 @@ typedef struct AcdfStratum {
 
 ACDF_FN uint32_t acdf_curve_axis(const AcdfCurve* curve) { return curve->header & ACDF_CURVE_AXIS_MASK; }
 
-/* `size` is a power of two. */
-
 /* Bytes of an element whose size code is `code`: 1, 2 or 4. */
 ACDF_FN uint32_t acdf_element_size(uint32_t code) { return 1u << code; }
 
@@ -111,36 +109,25 @@ ACDF_FN uint32_t acdf_load(const uint8_t* array, uint32_t index, uint32_t code) 
     return code == 1 ? ((const uint16_t*)(const void*)array)[index] : ((const uint32_t*)(const void*)array)[index];
 }
 
-/* How many of `count` nondecreasing values are <= key: binary searches without branches on the data. */
-ACDF_FN uint32_t acdf_upper_bound8(const uint8_t* array, uint32_t count, uint32_t key) {
-    uint32_t base = 0;
-    while (count > 1) {
-        const uint32_t half = count / 2;
-        base += array[base + half - 1] <= key ? half : 0;
-        count -= half;
+/* How many of `count` nondecreasing values are <= key. Long arrays are halved without branches on the data; few
+ * values are passed one by one, since a branch that is guessed lets the loads of the child start before the
+ * comparison is done: most curves are short, and their time is that of loads that wait for each other. */
+#define ACDF_UPPER_BOUND(name, type)                                                                               \
+    ACDF_FN uint32_t name(const type* array, uint32_t count, uint32_t key) {                                       \
+        uint32_t base = 0, end;                                                                                    \
+        while (count > 16) {                                                                                       \
+            const uint32_t half = count / 2;                                                                       \
+            base += array[base + half - 1] <= key ? half : 0;                                                      \
+            count -= half;                                                                                         \
+        }                                                                                                          \
+        for (end = base + count; base < end && array[base] <= key; ++base) continue;                               \
+        return base;                                                                                               \
     }
-    return base + (array[base] <= key ? 1 : 0);
-}
-ACDF_FN uint32_t acdf_upper_bound16(const uint16_t* array, uint32_t count, uint32_t key) {
-    uint32_t base = 0;
-    while (count > 1) {
-        const uint32_t half = count / 2;
-        base += array[base + half - 1] <= key ? half : 0;
-        count -= half;
-    }
-    return base + (array[base] <= key ? 1 : 0);
-}
-ACDF_FN uint32_t acdf_upper_bound32(const uint32_t* array, uint32_t count, uint32_t key) {
-    uint32_t base = 0;
-    while (count > 1) {
-        const uint32_t half = count / 2;
-        base += array[base + half - 1] <= key ? half : 0;
-        count -= half;
-    }
-    return base + (array[base] <= key ? 1 : 0);
-}
+ACDF_UPPER_BOUND(acdf_upper_bound8, uint8_t)
+ACDF_UPPER_BOUND(acdf_upper_bound16, uint16_t)
+ACDF_UPPER_BOUND(acdf_upper_bound32, uint32_t)
+#undef ACDF_UPPER_BOUND
 ACDF_FN uint32_t acdf_upper_bound(const uint8_t* array, uint32_t count, uint32_t code, uint32_t key) {
-    if (count == 0) return 0;
     if (code == 0) return acdf_upper_bound8(array, count, key);
     return code == 1 ? acdf_upper_bound16((const uint16_t*)(const void*)array, count, key)
                      : acdf_upper_bound32((const uint32_t*)(const void*)array, count, key);

@@ -1,0 +1,172 @@
+// From a probe to what the fit approximates: channels, filter, solid angles.
+#include "compress/sum.h"
+#include "compress/target.h"
+
+#include <acdf/sample.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+constexpr std::size_t kChannels = 3;
+
+/// The integrand of a probe, one plane a channel that counts.
+struct Integrand {
+    std::uint32_t columns, rows;
+    std::size_t planes = 1;
+    std::vector<float> values; ///< planes x rows x columns
+
+    const float* row(std::size_t plane, std::uint32_t r) const {
+        return values.data() + (plane * rows + r) * std::size_t{columns};
+    }
+};
+
+Integrand integrand(const float* rgb, std::uint32_t columns, std::uint32_t rows, const TargetOptions& options) {
+    Integrand out{columns, rows, options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1, {}};
+    const std::size_t texels = std::size_t{columns} * rows;
+    out.values.resize(out.planes * texels);
+    const ChannelWeights& w = options.weights;
+    tbb::parallel_for(std::uint32_t{0}, rows, [&](std::uint32_t row) {
+        for (std::size_t i = std::size_t{row} * columns; i < std::size_t{row + 1} * columns; ++i) {
+            std::array<float, kChannels> c;
+            for (std::size_t k = 0; k < kChannels; ++k) c[k] = std::max(rgb[kChannels * i + k], 0.0f);
+            if (options.channels == ACDF_CHANNELS_SEPARATE)
+                for (std::size_t k = 0; k < kChannels; ++k) out.values[k * texels + i] = c[k];
+            else if (options.channels == ACDF_CHANNELS_LARGEST) out.values[i] = std::max({c[0], c[1], c[2]});
+            else out.values[i] = static_cast<float>(w.r * c[0] + w.g * c[1] + w.b * c[2]);
+        }
+    });
+    // max(NaN, 0) may be either: the source is what is checked.
+    if (!std::all_of(rgb, rgb + kChannels * texels, [](float v) { return std::isfinite(v); }) ||
+        !std::all_of(out.values.begin(), out.values.end(), [](float v) { return std::isfinite(v); }))
+        throw std::invalid_argument("radiance that is not finite");
+    return out;
+}
+
+/// Means of f and f^2 over a texel, and the largest f in it.
+struct TexelMoments {
+    double mean = 0.0, square = 0.0, peak = 0.0;
+};
+
+/// Nodes and weights of quadrature over a row: heights in texels from the row's upper edge, with the solid angle.
+/// Three Gauss-Legendre points in each half, where the interpolation is smooth.
+struct RowNode {
+    double height, weight;
+};
+std::array<RowNode, 6> row_nodes(std::uint32_t row, std::uint32_t rows) {
+    constexpr double kOffset = 0.7745966692414834; // sqrt(3/5)
+    const std::array<double, 3> x{0.5 - 0.5 * kOffset, 0.5, 0.5 + 0.5 * kOffset};
+    const std::array<double, 3> w{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+    std::array<RowNode, 6> nodes{};
+    double sum = 0.0;
+    for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double height = 0.5 * (double(half) + x[k]);
+            double sine, cosine;
+            acdf_sincospi((row + height) / rows, &sine, &cosine);
+            nodes[3 * half + k] = {height, w[k] * sine};
+            sum += w[k] * sine;
+        }
+    for (RowNode& node : nodes) node.weight /= sum;
+    return nodes;
+}
+
+/// A row of the bilinear interpolation at a height: `low` of row a and the rest of row b.
+double blend(const float* a, const float* b, double share, std::uint32_t c) {
+    return a[c] * (1.0 - share) + b[c] * share;
+}
+
+/// Moments of bilinear interpolation over the texels of a row. Along the row they are exact: between neighbouring
+/// centres f is linear, so the mean of f^2 over half a texel from x to y is (x^2 + xy + y^2) / 3.
+void bilinear_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::vector<TexelMoments>& out) {
+    const std::uint32_t above = r > 0 ? r - 1 : r, below = r + 1 < f.rows ? r + 1 : r;
+    out.assign(f.columns, TexelMoments{});
+    const auto add = [&](double height, double weight) {
+        const bool upper = height < 0.5;
+        const float *a = f.row(plane, upper ? above : r), *b = f.row(plane, upper ? r : below);
+        const double share = upper ? height + 0.5 : height - 0.5;
+        double left = blend(a, b, share, f.columns - 1), centre = blend(a, b, share, 0);
+        const double first = centre;
+        for (std::uint32_t c = 0; c < f.columns; ++c) {
+            const double right = c + 1 < f.columns ? blend(a, b, share, c + 1) : first;
+            const double x = 0.5 * (left + centre), y = 0.5 * (centre + right);
+            out[c].mean += weight * (0.25 * x + 0.5 * centre + 0.25 * y);
+            out[c].square +=
+                weight * ((x * x + x * centre + centre * centre) + (centre * centre + centre * y + y * y)) / 6.0;
+            out[c].peak = std::max({out[c].peak, x, centre, y});
+            left = centre;
+            centre = right;
+        }
+    };
+    for (const RowNode& node : row_nodes(r, f.rows)) add(node.height, node.weight);
+    for (double edge : {0.0, 1.0}) add(edge, 0.0); // f is largest at a corner of a quarter of the texel
+}
+
+void nearest_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::vector<TexelMoments>& out) {
+    const float* row = f.row(plane, r);
+    for (std::uint32_t c = 0; c < f.columns; ++c) {
+        const double value = row[c];
+        out[c] = {value, value * value, value};
+    }
+}
+
+/// A double as a float that is positive where the double is: rounding must not make darkness out of light.
+float positive_float(double value) {
+    const auto rounded = static_cast<float>(value);
+    return rounded > 0.0f || !(value > 0.0) ? rounded : std::numeric_limits<float>::denorm_min();
+}
+
+} // namespace
+
+Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
+                          const TargetOptions& options) {
+    const Integrand f = integrand(rgb, columns, rows, options);
+    Target target;
+    target.columns = columns;
+    target.rows = rows;
+    target.column_axis = ACDF_AXIS_PHI;
+    target.row_axis = ACDF_AXIS_THETA;
+    target.column_measure.assign(columns, 2.0 * ACDF_PI / columns);
+    target.row_measure.resize(rows);
+    for (std::uint32_t r = 0; r < rows; ++r) target.row_measure[r] = acdf_row_z(r, rows) - acdf_row_z(r + 1, rows);
+
+    const bool bilinear = options.filter == ACDF_FILTER_BILINEAR;
+    target.values.resize(std::size_t{columns} * rows);
+    if (bilinear) target.peaks.resize(target.values.size());
+    std::vector<std::array<double, kChannels>> row_total(rows);
+    tbb::parallel_for(std::uint32_t{0}, rows, [&](std::uint32_t r) {
+        std::vector<TexelMoments> moments(columns);
+        std::vector<double> square(columns, 0.0), peak(columns, 0.0);
+        for (std::size_t plane = 0; plane < f.planes; ++plane) {
+            bilinear ? bilinear_row(f, plane, r, moments) : nearest_row(f, plane, r, moments);
+            Sum sum;
+            for (std::uint32_t c = 0; c < columns; ++c) {
+                sum.add(moments[c].mean * target.column_measure[c]);
+                square[c] += moments[c].square;
+                peak[c] = std::max(peak[c], moments[c].peak);
+            }
+            row_total[r][plane] = sum.value() * target.row_measure[r];
+        }
+        float* values = target.values.data() + std::size_t{r} * columns;
+        for (std::uint32_t c = 0; c < columns; ++c) values[c] = positive_float(std::sqrt(square[c]));
+        if (!bilinear) return;
+        float* peaks = target.peaks.data() + std::size_t{r} * columns;
+        for (std::uint32_t c = 0; c < columns; ++c) peaks[c] = positive_float(peak[c]);
+    });
+    for (std::size_t plane = 0; plane < f.planes; ++plane) {
+        Sum sum;
+        for (std::uint32_t r = 0; r < rows; ++r) sum.add(row_total[r][plane]);
+        target.total += sum.value();
+        target.mean_square += sum.value() * sum.value();
+    }
+    return target;
+}
+
+} // namespace acdf::compress

@@ -1,0 +1,183 @@
+/* Sampling and evaluating .acdf tables of any number of axes: one freestanding header over acdf/sample.h, valid
+ * C99, C++17 and CUDA/HIP/SYCL, with the same contract: plain views into a checked file, no allocation, no errors.
+ *
+ * The first `indexed_count` axes are chosen by the caller: one index each, in [0, resolution), which together name
+ * a bin. The others are drawn: a point x with one coordinate a sampled axis, in the units of the axis. Densities
+ * are per product of those units, and integrate to 1 within each bin that has any energy.
+ *
+ * Coordinates are double because an axis may have more steps than a float has values. A sample keeps clear of its
+ * cell's borders, so that acdf_table_pdf finds the same cell: it returns the very same density. */
+#ifndef ACDF_TABLE_H
+#define ACDF_TABLE_H
+
+#include <acdf/sample.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct AcdfTable {
+    const uint8_t* tree;    /* chunk TREE */
+    const AcdfBin* bins;    /* row-major over the indexed axes, the last one fastest */
+    const AcdfAxis* axes;   /* indexed ones first */
+    uint32_t axis_count;    /* of both roles, at most ACDF_MAX_AXES */
+    uint32_t indexed_count; /* less than axis_count */
+    double total;           /* sum over the bins of the integral over the sampled axes */
+} AcdfTable;
+
+/* Where a point falls. */
+typedef struct AcdfTablePlace {
+    AcdfRange range[ACDF_MAX_AXES]; /* the cell, on each axis */
+    double position[ACDF_MAX_AXES]; /* the point, in [0, resolution] on each sampled axis */
+} AcdfTablePlace;
+
+#define ACDF_DOUBLE_MIN 2.2250738585072014e-308
+#define ACDF_DOUBLE_MAX 1.7976931348623157e308
+
+ACDF_FN uint32_t acdf_table_sampled_count(const AcdfTable* table) {
+    return table->axis_count - table->indexed_count;
+}
+
+/* The bin of index[indexed_count] (null where no axis is indexed); null where an index is out of range or the bin
+ * has no energy: nothing can be drawn there. */
+ACDF_FN const AcdfBin* acdf_table_bin(const AcdfTable* table, const uint32_t* index) {
+    size_t bin = 0;
+    uint32_t axis;
+    for (axis = 0; axis < table->indexed_count; ++axis) {
+        if (index[axis] >= table->axes[axis].resolution) return 0;
+        bin = bin * table->axes[axis].resolution + index[axis];
+    }
+    return table->bins[bin].share > 0.0f ? &table->bins[bin] : 0;
+}
+
+/* Whether double coordinates tell the axis's steps apart (SPEC.md rule 9004). */
+ACDF_FN int acdf_table_axis_steps(const AcdfAxis* axis) {
+    const double low = fabs(axis->low), high = fabs(axis->high), largest = low > high ? low : high;
+    const double step = fabs(axis->high - axis->low) / (double)axis->resolution;
+    return largest <= 0x1p100 && step >= 0x1p-100 && step >= 0x1p-40 * largest;
+}
+
+ACDF_FN double acdf_table_position(const AcdfAxis* axis, double x) {
+    return (x - axis->low) / (axis->high - axis->low) * (double)axis->resolution;
+}
+ACDF_FN double acdf_table_coordinate(const AcdfAxis* axis, double position) {
+    return axis->low + (axis->high - axis->low) * (position / (double)axis->resolution);
+}
+
+/* How far a sample stays from its cell's borders, in steps: above the rounding error of acdf_table_position at
+ * acdf_table_coordinate, and below 2^-8 (SPEC.md rule 9004). */
+ACDF_FN double acdf_table_border(const AcdfAxis* axis) {
+    const double low = fabs(axis->low), high = fabs(axis->high);
+    return 0x1p-48 * (low > high ? low : high) * (double)axis->resolution / fabs(axis->high - axis->low);
+}
+
+/* Fraction across the cell, of a position in it. */
+ACDF_FN double acdf_table_fraction(const AcdfRange* range, double position) {
+    return acdf_clamp((position - (double)range->low) / (double)(range->high - range->low), 0.0, 1.0);
+}
+
+ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfRange* range) {
+    uint32_t axis;
+    for (axis = 0; axis < table->axis_count; ++axis) {
+        range[axis].low = 0;
+        range[axis].high = table->axes[axis].resolution;
+        range[axis].tilt = 0.0;
+    }
+}
+
+/* Density of a place in a cell of probability p: the same for acdf_table_sample and acdf_table_pdf, bit for bit,
+ * because both come here with the same cell and the same position. */
+ACDF_FN double acdf_table_density(const AcdfTable* table, double p, const AcdfTablePlace* place) {
+    uint32_t axis;
+    for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
+        const AcdfAxis* a = &table->axes[axis];
+        const AcdfRange* range = &place->range[axis];
+        p *= (double)a->resolution / (fabs(a->high - a->low) * (double)(range->high - range->low));
+        if (range->tilt != 0.0)
+            p *= acdf_tilt_density(range->tilt, acdf_table_fraction(range, place->position[axis]));
+    }
+    return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
+}
+
+/* Draws a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
+ * Fills x[sampled count], monotone in each u within a segment, and returns the density there, finite and > 0.
+ * Returns 0, and leaves x as it is, where there is nothing to draw. */
+ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, const double* u, double* x) {
+    const AcdfBin* bin = acdf_table_bin(table, index);
+    const uint32_t first = table->indexed_count;
+    AcdfTablePlace place;
+    double left[ACDF_MAX_AXES];
+    double p;
+    uint32_t axis;
+    if (!bin) return 0.0;
+    for (axis = first; axis < table->axis_count; ++axis) {
+        const double v = u[axis - first];
+        left[axis] = v > 0.0 ? (v < 1.0 ? v : 1.0) : 0.0; /* also NaN */
+    }
+    acdf_table_whole(table, place.range);
+    p = acdf_tree_sample(table->tree, bin->root, left, place.range);
+    for (axis = first; axis < table->axis_count; ++axis) {
+        const AcdfAxis* a = &table->axes[axis];
+        const AcdfRange* range = &place.range[axis];
+        const double border = acdf_table_border(a);
+        const double t = acdf_tilt_sample(range->tilt, left[axis]);
+        const double position = (double)range->low + t * (double)(range->high - range->low);
+        x[axis - first] = acdf_table_coordinate(
+            a, acdf_clamp(position, (double)range->low + border, (double)range->high - border));
+        place.position[axis] = acdf_table_position(a, x[axis - first]);
+    }
+    return acdf_table_density(table, p, &place);
+}
+
+/* Finds the cell that holds x[sampled count]; `strata` as in acdf_tree_find. Returns its probability; 0 where no
+ * sample can fall, for NaN and outside the axes' ranges. A border belongs to the cell of the higher position, the
+ * end of an axis to its last cell. */
+ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, const double* x,
+                               AcdfTablePlace* place, AcdfStratum* strata) {
+    const AcdfBin* bin = acdf_table_bin(table, index);
+    const uint32_t first = table->indexed_count;
+    uint32_t step[ACDF_MAX_AXES];
+    uint32_t axis;
+    if (!bin) return 0.0;
+    for (axis = first; axis < table->axis_count; ++axis) {
+        const AcdfAxis* a = &table->axes[axis];
+        const double position = acdf_table_position(a, x[axis - first]);
+        if (!(position >= 0.0 && position <= (double)a->resolution)) return 0.0;
+        place->position[axis] = position;
+        step[axis] = (uint32_t)position;
+        if (step[axis] >= a->resolution) step[axis] = a->resolution - 1;
+    }
+    acdf_table_whole(table, place->range);
+    return acdf_tree_find(table->tree, bin->root, step, place->range, strata);
+}
+
+/* Density with which acdf_table_sample draws x in the bin of `index`; 0 where none falls. */
+ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
+    AcdfTablePlace place;
+    const double p = acdf_table_find(table, index, x, &place, 0);
+    return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
+}
+
+/* The random numbers u[sampled count] for which acdf_table_sample returns x. Returns 1, or 0 (and u unset) where
+ * the density is 0. */
+ACDF_FN int acdf_table_invert(const AcdfTable* table, const uint32_t* index, const double* x, double* u) {
+    AcdfTablePlace place;
+    AcdfStratum strata[ACDF_MAX_AXES];
+    uint32_t axis;
+    for (axis = 0; axis < table->axis_count; ++axis) {
+        strata[axis].low = 0.0;
+        strata[axis].width = 1.0;
+    }
+    if (!(acdf_table_find(table, index, x, &place, strata) > 0.0)) return 0;
+    for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
+        const AcdfRange* range = &place.range[axis];
+        const double t = acdf_table_fraction(range, place.position[axis]);
+        u[axis - table->indexed_count] = strata[axis].low + strata[axis].width * acdf_tilt_cdf(range->tilt, t);
+    }
+    return 1;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
