@@ -52,9 +52,9 @@ public:
     Fitted run() {
         Candidate best = search();
         for (int tries = 0; options_.max_weight > 0.0 && best.max_weight > options_.max_weight; ++tries) {
-            if (tries == 8)
+            if (tries == 16)
                 throw std::runtime_error(out_of_reach("a largest weight", options_.max_weight, best.max_weight));
-            heaviest_ *= std::min(0.995, options_.max_weight / best.max_weight);
+            heaviest_ *= 0.95 * std::min(1.0, options_.max_weight / best.max_weight);
             best = search();
         }
         return std::move(best.fitted);
