@@ -64,11 +64,11 @@ struct Packed {
     std::uint32_t link_code = 0;
 };
 
-Packed pack(const Curve& curve, const Lows& lows, double reach, double price) {
+Packed pack(const Curve& curve, const Lows& lows, double reach, double price, double most_ratio) {
     if (curve.segments() > ACDF_MAX_SEGMENTS) throw std::invalid_argument("a curve of more than 1048575 segments");
     Packed packed;
     packed.curve = &curve;
-    packed.probability = quantize(curve.probability, reach, price);
+    packed.probability = quantize(curve.probability, reach, price, most_ratio);
     const std::uint32_t last = curve.knots.empty() ? 0 : curve.knots.back(), low = lows[curve.axis];
     if (low == kMany ? curve.knots.empty() : last - low <= 0xFF) {
         packed.position_code = 0;
@@ -169,13 +169,13 @@ void write_curve(const Packed& packed, std::size_t at, const std::vector<std::si
 
 } // namespace
 
-EncodedTree encode_tree(const Cascade& cascade, double price) {
+EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio) {
     const std::vector<double> weight = reach(cascade);
     const std::vector<Lows> lows = range_lows(cascade);
     std::vector<Packed> packed;
     packed.reserve(cascade.curves.size());
     for (std::size_t i = 0; i < cascade.curves.size(); ++i)
-        packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price));
+        packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price, most_ratio));
     const std::vector<std::size_t> offset = place(packed);
     if (offset.back() / 2 > 0xFFFFFFFFu) throw std::invalid_argument("a tree of more than 8 GiB");
 

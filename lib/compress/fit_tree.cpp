@@ -95,9 +95,11 @@ private:
         for (std::size_t bin = 0; bin < partitions_.size(); ++bin)
             if (partitions_[bin]) flatten(*partitions_[bin], pruned[bin], flat);
             else flatten_nothing(flat);
+        // A bound on weights leaves no room for shares much below their probability.
+        const double most_ratio = options_.max_weight > 0.0 ? 1.01 : std::numeric_limits<double>::infinity();
         // E[(f/p)^2] is about the square of the sum of costs: a byte is worth twice as much in it. `reach` in
         // encode_tree is a mean over the bins, the price here counts each of them.
-        out.fitted.tree = encode_tree(flat.cascade, 2.0 * out.price / double(partitions_.size()));
+        out.fitted.tree = encode_tree(flat.cascade, 2.0 * out.price / double(partitions_.size()), most_ratio);
         std::size_t lit = 0;
         for (std::size_t bin = 0; bin < partitions_.size(); ++bin) {
             if (!partitions_[bin]) continue;

@@ -22,6 +22,15 @@ QuantizedCurve accumulate(const std::vector<std::uint64_t>& shares, std::uint32_
     return out;
 }
 
+/// The largest factor by which a share is below its probability.
+double worst_ratio(const std::vector<double>& probability, const std::vector<std::uint64_t>& shares) {
+    const double maximum = static_cast<double>(std::accumulate(shares.begin(), shares.end(), std::uint64_t{0}));
+    double worst = 1.0;
+    for (std::size_t i = 0; i < probability.size(); ++i)
+        if (shares[i] > 0) worst = std::max(worst, probability[i] * maximum / static_cast<double>(shares[i]));
+    return worst;
+}
+
 } // namespace
 
 std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std::uint64_t maximum,
@@ -87,7 +96,7 @@ double quantization_excess(const std::vector<double>& probability, const std::ve
     return excess;
 }
 
-QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price) {
+QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price, double most_ratio) {
     const auto lit = static_cast<std::uint64_t>(
         std::count_if(probability.begin(), probability.end(), [](double p) { return p > 0.0; }));
     const double values = static_cast<double>(probability.size() - 1);
@@ -99,7 +108,7 @@ QuantizedCurve quantize(const std::vector<double>& probability, double reach, do
         if (bytes * price >= least) break; // wider ones cost more even without any excess
         const std::vector<std::uint64_t> shares = apportion(probability, kMaximum[code], kSmallest[code]);
         const double cost = bytes * price + reach * quantization_excess(probability, shares);
-        if (cost >= least) continue;
+        if (cost >= least || (code < 2 && worst_ratio(probability, shares) > most_ratio)) continue;
         least = cost;
         best = accumulate(shares, code);
     }

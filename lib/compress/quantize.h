@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace acdf::compress {
@@ -23,6 +24,10 @@ double quantization_excess(const std::vector<double>& probability, const std::ve
 
 /// The width that costs least: `price` a byte, and `reach` times its quantization_excess. With 32 bits every
 /// share is at least 2^-24, so that a 24-bit random number reaches it.
-QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price);
+///
+/// Widths at which a share falls below its probability by more than a factor of `most_ratio` are passed over while
+/// there is a wider one.
+QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price,
+                        double most_ratio = std::numeric_limits<double>::infinity());
 
 } // namespace acdf::compress

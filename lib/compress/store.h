@@ -5,6 +5,7 @@
 
 #include <acdf/layout.h>
 
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,9 +46,10 @@ struct EncodedTree {
 };
 
 /// Quantizes and packs the curves in the order given. Probabilities get the width at which bytes, at `price`
-/// each, and what rounding adds to E[(f/p)^2] cost least together. Throws std::invalid_argument where the
-/// cascade breaks a limit of the format.
-EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8);
+/// each, and what rounding adds to E[(f/p)^2] cost least together. `most_ratio`: see quantize. Throws
+/// std::invalid_argument where the cascade breaks a limit of the format.
+EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8,
+                        double most_ratio = std::numeric_limits<double>::infinity());
 
 /// The whole file. The same arguments give the same bytes. Metadata is never compressed: it is short, stays
 /// readable, and keeps its size whatever numbers it tells.

@@ -47,13 +47,6 @@ struct TargetOptions {
 Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
                           const TargetOptions& options);
 
-/// The same with nearest lookup of the weighted sum.
-inline Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
-                                 const ChannelWeights& weights) {
-    return environment_target(rgb, columns, rows,
-                              TargetOptions{weights, ACDF_CHANNELS_WEIGHTED, ACDF_FILTER_NEAREST});
-}
-
 /// The same function with rows and columns exchanged.
 Target transposed(const Target& target);
 
