@@ -59,7 +59,9 @@ Target integer_target(std::uint32_t columns, std::uint32_t rows) {
             const std::uint32_t noise = (c * 7 + r * 13 + c * r * 3) % 11;
             rgb.insert(rgb.end(), {float(noise), float(c), c == 9 && r == 2 ? 500.0f : float(r * r)});
         }
-    return environment_target(rgb.data(), columns, rows, ChannelWeights{0.25, 0.5, 0.25});
+    TargetOptions options;
+    options.weights = {0.25, 0.5, 0.25};
+    return environment_target(rgb.data(), columns, rows, options);
 }
 
 Golden fitted(const char* name, AcdfFit fit_kind, Order order, AcdfCodec codec) {

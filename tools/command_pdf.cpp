@@ -5,6 +5,7 @@
 #include "help.h"
 #include "options.h"
 #include "output.h"
+#include "table_points.h"
 
 #include <cerrno>
 #include <cmath>
@@ -20,10 +21,11 @@ struct Options {
     std::string file;
     std::string directions = "-";
     std::string output = "-";
+    std::vector<std::uint32_t> at;
     bool normalize = false, csv = false, force = false;
 };
 
-std::string density_line(const EnvironmentView& view, std::array<double, 3> v, const Options& options) {
+std::string density_line(const EnvironmentView& view, std::vector<double> v, const Options& options) {
     if (options.normalize) {
         const double length = std::hypot(v[0], v[1], v[2]);
         for (double& x : v) x /= length; // 0/0 is NaN: density 0
@@ -38,14 +40,14 @@ std::string density_line(const EnvironmentView& view, std::array<double, 3> v, c
     return text;
 }
 
-void evaluate(const EnvironmentView& view, std::istream& in, const Options& options, Output& output) {
+/// Writes `answer(point)` for each point in `in`.
+template <class Answer>
+void evaluate(std::istream& in, PointParser parser, const Options& options, Output& output, const Answer& answer) {
     const std::string name = options.directions == "-" ? "stdin" : options.directions;
-    DirectionParser parser;
     std::string line;
-    if (options.csv) output.write("x,y,z,pdf\n");
     for (std::uint64_t number = 1; std::getline(in, line); ++number) {
         try {
-            if (const auto direction = parser.parse(line)) output.write(density_line(view, *direction, options));
+            if (const auto point = parser.parse(line)) output.write(answer(*point));
         } catch (const Failure& failure) {
             throw Failure(name + ": line " + std::to_string(number) + ": " + failure.what());
         }
@@ -53,11 +55,31 @@ void evaluate(const EnvironmentView& view, std::istream& in, const Options& opti
     if (in.bad()) throw Failure(name + ": cannot read: " + std::strerror(errno));
 }
 
+void evaluate_environment(const File& file, std::istream& in, const Options& options, Output& output) {
+    if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
+    const EnvironmentView view = file.environment();
+    if (options.csv) output.write("x,y,z,pdf\n");
+    evaluate(in, PointParser(), options, output,
+             [&](const std::vector<double>& direction) { return density_line(view, direction, options); });
+}
+
+void evaluate_table(const File& file, std::istream& in, const Options& options, Output& output) {
+    if (options.normalize) throw Failure(options.file + ": a table has no directions; leave out --normalize");
+    const TableView view = file.table();
+    const std::vector<std::uint32_t> bin = chosen_bin(options.file, view, options.at);
+    if (options.csv) output.write(point_columns("x", view.sampled_count()) + "pdf\n");
+    evaluate(in, PointParser(point_names(view.sampled_count())), options, output,
+             [&](const std::vector<double>& x) {
+                 return (options.csv ? point_text(x.data(), x.size()) : "") +
+                        number_text(view.pdf(bin.data(), x.data())) + "\n";
+             });
+}
+
 void run(const Options& options) {
     if (options.file == "-" && options.directions == "-")
         throw CLI::ValidationError("FILE", "the .acdf file and the directions cannot both come from stdin");
     Output output(options.output, options.force, {options.file, options.directions});
-    const LoadedFile loaded = load_environment(options.file, "pdf");
+    const LoadedFile loaded = load_environment_or_table(options.file, "pdf");
     std::ifstream file;
     if (options.directions != "-") {
         file.open(options.directions);
@@ -67,7 +89,9 @@ void run(const Options& options) {
                 throw Failure(options.directions + ": cannot open: " + std::strerror(error));
         }
     }
-    evaluate(loaded.file.environment(), options.directions == "-" ? std::cin : file, options, output);
+    std::istream& in = options.directions == "-" ? std::cin : file;
+    if (loaded.file.kind() == ACDF_KIND_TABLE) evaluate_table(loaded.file, in, options, output);
+    else evaluate_environment(loaded.file, in, options, output);
     output.commit();
 }
 
@@ -76,7 +100,7 @@ void run(const Options& options) {
 void add_pdf(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<Options>();
     CLI::App* command =
-        program.add_subcommand("pdf", "Evaluate the density of directions given on stdin or in a file");
+        program.add_subcommand("pdf", "Evaluate the density of directions, or points, given on stdin or in a file");
     command->add_option("FILE", options->file, "The .acdf file to evaluate (- is stdin)")
         ->required()
         ->type_name("");
@@ -90,11 +114,13 @@ void add_pdf(CLI::App& program, int& exit_code) {
                    "Scale directions to unit length first. Without it a direction that is not of unit length has "
                    "density 0, as in a renderer, where it tells of a mistake")
         ->group("Evaluation");
+    add_bin(*command, options->at, "Evaluation");
     command->add_flag("--csv", options->csv, "Print x,y,z,pdf instead of the density alone")->group("Output");
     add_output(*command, options->output, options->force, "The file to write, stdout by default");
     command->footer(help_footer("One density a line, per steradian, in the order of the directions; 0 where no "
                                 "sample can fall. Blank lines and "
-                                "what follows a # are skipped.",
+                                "what follows a # are skipped. Of a table: points x0 x1 ... in the units of its "
+                                "sampled axes, densities per product of these units.",
                                 "echo '0 0 1' | acdf pdf sky.acdf\n"
                                 "acdf pdf sky.acdf directions.csv --csv -o densities.csv\n"
                                 "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf"));

@@ -11,9 +11,8 @@
 #include "plot_knots.h"
 #include "plot_legend.h"
 #include "probe_options.h"
+#include "progress.h"
 #include "sizes.h"
-
-#include "measure/cells.h"
 
 #include <CLI/CLI.hpp>
 
@@ -21,8 +20,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <unordered_map>
 
 namespace acdf::tools {
 namespace {
@@ -64,14 +65,31 @@ std::string shown_name(const std::string& path) {
     return path == "-" ? "stdin" : fs::path(path).filename().string();
 }
 
+/// As many as measure::for_each_cell visits. Shared curves are counted once and remembered: a small file can hold
+/// more cells than anyone can visit.
+std::uint64_t count_cells(const std::uint8_t* tree, std::uint32_t at,
+                          std::unordered_map<std::uint32_t, std::uint64_t>& known) {
+    if (const auto found = known.find(at); found != known.end()) return found->second;
+    const AcdfCurve curve = acdf_curve_at(tree, at);
+    std::uint64_t cells = 0;
+    for (std::uint32_t i = 0; i < curve.segments; ++i) {
+        const std::uint32_t link = acdf_curve_link(&curve, i);
+        const bool reached = acdf_curve_cumulative(&curve, i + 1) > acdf_curve_cumulative(&curve, i);
+        const std::uint64_t more = link != 0 && reached ? count_cells(tree, at + link, known) : 1;
+        cells += std::min(more, std::numeric_limits<std::uint64_t>::max() - cells);
+    }
+    known[at] = cells;
+    return cells;
+}
+
 void load_stored(const Options& options, Source& source) {
     source.stored = load_environment(options.file, "plot");
     const File& file = source.stored.file;
     source.density = density_of(file.environment());
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
-    std::uint64_t cells = 0;
-    measure::for_each_cell(file, file.bin(0).root, [&](const measure::Cell&) { ++cells; });
+    std::unordered_map<std::uint32_t, std::uint64_t> known;
+    const std::uint64_t cells = count_cells(file.tree(), file.bin(0).root, known);
     source.title = {shown_name(options.file), fit_name(file.description().fit) + " fit",
                     std::to_string(cells) + (cells == 1 ? " cell" : " cells"), to_readable_size(file.size())};
     const Text variance = file.metadata("accuracy.relative_variance");
@@ -85,7 +103,7 @@ void load_stored(const Options& options, Source& source) {
 
 void load_image(const Options& options, Source& source) {
     const input::Probe probe = load_probe(options.file, options.input, options.quiet);
-    source.target = luminance_target(options.file, probe);
+    source.target = probe_target(options.file, probe);
     source.density = density_of(source.target);
     source.columns = source.target.columns;
     source.rows = source.target.rows;
@@ -116,23 +134,52 @@ std::string joined(const std::vector<std::string>& parts) {
     return text;
 }
 
-std::vector<std::uint8_t> draw_png(const Options& options, const Source& source, const DensityImage& image) {
-    const DensityRange range = chosen_range(options, image);
-    OIIO::ImageBuf picture = false_colour(image, range);
-    if (options.knots && !source.stored.file.empty())
-        draw_knots(picture, knot_opacity(source.stored.file.environment(), image.map));
+/// The numbers of a plot, before they become a picture.
+struct Drawing {
+    DensityImage image;
+    std::vector<float> knots; // opacity; empty where none are drawn
+};
+
+Drawing draw(const Options& options, const Source& source, bool with_knots) {
+    ProgressBar bar(options.quiet);
+    const double share = with_knots ? 0.2 : 1.0; // of the work: tracing takes about four times as long
+    const auto part = [report = bar.callback()](double begin, double width) {
+        return [=](double done, const char* what) { report(begin + width * done, what); };
+    };
+    Drawing drawing;
+    drawing.image = draw_density(picture_map(options, source), source.density, part(0.0, share));
+    if (with_knots)
+        drawing.knots = knot_opacity(source.stored.file.environment(), drawing.image.map, part(share, 1.0 - share));
+    return drawing;
+}
+
+std::string checked_font(const Options& options) {
+    const std::string font = find_font();
+    if (font.empty() && !options.quiet)
+        std::fprintf(stderr,
+                     "%s: no font was found, so the legend has no text; installing DejaVu Sans "
+                     "(fonts-dejavu-core) would help\n",
+                     options.output.c_str());
+    return font;
+}
+
+std::vector<std::uint8_t> make_png(const Options& options, const Source& source) {
+    const Drawing drawing = draw(options, source, options.knots && !source.stored.file.empty());
+    const std::vector<float>& density = drawing.image.density;
+    const DensityRange range = chosen_range(options, drawing.image);
+    OIIO::ImageBuf picture = false_colour(drawing.image, range);
+    if (!drawing.knots.empty()) draw_knots(picture, drawing.knots);
     if (options.legend) {
-        const std::string font = find_font();
-        if (font.empty() && !options.quiet)
-            std::fprintf(stderr,
-                         "%s: no font was found, so the legend has no text; installing DejaVu Sans "
-                         "(fonts-dejavu-core) would help\n",
-                         options.output.c_str());
-        const bool zero = std::find(image.density.begin(), image.density.end(), 0.0f) != image.density.end();
-        picture = add_legend(picture, {source.title, range, zero}, font);
+        const bool zero = std::find(density.begin(), density.end(), 0.0f) != density.end();
+        picture = add_legend(picture, {source.title, range, zero}, checked_font(options));
     }
     return encode_png(picture, {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + "; colours span " +
                                                           to_string(range) + " sr^-1, logarithmic"});
+}
+
+std::vector<std::uint8_t> make_exr(const Options& options, const Source& source) {
+    return encode_exr(draw(options, source, false).image,
+                      {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + ", sr^-1"});
 }
 
 bool is_exr(const std::string& path) {
@@ -153,10 +200,7 @@ void run(const Options& options) {
     Source source;
     if (is_stored(options.file)) load_stored(options, source);
     else load_image(options, source);
-    const DensityImage image = draw_density(picture_map(options, source), source.density);
-    const std::vector<std::uint8_t> bytes =
-        exr ? encode_exr(image, {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + ", sr^-1"})
-            : draw_png(options, source, image);
+    const std::vector<std::uint8_t> bytes = exr ? make_exr(options, source) : make_png(options, source);
     output.write(bytes.data(), bytes.size());
     output.commit();
 }
@@ -169,7 +213,7 @@ void add_picture_options(CLI::App& command, Options& options) {
             "--projection", options.layout,
             "How the picture lays out directions: latlong (a 2:1 map: all cells at a glance) or angular (the "
             "unit disc of Debevec's light probes and of Lawrence et al. 2005, Fig. 5: less distorted around "
-            "the middle, which is +x as in the lat-long map)")
+            "the middle, which is +x as in the lat-long map; sides as in a probe of that projection)")
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->option_text("NAME [latlong]")
         ->group("Picture");
@@ -189,13 +233,14 @@ void add_picture_options(CLI::App& command, Options& options) {
         ->option_text("MIN:MAX")
         ->group("Picture");
     command
-        .add_flag(
-            "--knots,!--no-knots", options.knots,
-            "Draw the borders of cells (default) or leave them out; they fade where cells are too small to see")
+        .add_flag_callback(
+            "--no-knots", [&options] { options.knots = false; },
+            "Leave out the borders of cells (drawn by default; they fade where cells are too small to see)")
         ->group("Picture");
     command
-        .add_flag("--legend,!--no-legend", options.legend,
-                  "Add a title and a colour bar (default), or write the density alone, to place in a figure")
+        .add_flag_callback(
+            "--no-legend", [&options] { options.legend = false; },
+            "Leave out title and colour bar (drawn by default): exactly the density's pixels, to place in a figure")
         ->group("Picture");
 }
 

@@ -6,6 +6,7 @@
 #include "output.h"
 #include "progress.h"
 #include "sequences.h"
+#include "table_points.h"
 
 #include <cstdio>
 #include <map>
@@ -18,6 +19,7 @@ struct Options {
     std::uint64_t count = 0;
     std::optional<std::uint64_t> seed;
     SequenceKind sequence = SequenceKind::random;
+    std::vector<std::uint32_t> at;
     std::string output = "-";
     bool force = false, quiet = false;
 };
@@ -33,19 +35,52 @@ std::string csv_line(const std::array<double, 2>& u, const DirectionSample& s) {
     return text;
 }
 
-void run(const Options& options) {
-    Output output(options.output, options.force, {options.file});
-    const LoadedFile loaded = load_environment(options.file, "sample");
-    const EnvironmentView view = loaded.file.environment();
-    Sequence sequence(options.sequence, options.count, options.seed);
+/// Writes `draw()` as often as samples are asked for.
+template <class Draw>
+void write_samples(const Options& options, Output& output, const Draw& draw) {
     ProgressBar bar(options.quiet);
     const Progress progress = bar.callback();
-    output.write("u0,u1,x,y,z,pdf\n");
     for (std::uint64_t i = 0; i < options.count; ++i) {
         if (i % 4096 == 0) progress(static_cast<double>(i) / static_cast<double>(options.count), "sampling");
-        const std::array<double, 2> u = sequence.next();
-        output.write(csv_line(u, view.sample(u[0], u[1])));
+        output.write(draw());
     }
+}
+
+void sample_environment(const File& file, const Options& options, Output& output) {
+    if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
+    const EnvironmentView view = file.environment();
+    Sequence sequence(options.sequence, options.count, options.seed);
+    output.write("u0,u1,x,y,z,pdf\n");
+    write_samples(options, output, [&] {
+        const std::array<double, 2> u = sequence.next();
+        return csv_line(u, view.sample(u[0], u[1]));
+    });
+}
+
+void sample_table(const File& file, const Options& options, Output& output) {
+    const TableView view = file.table();
+    const std::uint32_t n = view.sampled_count();
+    if (options.sequence != SequenceKind::random && n != 2)
+        throw Failure(options.file + ": has " + std::to_string(n) + (n == 1 ? " sampled axis" : " sampled axes") +
+                      ", not 2; use --sequence random");
+    const std::vector<std::uint32_t> bin = chosen_bin(options.file, view, options.at);
+    if (!(view.share(bin.data()) > 0.0))
+        throw Failure(options.file + ": this bin is empty, so there is nothing to draw; choose another with --at");
+    Sequence sequence(options.sequence, options.count, options.seed);
+    output.write(point_columns("u", n) + point_columns("x", n) + "pdf\n");
+    write_samples(options, output, [&] {
+        double u[ACDF_MAX_AXES], x[ACDF_MAX_AXES];
+        sequence.next(u, n);
+        const double pdf = view.sample(bin.data(), u, x);
+        return point_text(u, n) + point_text(x, n) + number_text(pdf) + "\n";
+    });
+}
+
+void run(const Options& options) {
+    Output output(options.output, options.force, {options.file});
+    const LoadedFile loaded = load_environment_or_table(options.file, "sample");
+    if (loaded.file.kind() == ACDF_KIND_TABLE) sample_table(loaded.file, options, output);
+    else sample_environment(loaded.file, options, output);
     output.commit();
 }
 
@@ -56,7 +91,7 @@ void add_sample(CLI::App& program, int& exit_code) {
         {"random", SequenceKind::random}, {"stratified", SequenceKind::stratified}, {"sobol", SequenceKind::sobol}};
     auto options = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand(
-        "sample", "Draw directions from a file: CSV of random numbers, direction and density");
+        "sample", "Draw directions, or points of a table: CSV of random numbers, direction and density");
     command->add_option("FILE", options->file, "The .acdf file to sample (- is stdin)")->required()->type_name("");
     command->add_option("-n,--count", options->count, "How many directions to draw")
         ->required()
@@ -79,16 +114,19 @@ void add_sample(CLI::App& program, int& exit_code) {
             "Without one sobol is the plain sequence")
         ->option_text("S [0]")
         ->group("Sampling");
+    add_bin(*command, options->at, "Sampling");
     add_output(*command, options->output, options->force, "The CSV file to write, stdout by default");
     add_quiet(*command, options->quiet);
-    command->footer(help_footer("Columns: u0,u1 (the random numbers used, 17 digits), x,y,z (a unit direction, "
-                                "right-handed, z up) and pdf (per "
-                                "steradian). Floats carry 9 digits: read back, they are the same floats. To "
-                                "estimate an integral of g, average "
-                                "g(x,y,z)/pdf.",
-                                "acdf sample sky.acdf -n 1000 > directions.csv\n"
-                                "acdf sample sky.acdf -n 4096 --sequence sobol -o directions.csv\n"
-                                "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf      # the densities again"));
+    command->footer(help_footer(
+        "Columns: u0,u1 (the random numbers used, 17 digits), x,y,z (a unit direction, "
+        "right-handed, z up) and pdf (per "
+        "steradian). Floats carry 9 digits: read back, they are the same floats. To "
+        "estimate an integral of g, average "
+        "g(x,y,z)/pdf. Of a table: u0,u1,...,x0,x1,...,pdf, a number each for every sampled axis in its "
+        "units, all with 17 digits.",
+        "acdf sample sky.acdf -n 1000 > directions.csv\n"
+        "acdf sample sky.acdf -n 4096 --sequence sobol -o directions.csv\n"
+        "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf      # the densities again"));
     command->callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

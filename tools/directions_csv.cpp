@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <numeric>
 #include <vector>
 
 namespace acdf::tools {
@@ -41,45 +42,50 @@ std::optional<double> number_in(const std::string& field) {
     return value;
 }
 
-// Where x, y and z stand in a header line; nothing where this is none.
-std::optional<std::array<std::size_t, 3>> header_in(const std::vector<std::string>& fields) {
-    std::array<std::size_t, 3> columns = {};
-    const char* const names[3] = {"x", "y", "z"};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto found = std::find(fields.begin(), fields.end(), names[i]);
-        if (found == fields.end()) return std::nullopt;
-        columns[i] = static_cast<std::size_t>(found - fields.begin());
-    }
-    return columns;
-}
-
 } // namespace
 
-std::optional<std::array<double, 3>> DirectionParser::parse(const std::string& line) {
+PointParser::PointParser(std::vector<std::string> names) : names_(std::move(names)), columns_(names_.size()) {
+    std::iota(columns_.begin(), columns_.end(), std::size_t{0});
+}
+
+// Finds the columns in a header line; false where this is none.
+bool PointParser::read_header(const std::vector<std::string>& fields) {
+    std::vector<std::size_t> columns;
+    for (const std::string& name : names_) {
+        const auto found = std::find(fields.begin(), fields.end(), name);
+        if (found == fields.end()) return false;
+        columns.push_back(static_cast<std::size_t>(found - fields.begin()));
+    }
+    columns_ = std::move(columns);
+    return header_ = true;
+}
+
+// "3 numbers x y z"
+std::string PointParser::expected() const {
+    std::string text = std::to_string(names_.size()) + (names_.size() == 1 ? " number" : " numbers");
+    for (const std::string& name : names_) text += " " + name;
+    return text;
+}
+
+std::optional<std::vector<double>> PointParser::parse(const std::string& line) {
     const std::string text = trimmed(line.substr(0, line.find('#')));
     if (text.empty()) return std::nullopt;
     const std::vector<std::string> fields = fields_of(text);
-    if (!header_ && !direction_) {
-        if (const auto columns = header_in(fields)) {
-            columns_ = *columns;
-            header_ = true;
-            return std::nullopt;
-        }
-    }
-    if (!header_ && fields.size() != 3)
-        throw Failure("expected three numbers x y z, found " + std::to_string(fields.size()) +
+    if (!header_ && !point_ && read_header(fields)) return std::nullopt;
+    if (!header_ && fields.size() != names_.size())
+        throw Failure("expected " + expected() + ", found " + std::to_string(fields.size()) +
                       (fields.size() == 1 ? " field" : " fields") +
-                      "; a header line that names the columns x, y and z allows more");
-    std::array<double, 3> direction = {};
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (columns_[i] >= fields.size())
+                      "; a header line that names the columns allows more");
+    std::vector<double> point;
+    for (const std::size_t column : columns_) {
+        if (column >= fields.size())
             throw Failure("has " + std::to_string(fields.size()) + " columns, fewer than the header needs");
-        const auto value = number_in(fields[columns_[i]]);
-        if (!value) throw Failure("'" + fields[columns_[i]] + "' is no number");
-        direction[i] = *value;
+        const auto value = number_in(fields[column]);
+        if (!value) throw Failure("'" + fields[column] + "' is no number");
+        point.push_back(*value);
     }
-    direction_ = true;
-    return direction;
+    point_ = true;
+    return point;
 }
 
 } // namespace acdf::tools

@@ -33,6 +33,11 @@ std::unique_ptr<std::FILE, Close> open_input(const std::string& path) {
     return file;
 }
 
+[[noreturn]] void fail_kind(const std::string& path, const File& file, const char* command, const char* reads) {
+    throw Failure(shown(path) + ": holds a file of kind '" + kind_name(file.kind()) + "'; acdf " + command +
+                  " reads " + reads);
+}
+
 } // namespace
 
 std::vector<std::uint8_t> read_bytes(const std::string& path) {
@@ -58,8 +63,14 @@ LoadedFile load_file(const std::string& path) {
 LoadedFile load_environment(const std::string& path, const char* command) {
     LoadedFile loaded = load_file(path);
     if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT)
-        throw Failure(shown(path) + ": holds a file of kind '" + kind_name(loaded.file.kind()) + "'; acdf " +
-                      command + " reads environments, as `acdf env` makes them");
+        fail_kind(path, loaded.file, command, "environments, as `acdf env` makes them");
+    return loaded;
+}
+
+LoadedFile load_environment_or_table(const std::string& path, const char* command) {
+    LoadedFile loaded = load_file(path);
+    if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT && loaded.file.kind() != ACDF_KIND_TABLE)
+        fail_kind(path, loaded.file, command, "environments and tables, as `acdf env` and `acdf table` make them");
     return loaded;
 }
 

@@ -23,5 +23,7 @@ LoadedFile load_file(const std::string& path);
 
 /// As load_file, and fails where the file is no environment; `command` is named in the message.
 LoadedFile load_environment(const std::string& path, const char* command);
+/// The same for environments and tables.
+LoadedFile load_environment_or_table(const std::string& path, const char* command);
 
 } // namespace acdf::tools

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 
 namespace acdf::tools {
 
@@ -34,14 +35,16 @@ bool pixel_direction(const input::Map& map, double x, double y, float direction[
     return true;
 }
 
-DensityImage draw_density(const input::Map& map, const Density& density) {
+DensityImage draw_density(const input::Map& map, const Density& density, const Progress& progress) {
     DensityImage image{map, {}};
     const auto width = static_cast<std::size_t>(map.width);
     image.density.assign(width * static_cast<std::size_t>(map.height), shows_nothing);
+    std::atomic<int> rows{0};
     tbb::parallel_for(0, map.height, [&](int y) {
         float* row = image.density.data() + static_cast<std::size_t>(y) * width;
         for (int x = 0; x < map.width; ++x)
             if (float direction[3]; pixel_direction(map, x + 0.5, y + 0.5, direction)) row[x] = density(direction);
+        if (progress) progress(++rows / static_cast<double>(map.height), "evaluating");
     });
     return image;
 }

@@ -3,6 +3,7 @@
 
 #include "compress/target.h"
 #include "input/projection.h"
+#include "progress.h"
 
 #include <acdf/reader.h>
 
@@ -41,6 +42,6 @@ input::Map plot_map(input::Layout layout, int width);
 /// The direction at image position (x, y) in pixels; pixel centres are at halves. False outside of the disc.
 bool pixel_direction(const input::Map& map, double x, double y, float direction[3]);
 
-DensityImage draw_density(const input::Map& map, const Density& density);
+DensityImage draw_density(const input::Map& map, const Density& density, const Progress& progress = {});
 
 } // namespace acdf::tools

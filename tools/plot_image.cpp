@@ -15,6 +15,7 @@ std::vector<std::uint8_t> encode(const char* name, OIIO::ImageSpec spec, const f
                                  const ImageNotes& notes) {
     spec.attribute("Software", notes.software);
     spec.attribute("ImageDescription", notes.description);
+    spec.attribute("DateTime", ""); // else OpenImageIO writes the time of day into OpenEXR files
     OIIO::Filesystem::IOVecOutput memory;
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &memory);
     if (!output) throw std::runtime_error(std::string(name) + ": cannot be written: " + OIIO::geterror());

@@ -6,18 +6,19 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace acdf::tools {
 namespace {
 
-constexpr double invisible_thickness = 2.5, full_thickness = 6.0; // of a cell, in pixels
-constexpr float line_opacity = 0.6f;
+constexpr float invisible_thickness = 2.5f, full_thickness = 12.0f; // of a cell, in pixels
+constexpr float line_opacity = 0.55f;
 
 /// The cell under a pixel, seen along one axis, in pixels.
 struct Extent {
-    double line = 0.0;      ///< how much of the pixel the lines at the cell's two ends cover
-    double thickness = 0.0; ///< distance between those ends
+    float line = 0.0f;      ///< how much of the pixel the lines at the cell's two ends cover
+    float thickness = 0.0f; ///< distance between those ends
 };
 using Extents = std::array<Extent, 2>;
 
@@ -30,8 +31,7 @@ struct GridPoint {
 class Tracer {
 public:
     Tracer(const AcdfEnvironment& env, const input::Map& map)
-        : env_(env),
-          map_(map), grid_{input::Layout::latlong, static_cast<int>(env.columns), static_cast<int>(env.rows)} {}
+        : env_(env), map_(map), grid_{input::Layout::latlong, 1, 1} {} // of any size: it is scaled below
 
     Extents extents(int x, int y) const {
         float direction[3];
@@ -43,8 +43,8 @@ public:
         Extents out;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const double step = gradient(x, y, here, axis);
-            out[axis].thickness = (range[axis].high - range[axis].low) / step;
-            out[axis].line = coverage(axis, range[axis], here.at[axis], step);
+            out[axis].thickness = static_cast<float>((range[axis].high - range[axis].low) / step);
+            out[axis].line = static_cast<float>(coverage(axis, range[axis], here.at[axis], step));
         }
         return out;
     }
@@ -56,6 +56,8 @@ private:
     std::uint32_t resolution(std::size_t axis) const { return axis == ACDF_AXIS_PHI ? env_.columns : env_.rows; }
 
     GridPoint grid_point(double x, double y) const {
+        if (map_.layout == input::Layout::latlong) // the same map: no detour, which would lose columns at the poles
+            return {true, {x / map_.width * env_.columns, y / map_.height * env_.rows}};
         input::Direction d;
         if (!input::to_direction(map_, x / map_.width, y / map_.height, d)) return {};
         const input::ImagePoint p = input::to_image(grid_, d);
@@ -108,28 +110,30 @@ float opacity_at(const std::vector<Extents>& extents, const input::Map& map, int
                            static_cast<std::size_t>(map.width) +
                        static_cast<std::size_t>(std::clamp(i, 0, map.width - 1))];
     };
-    double opacity = 0.0;
+    float opacity = 0.0f;
     for (std::size_t axis = 0; axis < 2; ++axis) {
-        const double line = at(x, y)[axis].line;
-        if (!(line > 0.0)) continue;
-        double thickness = 0.0; // a large cell keeps its outline beside small ones
+        const float line = at(x, y)[axis].line;
+        if (!(line > 0.0f)) continue;
+        float thickness = 0.0f; // a large cell keeps its outline beside small ones
         for (int j = -1; j <= 1; ++j)
             for (int i = -1; i <= 1; ++i) thickness = std::max(thickness, at(x + i, y + j)[axis].thickness);
-        const double visible = (thickness - invisible_thickness) / (full_thickness - invisible_thickness);
-        opacity = std::max(opacity, line * std::clamp(visible, 0.0, 1.0));
+        const float visible = (thickness - invisible_thickness) / (full_thickness - invisible_thickness);
+        opacity = std::max(opacity, line * std::clamp(visible, 0.0f, 1.0f));
     }
-    return static_cast<float>(opacity);
+    return opacity;
 }
 
 } // namespace
 
-std::vector<float> knot_opacity(const EnvironmentView& view, const input::Map& map) {
+std::vector<float> knot_opacity(const EnvironmentView& view, const input::Map& map, const Progress& progress) {
     const Tracer tracer(view.data(), map);
     const auto width = static_cast<std::size_t>(map.width);
     std::vector<Extents> extents(width * static_cast<std::size_t>(map.height));
+    std::atomic<int> rows{0};
     tbb::parallel_for(0, map.height, [&](int y) {
         for (int x = 0; x < map.width; ++x)
             extents[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = tracer.extents(x, y);
+        if (progress) progress(++rows / static_cast<double>(map.height), "tracing cells");
     });
     std::vector<float> opacity(extents.size());
     tbb::parallel_for(0, map.height, [&](int y) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace acdf::tools {
 namespace {
@@ -72,20 +73,26 @@ void draw_bar(OIIO::ImageBuf& image, const Legend& legend, const LegendLayout& l
     for (int x = 0; x < bar.width; ++x) algo::paste(image, bar.x + x, bar.y, 0, 0, colours);
 }
 
+// 10^-3 where all labels are powers of ten, 0.002 else.
+void write_label(const Pen& pen, int x, int y, const Tick& tick, const DensityRange& range, int size) {
+    if (!is_major({2, 0}, range)) return pen.write_power(x, y, "10", tick.exponent, size);
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", tick.density());
+    pen.write(x, y, text, size);
+}
+
 void draw_ticks(OIIO::ImageBuf& image, const Legend& legend, const LegendLayout& layout, const Pen* pen) {
-    const int edge = layout.bar.x + layout.bar.width;
-    const std::vector<int> exponents = decades(legend.range);
+    const int edge = layout.bar.x + layout.bar.width, size = layout.font_size;
     const double rows_a_decade = layout.bar.height / std::log10(legend.range.high / legend.range.low);
-    if (rows_a_decade > 20.0)
-        for (const double density : minor_ticks(legend.range))
-            fill(image, {edge, layout.row_of(density, legend.range), layout.tick_length / 2, 1}, ink);
-    const int step = std::max(1, static_cast<int>(std::ceil(1.6 * layout.font_size / rows_a_decade)));
-    for (const int exponent : exponents) {
-        const int row = layout.row_of(std::pow(10.0, exponent), legend.range);
-        fill(image, {edge, row, layout.tick_length, 1}, ink);
-        if (pen && (exponent - exponents.front()) % step == 0)
-            pen->write_power(edge + layout.tick_length + layout.font_size / 4, row + layout.font_size * 2 / 5, "10",
-                             exponent, layout.font_size);
+    int free_row = layout.height; // labels are written upwards; above this row there is room for one
+    for (const Tick& tick : ticks(legend.range)) {
+        const int row = layout.row_of(tick.density(), legend.range);
+        const bool major = is_major(tick, legend.range);
+        if (!major && rows_a_decade < 20.0) continue;
+        fill(image, {edge, row, major ? layout.tick_length : layout.tick_length / 2, 1}, ink);
+        if (!pen || !major || row > free_row) continue;
+        write_label(*pen, edge + layout.tick_length + size / 4, row + size * 2 / 5, tick, legend.range, size);
+        free_row = row - size * 3 / 2;
     }
 }
 
@@ -117,7 +124,7 @@ LegendLayout legend_layout(int picture_width, int picture_height) {
     const int column_height = std::max(picture_height, 8 * s);
     out.bar = {out.picture.x + picture_width + s, out.picture.y, 5 * s / 4, column_height - 9 * s / 4};
     out.zero = {out.bar.x, out.picture.y + column_height - 5 * s / 4, out.bar.width, 5 * s / 4};
-    out.width = out.bar.x + out.bar.width + 4 * s;
+    out.width = out.bar.x + out.bar.width + 9 * s / 2;
     out.height = out.picture.y + column_height + s;
     return out;
 }

@@ -45,19 +45,22 @@ Histogram histogram_of(const DensityImage& image) {
     return h;
 }
 
+// The double that a person would write, 2e-7, which 2 * 1e-7 need not be.
+double round_number(int mantissa, int exponent) {
+    return std::strtod((std::to_string(mantissa) + "e" + std::to_string(exponent)).c_str(), nullptr);
+}
+
 // The largest (up: smallest) of 1, 2, 5 times a power of ten that is at most (up: at least) 10^exponent.
 double round_to_125(double exponent, bool up) {
     constexpr double slack = 1e-9; // a round number stays itself
     const double power = std::floor(exponent + slack);
     const double steps[] = {0.0, std::log10(2.0), std::log10(5.0), 1.0};
-    constexpr double mantissas[] = {1.0, 2.0, 5.0, 10.0};
+    constexpr int mantissas[] = {1, 2, 5, 10};
     const double fraction = exponent - power;
     int i = 0;
     while (i < 3 && steps[i + 1] <= fraction + slack) ++i; // steps[i] <= fraction < steps[i + 1]
     if (up && steps[i] < fraction - slack) ++i;
-    char text[32]; // 2e-07, not 2 * 1e-07: the number that a person would write
-    std::snprintf(text, sizeof text, "%ge%d", mantissas[i], static_cast<int>(power));
-    return std::strtod(text, nullptr);
+    return round_number(mantissas[i], static_cast<int>(power));
 }
 
 } // namespace
@@ -105,24 +108,26 @@ std::string to_string(const DensityRange& range) {
     return text;
 }
 
-std::vector<int> decades(const DensityRange& range) {
+double Tick::density() const { return round_number(mantissa, exponent); }
+
+std::vector<Tick> ticks(const DensityRange& range) {
     constexpr double slack = 1e-9;
-    std::vector<int> exponents;
+    std::vector<Tick> out;
+    const int first = static_cast<int>(std::floor(std::log10(range.low)));
     const int last = static_cast<int>(std::floor(std::log10(range.high) + slack));
-    for (int e = static_cast<int>(std::ceil(std::log10(range.low) - slack)); e <= last; ++e) exponents.push_back(e);
-    return exponents;
+    for (int exponent = first; exponent <= last; ++exponent)
+        for (int mantissa = 1; mantissa <= 9; ++mantissa) {
+            const Tick tick{mantissa, exponent};
+            if (tick.density() >= range.low * (1.0 - slack) && tick.density() <= range.high * (1.0 + slack))
+                out.push_back(tick);
+        }
+    return out;
 }
 
-std::vector<double> minor_ticks(const DensityRange& range) {
-    constexpr double slack = 1e-9;
-    std::vector<double> ticks;
-    const int last = static_cast<int>(std::floor(std::log10(range.high) + slack));
-    for (int e = static_cast<int>(std::floor(std::log10(range.low))); e <= last; ++e)
-        for (int mantissa = 2; mantissa <= 9; ++mantissa) {
-            const double tick = mantissa * std::pow(10.0, e);
-            if (tick >= range.low * (1.0 - slack) && tick <= range.high * (1.0 + slack)) ticks.push_back(tick);
-        }
-    return ticks;
+bool is_major(const Tick& tick, const DensityRange& range) {
+    constexpr double slack = 1.0 + 1e-9;
+    if (tick.mantissa == 1 || range.high * slack < 5.0 * range.low) return true;
+    return (tick.mantissa == 2 || tick.mantissa == 5) && range.high <= 100.0 * range.low * slack;
 }
 
 } // namespace acdf::tools

@@ -28,10 +28,18 @@ std::optional<DensityRange> parse_range(const std::string& text);
 /// As parse_range reads it.
 std::string to_string(const DensityRange& range);
 
-/// Exponents of the powers of ten in the range.
-std::vector<int> decades(const DensityRange& range);
+/// A round density: mantissa times ten to the exponent.
+struct Tick {
+    int mantissa = 1, exponent = 0; ///< mantissa in [1, 9]
 
-/// The other round densities in the range: 2 to 9 times a power of ten.
-std::vector<double> minor_ticks(const DensityRange& range);
+    double density() const;
+};
+
+/// All round densities in the range, ascending.
+std::vector<Tick> ticks(const DensityRange& range);
+
+/// Whether to label a tick: those of powers of ten; in a range of up to two decades those of 2 and 5 too, and in a
+/// range shorter than from 1 to 5 all.
+bool is_major(const Tick& tick, const DensityRange& range);
 
 } // namespace acdf::tools

@@ -35,6 +35,15 @@ std::array<double, 2> Sequence::next() {
     return {u0, uniform()};
 }
 
+void Sequence::next(double* point, std::size_t dimensions) {
+    if (kind_ == SequenceKind::random) {
+        std::generate_n(point, dimensions, [this] { return uniform(); });
+        return;
+    }
+    const std::array<double, 2> pair = next();
+    std::copy_n(pair.begin(), std::min<std::size_t>(dimensions, 2), point);
+}
+
 // Not std::uniform_real_distribution: the standard leaves its arithmetic to the library.
 double Sequence::uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 

@@ -18,6 +18,8 @@ public:
     Sequence(SequenceKind kind, std::uint64_t n, std::optional<std::uint64_t> seed);
 
     std::array<double, 2> next();
+    /// A point in [0, 1)^dimensions: any number of them for `random`, 2 for the others.
+    void next(double* point, std::size_t dimensions);
 
 private:
     SequenceKind kind_;

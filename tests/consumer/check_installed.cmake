@@ -1,0 +1,92 @@
+# Installs the reader alone, moves it elsewhere, and builds the consumers against it: once through
+# find_package(acdf), once with nothing but pkg-config and the compiler. Their link lines may hold zlib and the
+# language's own runtime, no more.
+#
+# cmake -DBUILD=... -DWORK=... -DFILE=... -DCC=... -DCXX=... -DLIBDIR=... -P check_installed.cmake
+cmake_minimum_required(VERSION 3.25)
+
+function(run output)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE err)
+    if(NOT result EQUAL 0)
+        list(JOIN ARGN " " command)
+        message(FATAL_ERROR "${command}\nfailed (${result}):\n${out}${err}")
+    endif()
+    set(${output} "${out}" PARENT_SCOPE)
+endfunction()
+
+# expect_needed(PROGRAM NAMES...): the shared libraries that PROGRAM itself asks for.
+function(expect_needed program)
+    run(dynamic readelf -d ${program})
+    string(REGEX MATCHALL "\\(NEEDED\\)[^\n]*\\[[^]]*\\]" entries "${dynamic}")
+    foreach(entry IN LISTS entries)
+        string(REGEX REPLACE ".*\\[(lib)?([^].]*)\\..*" "\\2" name "${entry}")
+        if(NOT name IN_LIST ARGN)
+            message(FATAL_ERROR "${program} is linked with ${name}: ${entry}; allowed: ${ARGN}")
+        endif()
+    endforeach()
+    if(NOT dynamic MATCHES "\\[libz\\.so")
+        message(FATAL_ERROR "${program} is not linked with zlib: this check reads the wrong thing")
+    endif()
+endfunction()
+
+# expect_missing_file(PROGRAM): an error is a message and an exit code, no crash.
+function(expect_missing_file program)
+    execute_process(COMMAND ${program} ${WORK}/no-such-file.acdf RESULT_VARIABLE result ERROR_VARIABLE err)
+    if(NOT result EQUAL 1 OR NOT err MATCHES "no-such-file\\.acdf: .+")
+        message(FATAL_ERROR "${program} on a missing file: exit code ${result}, message '${err}'")
+    endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed --component reader)
+file(RENAME ${WORK}/installed ${WORK}/prefix)
+file(GLOB_RECURSE programs ${WORK}/prefix/bin/*)
+if(programs)
+    message(FATAL_ERROR "the component `reader` installs programs: ${programs}")
+endif()
+
+# The headers, each alone, as C and as C++.
+foreach(header layout sample acdf reader)
+    if(NOT header STREQUAL reader)
+        file(WRITE ${WORK}/alone.c "#include <acdf/${header}.h>\n")
+        run(ignored ${CC} -std=c99 -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include
+            -fsyntax-only ${WORK}/alone.c)
+    endif()
+    file(WRITE ${WORK}/alone.cpp "#include <acdf/${header}.h>\n")
+    run(ignored ${CXX} -std=c++17 -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include
+        -fsyntax-only ${WORK}/alone.cpp)
+endforeach()
+
+# find_package
+run(ignored ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G Ninja
+    -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_C_COMPILER=${CC} -DCMAKE_CXX_COMPILER=${CXX})
+run(ignored ${CMAKE_COMMAND} --build ${WORK}/build)
+
+# pkg-config; the C program by the C compiler, which links no C++ runtime.
+set(ENV{PKG_CONFIG_PATH} ${WORK}/prefix/${LIBDIR}/pkgconfig)
+run(flags pkg-config --cflags --libs acdf)
+string(STRIP "${flags}" flags)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+run(ignored ${CC} -std=c99 -O2 ${CMAKE_CURRENT_LIST_DIR}/consumer.c -o ${WORK}/pkgconfig_c ${flags})
+run(ignored ${CXX} -std=c++17 -O2 ${CMAKE_CURRENT_LIST_DIR}/consumer.cpp -o ${WORK}/pkgconfig_cpp ${flags})
+
+set(runtime z m c gcc_s stdc++ ld-linux-x86-64 ld-linux-aarch64)
+foreach(program build/consumer_c build/consumer_cpp pkgconfig_c pkgconfig_cpp)
+    set(allowed ${runtime})
+    if(program STREQUAL pkgconfig_c)
+        list(REMOVE_ITEM allowed stdc++ gcc_s)
+    endif()
+    expect_needed(${WORK}/${program} ${allowed})
+    expect_missing_file(${WORK}/${program})
+    run(output ${WORK}/${program} ${FILE})
+    if(NOT DEFINED expected)
+        set(expected "${output}")
+    elseif(NOT output STREQUAL expected)
+        message(FATAL_ERROR "${program} draws other samples:\n${output}\nthan the first consumer:\n${expected}")
+    endif()
+endforeach()
+if(NOT expected MATCHES "^total [0-9].*\n.*\n")
+    message(FATAL_ERROR "the consumers printed no samples: ${expected}")
+endif()

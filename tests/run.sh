@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Everything that must hold, from a bare Debian 12: installs what is missing, then
+#   0. checks the formatting,
+#   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, and runs the tests on synthetic data,
+#   2. fuzzes the reader for a short while,
+#   3. builds optimised with warnings as errors and runs all tests, those on real data too where it is present.
+# Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+jobs=$(nproc)
+log=build/release/ctest.log
+
+step() { printf '\n== %s (%ds)\n' "$*" "$SECONDS"; }
+
+check_formatting() {
+    find format lib tools tests docs \( -name '*.h' -o -name '*.c' -o -name '*.cpp' \) -print0 |
+        xargs -0 clang-format --dry-run -Werror
+}
+
+run_sanitized_tests() {
+    # Real data is left to the release build: sanitizers make it many times slower and it adds no code paths.
+    cmake --preset asan -DACDF_TEST_DATA=/nonexistent
+    cmake --build --preset asan --parallel "$jobs"
+    ctest --preset asan --parallel "$jobs" --label-exclude packaging
+}
+
+run_fuzzers() {
+    cmake --preset fuzz
+    cmake --build --preset fuzz --parallel "$jobs" --target tests/fuzz/all
+    ctest --test-dir build/fuzz/tests/fuzz --no-tests=error --output-on-failure
+}
+
+run_all_tests() {
+    cmake --preset release
+    cmake --build --preset release --parallel "$jobs"
+    # ctest lists skipped tests after its summary; the summary is to be the last line.
+    local status=0
+    ctest --preset release --parallel "$jobs" 2>&1 | tee "$log" || status=$?
+    grep 'tests passed' "$log" || true
+    return "$status"
+}
+
+step "Packages"
+tools/install_packages.sh
+step "0. Formatting"
+check_formatting
+step "1. Tests with sanitizers, in build/asan"
+run_sanitized_tests
+step "2. A short run of the fuzzers, in build/fuzz"
+run_fuzzers
+step "3. All tests, optimised, in build/release"
+run_all_tests

@@ -1,0 +1,121 @@
+// Runs the acdf program as a user would, and makes small files for it to work on.
+#pragma once
+
+#include "compress/store.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace acdf::test {
+
+inline std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+inline void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A folder of its own for each test, removed at its end.
+class Folder {
+public:
+    Folder() {
+        std::string name = (std::filesystem::temp_directory_path() / "acdf-test-XXXXXX").string();
+        if (mkdtemp(name.data())) path_ = name;
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+    std::size_t entries() const {
+        const std::filesystem::directory_iterator begin(path_), end;
+        return static_cast<std::size_t>(std::distance(begin, end));
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+struct Result {
+    int code = -1; ///< exit code; 128 + signal where one ended it
+    std::string out, err;
+};
+
+/// Starts `acdf arguments...` with the given files as stdin, stdout and stderr.
+inline pid_t start_acdf(std::vector<std::string> arguments, const std::string& in, const std::string& out,
+                        const std::string& err) {
+    arguments.insert(arguments.begin(), "acdf");
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, 0, in.c_str(), O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&files, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    pid_t pid = -1;
+    if (posix_spawn(&pid, ACDF_PROGRAM, &files, nullptr, argv.data(), environ) != 0) pid = -1;
+    posix_spawn_file_actions_destroy(&files);
+    return pid;
+}
+
+inline int wait_for(pid_t pid) {
+    int status = 0;
+    if (pid < 0 || waitpid(pid, &status, 0) != pid) return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+inline Result run_acdf(const std::vector<std::string>& arguments, const std::string& input = "") {
+    const Folder folder;
+    write_text(folder / "in", input);
+    Result result;
+    result.code = wait_for(start_acdf(arguments, folder / "in", folder / "out", folder / "err"));
+    result.out = read_text(folder / "out");
+    result.err = read_text(folder / "err");
+    return result;
+}
+
+/// 8 x 4 texels. theta: upper half 3/4 of the probability, cut at phi = 0 into 1/3 and 2/3; lower half even.
+inline std::vector<std::uint8_t> small_environment() {
+    compress::Cascade cascade;
+    cascade.curves.push_back({1, {2}, {0.75, 0.25}, {1, -1}, {}});
+    cascade.curves.push_back({0, {4}, {1.0 / 3, 2.0 / 3}, {}, {}});
+    cascade.roots = {0};
+    compress::Description description = compress::environment_description(8, 4);
+    description.total = 2.5;
+    description.metadata = {{"accuracy.relative_variance", "0.125"},
+                            {"fit.options", "--cells 3"},
+                            {"source.name", "sky.exr"},
+                            {"tool", "acdf test"}};
+    return compress::store(compress::encode_tree(cascade), description);
+}
+
+inline void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+inline std::size_t lines_in(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+} // namespace acdf::test

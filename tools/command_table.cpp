@@ -1,0 +1,268 @@
+// acdf table: an array of numbers of any number of axes to an .acdf file.
+#include "commands.h"
+#include "help.h"
+#include "input/image.h"
+#include "input/npy.h"
+#include "options.h"
+#include "output.h"
+#include "sizes.h"
+#include "table.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+
+#include <charconv>
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace acdf::tools {
+namespace {
+
+struct Options {
+    std::string array, output;
+    std::vector<std::string> ranges;
+    std::string budget;
+    input::NpyOptions input;
+    TableOptions table;
+    const CLI::App* command = nullptr;
+    int threads = 0;
+    bool json = false, quiet = false, force = false;
+
+    bool given(const char* option) const { return command->get_option(option)->count() > 0; }
+};
+
+void set_goal(Options& options) {
+    int goals = 0;
+    for (const char* option : {"--cells", "--budget", "--target-variance"}) goals += options.given(option);
+    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
+    compress::Goal& goal = options.table.fit.goal;
+    if (options.given("--target-variance")) goal.kind = compress::Goal::Kind::variance;
+    if (!options.given("--budget")) return;
+    const auto bytes = parse_size(options.budget);
+    if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 64KiB, 2MB or 20000");
+    goal.kind = compress::Goal::Kind::budget;
+    goal.budget = *bytes;
+}
+
+/// A number that fills all of `text`.
+template <class Number>
+bool parse_number(const std::string& text, Number& value) {
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc{} && rest == end;
+}
+
+/// The axis that `text` names or counts.
+std::uint32_t axis_of(const std::string& text, const std::vector<std::string>& names, std::size_t axes) {
+    for (std::uint32_t i = 0; i < names.size(); ++i)
+        if (names[i] == text) return i;
+    std::uint32_t axis = 0;
+    if (!parse_number(text, axis) || axis >= axes)
+        throw CLI::ValidationError("--range", "'" + text + "' is none of the " + std::to_string(axes) + " axes");
+    return axis;
+}
+
+/// "theta=0:3.14" or "1=0:3.14", for each axis that has one.
+void set_ranges(Options& options, const std::vector<std::uint32_t>& shape) {
+    if (options.ranges.empty()) return;
+    for (const std::uint32_t length : shape) options.table.ranges.emplace_back(0.0, length);
+    for (const std::string& text : options.ranges) {
+        const std::size_t equals = text.rfind('='),
+                          colon = text.find(':', equals == std::string::npos ? 0 : equals);
+        double low = 0.0, high = 0.0;
+        if (equals == std::string::npos || colon == std::string::npos ||
+            !parse_number(text.substr(equals + 1, colon - equals - 1), low) ||
+            !parse_number(text.substr(colon + 1), high))
+            throw CLI::ValidationError("--range", "'" + text + "' is not of the form AXIS=LOW:HIGH");
+        options.table.ranges[axis_of(text.substr(0, equals), options.table.names, shape.size())] = {low, high};
+    }
+}
+
+void remark(const Options& options, const input::NpyArray& array) {
+    const input::BadValues& bad = array.bad;
+    if (bad.count() > 0 && !options.quiet)
+        std::fprintf(stderr,
+                     "%s: %" PRIu64 " NaN, %" PRIu64 " infinite and %" PRIu64
+                     " negative numbers set to 0, the first at [%s]\n",
+                     options.array.c_str(), bad.nan, bad.infinite, bad.negative,
+                     input::index_text(array.shape, bad.first).c_str());
+}
+
+nlohmann::ordered_json report(const Options& options, const input::NpyArray& array, std::size_t bins,
+                              const Table& result) {
+    const measure::TableAccuracy& a = result.accuracy;
+    const input::BadValues& bad = array.bad;
+    return {{"file", options.output},
+            {"source", options.array},
+            {"shape", array.shape},
+            {"indexed", options.table.indexed},
+            {"bad_values", {{"nan", bad.nan}, {"infinite", bad.infinite}, {"negative", bad.negative}}},
+            {"bytes", result.bytes.size()},
+            {"bins", bins},
+            {"bins_with_energy", a.lit_bins},
+            {"cells", a.cells},
+            {"total", result.total},
+            {"relative_variance", a.relative_variance},
+            {"relative_variance_median", a.median},
+            {"relative_variance_worst", a.worst},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"support_violations", a.support_violations}};
+}
+
+void verify_bytes(const std::uint8_t* data, std::size_t size) {
+    File file;
+    if (const Status status = File::from_memory(data, size, file); !status.ok())
+        throw Failure(std::string("what was written does not read back: ") + status.message);
+}
+
+Table build(const Options& options, const input::NpyArray& array) {
+    const std::string name = std::filesystem::path(options.array).filename().string();
+    const std::string sha256 = input::file_sha256(options.array);
+    ProgressBar bar(options.quiet);
+    try {
+        return build_table(array, name, sha256, options.table, bar.callback());
+    } catch (const std::invalid_argument& error) {
+        throw Failure(options.array + ": " + error.what());
+    } catch (const std::runtime_error& error) { // the goal is out of reach
+        throw Failure(options.array + ": " + error.what());
+    }
+}
+
+void run(Options& options) {
+    set_goal(options);
+    std::unique_ptr<tbb::global_control> limit;
+    if (options.threads > 0)
+        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      static_cast<std::size_t>(options.threads));
+    Output output(options.output, options.force, {options.array}); // refuses early, before the work
+    const input::NpyArray array = input::read_npy(options.array, options.input);
+    remark(options, array);
+    set_ranges(options, array.shape);
+    const Table result = build(options, array);
+    output.write(result.bytes.data(), result.bytes.size());
+    output.commit(verify_bytes);
+
+    std::size_t bins = 1;
+    for (std::uint32_t axis = 0; axis < options.table.indexed; ++axis) bins *= array.shape[axis];
+    std::FILE* out = options.output == "-" ? stderr : stdout;
+    const measure::TableAccuracy& a = result.accuracy;
+    if (options.json) std::fprintf(out, "%s\n", report(options, array, bins, result).dump(2).c_str());
+    else if (!options.quiet && bins == 1)
+        std::fprintf(out, "%s: %s, %" PRIu64 " cells, relative variance %.4g\n", options.output.c_str(),
+                     to_readable_size(result.bytes.size()).c_str(), a.cells, a.relative_variance);
+    else if (!options.quiet)
+        std::fprintf(out, "%s: %s, %zu bins, %" PRIu64 " cells, relative variance %.4g (mean; worst %.4g)\n",
+                     options.output.c_str(), to_readable_size(result.bytes.size()).c_str(), bins, a.cells,
+                     a.relative_variance, a.worst);
+}
+
+void add_axis_options(CLI::App& command, Options& options) {
+    command
+        .add_option(
+            "--indexed", options.table.indexed,
+            "How many of the first axes are chosen by whoever samples (a view direction, a pixel) instead of "
+            "drawn: each combination of their indices is a bin with a density of its own")
+        ->check(CLI::Range(0u, 5u))
+        ->option_text("K [0]")
+        ->group("Axes");
+    command.add_option("--names", options.table.names, "Names of all axes in order, for `acdf info` and --range")
+        ->delimiter(',')
+        ->type_name("")
+        ->option_text("A,B,... [x0,x1,...]")
+        ->group("Axes");
+    command
+        .add_option(
+            "--range", options.ranges,
+            "The coordinates at both ends of an axis, by its name or number: samples come, and densities are "
+            "evaluated, in these units (--range theta=0:3.14159). May be repeated")
+        ->option_text("AXIS=LOW:HIGH [0 to length]")
+        ->group("Axes");
+    const std::map<std::string, input::BadValuePolicy> policies{{"error", input::BadValuePolicy::refuse},
+                                                                {"zero", input::BadValuePolicy::zero}};
+    command
+        .add_option(
+            "--bad-values", options.input.bad_values,
+            "What to do about NaN, infinities and negative numbers: error (refuse, and say how many and where) "
+            "or zero (nothing is drawn there)")
+        ->transform(CLI::CheckedTransformer(policies).description(""))
+        ->option_text("NAME [error]")
+        ->group("Input");
+}
+
+void add_size_options(CLI::App& command, Options& options) {
+    compress::FitOptions& fit = options.table.fit;
+    command
+        .add_option("--cells", options.table.cells,
+                    "Cells a bin, on average: a bin that is harder gets more of them")
+        ->check(CLI::Range(1u, 1u << 28))
+        ->option_text("N [4096 in all, at least 64 a bin]")
+        ->group("Size and accuracy");
+    command
+        .add_option("--budget", options.budget,
+                    "The most accurate file of at most this size, such as 64KiB or 20kB")
+        ->option_text("SIZE")
+        ->group("Size and accuracy");
+    command
+        .add_option("--target-variance", fit.goal.variance,
+                    "The smallest file whose samples have at most this relative variance, as mean over the bins")
+        ->check(CLI::PositiveNumber)
+        ->option_text("V")
+        ->group("Size and accuracy");
+    command
+        .add_option("--max-weight", fit.max_weight,
+                    "Bound on f/p over its mean, in every bin: no sample counts for more (no fireflies)")
+        ->check(CLI::Range(1.0, 1e30).description(""))
+        ->option_text("W")
+        ->group("Size and accuracy");
+}
+
+} // namespace
+
+void add_table(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<Options>();
+    CLI::App& command = *program.add_subcommand(
+        "table", "Compress a table of any number of axes: points by the numbers stored there");
+    options->command = &command;
+    command
+        .add_option("ARRAY", options->array,
+                    "The table: an .npy file (numpy.save) of float32 or float64, 1 to 6 axes, no number negative")
+        ->required()
+        ->type_name("")
+        ->group("Input");
+    add_axis_options(command, *options);
+    add_size_options(command, *options);
+    add_output(command, options->output, options->force, "The .acdf file to write")->required();
+    const std::map<std::string, AcdfCodec> codecs{{"none", ACDF_CODEC_NONE}, {"zlib", ACDF_CODEC_ZLIB}};
+    command
+        .add_option(
+            "--compress", options->table.codec,
+            "none: usable in place, mapped or linked into a program; zlib: smaller to ship, inflated at load")
+        ->transform(CLI::CheckedTransformer(codecs).description(""))
+        ->option_text("NAME [none]")
+        ->group("Output");
+    command
+        .add_option("--threads", options->threads, "Threads to use; the file is the same for any number of them")
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N [all cores]")
+        ->group("Output");
+    add_json(command, options->json);
+    add_quiet(command, options->quiet);
+    command.footer(help_footer(
+        "Each number is the value of a function that is constant on its box of the grid. The density is per "
+        "product "
+        "of the units of the sampled axes. A float64 table is fitted as float32, scaled by a power of two where it "
+        "would not fit; the integral stays exact.",
+        "acdf table histogram.npy -o histogram.acdf\n"
+        "acdf table field.npy -o field.acdf --indexed 2 --names s,t,u,v --range u=-1:1 --range v=-1:1\n"
+        "acdf table volume.npy -o volume.acdf --budget 64KiB --json"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools
