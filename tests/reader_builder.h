@@ -57,60 +57,67 @@ inline std::uint32_t crc32_of(const std::uint8_t* data, std::size_t size, std::u
 
 // ---- trees ----------------------------------------------------------------------------------------------
 
+/// Widths are in bytes: 1, 2 or 4.
 struct CurveSpec {
     std::uint32_t axis = 0;
-    bool wide_cumulative = false, wide_positions = false;
-    int link_width = 0;                    ///< 0 (all segments end), 16 or 32 bits
+    int cumulative_bytes = 1, position_bytes = 1;
+    int link_bytes = 0;                    ///< 0: all segments end
+    std::uint32_t origin = 0;              ///< what positions of one byte count from
     std::vector<std::uint32_t> cumulative; ///< interior values
-    std::vector<std::uint32_t> positions;  ///< interior knots
+    std::vector<std::uint32_t> positions;  ///< interior knots, on the axis
     std::vector<int> children;             ///< with links: one a segment, index of a curve or -1
     std::vector<int> tilts;                ///< empty, or one a segment
 
-    std::uint32_t maximum() const { return wide_cumulative ? 0xFFFFFFFFu : 0xFFFFu; }
+    static std::uint32_t code(int bytes) { return bytes == 4 ? 2 : bytes == 2 ? 1 : 0; }
+    std::uint32_t maximum() const { return 0xFFFFFFFFu >> (32 - 8 * cumulative_bytes); }
     std::size_t segments() const { return positions.size() + 1; }
+    bool many() const { return segments() > 63; }
     std::uint32_t header() const {
-        return axis | (wide_cumulative ? 0x10u : 0u) | (wide_positions ? 0x20u : 0u) |
-               (link_width == 0    ? 0u
-                : link_width == 16 ? 0x40u
-                                   : 0x80u) |
-               (tilts.empty() ? 0u : 0x100u) | static_cast<std::uint32_t>(segments()) << 12;
+        const std::uint32_t link_code = link_bytes == 0 ? 0 : 1 + code(link_bytes);
+        const auto count = static_cast<std::uint32_t>(many() ? 0 : segments());
+        return axis | code(cumulative_bytes) << 3 | code(position_bytes) << 5 | link_code << 7 |
+               (tilts.empty() ? 0u : 1u << 9) | count << 10;
     }
     std::uint32_t child_at(std::size_t i) const { return static_cast<std::uint32_t>(children[i]); }
 };
 
-/// One curve; `starts` gives the word offset of each curve of the tree.
-inline Bytes encode(const CurveSpec& curve, std::size_t self, const std::vector<std::uint32_t>& starts) {
-    Bytes out;
-    put32(out, curve.header());
-    for (auto v : curve.cumulative) curve.wide_cumulative ? put32(out, v) : put16(out, v);
-    pad_to(out, curve.wide_positions ? 4 : 2);
-    for (auto v : curve.positions) curve.wide_positions ? put32(out, v) : put16(out, v);
-    if (curve.link_width == 32) pad_to(out, 4);
-    for (std::size_t i = 0; curve.link_width != 0 && i < curve.segments(); ++i) {
-        const std::uint32_t link = curve.children[i] < 0 ? 0 : starts[curve.child_at(i)] - starts[self];
-        curve.link_width == 32 ? put32(out, link) : put16(out, link);
-    }
-    for (int tilt : curve.tilts) put16(out, static_cast<std::uint32_t>(tilt) & 0xFFFF);
-    pad_to(out, 4);
-    return out;
+inline void put(Bytes& out, std::uint32_t v, int bytes) {
+    for (int i = 0; i < bytes; ++i) out.push_back(static_cast<std::uint8_t>(v >> 8 * i));
 }
 
-/// Curves in file order, and where each starts.
+/// One curve behind those already in `tree`; `starts` gives where each curve starts, in units of two bytes.
+inline void encode(Bytes& tree, const CurveSpec& curve, std::size_t self,
+                   const std::vector<std::uint32_t>& starts) {
+    put16(tree, curve.header());
+    if (curve.many()) put32(tree, static_cast<std::uint32_t>(curve.segments()));
+    pad_to(tree, static_cast<std::size_t>(curve.cumulative_bytes));
+    for (auto v : curve.cumulative) put(tree, v, curve.cumulative_bytes);
+    pad_to(tree, static_cast<std::size_t>(curve.position_bytes));
+    for (auto v : curve.positions)
+        put(tree, curve.position_bytes == 1 ? v - curve.origin : v, curve.position_bytes);
+    if (curve.link_bytes != 0) pad_to(tree, static_cast<std::size_t>(curve.link_bytes));
+    for (std::size_t i = 0; curve.link_bytes != 0 && i < curve.segments(); ++i)
+        put(tree, curve.children[i] < 0 ? 0 : starts[curve.child_at(i)] - starts[self], curve.link_bytes);
+    pad_to(tree, 2);
+    for (int tilt : curve.tilts) put16(tree, static_cast<std::uint32_t>(tilt) & 0xFFFF);
+}
+
+/// Curves in file order, and where each starts in units of two bytes.
 struct TreeSpec {
     std::vector<CurveSpec> curves;
     std::vector<std::uint32_t> starts;
 
     Bytes encode() {
-        starts.assign(curves.size() + 1, 0);
-        for (std::size_t i = 0; i < curves.size(); ++i)
-            starts[i + 1] =
-                starts[i] + static_cast<std::uint32_t>(acdf_test::encode(curves[i], i, starts).size() / 4);
-        Bytes out;
-        for (std::size_t i = 0; i < curves.size(); ++i) {
-            const Bytes curve = acdf_test::encode(curves[i], i, starts);
-            out.insert(out.end(), curve.begin(), curve.end());
+        Bytes tree;
+        starts.assign(curves.size(), 0);
+        for (int pass = 0; pass < 2; ++pass) { // the first finds the starts
+            tree.clear();
+            for (std::size_t i = 0; i < curves.size(); ++i) {
+                if (pass == 0) starts[i] = static_cast<std::uint32_t>(tree.size() / 2);
+                acdf_test::encode(tree, curves[i], i, starts);
+            }
         }
-        return out;
+        return tree;
     }
 };
 

@@ -8,24 +8,26 @@
 namespace acdf_test {
 
 /// Three curves that use every array. Bytes of TREE:
-///   0 header  4 cumulative[2]  8 positions[2]  12 links[3] of 16 bits  18 padding   curve 0, axis 0, 5 words
-///   20 header 24 cumulative[1] 28 positions[1] 32 links[2] of 32 bits               curve 1, axis 1, 5 words
-///   40 header 44 tilts[1]  46 padding                                               curve 2, axis 0, 2 words
-/// Curve 2 has two parents: segment 1 of curve 0 and segment 1 of curve 1.
+///   0 header  2 cumulative[2] of 2   6 positions[2] of 1  8 links[3] of 1  11 padding  curve 0, axis 0, at unit 0
+///   12 header 14 padding  16 cumulative[1] of 4  20 positions[1] of 4  24 links[2] of 4 curve 1, axis 1, at unit 6
+///   32 header 34 tilts[1]                                                              curve 2, axis 0, at unit 16
+/// 36 bytes. Curve 2 has two parents: segment 1 of curve 0, where its range is [3, 6], and segment 1 of curve 1,
+/// where it is [0, 3].
 inline EnvironmentSpec complete_environment() {
     EnvironmentSpec spec;
     spec.columns = spec.rows = 8;
     CurveSpec root = even_curve(0, {3, 6});
+    root.position_bytes = 1;
     root.cumulative = {20000, 40000};
-    root.link_width = 16;
+    root.link_bytes = 1;
     root.children = {1, 2, -1};
     CurveSpec rows = even_curve(1, {2});
-    rows.wide_cumulative = rows.wide_positions = true;
+    rows.cumulative_bytes = rows.position_bytes = 4;
     rows.cumulative = {0x80000000};
-    rows.link_width = 32;
+    rows.link_bytes = 4;
     rows.children = {-1, 2};
-    CurveSpec tilted = even_curve(0, {});
-    tilted.tilts = {1000};
+    CurveSpec tilted;
+    tilted.tilts = std::vector<int>{1000};
     spec.tree = {{root, rows, tilted}, {}};
     spec.metadata = {{"tool", "test 1"}, {"source.name", "härbour.exr"}};
     return spec;
@@ -48,9 +50,9 @@ inline EnvironmentSpec chain(int length) {
     EnvironmentSpec spec;
     spec.tree.curves.clear();
     for (int i = 0; i < length; ++i) {
-        CurveSpec curve = even_curve(0, {});
+        CurveSpec curve;
         if (i + 1 < length) {
-            curve.link_width = 16;
+            curve.link_bytes = 1;
             curve.children = {i + 1};
         }
         spec.tree.curves.push_back(curve);

@@ -182,7 +182,7 @@ TEST(Memory, usedInPlaceWhereAligned) {
         ASSERT_TRUE(File::from_memory(exact.data(), exact.size(), file).ok());
         EXPECT_EQ(inside(file.tree(), exact), shift % 8 == 0) << shift;
         EXPECT_EQ(inside(&file.header(), exact), shift % 8 == 0) << shift;
-        EXPECT_EQ(file.tree_words(), 12u);
+        EXPECT_EQ(file.tree_units(), 18u);
         EXPECT_EQ(file.size(), bytes.size());
         EXPECT_EQ(std::memcmp(&file.header(), bytes.data(), bytes.size()), 0);
         EXPECT_TRUE(findings(bytes).rules.empty());
@@ -200,8 +200,8 @@ TEST(Memory, compressedIsTheSame) {
         File a, b;
         ASSERT_TRUE(File::from_memory(plain.data(), plain.size(), a).ok());
         ASSERT_TRUE(File::from_memory(packed.data(), packed.size(), b).ok());
-        ASSERT_EQ(a.tree_words(), b.tree_words());
-        EXPECT_EQ(std::memcmp(a.tree(), b.tree(), 4 * a.tree_words()), 0);
+        ASSERT_EQ(a.tree_units(), b.tree_units());
+        EXPECT_EQ(std::memcmp(a.tree(), b.tree(), 2 * a.tree_units()), 0);
         EXPECT_EQ(reinterpret_cast<std::uintptr_t>(b.tree()) % 64, 0u);
         EXPECT_EQ(reinterpret_cast<std::uintptr_t>(&b.description()) % 64, 0u);
         EXPECT_EQ(b.metadata("key").size, 3000u);

@@ -1,10 +1,12 @@
 // Random trees that use everything the format has: both axes in any order, returning to an axis, curves
-// shared by segments and by parents, segments of probability 0, tilts, both widths of every array.
+// shared by segments and by parents, segments of probability 0, tilts, every width of every array, positions that
+// count from the range's low end, and the long form of the number of segments.
 #pragma once
 
 #include "reader_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <set>
 
@@ -19,6 +21,7 @@ struct RandomOptions {
     bool share = true;         ///< curves with several parents
     double end = 0.25;         ///< chance that a segment ends before `depth`
     bool narrow_cells = false; ///< knots next to each other: cells of one step
+    bool long_curves = true;   ///< now and then more than 63 segments
 };
 
 class RandomTree {
@@ -55,6 +58,7 @@ private:
         const std::uint32_t inside = range.high - range.low - 1;
         std::uint32_t count = below(static_cast<std::uint32_t>(options_.segments));
         if (chance(0.05)) count *= 8;
+        if (options_.long_curves && chance(0.02)) count = 60 + below(250);
         count = std::min(count, inside);
         std::set<std::uint32_t> knots;
         while (knots.size() < count) {
@@ -85,8 +89,7 @@ private:
         CurveSpec curve;
         curve.axis = axes == 3 ? below(2) : axes == 2 ? 1 : 0;
         curve.positions = random_knots(range[curve.axis]);
-        curve.wide_cumulative = chance(0.4);
-        curve.wide_positions = options_.columns > 65535 || options_.rows > 65535 || chance(0.3);
+        curve.cumulative_bytes = 1 << below(3);
         curve.cumulative = random_cumulative(curve.segments(), curve.maximum());
         if (options_.tilts && chance(0.3))
             for (std::size_t i = 0; i < curve.segments(); ++i)
@@ -96,7 +99,7 @@ private:
         const std::vector<int> children = grow_children(curve, range, tilted, axes, depth);
         pool_[static_cast<std::size_t>(self)].children = children;
         if (std::any_of(children.begin(), children.end(), [](int c) { return c >= 0; }))
-            pool_[static_cast<std::size_t>(self)].link_width = chance(0.5) ? 16 : 32;
+            pool_[static_cast<std::size_t>(self)].link_bytes = 1 << below(3);
         if (axes == 1 || axes == 2) shareable_.push_back({curve.axis, range[curve.axis], self, depth});
         return self;
     }
@@ -137,7 +140,7 @@ private:
         order.push_back(curve);
     }
 
-    // Children after all their parents; links of 16 bits where they reach.
+    // Children after all their parents; links as wide as they must be, or wider.
     TreeSpec in_file_order(int root) {
         std::vector<char> seen(pool_.size(), 0);
         std::vector<int> order, place(pool_.size(), -1);
@@ -152,9 +155,36 @@ private:
                 if (child >= 0) child = place[static_cast<std::size_t>(child)];
             tree.curves.push_back(curve);
         }
+        choose_positions(tree);
         while (widen_links(tree)) {
         }
         return tree;
+    }
+
+    // One byte where every path to the curve brings the same low end and the knots are near it.
+    void choose_positions(TreeSpec& tree) {
+        constexpr std::uint32_t unset = 0xFFFFFFFF, many = 0xFFFFFFFE;
+        std::vector<std::array<std::uint32_t, 2>> lows(tree.curves.size(), {unset, unset});
+        lows[0] = {0, 0};
+        for (std::size_t i = 0; i < tree.curves.size(); ++i) {
+            CurveSpec& curve = tree.curves[i];
+            const std::uint32_t low = lows[i][curve.axis],
+                                last = curve.positions.empty() ? 0 : curve.positions.back();
+            curve.position_bytes = last > 0xFFFF || chance(0.2) ? 4 : 2;
+            if (curve.positions.empty() || (low != many && last - low <= 0xFF && chance(0.7))) {
+                curve.position_bytes = 1;
+                curve.origin = low;
+            }
+            for (std::size_t s = 0; s < curve.children.size(); ++s) {
+                if (curve.children[s] < 0) continue;
+                std::array<std::uint32_t, 2> child = lows[i];
+                if (s > 0) child[curve.axis] = curve.positions[s - 1];
+                for (std::size_t axis = 0; axis < 2; ++axis) {
+                    std::uint32_t& known = lows[curve.child_at(s)][axis];
+                    known = known == unset || known == child[axis] ? child[axis] : many;
+                }
+            }
+        }
     }
 
     static bool widen_links(TreeSpec& tree) {
@@ -162,10 +192,11 @@ private:
         tree.encode();
         for (std::size_t i = 0; i < tree.curves.size(); ++i) {
             CurveSpec& curve = tree.curves[i];
-            if (curve.link_width != 16) continue;
+            if (curve.link_bytes == 0 || curve.link_bytes == 4) continue;
+            const std::uint32_t most = curve.link_bytes == 1 ? 0xFF : 0xFFFF;
             for (std::size_t s = 0; s < curve.segments(); ++s)
-                if (curve.children[s] >= 0 && tree.starts[curve.child_at(s)] - tree.starts[i] > 0xFFFF) {
-                    curve.link_width = 32;
+                if (curve.children[s] >= 0 && tree.starts[curve.child_at(s)] - tree.starts[i] > most) {
+                    curve.link_bytes *= 2;
                     changed = true;
                     break;
                 }
@@ -183,6 +214,7 @@ private:
 inline CurveSpec even_curve(std::uint32_t axis, const std::vector<std::uint32_t>& positions) {
     CurveSpec curve;
     curve.axis = axis;
+    curve.cumulative_bytes = curve.position_bytes = 2;
     curve.positions = positions;
     for (std::size_t i = 1; i <= positions.size(); ++i)
         curve.cumulative.push_back(static_cast<std::uint32_t>(65535 * i / (positions.size() + 1)));

@@ -45,8 +45,9 @@ struct Curve {
     std::size_t axis;
     double maximum;
     std::vector<double> cumulative;    // n + 1, ends included
+    bool relative;                     // positions count from the low end of the inherited range
     std::vector<double> positions;     // n + 1, the ends unset
-    std::vector<std::size_t> children; // word offsets, 0: ends
+    std::vector<std::size_t> children; // where they start, in units of two bytes; 0: ends
     std::vector<double> tilts;         // empty if not tilted
 
     std::size_t n() const { return children.size(); }
@@ -64,48 +65,60 @@ public:
     }
 
     double columns, rows, total;
-    std::size_t root;
+    std::size_t root; // of the tree, in units of two bytes
 
-    Curve curve(std::size_t word) const {
-        const std::size_t start = 4 * word, header = number(tree_, start, 4), n = header >> 12;
-        const int c = header >> 4 & 1 ? 4 : 2, p = header >> 5 & 1 ? 4 : 2,
-                  l = header >> 6 & 3 ? (header >> 6 & 2 ? 4 : 2) : 0;
-        std::size_t at = start + 4;
+    Curve curve(std::size_t unit) const {
+        std::size_t at = 2 * unit;
         const auto next = [&](int size) {
-            while ((at - start) % static_cast<std::size_t>(size) != 0) ++at;
             at += static_cast<std::size_t>(size);
             return number(tree_, at - static_cast<std::size_t>(size), size);
         };
+        const auto align = [&](int size) { // of an array in TREE, an empty one too
+            while (at % static_cast<std::size_t>(size) != 0) ++at;
+        };
+        const std::size_t header = next(2);
+        std::size_t n = header >> 10;
+        if (n == 0) {
+            n = next(2);
+            n += next(2) << 16;
+        }
+        static const int bytes[] = {1, 2, 4}, link_bytes[] = {0, 1, 2, 4};
+        const int c = bytes[header >> 3 & 3], p = bytes[header >> 5 & 3], l = link_bytes[header >> 7 & 3];
         Curve out;
-        out.axis = header & 15;
-        out.maximum = c == 4 ? 4294967295.0 : 65535.0;
+        out.axis = header & 7;
+        out.maximum = std::ldexp(1.0, 8 * c) - 1.0;
+        out.relative = p == 1;
+        align(c);
         out.cumulative.push_back(0.0);
         for (std::size_t i = 1; i < n; ++i) out.cumulative.push_back(static_cast<double>(next(c)));
         out.cumulative.push_back(out.maximum);
+        align(p);
         out.positions.push_back(0.0);
         for (std::size_t i = 1; i < n; ++i) out.positions.push_back(static_cast<double>(next(p)));
         out.positions.push_back(0.0);
+        if (l != 0) align(l);
         for (std::size_t i = 0; i < n; ++i) {
             const std::size_t link = l != 0 ? next(l) : 0;
-            out.children.push_back(link != 0 ? word + link : 0);
+            out.children.push_back(link != 0 ? unit + link : 0);
         }
-        for (std::size_t i = 0; i < n && (header >> 8 & 1); ++i)
+        align(2);
+        for (std::size_t i = 0; i < n && (header >> 9 & 1); ++i)
             out.tilts.push_back(static_cast<std::int16_t>(next(2)) / 32768.0);
         return out;
     }
 
-    // SPEC.md §6.2: v in [0, M), `choose` finds the segment.
-    Cell walk(const std::function<std::size_t(const Curve&, const Cell&)>& choose) const {
+    // SPEC.md §6.2: `choose` finds the segment of a curve whose positions are those on the axis.
+    Cell walk(const std::function<std::size_t(const Curve&)>& choose) const {
         Cell cell;
         cell.high[0] = columns;
         cell.high[1] = rows;
-        for (std::size_t word = root;;) {
-            const Curve c = curve(word);
-            const std::size_t i = choose(c, cell);
+        for (std::size_t unit = root;;) {
+            const Curve c = inherit(curve(unit), cell);
+            const std::size_t i = choose(c);
             enter(c, i, cell);
             if (cell.p == 0.0) return cell;
             if (c.children[i] == 0) break;
-            word = c.children[i];
+            unit = c.children[i];
         }
         cell.p = std::max(cell.p, std::ldexp(1.0, -1000));
         return cell;
@@ -115,7 +128,7 @@ public:
         double u[2] = {u0, u1};
         for (double& v : u) v = v > 0.0 ? std::min(v, 1.0) : 0.0;
         Sample s;
-        s.cell = walk([&](const Curve& c, const Cell&) {
+        s.cell = walk([&](const Curve& c) {
             double v = u[c.axis] * c.maximum;
             if (v >= c.maximum) v = c.maximum * (1.0 - std::ldexp(1.0, -53));
             std::size_t i = 0;
@@ -158,7 +171,7 @@ public:
     }
 
     Cell find(const double (&square)[2]) const {
-        return walk([&](const Curve& c, const Cell&) {
+        return walk([&](const Curve& c) {
             std::size_t i = 0;
             while (i + 1 < c.n() && square[c.axis] >= c.positions[i + 1]) ++i;
             return i;
@@ -203,15 +216,23 @@ private:
         if (type == "TREE") tree_ = bytes;
     }
 
+    // Positions on the axis: the ends are those of the range so far.
+    static Curve inherit(Curve c, const Cell& cell) {
+        for (std::size_t i = 1; c.relative && i < c.n(); ++i) c.positions[i] += cell.low[c.axis];
+        c.positions.front() = cell.low[c.axis];
+        c.positions.back() = cell.high[c.axis];
+        return c;
+    }
+
     static void enter(const Curve& c, std::size_t i, Cell& cell) {
         cell.p = cell.p * ((c.cumulative[i + 1] - c.cumulative[i]) / c.maximum);
-        if (i > 0) cell.low[c.axis] = c.positions[i];
-        if (i + 1 < c.n()) cell.high[c.axis] = c.positions[i + 1];
+        cell.low[c.axis] = c.positions[i];
+        cell.high[c.axis] = c.positions[i + 1];
         if (!c.tilts.empty()) cell.tilt[c.axis] = c.tilts[i];
     }
 
-    void each_cell(std::size_t word, const Cell& cell, const std::function<void(const Cell&)>& visit) const {
-        const Curve c = curve(word);
+    void each_cell(std::size_t unit, const Cell& cell, const std::function<void(const Cell&)>& visit) const {
+        const Curve c = inherit(curve(unit), cell);
         for (std::size_t i = 0; i < c.n(); ++i) {
             Cell inner = cell;
             enter(c, i, inner);

@@ -89,7 +89,7 @@ std::function<Bytes()> long_count(std::uint64_t segments) {
 // A curve of two segments with positions of two bytes.
 CurveSpec split(std::uint32_t axis, const std::vector<std::uint32_t>& positions) {
     CurveSpec curve = even_curve(axis, positions);
-    curve.tilts = {1, 2};
+    curve.tilts = std::vector<int>{1, 2};
     return curve;
 }
 
@@ -338,7 +338,11 @@ std::vector<Case> tree_cases() {
         {6011, "after_the_curve", payload_field("TREE", 11, 1, 1)},
         {6011, "before_the_first_array", payload_field("TREE", 15, 1, 1)},
         {6011, "before_the_tilts",
-         with_tree([](std::vector<CurveSpec>& curves) { curves[0].tilts = {0, 0, 0}; }, 11, 1, 1)},
+         with_tree(
+             [](std::vector<CurveSpec>& curves) {
+                 curves[0].tilts = {0, 0, 0};
+             },
+             11, 1, 1)},
         {6011, "between_arrays",
          with_tree(
              [](std::vector<CurveSpec>& curves) {
@@ -346,7 +350,7 @@ std::vector<Case> tree_cases() {
                  curves[0].cumulative_bytes = 1;
                  curves[0].cumulative = {80, 160, 200};
                  curves[0].link_bytes = 1;
-                 curves[0].children = {1, 2, -1, -1};
+                 curves[0].children = std::vector<int>{1, 2, -1, -1};
              },
              5, 1, 1)},
         {6012, "last", with_tree([](std::vector<CurveSpec>& curves) { curves.push_back(even_curve(1, {4})); })},
@@ -374,7 +378,7 @@ std::vector<Case> tree_cases() {
          with_tree([](std::vector<CurveSpec>& curves) {
              curves[2] = CurveSpec();
              curves[2].link_bytes = 1;
-             curves[2].children = {3};
+             curves[2].children.push_back(3);
              curves.push_back(split(0, {1}));
              curves.back().position_bytes = 1;
          })},

@@ -53,7 +53,7 @@ TEST(EnvironmentFrame, quadrantsAndHemispheres) {
     spec.rows = 2;
     CurveSpec phi = even_curve(0, {1, 2, 3});
     phi.cumulative = {6553, 6553 * 3, 6553 * 6};
-    phi.link_width = 16;
+    phi.link_bytes = 1;
     phi.children = {1, 1, 1, 1};
     CurveSpec theta = even_curve(1, {1});
     theta.cumulative = {52428};
@@ -101,6 +101,64 @@ TEST(EnvironmentView, agreesWithTheSlowDecoder) {
             ASSERT_NEAR(env->view.pdf(f), expected, 1e-5 * expected) << seed << ' ' << n;
         }
     }
+}
+
+void expect_same_cell(double p, const AcdfRange (&range)[2], const Cell& cell) {
+    ASSERT_EQ(p, cell.p);
+    if (p == 0.0) return;
+    for (int axis = 0; axis < 2; ++axis) {
+        ASSERT_EQ(range[axis].low, cell.low[axis]);
+        ASSERT_EQ(range[axis].high, cell.high[axis]);
+        ASSERT_EQ(range[axis].tilt, cell.tilt[axis]);
+    }
+}
+
+// To the bit: SPEC.md says in which order the products are formed.
+TEST(Tree, cellsAreThoseOfTheSlowDecoder) {
+    for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
+        const RandomOptions options = options_of(seed);
+        const auto env = loaded(RandomTree(seed, options).make());
+        const Environment reference(env->bytes);
+        const AcdfEnvironment& data = env->view.data();
+        std::mt19937_64 rng(seed);
+        for (int n = 0; n < 300; ++n) {
+            const double u[2] = {unit(rng), unit(rng)};
+            double left[2] = {u[0], u[1]};
+            AcdfRange range[2] = {{0, options.columns, 0.0}, {0, options.rows, 0.0}};
+            const double p = acdf_tree_sample(data.tree, data.root, left, range);
+            expect_same_cell(p, range, reference.sample(u[0], u[1]).cell);
+            const std::uint32_t square[2] = {static_cast<std::uint32_t>(u[0] * options.columns),
+                                             static_cast<std::uint32_t>(u[1] * options.rows)};
+            AcdfRange found[2] = {{0, options.columns, 0.0}, {0, options.rows, 0.0}};
+            const double q = acdf_tree_find(data.tree, data.root, square, found, nullptr);
+            expect_same_cell(q, found, reference.find({double(square[0]), double(square[1])}));
+            if (HasFatalFailure()) FAIL() << "seed " << seed << ", sample " << n;
+        }
+    }
+}
+
+// Few and many values, each width: the count of those that are not above the key.
+TEST(Tree, upperBoundCounts) {
+    std::mt19937 rng(1);
+    for (std::uint32_t count = 0; count < 200; ++count)
+        for (std::uint32_t code = 0; code < 3; ++code) {
+            std::vector<std::uint32_t> values(count);
+            for (std::uint32_t& v : values)
+                v = static_cast<std::uint32_t>(rng()) >> (code == 0 ? 24 : code == 1 ? 16 : 0);
+            std::sort(values.begin(), values.end());
+            Bytes bytes;
+            for (std::uint32_t v : values) put(bytes, v, 1 << code);
+            const Exact array(bytes); // so that a sanitizer sees a value read behind the last
+            for (int n = 0; n < 50; ++n) {
+                const std::uint32_t key = n == 0   ? 0
+                                          : n == 1 ? 0xFFFFFFFF
+                                                   : static_cast<std::uint32_t>(rng()) >> (code == 0   ? 24
+                                                                                           : code == 1 ? 16
+                                                                                                       : 0);
+                const auto expected = std::upper_bound(values.begin(), values.end(), key) - values.begin();
+                ASSERT_EQ(acdf_upper_bound(array.data(), count, code, key), expected) << count << ' ' << code;
+            }
+        }
 }
 
 TEST(EnvironmentView, compiledAsCIsTheSame) {
@@ -165,7 +223,7 @@ TEST(EnvironmentView, pdfOfASampleIsExactAtThePolesAndTheSeam) {
             spec.columns = columns;
             spec.rows = rows;
             CurveSpec theta = even_curve(1, around(row, rows));
-            theta.link_width = 16;
+            theta.link_bytes = 1;
             theta.children.assign(theta.segments(), 1);
             spec.tree = {{theta, even_curve(0, around(column, columns))}, {}};
             expect_equal_pdf(loaded(spec)->view, 2000, row * 7 + column);
@@ -240,9 +298,9 @@ TEST(EnvironmentView, aVanishingProbabilityStaysPositive) {
     spec.rows = 2;
     for (int i = 0; i < 64; ++i) {
         CurveSpec curve = even_curve(0, {65535u - static_cast<std::uint32_t>(i)});
-        curve.wide_cumulative = true;
+        curve.cumulative_bytes = 4;
         curve.cumulative = {1};
-        curve.link_width = i < 63 ? 16 : 0;
+        curve.link_bytes = i < 63 ? 1 : 0;
         curve.children = {i + 1, -1};
         spec.tree.curves.resize(static_cast<std::size_t>(i) + 1);
         spec.tree.curves.back() = curve;

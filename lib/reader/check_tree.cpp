@@ -235,8 +235,8 @@ void check_curves(const Tree& tree, Report& report) {
 
 // ---- third pass, once an axis: knots inside what is inherited -------------------------------------------
 // Over all paths to a curve, Mark::a is the largest low end and Mark::b the smallest high end: a knot lies inside
-// every path's range if it lies between them. Positions are below 2^31 (rule 5014), so the highest bit of Mark::a is
-// free: it tells that paths disagree on the low end, which positions that are counted from it must not.
+// every path's range if it lies between them. Positions are below 2^31 (rule 5014), so the highest bit of Mark::a
+// is free: it tells that paths disagree on the low end, which positions that are counted from it must not.
 
 constexpr u32 disagree = 0x80000000;
 
@@ -255,15 +255,15 @@ void narrow(Mark& child, u32 low, u32 high) {
 bool knots_are_inside(const Tree& tree, u32 unit, const AcdfCurve& curve, const Mark& inherited, Report& report) {
     const u32 code = ACDF_CURVE_POSITION_CODE(curve.header), low = inherited.a & ~disagree;
     if (code == 0 && inherited.a & disagree) {
-        report.add(6019, tree.at(unit), "the curve at unit %u: its range begins at %u or before", unit, low);
+        report.add(6019, tree.at(unit), "the curve at unit %u: its range begins at %u, or lower", unit, low);
         return false;
     }
     const u32 origin = code == 0 ? low : 0; // the sum is below 2^31 + 256
     const u32 first = origin + acdf_load(curve.positions, 0, code);
     const u32 last = origin + acdf_load(curve.positions, curve.segments - 2, code);
     if (first > low && last < inherited.b) return true;
-    report.add(6007, tree.at(curve.positions), "the curve at unit %u: knots %u to %u, range %u to %u", unit, first, last,
-               low, inherited.b);
+    report.add(6007, tree.at(curve.positions), "the curve at unit %u: knots %u to %u, range %u to %u", unit, first,
+               last, low, inherited.b);
     return false;
 }
 

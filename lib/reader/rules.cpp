@@ -97,7 +97,7 @@ const Rule rules[] = {
     {6017, error, malformed, "bin-share", "`share` is finite and not negative."},
     {6018, error, malformed, "curve-count", "TREE of n bytes holds at most n / 4 + 1 curves."},
     {6019, error, malformed, "relative-knots",
-     "The range of a curve with one-byte positions begins at the same place on every path to it."},
+     "If the knots of a curve have one-byte positions, its range begins at the same place on every path to it."},
 
     {7001, error, malformed, "environment-axes",
      "An environment has the two axes of §6.1, with resolutions of at most 65536."},

@@ -72,7 +72,7 @@ Bytes mutated_payload(FileSpec spec, std::size_t max_size, std::mt19937& rng) {
     const std::size_t size = chunk.raw.size();
     chunk.raw.resize(std::max(size + 64, size) + 1);
     chunk.raw.resize(LLVMFuzzerMutate(chunk.raw.data(), size, chunk.raw.size()));
-    if (chunk.type == "TREE" && rng() % 4 != 0) pad_to(chunk.raw, 4);
+    if (chunk.type == "TREE" && rng() % 8 != 0) pad_to(chunk.raw, 2);
     if (rng() % 16 == 0) chunk.zlib = !chunk.zlib;
     Bytes file = spec.encode();
     return file.size() <= max_size ? file : Bytes();

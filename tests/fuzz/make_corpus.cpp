@@ -32,8 +32,9 @@ int main(int argc, char** argv) {
         RandomOptions options;
         options.columns = seed % 2 ? 65536 : 64;
         options.rows = seed % 3 ? 33 : 65536;
-        options.depth = 2 + static_cast<int>(seed % 4);
-        options.segments = 4;
+        options.depth = 3 + static_cast<int>(seed % 4);
+        options.segments = 5;
+        options.long_curves = seed % 6 == 5;
         EnvironmentSpec spec = RandomTree(seed, options).make();
         spec.zlib = seed % 4 == 0;
         write(folder / ("tree" + std::to_string(seed)), spec.encode());
