@@ -80,6 +80,7 @@ void write_probe(const DemoProbe& probe, const std::string& path, bool force) {
     if (!file) throw Failure(path + ": this OpenImageIO cannot write OpenEXR files");
     OIIO::ImageSpec spec(probe.width, probe.height, 3, OIIO::TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", ""); // else OpenImageIO writes the time of day: other bytes on every run
     if (!file->open(output.temporary(), spec) || !file->write_image(OIIO::TypeDesc::FLOAT, probe.rgb.data()) ||
         !file->close())
         throw Failure(path + ": " + file->geterror());
