@@ -12,6 +12,7 @@ acdf_add_test(test_compress
         compress_regional.cpp
         compress_store.cpp
         compress_two_lights.cpp
+        compress_tree.cpp
         compress_variance.cpp
         compress_seed.cpp
     LIBRARIES acdf_measure rapidcheck)

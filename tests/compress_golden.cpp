@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,8 +23,8 @@ std::vector<char> bytes_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-const char* const kNames[] = {"smallest", "one_texel", "untilted",     "zlib",
-                              "tilted",   "deep",      "shared_child", "wide"};
+const char* const kNames[] = {"smallest", "one_texel",    "untilted", "zlib",         "tilted",
+                              "deep",     "shared_child", "wide",     "many_segments"};
 
 /// A golden file and the samples beside it.
 struct Line {
@@ -157,14 +157,22 @@ TEST(GoldenFrame, DensityIsZeroInEveryMirrorImage) {
 TEST(GoldenContents, EachFileHasWhatItIsFor) {
     const auto open = [](const char* name, acdf::File& file) {
         const acdf::Status status = acdf::File::open((kGolden / (std::string(name) + ".acdf")).c_str(), file);
-        EXPECT_TRUE(status.ok()) << status.message;
+        if (!status.ok()) throw std::runtime_error(status.message);
         return acdf_curve_at(file.tree(), file.bin(0).root);
     };
-    acdf::File wide, deep, tilted, shared, zlib;
+    acdf::File one_texel, many, wide, deep, tilted, shared, zlib;
+    const AcdfCurve narrow_root = open("one_texel", one_texel);
+    EXPECT_EQ(ACDF_CURVE_CUMULATIVE_CODE(narrow_root.header), 0u);
+    EXPECT_EQ(ACDF_CURVE_POSITION_CODE(narrow_root.header), 0u);
+    EXPECT_EQ(ACDF_CURVE_LINK_CODE(narrow_root.header), 1u);
     const AcdfCurve wide_root = open("wide", wide);
-    EXPECT_TRUE(acdf_wide_cumulative(&wide_root));
-    const AcdfCurve wide_child = acdf_curve_at(wide.tree(), wide.bin(0).root + acdf_curve_link(&wide_root, 1));
-    EXPECT_TRUE(acdf_wide_cumulative(&wide_child));
+    EXPECT_EQ(ACDF_CURVE_CUMULATIVE_CODE(wide_root.header), 2u);
+    EXPECT_EQ(ACDF_CURVE_POSITION_CODE(wide_root.header), 1u);
+    const AcdfCurve many_root = open("many_segments", many);
+    EXPECT_EQ(ACDF_CURVE_LINK_CODE(many_root.header), 2u);
+    const AcdfCurve many_child = acdf_curve_at(many.tree(), many.bin(0).root + acdf_curve_link(&many_root, 0));
+    EXPECT_GT(many_child.segments, ACDF_CURVE_SHORT_SEGMENTS + 0u);
+    EXPECT_EQ(ACDF_CURVE_CUMULATIVE_CODE(many_child.header), 1u);
     EXPECT_TRUE(open("tilted", tilted).tilts != nullptr);
     const AcdfCurve shared_root = open("shared_child", shared);
     EXPECT_EQ(acdf_curve_link(&shared_root, 0), acdf_curve_link(&shared_root, 2));
@@ -194,7 +202,7 @@ std::string decoded(const fs::path& path) {
     std::string text = raw(&file.description(), sizeof(AcdfDescription));
     for (std::uint32_t i = 0; i < file.description().axis_count; ++i) text += raw(&file.axis(i), sizeof(AcdfAxis));
     for (std::uint32_t i = 0; i < file.description().bin_count; ++i) text += raw(&file.bin(i), sizeof(AcdfBin));
-    text += raw(file.tree(), std::size_t{4} * file.tree_words());
+    text += raw(file.tree(), std::size_t{2} * file.tree_units());
     for (std::uint32_t i = 0; i < file.metadata_count(); ++i) {
         acdf::Text key, value;
         file.metadata(i, key, value);

@@ -7,6 +7,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -15,7 +16,7 @@ namespace {
 
 using namespace acdf::compress;
 
-constexpr std::uint64_t kNarrow = 0xFFFF, kWide = 0xFFFFFFFF;
+constexpr std::uint64_t kByte = 0xFF, kNarrow = 0xFFFF, kWide = 0xFFFFFFFF;
 
 std::vector<double> normalised(std::vector<double> p) {
     const double sum = std::accumulate(p.begin(), p.end(), 0.0);
@@ -62,7 +63,8 @@ void check_shares(const std::vector<double>& p, const std::vector<std::uint64_t>
     }
 }
 
-void check_both_widths(const std::vector<double>& p) {
+void check_widths(const std::vector<double>& p) {
+    if (p.size() <= kByte) check_shares(p, apportion(p, kByte, 1), kByte, 1);
     check_shares(p, apportion(p, kNarrow, 1), kNarrow, 1);
     check_shares(p, apportion(p, kWide, 256), kWide, 256);
 }
@@ -71,7 +73,7 @@ RC_GTEST_PROP(Apportion, SumsAndFloorsHold, ()) {
     const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1u << 30);
     const auto n = *rc::gen::inRange<std::size_t>(1, 2000);
     const double decades = *rc::gen::element(0.0, 1.0, 4.0, 9.0, 300.0);
-    check_both_widths(random_probability(seed, n, decades, *rc::gen::element(0.0, 0.2, 0.99)));
+    check_widths(random_probability(seed, n, decades, *rc::gen::element(0.0, 0.2, 0.99)));
     RC_ASSERT(!::testing::Test::HasFailure());
 }
 
@@ -85,19 +87,19 @@ TEST(Apportion, RoundsToLargestRemainders) {
 TEST(Apportion, OneElementTakesAll) {
     EXPECT_EQ(apportion({1.0}, kNarrow, 1), std::vector<std::uint64_t>{kNarrow});
     EXPECT_EQ(apportion({1.0}, kWide, 256), std::vector<std::uint64_t>{kWide});
-    check_both_widths({0.0, 0.0, 1.0});
+    check_widths({0.0, 0.0, 1.0});
 }
 
 TEST(Apportion, MillionsToOne) {
-    check_both_widths(normalised({1.0, 1e-7, 1e-12, 1e-300, 1.0, 0.0, 5e-324}));
+    check_widths(normalised({1.0, 1e-7, 1e-12, 1e-300, 1.0, 0.0, 5e-324}));
     std::vector<double> one_sun(1000, 1e-15);
     one_sun[700] = 1.0;
-    check_both_widths(normalised(one_sun));
+    check_widths(normalised(one_sun));
     EXPECT_EQ(apportion(normalised(one_sun), kNarrow, 1)[700], kNarrow - 999);
 }
 
 TEST(Apportion, AllTiny) { // sums that a caller forgot to normalise
-    check_both_widths(std::vector<double>(500, 1e-300));
+    check_widths(std::vector<double>(500, 1e-300));
 }
 
 TEST(Apportion, AsManyAsThereAreShares) {
@@ -126,7 +128,7 @@ TEST(QuantizationExcess, IsTheSumOfSquaresOverShares) {
 
 std::vector<double> shares_of(const QuantizedCurve& curve) {
     std::vector<double> shares;
-    const double maximum = curve.wide ? double(kWide) : double(kNarrow);
+    const double maximum = double(std::array{kByte, kNarrow, kWide}[curve.code]);
     double before = 0.0;
     for (std::uint32_t value : curve.cumulative) {
         shares.push_back((value - before) / maximum);
@@ -136,12 +138,22 @@ std::vector<double> shares_of(const QuantizedCurve& curve) {
     return shares;
 }
 
-RC_GTEST_PROP(Quantize, KeepsTheToleranceOrWidens, ()) {
+/// Bytes and excess of one width; infinite where it cannot hold all segments.
+double cost_of(const std::vector<double>& p, std::uint32_t code, double reach, double price) {
+    const std::uint64_t maximum = std::array{kByte, kNarrow, kWide}[code];
+    const auto lit =
+        static_cast<std::uint64_t>(std::count_if(p.begin(), p.end(), [](double v) { return v > 0.0; }));
+    if (lit > maximum) return INFINITY;
+    const double bytes = static_cast<double>((p.size() - 1) << code);
+    return bytes * price + reach * quantization_excess(p, apportion(p, maximum, code == 2 ? 256 : 1));
+}
+
+RC_GTEST_PROP(Quantize, TakesTheWidthThatCostsLeast, ()) {
     const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1u << 30);
     const auto n = *rc::gen::inRange<std::size_t>(1, 500);
-    const double tolerance = *rc::gen::element(1e-9, 2e-6, 1e-3);
+    const double price = *rc::gen::element(0.0, 1e-12, 1e-8, 1e-5), reach = *rc::gen::element(1e-6, 1.0);
     const auto p = random_probability(seed, n, *rc::gen::element(0.5, 3.0, 8.0), 0.1);
-    const QuantizedCurve curve = quantize(p, tolerance);
+    const QuantizedCurve curve = quantize(p, reach, price);
     const auto q = shares_of(curve);
     RC_ASSERT(curve.cumulative.size() + 1 == n);
     RC_ASSERT(std::is_sorted(curve.cumulative.begin(), curve.cumulative.end()));
@@ -149,17 +161,26 @@ RC_GTEST_PROP(Quantize, KeepsTheToleranceOrWidens, ()) {
     for (std::size_t i = 0; i < n; ++i) {
         RC_ASSERT((q[i] > 0.0) == (p[i] > 0.0));
         if (p[i] > 0.0) excess += (p[i] - q[i]) * (p[i] - q[i]) / q[i];
-        if (curve.wide && p[i] > 0.0) RC_ASSERT(q[i] >= 0x1p-24);
+        if (curve.code == 2 && p[i] > 0.0) RC_ASSERT(q[i] >= 0x1p-24);
     }
-    if (!curve.wide) RC_ASSERT(excess <= tolerance * (1.0 + 1e-9));
-    else RC_ASSERT(quantization_excess(p, apportion(p, kNarrow, 1)) > tolerance);
+    const double cost = static_cast<double>((n - 1) << curve.code) * price + reach * excess;
+    for (std::uint32_t code = 0; code < 3; ++code)
+        RC_ASSERT(cost <= cost_of(p, code, reach, price) * (1.0 + 1e-9) + 1e-15);
 }
 
-TEST(Quantize, WidensWhereSixteenBitsCannotHoldAll) {
-    EXPECT_FALSE(quantize(std::vector<double>(kNarrow, 1.0 / kNarrow), 1e-6).wide);
-    EXPECT_TRUE(quantize(std::vector<double>(kNarrow + 1, 1.0 / (kNarrow + 1)), 1e9).wide);
-    EXPECT_FALSE(quantize({1.0}, 0.0).wide);
-    EXPECT_FALSE(quantize({0.0, 1.0, 0.0}, 0.0).wide);
+TEST(Quantize, WidensWhereNarrowOnesCannotHoldAll) {
+    for (const std::uint64_t n : {kByte, kNarrow}) {
+        const std::uint32_t code = n == kByte ? 0 : 1;
+        EXPECT_EQ(quantize(std::vector<double>(n, 1.0 / double(n)), 1.0, 1e-8).code, code);
+        EXPECT_EQ(quantize(std::vector<double>(n + 1, 1.0 / double(n + 1)), 1.0, 1e9).code, code + 1);
+    }
+    EXPECT_EQ(quantize({1.0}, 1.0, 0.0).code, 0u);
+    EXPECT_EQ(quantize({0.0, 1.0, 0.0}, 1.0, 0.0).code, 0u);
+}
+
+TEST(Quantize, CurvesThatAreNeverReachedAreNarrow) {
+    EXPECT_EQ(quantize({0.3, 0.7}, 0.0, 1e-8).code, 0u);
+    EXPECT_EQ(quantize({0.3, 0.7}, 1.0, 0.0).code, 2u);
 }
 
 } // namespace

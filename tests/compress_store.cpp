@@ -83,78 +83,138 @@ TEST(Store, LargestEnvironment) {
         0x10000, 0x10000);
 }
 
-/// The arrays of a curve as the sampling header reads them; an environment never needs wide positions.
-void expect_positions(const std::vector<std::uint32_t>& knots, bool wide) {
+/// The first curve of a tree, decoded where it is aligned.
+struct Decoded {
+    explicit Decoded(const EncodedTree& tree, std::uint32_t at = 0) : words(tree.bytes.size() / 4 + 1) {
+        std::memcpy(words.data(), tree.bytes.data(), tree.bytes.size());
+        end = 2 * acdf_curve_decode(reinterpret_cast<const std::uint8_t*>(words.data()), at, &curve);
+    }
+    std::uint32_t cumulative_code() const { return ACDF_CURVE_CUMULATIVE_CODE(curve.header); }
+    std::uint32_t position_code() const { return ACDF_CURVE_POSITION_CODE(curve.header); }
+    std::uint32_t link_code() const { return ACDF_CURVE_LINK_CODE(curve.header); }
+
+    std::vector<std::uint32_t> words;
+    AcdfCurve curve;
+    std::size_t end;
+};
+
+/// Stores one tilted curve with values of every width and reads its knots and tilts again.
+void expect_positions(const std::vector<std::uint32_t>& knots, std::uint32_t code) {
     Curve curve{0, knots, std::vector<double>(knots.size() + 1, 0.3 / double(knots.size())), {}, {}};
     curve.probability[0] = 0.7;
     curve.tilts.assign(curve.segments(), -0.5);
-    for (const double tolerance : {0.0, 1.0}) { // cumulative values wide and narrow
-        const EncodedTree tree = encode_tree({{curve}, {0}}, tolerance);
-        ASSERT_EQ(tree.bytes.size() % 4, 0u);
-        std::vector<std::uint32_t> aligned(tree.bytes.size() / 4);
-        std::memcpy(aligned.data(), tree.bytes.data(), tree.bytes.size());
-        const AcdfCurve read = acdf_curve_at(reinterpret_cast<const std::uint8_t*>(aligned.data()), 0);
-        EXPECT_EQ(acdf_wide_positions(&read), wide);
-        EXPECT_EQ(acdf_wide_cumulative(&read), tolerance == 0.0);
-        AcdfRange range = {0, 0xFFFFFFFF, 0.0};
+    const double prices[] = {1.0, 1e-7, 0.0};
+    for (std::uint32_t width = 0; width < 3; ++width) {
+        const EncodedTree tree = encode_tree({{curve}, {0}}, prices[width]);
+        const Decoded read(tree);
+        EXPECT_EQ(read.position_code(), code);
+        EXPECT_EQ(read.cumulative_code(), width);
+        EXPECT_EQ(read.end, tree.bytes.size());
         for (std::uint32_t i = 0; i < knots.size(); ++i) {
-            acdf_curve_narrow(&read, i, &range);
+            AcdfRange range = {0, 0xFFFFFFFF, 0.0};
+            acdf_curve_narrow(&read.curve, i, &range);
             EXPECT_EQ(range.high, knots[i]);
+            EXPECT_EQ(range.low, i == 0 ? 0 : knots[i - 1]);
             EXPECT_EQ(range.tilt, -0.5);
         }
-        const std::size_t size =
-            4 + knots.size() * (tolerance == 0.0 ? 4 : 2) + knots.size() * (wide ? 4 : 2) + (knots.size() + 1) * 2;
-        EXPECT_GE(tree.bytes.size(), size);
-        EXPECT_LT(tree.bytes.size(), size + 6); // padding before wide positions and after the tilts
     }
 }
 
-TEST(Store, PositionsWidenBeyondSixteenBits) {
-    expect_positions({1, 0xFFFE, 0xFFFF}, false);
-    expect_positions({1, 0xFFFF, 0x10000}, true);
-    expect_positions({1, 70000}, true);
-    expect_positions({7, 0xFFFFFFFE}, true);
+TEST(Store, PositionsAreAsWideAsTheyMustBe) {
+    expect_positions({1, 0xFE, 0xFF}, 0);
+    expect_positions({1, 0xFF, 0x100}, 1);
+    expect_positions({1, 0xFFFE, 0xFFFF}, 1);
+    expect_positions({1, 0xFFFF, 0x10000}, 2);
+    expect_positions({7, 0xFFFFFFFE}, 2);
+}
+
+TEST(Store, OneByteCountsFromTheLowEndOfTheRange) {
+    // The lower curve splits rows 300 to 900, at 310 and at 555: 10 and 255 from 300.
+    const Cascade cascade{
+        {{1, {300, 900}, {0.25, 0.5, 0.25}, {-1, 1, -1}, {}}, {1, {310, 555}, {0.2, 0.3, 0.5}, {}, {}}}, {0}};
+    expect_cells(cascade, 1, 1000);
+    Cascade far = cascade;
+    far.curves[1].knots[1] = 556;
+    expect_cells(far, 1, 1000);
+    const EncodedTree near_tree = encode_tree(cascade), far_tree = encode_tree(far);
+    const Decoded root(near_tree);
+    const std::uint32_t child = acdf_curve_link(&root.curve, 1);
+    EXPECT_EQ(Decoded(near_tree, child).position_code(), 0u);
+    EXPECT_EQ(Decoded(far_tree, child).position_code(), 1u);
+}
+
+TEST(Store, ASharedChildWhoseRangesBeginInDifferentPlaces) {
+    // Left of column 3 the last curve refines rows 2 to 6, right of it rows 0 to 8.
+    const Cascade cascade{{{0, {3}, {0.5, 0.5}, {1, 2}, {}},
+                           {1, {2, 6}, {0.25, 0.5, 0.25}, {-1, 2, -1}, {}},
+                           {1, {4, 5}, {0.25, 0.25, 0.5}, {}, {}}},
+                          {0}};
+    expect_cells(cascade, 8, 8);
+}
+
+TEST(Store, ManySegments) {
+    for (const std::uint32_t segments : {62u, 63u, 64u, 65u, 255u, 256u, 300u}) {
+        SCOPED_TRACE(segments);
+        Curve curve{0, {}, std::vector<double>(segments, 1.0 / segments), {}, {}};
+        for (std::uint32_t i = 1; i < segments; ++i) curve.knots.push_back(2 * i);
+        expect_cells({{curve}, {0}}, 2 * segments, 1);
+        EXPECT_EQ(Decoded(encode_tree({{curve}, {0}})).curve.segments, segments);
+    }
 }
 
 TEST(Store, TheRootIsThatOfTheBin) {
     // Curve 0 belongs to nobody but the second root.
     const Cascade cascade{{{0, {1}, {0.5, 0.5}, {}, {}}, {0, {1, 2}, {0.25, 0.25, 0.5}, {}, {}}}, {1, 0}};
-    const EncodedTree tree = encode_tree(cascade);
+    const EncodedTree tree = encode_tree(cascade, 1.0); // header, one byte a value, one a knot
     ASSERT_EQ(tree.roots, (std::vector<std::uint32_t>{2, 0}));
-    EXPECT_EQ(tree.bytes.size(), 8u + 12u);
+    EXPECT_EQ(tree.bytes.size(), 4u + 6u);
 }
 
-TEST(Store, LinksWidenWhereSixteenBitsDoNotReach) {
-    // The last child lies behind a curve of 65,536 segments, more than 65,535 words away.
+/// A tree whose last child lies behind a curve of so many segments.
+Cascade far_link(std::uint32_t segments) {
     Cascade cascade;
     cascade.roots = {0};
     cascade.curves.push_back({1, {1, 2}, {0.25, 0.25, 0.5}, {1, -1, 2}, {}});
     Curve large{0, {}, {}, {}, {}};
-    for (std::uint32_t i = 1; i < 0x10000; ++i) large.knots.push_back(i);
-    large.probability.assign(0x10000, 0x1p-16);
+    for (std::uint32_t i = 1; i < segments; ++i) large.knots.push_back(i);
+    large.probability.assign(segments, 1.0 / segments);
     cascade.curves.push_back(large);
-    cascade.curves.push_back({0, {500}, {0.25, 0.75}, {}, {}});
-    expect_cells(cascade, 0x10000, 3);
-    const EncodedTree tree = encode_tree(cascade);
-    std::uint32_t header;
-    std::memcpy(&header, tree.bytes.data(), 4);
-    EXPECT_EQ((header & ACDF_CURVE_LINKS_MASK) >> ACDF_CURVE_LINKS_SHIFT, ACDF_LINKS_32 + 0u);
+    cascade.curves.push_back({0, {segments / 2}, {0.25, 0.75}, {}, {}});
+    return cascade;
+}
+
+TEST(Store, LinksAreAsWideAsTheyMustBe) {
+    const std::uint32_t segments[] = {20, 2000, 0x10000};
+    for (std::uint32_t code = 1; code <= 3; ++code) {
+        const Cascade cascade = far_link(segments[code - 1]);
+        expect_cells(cascade, 0x10000, 3);
+        EXPECT_EQ(Decoded(encode_tree(cascade)).link_code(), code);
+    }
+}
+
+TEST(Store, LinksOfExactly255And256Units) {
+    // Each more segment of the curve between moves the last child by half a unit or more.
+    bool narrow = false, wide = false;
+    for (std::uint32_t n = 100; n < 400; ++n) {
+        const EncodedTree tree = encode_tree(far_link(n), 1.0);
+        const Decoded root(tree);
+        const std::uint32_t link = acdf_curve_link(&root.curve, 2);
+        EXPECT_EQ(Decoded(tree, link).curve.segments, 2u);
+        EXPECT_EQ(root.link_code(), link <= 255 ? 1u : 2u);
+        narrow |= link > 250 && link <= 255;
+        wide |= link >= 256 && link < 262;
+    }
+    EXPECT_TRUE(narrow && wide);
 }
 
 TEST(Store, NarrowsRarelyReachedCurvesFirst) {
-    // The same lopsided child twice; where one sample in a million comes by, 16 bits are enough.
+    // The same lopsided child twice; where one sample in a million comes by, fewer bits are enough.
     const Curve child{0, {1}, {1e-3 / 7, 1.0 - 1e-3 / 7}, {}, {}};
     const Cascade cascade{{{1, {1}, {1e-6, 1.0 - 1e-6}, {1, 2}, {}}, child, child}, {0}};
-    const EncodedTree tree = encode_tree(cascade, 1e-7);
-    const auto wide = [&](std::size_t at) {
-        std::uint32_t header;
-        std::memcpy(&header, tree.bytes.data() + at, 4);
-        return (header & ACDF_CURVE_WIDE_CUMULATIVE) != 0;
-    };
-    const std::size_t root_bytes = 4 + 4 + 2 + 4 + 2; // header, wide cumulative, knot, two links, padding
-    ASSERT_TRUE(wide(0));
-    EXPECT_FALSE(wide(root_bytes));
-    EXPECT_TRUE(wide(root_bytes + 8));
+    const EncodedTree tree = encode_tree(cascade, 1e-8);
+    const Decoded root(tree);
+    const Decoded rare(tree, acdf_curve_link(&root.curve, 0)), usual(tree, acdf_curve_link(&root.curve, 1));
+    EXPECT_LT(rare.cumulative_code(), usual.cumulative_code());
 }
 
 TEST(Store, RefusesWhatTheFormatCannotHold) {

@@ -105,10 +105,10 @@ TEST(MeasureEnvironment, AgreesWithQuadratureOnFits) {
         SCOPED_TRACE(kind);
         compress::FitOptions options;
         options.fit = kind;
-        options.cells = 12;
+        options.goal.cells = 12;
         options.column_segments = 4;
         options.row_segments = 3;
-        expect_agreement(Stored(compress::fit(target, options), 9, 6).file(), target, 0.15);
+        expect_agreement(Stored(compress::fit(target, options).cascade, 9, 6).file(), target, 0.15);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -38,7 +39,9 @@ inline acdf::compress::Target texel_target(std::uint32_t columns, std::uint32_t 
     for (std::uint32_t r = 0; r < rows; ++r)
         for (std::uint32_t c = 0; c < columns; ++c)
             rgb[3 * (std::size_t{r} * columns + c)] = static_cast<float>(f(c, r));
-    return acdf::compress::environment_target(rgb.data(), columns, rows, {1.0, 0.0, 0.0});
+    acdf::compress::TargetOptions red;
+    red.weights = {1.0, 0.0, 0.0};
+    return acdf::compress::environment_target(rgb.data(), columns, rows, red);
 }
 
 /// The same with f(phi, z) at the texel's centre.
@@ -72,6 +75,8 @@ struct NamedTarget {
     std::string name;
     acdf::compress::Target target;
 };
+
+inline void PrintTo(const NamedTarget& target, std::ostream* out) { *out << target.name; } // for GoogleTest
 
 /// What every fit must survive.
 inline std::vector<NamedTarget> synthetic_targets() {

@@ -73,16 +73,16 @@ void measure_table(const std::string& path, const File& file, const std::string&
     input::NpyOptions options;
     options.bad_values = input::BadValuePolicy::zero; // as the file was made, or `acdf table` had refused them
     const input::NpyArray array = input::read_npy(source, options);
-    const Text hash = file.metadata("source.sha256");
-    if (hash.size > 0 && std::string(hash.data, hash.size) != input::file_sha256(source) && !quiet)
-        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
-                     source.c_str());
     std::vector<std::uint32_t> shape;
     for (std::uint32_t axis = 0; axis < file.description().axis_count; ++axis)
         shape.push_back(file.axis(axis).resolution);
     if (shape != array.shape)
         throw Failure(source + ": its shape is " + joined(array.shape, "x") + ", but " + path + " was made from " +
                       joined(shape, "x") + "; measure against the array it was made from");
+    const Text hash = file.metadata("source.sha256");
+    if (hash.size > 0 && std::string(hash.data, hash.size) != input::file_sha256(source) && !quiet)
+        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
+                     source.c_str());
     const std::vector<compress::Grid> bins = table_grids(array, file.table().indexed_count());
     try {
         const measure::TableAccuracy accuracy = measure::summary(measure::measure_bins(file, bins));

@@ -6,6 +6,7 @@
 #include "compress/fit_tree.h"
 
 #include "compress/partition.h"
+#include "compress/polish.h"
 #include "compress/prune.h"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ struct Candidate {
 class Search {
 public:
     Search(const std::vector<Grid>& bins, const FitOptions& options) : goal_(options.goal), options_(options) {
+        dark_axis_ = bins.front().axes.front();
         for (const Grid& bin : bins) {
             const double total = integral(bin);
             if (!(total > 0.0)) { // nothing to sample: a curve that is never entered
@@ -93,8 +95,13 @@ private:
     void store_trees(const std::vector<Pruned>& pruned, Candidate& out) const {
         Flattened flat;
         for (std::size_t bin = 0; bin < partitions_.size(); ++bin)
-            if (partitions_[bin]) flatten(*partitions_[bin], pruned[bin], flat);
-            else flatten_nothing(flat);
+            if (partitions_[bin]) {
+                flatten(*partitions_[bin], pruned[bin], flat);
+                if (!std::isfinite(heaviest_))
+                    polish(*partitions_[bin], bin, flat); // moved knots could break a bound
+            } else {
+                flatten_nothing(dark_axis_, flat);
+            }
         // A bound on weights leaves no room for shares much below their probability.
         const double most_ratio = options_.max_weight > 0.0 ? 1.01 : std::numeric_limits<double>::infinity();
         // E[(f/p)^2] is about the square of the sum of costs: a byte is worth twice as much in it. `reach` in
@@ -179,6 +186,7 @@ private:
     const Goal& goal_;
     const FitOptions& options_;
     std::vector<std::optional<Partition>> partitions_; ///< one a bin, empty where it has no energy
+    std::uint32_t dark_axis_ = 0;                      ///< of the curve of a bin without energy
     double excess_ = 0.0, cost_ = 1.0, heaviest_ = 0.0;
 };
 

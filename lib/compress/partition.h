@@ -65,6 +65,8 @@ public:
     void refine(double finest, double heaviest);
     const std::vector<Part>& parts() const { return parts_; }
     const Grid& grid() const { return grid_; }
+    /// The integral over the grid, to which it is normalised.
+    double total() const { return total_; }
 
 private:
     Grid grid_;

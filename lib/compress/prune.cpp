@@ -110,9 +110,10 @@ void flatten(const Partition& partition, const Pruned& pruned, Flattened& out) {
     Flattener(partition, pruned, out).run();
 }
 
-void flatten_nothing(Flattened& out) {
+void flatten_nothing(std::uint32_t axis, Flattened& out) {
     out.cascade.roots.push_back(static_cast<std::uint32_t>(out.cascade.curves.size()));
     Curve curve;
+    curve.axis = axis;
     curve.probability = {1.0};
     out.cascade.curves.push_back(std::move(curve));
     out.weights.push_back({0.0f});

@@ -35,8 +35,8 @@ struct Flattened {
 /// Appends the curves of a pruned partition as one bin. Divisions along the same axis become one curve.
 void flatten(const Partition& partition, const Pruned& pruned, Flattened& out);
 
-/// Appends a bin of one cell, for a grid without energy.
-void flatten_nothing(Flattened& out);
+/// Appends a bin of one cell, for a grid without energy; `axis` is any sampled axis of the file.
+void flatten_nothing(std::uint32_t axis, Flattened& out);
 
 /// What the rounding of probabilities makes of a bin.
 struct StoredQuality {

@@ -2,6 +2,8 @@
 // 3).
 #pragma once
 
+#include "input/probe.h"
+
 #include <cstdint>
 #include <cstdio>
 #include <string>
