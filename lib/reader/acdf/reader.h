@@ -85,8 +85,8 @@ public:
     /// Sampled axis i: its name, range and steps.
     const AcdfAxis& sampled_axis(std::uint32_t i) const noexcept { return data_.axes[data_.indexed_count + i]; }
 
-    /// Draws x, in the units of the axes; u in [0, 1]. Returns the density there, per product of those units, finite
-    /// and > 0; 0 (and x unset) where the bin has no energy or an index is out of range.
+    /// Draws x, in the units of the axes; u in [0, 1]. Returns the density there, per product of those units,
+    /// finite and > 0; 0 (and x unset) where the bin has no energy or an index is out of range.
     double sample(const std::uint32_t* index, const double* u, double* x) const noexcept {
         return acdf_table_sample(&data_, index, u, x);
     }
