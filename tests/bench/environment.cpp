@@ -20,6 +20,8 @@ namespace {
 using namespace acdf;
 
 constexpr std::size_t kBatch = 1024;
+constexpr std::size_t kSamples =
+    1 << 20; // so many before random numbers repeat: tables must not stay in the cache by that
 
 /// A sky of smooth clouds, texel noise and a small sun, columns x columns/2.
 const compress::Target& sky(std::uint32_t columns) {
@@ -35,7 +37,7 @@ const compress::Target& sky(std::uint32_t columns) {
             const double clouds = 1.0 + std::sin(17.0 * x + 3.0 * std::sin(11.0 * y)) * std::sin(23.0 * y);
             const bool sun = std::hypot(2.0 * (x - 0.6), y - 0.25) < 0.003;
             const double value =
-                sun ? 30000.0 : (y < 0.5 ? 0.3 + clouds : 0.1) * (0.8 + 0.4 * (random() % 1000) / 1000.0);
+                sun ? 30000.0 : (y < 0.5 ? 0.3 + clouds : 0.1) * (0.8 + 0.4 * double(random() % 1000) / 1000.0);
             for (std::size_t k = 0; k < 3; ++k)
                 rgb[3 * (std::size_t{r} * columns + c) + k] = static_cast<float>(value);
         }
@@ -76,28 +78,30 @@ std::vector<float> numbers(std::size_t count) {
 template <class Work>
 void run(benchmark::State& state, bool evict, const Work& work) {
     static std::vector<std::uint64_t> other(evict ? std::size_t{8} << 20 : 0);
+    std::size_t begin = 0;
     for (auto _ : state) {
         if (evict) {
             state.PauseTiming();
             for (std::size_t i = 0; i < other.size(); i += 8) ++other[i];
             state.ResumeTiming();
         }
-        for (std::size_t i = 0; i < kBatch; ++i) work(i);
+        for (std::size_t i = begin; i < begin + kBatch; ++i) work(i);
+        begin = (begin + kBatch) % kSamples;
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kBatch));
 }
 
 void sample_acdf(benchmark::State& state, compress::Shape shape, bool evict) {
     const EnvironmentView view = built(static_cast<std::uint32_t>(state.range(0)), shape).file.environment();
-    const std::vector<float> u = numbers(2 * kBatch);
+    const std::vector<float> u = numbers(2 * kSamples);
     run(state, evict, [&](std::size_t i) { benchmark::DoNotOptimize(view.sample(u[2 * i], u[2 * i + 1])); });
 }
 
 void pdf_acdf(benchmark::State& state, compress::Shape shape, bool evict) {
     const EnvironmentView view = built(static_cast<std::uint32_t>(state.range(0)), shape).file.environment();
-    const std::vector<float> u = numbers(2 * kBatch);
+    const std::vector<float> u = numbers(2 * kSamples);
     std::vector<DirectionSample> samples;
-    for (std::size_t i = 0; i < kBatch; ++i) samples.push_back(view.sample(u[2 * i], u[2 * i + 1]));
+    for (std::size_t i = 0; i < kSamples; ++i) samples.push_back(view.sample(u[2 * i], u[2 * i + 1]));
     run(state, evict, [&](std::size_t i) { benchmark::DoNotOptimize(view.pdf(samples[i].direction)); });
 }
 
@@ -105,7 +109,7 @@ void pdf_acdf(benchmark::State& state, compress::Shape shape, bool evict) {
 void sample_full_cdf(benchmark::State& state, bool evict) {
     const auto columns = static_cast<std::uint32_t>(state.range(0));
     const measure::FullCdf table(sky(columns));
-    const std::vector<float> u = numbers(2 * kBatch);
+    const std::vector<float> u = numbers(2 * kSamples);
     const double phi_scale = 2.0 * ACDF_PI / columns, theta_scale = 2.0 * ACDF_PI / columns;
     run(state, evict, [&](std::size_t i) {
         const measure::FullCdf::Draw draw = table.sample(u[2 * i], u[2 * i + 1]);
@@ -122,9 +126,9 @@ void pdf_full_cdf(benchmark::State& state, bool evict) {
     const auto columns = static_cast<std::uint32_t>(state.range(0));
     const measure::FullCdf table(sky(columns));
     const EnvironmentView view = built(columns, compress::Shape::tree).file.environment();
-    const std::vector<float> u = numbers(2 * kBatch);
+    const std::vector<float> u = numbers(2 * kSamples);
     std::vector<DirectionSample> samples;
-    for (std::size_t i = 0; i < kBatch; ++i) samples.push_back(view.sample(u[2 * i], u[2 * i + 1]));
+    for (std::size_t i = 0; i < kSamples; ++i) samples.push_back(view.sample(u[2 * i], u[2 * i + 1]));
     run(state, evict, [&](std::size_t i) {
         const float* w = samples[i].direction;
         const double column = columns * (0.5 - std::atan2(w[1], w[0]) / (2.0 * ACDF_PI));
