@@ -45,6 +45,23 @@ inline FileSpec local_file() {
     return file;
 }
 
+/// The same tree as a table of 2 x 3 bins over two sampled axes: what kind 4 asks for.
+inline FileSpec table_file() {
+    EnvironmentSpec spec = complete_environment();
+    for (CurveSpec& curve : spec.tree.curves) curve.axis += 2;
+    FileSpec file = spec.file();
+    DescriptionSpec description;
+    description.parameterization = 3;
+    description.bin_count = 6;
+    description.axes = {
+        {"i", 1, 0, 2, 0.0, 2.0}, {"j", 1, 0, 3, 5.0, -5.0}, {"x", 0, 0, 8, -1.0, 1.0}, {"y", 0, 0, 8, 10.0, 12.5}};
+    file.kind = 4;
+    file.chunks[0].raw = description.encode();
+    file.chunks[1].raw =
+        encode(std::vector<BinSpec>{{0, 0.5f}, {6, 0.25f}, {0, 0.125f}, {0, 0}, {6, 0}, {0, 0.125f}});
+    return file;
+}
+
 /// `length` curves of one segment, each the child of the one before.
 inline EnvironmentSpec chain(int length) {
     EnvironmentSpec spec;

@@ -55,6 +55,26 @@ std::function<Bytes()> third_axis(std::size_t at, int size, std::uint64_t value)
     };
 }
 
+// One number of DESC of the table.
+std::function<Bytes()> table_field(std::size_t at, int size, std::uint64_t value) {
+    return [=] {
+        FileSpec file = table_file();
+        set(file.chunks[0].raw, at, size, value);
+        return file.encode();
+    };
+}
+std::function<Bytes()> table_range(double low, double high) { // of the first sampled axis
+    return [=] {
+        FileSpec file = table_file();
+        for (const auto& [at, value] : {std::pair{32, low}, {40, high}}) {
+            std::uint64_t bits;
+            std::memcpy(&bits, &value, 8);
+            set(file.chunks[0].raw, 64 + 2 * 48 + static_cast<std::size_t>(at), 8, bits);
+        }
+        return file.encode();
+    };
+}
+
 // Changes the parts before they become a file.
 std::function<Bytes()> rebuilt(std::function<void(FileSpec&)> change) {
     return [change] {
@@ -415,9 +435,46 @@ std::vector<Case> tree_cases() {
     };
 }
 
+std::vector<Case> table_cases() {
+    return {
+        {9001, "cosine", table_field(64 + 3 * 48 + 20, 4, 1)},
+        {9001, "indexed_cosine", table_field(64 + 20, 4, 1)},
+        {9002, "sampled_first",
+         [] {
+             FileSpec file = table_file(); // exchanges axes 1 and 2; curves on axis 1 are then on a sampled one
+             Bytes& raw = file.chunks[0].raw;
+             std::swap_ranges(raw.begin() + 64 + 48, raw.begin() + 64 + 96, raw.begin() + 64 + 96);
+             EnvironmentSpec tree = complete_environment();
+             for (CurveSpec& curve : tree.tree.curves) curve.axis = curve.axis == 0 ? 1 : 3;
+             file.chunks[2].raw = tree.file().chunks[2].raw;
+             return file.encode();
+         }},
+        {9003, "fewer_bins",
+         [] {
+             FileSpec file = table_file();
+             set(file.chunks[0].raw, 24, 4, 5);
+             file.chunks[1].raw.resize(40);
+             return file.encode();
+         }},
+        {9003, "longer_axis", table_field(64 + 24, 4, 3)},
+        {9003, "product_of_2_to_the_62",
+         [] {
+             FileSpec file = table_file();
+             for (const std::size_t axis : {0u, 1u}) set(file.chunks[0].raw, 64 + axis * 48 + 24, 4, 0x7FFFFFFF);
+             for (const std::size_t axis : {0u, 1u})
+                 set(file.chunks[0].raw, 64 + axis * 48 + 40, 8, 0x4260000000000000);
+             return file.encode();
+         }},
+        {9004, "far_from_zero", table_range(0x1p43, 0x1p43 + 1.0)},
+        {9004, "too_large", table_range(0.0, 0x1.8p100)},
+        {9004, "too_wide", table_range(-1e308, 1e308)},
+        {9004, "too_small", table_range(0.0, 0x1p-98)},
+    };
+}
+
 std::vector<Case> cases() {
     std::vector<Case> all = container_cases();
-    for (auto make : {description_cases, tree_cases})
+    for (auto make : {description_cases, tree_cases, table_cases})
         for (const Case& c : make()) all.push_back(c);
     return all;
 }
@@ -450,7 +507,7 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 INSTANTIATE_TEST_SUITE_P(Rules, BrokenRule, testing::ValuesIn(cases()), case_name);
 
 TEST(Rules, theCompleteFilesBreakNone) {
-    for (const FileSpec& spec : {complete_file(), local_file(), chain(1).file(), chain(64).file()}) {
+    for (const FileSpec& spec : {complete_file(), local_file(), table_file(), chain(1).file(), chain(64).file()}) {
         const Findings found = findings(spec.encode());
         EXPECT_TRUE(found.rules.empty()) << found.text;
     }

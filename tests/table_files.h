@@ -11,6 +11,7 @@
 #include <cstring>
 #include <functional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -91,7 +92,7 @@ struct Loaded {
 
     explicit Loaded(std::vector<std::uint8_t> data) : bytes(std::move(data)) {
         const Status status = File::from_memory(bytes.data(), bytes.size(), file);
-        EXPECT_TRUE(status.ok()) << status.message;
+        if (!status.ok()) throw std::runtime_error(status.message);
     }
 };
 

@@ -153,6 +153,7 @@ std::string text_of(const Json& value) {
 }
 
 std::string target_text(const Json& report) {
+    if (report["kind"] == "table") return "a table of numbers; integral " + number(report["total"]);
     const Json& w = report["channel_weights"];
     return number(w[0]) + " r + " + number(w[1]) + " g + " + number(w[2]) + " b, looked up " +
            text_of(report["filter"]) + "; integral " + number(report["total"]);

@@ -9,7 +9,6 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <set>
 #include <stdexcept>
 

@@ -36,7 +36,7 @@ typedef enum AcdfCodec { ACDF_CODEC_NONE = 0, ACDF_CODEC_ZLIB = 1 } AcdfCodec;
 typedef enum AcdfParameterization {
     ACDF_PARAM_LATLONG = 1,    /* columns in phi, rows in theta; density uniform in z = cos(theta) */
     ACDF_PARAM_HALF_ANGLE = 2, /* reserved for BRDFs */
-    ACDF_PARAM_TABLE = 3       /* reserved for N-dimensional tables */
+    ACDF_PARAM_TABLE = 3       /* points of N-dimensional tables */
 } AcdfParameterization;
 
 typedef enum AcdfFit { ACDF_FIT_UNIFORM = 1, ACDF_FIT_CDF = 2, ACDF_FIT_PDF = 3, ACDF_FIT_VARIANCE = 4 } AcdfFit;
@@ -100,7 +100,7 @@ typedef struct AcdfDescription {
     uint32_t handedness;
     uint32_t axis_count;
     uint32_t bin_count;
-    uint32_t channels; /* AcdfChannels */
+    uint32_t channels;         /* AcdfChannels */
     double channel_weights[3]; /* target = weights . (r, g, b) */
     double total;              /* integral of the target: over the sphere in W/m^2-like units of L * sr */
 } AcdfDescription;
@@ -127,7 +127,7 @@ typedef struct AcdfBin {
 #define ACDF_CURVE_AXIS_MASK 0x0007u
 #define ACDF_CURVE_CUMULATIVE_CODE(header) ((header) >> 3 & 3u) /* log2 of the bytes: 0, 1 or 2 */
 #define ACDF_CURVE_POSITION_CODE(header) ((header) >> 5 & 3u)   /* the same; 0: counted from the range's low end */
-#define ACDF_CURVE_LINK_CODE(header) ((header) >> 7 & 3u)       /* 0: all segments end; else 1 + log2 of the bytes */
+#define ACDF_CURVE_LINK_CODE(header) ((header) >> 7 & 3u) /* 0: all segments end; else 1 + log2 of the bytes */
 #define ACDF_CURVE_TILTED 0x0200u
 #define ACDF_CURVE_SEGMENTS_SHIFT 10 /* 1 to 63 segments; 0: the count follows */
 #define ACDF_CURVE_SHORT_SEGMENTS 63u

@@ -62,6 +62,12 @@ int acdf_environment(const AcdfFile* file, AcdfEnvironment* out) {
     return 1;
 }
 
+int acdf_table(const AcdfFile* file, AcdfTable* out) {
+    if (file->file.kind() != ACDF_KIND_TABLE) return 0;
+    *out = file->file.table().data();
+    return 1;
+}
+
 AcdfKind acdf_kind(const AcdfFile* file) { return file->file.kind(); }
 uint64_t acdf_size(const AcdfFile* file) { return file->file.size(); }
 const AcdfHeader* acdf_header(const AcdfFile* file) { return &file->file.header(); }

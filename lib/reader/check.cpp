@@ -374,6 +374,7 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     if (!parts.description || report.stopped()) return report.verdict();
     check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], report, parts);
     if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped()) check_environment(description, report, parts);
+    if (header.kind == ACDF_KIND_TABLE && !report.stopped()) check_table_kind(description, report, parts);
     return report.verdict();
 }
 

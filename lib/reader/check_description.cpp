@@ -1,6 +1,8 @@
 // What the file says about itself: DESC, META, and what its kind asks of them.
 #include "checker.h"
 
+#include <acdf/table.h>
+
 #include <cmath>
 #include <cstring>
 
@@ -216,6 +218,32 @@ void check_environment(const Payload& payload, Report& report, const Parts& part
     }
     if (d.bin_count != 1)
         report.add(7002, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins", d.bin_count);
+}
+
+void check_table_kind(const Payload& payload, Report& report, const Parts& parts) noexcept {
+    const AcdfDescription& d = *parts.description;
+    if (d.parameterization != ACDF_PARAM_TABLE) return; // rule 5016: what the axes mean is open
+    u64 bins = 1;                                       // no more than 2^32: then it is wrong anyway
+    bool sampled = false;
+    for (u32 i = 0; i < d.axis_count; ++i) {
+        const AcdfAxis& axis = parts.axes[i];
+        const u64 at = payload.at(sizeof d + i * sizeof axis);
+        if (axis.measure == ACDF_MEASURE_COSINE)
+            report.add(9001, at + offsetof(AcdfAxis, measure), "axis %u: it is %u", i, axis.measure);
+        if (axis.role == ACDF_AXIS_INDEXED) {
+            if (sampled)
+                report.add(9002, at + offsetof(AcdfAxis, role), "axis %u is indexed, the one before is not", i);
+            if (bins <= 0xFFFFFFFFu) bins *= axis.resolution;
+        }
+        sampled = sampled || axis.role == ACDF_AXIS_SAMPLED;
+        const bool range = std::isfinite(axis.low) && std::isfinite(axis.high) && axis.low != axis.high;
+        if (range && axis.resolution >= 1 && axis.resolution <= max_resolution && !acdf_table_axis_steps(&axis))
+            report.add(9004, at + offsetof(AcdfAxis, low), "axis %u: %u steps from %g to %g", i, axis.resolution,
+                       axis.low, axis.high);
+    }
+    if (bins != d.bin_count && bins != 0) // 0: rule 5014
+        report.add(9003, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
+                   d.bin_count, static_cast<ull>(bins));
 }
 
 } // namespace acdf

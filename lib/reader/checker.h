@@ -55,5 +55,6 @@ void check_metadata(const Payload& payload, Report& report, Parts& parts) noexce
 void check_tree(const Payload& bins, const Payload& tree, Report& report, Parts& parts) noexcept;
 /// What the kind asks of axes and bins; needs parts.description.
 void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept;
+void check_table_kind(const Payload& payload, Report& report, const Parts& parts) noexcept;
 
 } // namespace acdf

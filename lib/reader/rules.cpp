@@ -102,6 +102,14 @@ const Rule rules[] = {
     {7001, error, malformed, "environment-axes",
      "An environment has the two axes of §6.1, with resolutions of at most 65536."},
     {7002, error, malformed, "environment-bins", "An environment has one bin."},
+
+    {9001, error, malformed, "table-measure", "The axes of a table have linear measures."},
+    {9002, error, malformed, "table-axes", "The indexed axes of a table come before the sampled ones."},
+    {9003, error, malformed, "table-bins",
+     "A table has as many bins as the product of the resolutions of its indexed axes."},
+    {9004, error, malformed, "table-steps",
+     "The ends of a table's axis are at most 2^100 in magnitude; a step of it is at least 2^-100, and at least "
+     "2^-40 of the larger end."},
 };
 const std::size_t rule_count = sizeof rules / sizeof rules[0];
 

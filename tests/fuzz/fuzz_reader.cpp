@@ -38,6 +38,26 @@ void sample_everything(const acdf::EnvironmentView& view, std::uint32_t seed) {
     }
 }
 
+void sample_everything(const acdf::TableView& view, std::uint32_t seed) {
+    const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 0x1p-30};
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (int n = 0; n < 64; ++n) {
+        std::uint32_t index[ACDF_MAX_AXES];
+        double u[ACDF_MAX_AXES], x[ACDF_MAX_AXES], back[ACDF_MAX_AXES];
+        for (std::uint32_t i = 0; i < ACDF_MAX_AXES; ++i) {
+            index[i] = i < view.indexed_count() ? rng() % (view.data().axes[i].resolution + 1) : 0;
+            u[i] = rng() % 4 ? uniform(rng) : edges[rng() % 5];
+            x[i] = 0.0;
+        }
+        const double pdf = view.sample(index, u, x);
+        require(pdf >= 0.0 && std::isfinite(pdf) && (pdf > 0.0) == (view.share(index) > 0.0));
+        require(view.pdf(index, x) == pdf || pdf == 0.0);
+        require(view.invert(index, x, back) || pdf == 0.0);
+        require(view.pdf(index, u) >= 0.0);
+    }
+}
+
 // The chunks of a file whose table and payloads lie inside it; empty where they do not.
 FileSpec taken_apart(const Bytes& file) {
     FileSpec spec;
@@ -114,6 +134,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             for (std::uint32_t i = 0; i < file.metadata_count(); ++i) file.metadata(i, key, value);
             if (file.kind() == ACDF_KIND_ENVIRONMENT)
                 sample_everything(file.environment(), static_cast<std::uint32_t>(size));
+            if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), static_cast<std::uint32_t>(size));
         }
     }
     std::free(bytes);

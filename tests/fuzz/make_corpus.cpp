@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
     write(folder / "smallest", EnvironmentSpec().encode());
     write(folder / "complete", complete.encode());
     write(folder / "local", local_file().encode());
+    write(folder / "table", table_file().encode());
     write(folder / "chain", chain(64).encode());
     complete.zlib = true;
     write(folder / "compressed", complete.encode());

@@ -1,4 +1,5 @@
-/* The C interface of the reader: open a file here, then draw and evaluate with acdf/sample.h.
+/* The C interface of the reader: open a file here, then draw and evaluate with acdf/sample.h, or
+ * acdf/table.h for tables.
  *
  *   AcdfError error;
  *   AcdfFile* file = acdf_open("probe.acdf", &error);
@@ -16,6 +17,7 @@
 
 #include <acdf/layout.h>
 #include <acdf/sample.h>
+#include <acdf/table.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -53,6 +55,8 @@ void acdf_close(AcdfFile* file);
 
 /* The view of an environment file. Returns 1, or 0 (and `out` unset) where the file is of another kind. */
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out);
+/* The same for a table file, to be used with acdf/table.h. */
+int acdf_table(const AcdfFile* file, AcdfTable* out);
 
 AcdfKind acdf_kind(const AcdfFile* file);
 uint64_t acdf_size(const AcdfFile* file); /* bytes of the whole file */
