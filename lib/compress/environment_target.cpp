@@ -106,7 +106,7 @@ void bilinear_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::v
         }
     };
     for (const RowNode& node : row_nodes(r, f.rows)) add(node.height, node.weight);
-    for (double edge : {0.0, 1.0}) add(edge, 0.0); // f is largest at a corner of a quarter of the texel
+    for (double height : {0.0, 0.5, 1.0}) add(height, 0.0); // f is largest at a corner of a quarter of the texel
 }
 
 void nearest_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::vector<TexelMoments>& out) {
