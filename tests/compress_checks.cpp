@@ -26,7 +26,7 @@ using acdf::measure::Cell;
 constexpr std::uint32_t kSamples = 100000;
 // Chi-square tests in all: two a fit, 19 fits, 12 synthetic targets and four probes. Together they reject a
 // correct program with a chance of 1 % (once and for all, because the seeds are fixed).
-constexpr int kChiSquareTests = 2 * 17 * (12 + 4);
+constexpr int kChiSquareTests = 2 * 17 * (12 + 4 + 4);
 constexpr std::uint32_t kPhiBins = 31, kZBins = 15; // odd, so that no border falls on those of a grid
 
 /// Cells, and for each texel the cell that covers it.

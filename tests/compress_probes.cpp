@@ -73,6 +73,36 @@ TEST_P(Probe, VarianceFitMeetsItsFigure) {
     }
 }
 
+/// A probe in a projection; the discs and squares are read in several, as any of them is a map of the sphere.
+struct Projected {
+    const char* name;
+    const char* file;
+    acdf::input::Projection projection;
+};
+
+void PrintTo(const Projected& projected, std::ostream* out) { *out << projected.name; }
+
+class Projection : public ::testing::TestWithParam<Projected> {};
+
+TEST_P(Projection, EveryFitIsADensityThatCoversIt) {
+    const std::string path = std::string(ACDF_TEST_DATA "/probes/") + GetParam().file;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent; set ACDF_TEST_DATA";
+    acdf::input::ProbeOptions options;
+    options.projection = GetParam().projection;
+    const acdf::input::Probe probe = acdf::input::read_probe(path, options);
+    const Target target = environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
+                                             static_cast<std::uint32_t>(probe.height), TargetOptions{});
+    for (const auto& fit : acdf_test::all_fits(64, 64, 4096)) acdf_test::check_fit(target, fit);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Real, Projection,
+    ::testing::Values(Projected{"angular", "beach_probe.hdr", acdf::input::Projection::angular},
+                      Projected{"mirrorball", "beach_probe.hdr", acdf::input::Projection::mirrorball},
+                      Projected{"octahedral", "beach_probe.hdr", acdf::input::Projection::octahedral},
+                      Projected{"cube_cross", "stpeters_cross.hdr", acdf::input::Projection::cube_cross}),
+    [](const auto& info) { return std::string(info.param.name); });
+
 INSTANTIATE_TEST_SUITE_P(Real, Probe,
                          ::testing::Values(Figures{"city", 0.0250, 0.0165}, Figures{"sunset", 0.0174, 0.0085},
                                            Figures{"studio", 0.0317, 0.0145}, Figures{"courtyard", 0.105, 0.046}),
