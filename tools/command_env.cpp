@@ -324,19 +324,8 @@ void add_env(CLI::App& program, int& exit_code) {
     add_output(command, options->output, options->force, "The .acdf file to write")->required();
     add_fit_options(command, *options);
     add_target_options(command, options->environment.target);
-    const std::map<std::string, AcdfCodec> codecs{{"none", ACDF_CODEC_NONE}, {"zlib", ACDF_CODEC_ZLIB}};
-    command
-        .add_option(
-            "--compress", options->environment.codec,
-            "none: usable in place, mapped or linked into a program; zlib: smaller to ship, inflated at load")
-        ->transform(CLI::CheckedTransformer(codecs).description(""))
-        ->option_text("NAME [none]")
-        ->group("Output");
-    command
-        .add_option("--threads", options->threads, "Threads to use; the file is the same for any number of them")
-        ->check(CLI::Range(1, 4096))
-        ->option_text("N [all cores]")
-        ->group("Output");
+    add_codec(command, options->environment.codec);
+    add_threads(command, options->threads);
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(

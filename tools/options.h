@@ -1,8 +1,11 @@
 // Options that several subcommands share, so that they read and behave the same everywhere.
 #pragma once
 
+#include <acdf/layout.h>
+
 #include <CLI/CLI.hpp>
 
+#include <map>
 #include <string>
 
 namespace acdf::tools {
@@ -25,6 +28,24 @@ inline CLI::Option* add_output(CLI::App& command, std::string& path, bool& force
                   "shell's history costs no data")
         ->group("Output");
     return command.add_option("-o,--output", path, what + " (- is stdout)")->type_name("FILE")->group("Output");
+}
+
+inline CLI::Option* add_codec(CLI::App& command, AcdfCodec& codec) {
+    const std::map<std::string, AcdfCodec> codecs{{"none", ACDF_CODEC_NONE}, {"zlib", ACDF_CODEC_ZLIB}};
+    return command
+        .add_option(
+            "--compress", codec,
+            "none: usable in place, mapped or linked into a program; zlib: smaller to ship, inflated at load")
+        ->transform(CLI::CheckedTransformer(codecs).description(""))
+        ->option_text("NAME [none]")
+        ->group("Output");
+}
+
+inline CLI::Option* add_threads(CLI::App& command, int& threads) {
+    return command.add_option("--threads", threads, "Threads to use; the file is the same for any number of them")
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N [all cores]")
+        ->group("Output");
 }
 
 } // namespace acdf::tools

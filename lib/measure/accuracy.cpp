@@ -1,7 +1,7 @@
 #include "measure/accuracy.h"
 
-#include "compress/sum.h"
 #include "measure/cells.h"
+#include "measure/sums.h"
 
 #include <tbb/parallel_for.h>
 
@@ -55,21 +55,6 @@ double range_measure(const AcdfRange& range, const std::vector<double>& measure)
     for (std::uint32_t i = range.low; i < range.high; ++i) sum.add(measure[i]);
     return sum.value();
 }
-
-/// Sums over cells. Each texel's terms are added to those of the cells before it.
-struct Sums {
-    Sum variance, square_error, kl;
-    double max_weight = 0.0;
-    std::uint64_t violations = 0;
-
-    void add(const Sums& other) {
-        variance.add(other.variance.value());
-        square_error.add(other.square_error.value());
-        kl.add(other.kl.value());
-        max_weight = std::max(max_weight, other.max_weight);
-        violations += other.violations;
-    }
-};
 
 /// One cell after the other, of a target whose integral (of g) is `total`.
 class CellSummer {

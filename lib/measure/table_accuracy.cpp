@@ -1,7 +1,7 @@
 #include "measure/table_accuracy.h"
 
-#include "compress/sum.h"
 #include "measure/cells.h"
+#include "measure/sums.h"
 
 #include <tbb/parallel_for.h>
 
@@ -18,20 +18,6 @@ using compress::Grid;
 using compress::Sum;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-struct Sums {
-    Sum variance, square_error, kl;
-    double max_weight = 0.0;
-    std::uint64_t violations = 0;
-
-    void add(const Sums& other) {
-        variance.add(other.variance.value());
-        square_error.add(other.square_error.value());
-        kl.add(other.kl.value());
-        max_weight = std::max(max_weight, other.max_weight);
-        violations += other.violations;
-    }
-};
 
 /// One bin: its grid with the measure of each axis normalised to 1.
 class Bin {
