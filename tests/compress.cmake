@@ -7,6 +7,7 @@ acdf_add_test(test_compress
     SOURCES
         compress_curve.cpp
         compress_join.cpp
+        compress_planes.cpp
         compress_polyline.cpp
         compress_quantize.cpp
         compress_regional.cpp

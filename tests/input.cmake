@@ -10,5 +10,7 @@ if(TARGET acdf_input)
             input_probes.cpp
             input_projection.cpp
             input_resample.cpp
+            input_scene.cpp
+            input_scene_hostile.cpp
         LIBRARIES acdf_input OpenImageIO::OpenImageIO OpenEXR::OpenEXR OpenEXR::OpenEXRUtil)
 endif()

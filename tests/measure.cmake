@@ -8,3 +8,11 @@ acdf_add_test(test_measure
         measure_cells.cpp
         measure_full_cdf.cpp
     LIBRARIES acdf_measure)
+
+# The rivals of local environment maps.
+acdf_add_test(test_measure_local
+    SOURCES
+        measure_local_rivals.cpp
+        measure_tiling.cpp
+        measure_rival_probes.cpp
+    LIBRARIES acdf_measure acdf_input)

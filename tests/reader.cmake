@@ -24,7 +24,7 @@ acdf_add_test(test_reader_sampling
     SOURCES reader_sampling.cpp $<TARGET_OBJECTS:acdf_test_c99>
     LIBRARIES acdf_reader ZLIB::ZLIB)
 add_dependencies(test_reader_sampling acdf_test_headers)
-acdf_add_test(test_reader_rules SOURCES reader_rules.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
+acdf_add_test(test_reader_rules SOURCES reader_rules.cpp reader_rules_local.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_load SOURCES reader_load.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_spec SOURCES reader_spec.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_memory SOURCES reader_memory.cpp LIBRARIES acdf_reader ZLIB::ZLIB)

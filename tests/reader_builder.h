@@ -188,6 +188,7 @@ struct ChunkSpec {
     Bytes raw;
     std::uint32_t flags = 1;
     bool zlib = false;
+    std::uint64_t planes_of = 0; ///< not 0: `raw` are the planes of a tree of so many bytes (codec 2)
 };
 
 inline Bytes deflated(const Bytes& raw) {
@@ -240,14 +241,14 @@ struct FileSpec {
         file.resize(chunk_at(chunks.size()), 0);
         for (std::size_t i = 0; i < chunks.size(); ++i) {
             const ChunkSpec& chunk = chunks[i];
-            const Bytes stored = chunk.zlib ? deflated(chunk.raw) : chunk.raw;
+            const Bytes stored = chunk.zlib || chunk.planes_of ? deflated(chunk.raw) : chunk.raw;
             pad_to(file, 64);
             std::memcpy(file.data() + chunk_at(i), chunk.type.data(), 4);
             set(file, chunk_at(i) + 4, 4, chunk.flags);
-            set(file, chunk_at(i) + 8, 4, chunk.zlib ? 1 : 0);
+            set(file, chunk_at(i) + 8, 4, chunk.planes_of ? 2 : chunk.zlib ? 1 : 0);
             set(file, chunk_at(i) + 16, 8, file.size());
             set(file, chunk_at(i) + 24, 8, stored.size());
-            set(file, chunk_at(i) + 32, 8, chunk.raw.size());
+            set(file, chunk_at(i) + 32, 8, chunk.planes_of ? chunk.planes_of : chunk.raw.size());
             file.insert(file.end(), stored.begin(), stored.end());
         }
         pad_to(file, 64);

@@ -34,13 +34,13 @@ inline EnvironmentSpec complete_environment() {
 }
 inline FileSpec complete_file() { return complete_environment().file(); }
 
-/// The same tree with a third axis, which is indexed; kind 2 has no rules of its own yet.
-inline FileSpec local_file() {
+/// The same tree as a table with a third axis, which no curve splits.
+inline FileSpec spare_file() {
     FileSpec file = complete_file();
     DescriptionSpec description;
-    description.axes[0].resolution = description.axes[1].resolution = 8;
-    description.axes.push_back({"nor", 1, 0, 1, 0.0, 1.0});
-    file.kind = 2;
+    description.parameterization = 3;
+    description.axes = {{"phi", 0, 0, 8, 0.0, 1.0}, {"theta", 0, 0, 8, 0.0, 1.0}, {"nor", 0, 0, 1, 0.0, 1.0}};
+    file.kind = 4;
     file.chunks[0].raw = description.encode();
     return file;
 }

@@ -1,6 +1,8 @@
 // Loading: damage of every kind, memory of every alignment, compression, metadata, files.
 #include "reader_load.h"
+#include "local_builder.h"
 #include "reader_files.h"
+#include "reader_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -159,7 +161,7 @@ TEST(Versions, errorCodesSayWhoIsToBlame) {
 }
 
 TEST(Versions, otherKindsLoad) {
-    const Bytes file = local_file().encode();
+    const Bytes file = shared_local().encode();
     File loaded;
     ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded).ok());
     EXPECT_EQ(loaded.kind(), ACDF_KIND_LOCAL);
@@ -187,6 +189,48 @@ TEST(Memory, usedInPlaceWhereAligned) {
         EXPECT_EQ(std::memcmp(&file.header(), bytes.data(), bytes.size()), 0);
         EXPECT_TRUE(findings(bytes).rules.empty());
         EXPECT_TRUE(acdf::validate(exact.data(), exact.size(), [](const acdf::Finding&) {}).valid());
+    }
+}
+
+// Children in 300 segments of a curve of 301: more than a byte can count.
+EnvironmentSpec wide_preorder() {
+    EnvironmentSpec spec;
+    spec.columns = 301;
+    spec.rows = 4000;
+    std::vector<std::uint32_t> columns;
+    for (std::uint32_t i = 1; i < 301; ++i) columns.push_back(i);
+    CurveSpec root = even_curve(0, columns);
+    root.link_bytes = 2;
+    root.children.assign(301, -1);
+    spec.tree.curves.clear();
+    for (int i = 0; i < 300; ++i) root.children[static_cast<std::size_t>(300 - i)] = i + 1;
+    spec.tree.curves.push_back(root);
+    for (std::uint32_t i = 0; i < 300; ++i) spec.tree.curves.push_back(even_curve(1, {7 * i + 3, 9 * i + 1000}));
+    return spec;
+}
+
+TEST(Memory, planesAreTheSame) {
+    for (const EnvironmentSpec& spec : {preorder_environment(), chain(64), chain(1), wide_preorder()}) {
+        EnvironmentSpec same = spec;
+        const Bytes plain = same.encode(), packed = as_planes(spec).encode();
+        File a, b;
+        const Status plain_status = File::from_memory(plain.data(), plain.size(), a);
+        const Status status = File::from_memory(packed.data(), packed.size(), b);
+        ASSERT_TRUE(plain_status.ok()) << plain_status.message;
+        ASSERT_TRUE(status.ok()) << status.message;
+        EXPECT_TRUE(findings(packed).rules.empty()) << findings(packed).text;
+        ASSERT_EQ(a.tree_units(), b.tree_units());
+        EXPECT_EQ(std::memcmp(a.tree(), b.tree(), 2 * a.tree_units()), 0);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(b.tree()) % 64, 0u);
+    }
+}
+
+TEST(Damage, planesWithAFlippedBitAreRefused) {
+    const Bytes file = as_planes(preorder_environment()).encode();
+    for (std::size_t bit = 0; bit < 8 * file.size(); ++bit) {
+        Bytes damaged = file;
+        damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ 1u << bit % 8);
+        ASSERT_FALSE(load(damaged).ok()) << bit;
     }
 }
 

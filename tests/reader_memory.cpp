@@ -1,5 +1,5 @@
 // What the reader allocates: its calls are caught by the linker (--wrap), zlib's and the test's are not.
-#include "reader_files.h"
+#include "reader_planes.h"
 
 #include <acdf/reader.h>
 
@@ -90,6 +90,29 @@ TEST(Allocation, nothingForWhatIsRefusedBefore) {
     EXPECT_EQ(calls, 0u);
     limits.max_file_bytes = 100;
     EXPECT_EQ(acdf::File::from_memory(bytes.data() + 1, bytes.size(), file, limits).rule, 1004);
+    EXPECT_EQ(calls, 0u);
+}
+
+TEST(Allocation, planesTakeTwiceTheTreeForAMoment) {
+    const EnvironmentSpec spec = preorder_environment();
+    const Bytes plain = EnvironmentSpec(spec).encode(), bytes = as_planes(spec).encode();
+    acdf::File file;
+    std::size_t in_place = 0;
+    {
+        Counted counted;
+        ASSERT_TRUE(acdf::File::from_memory(plain.data(), plain.size(), file).ok());
+        in_place = bytes_taken;
+    }
+    const std::size_t tree = 2 * file.tree_units();
+    acdf::Limits limits;
+    {
+        Counted counted;
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, limits).ok());
+        EXPECT_LE(bytes_taken, in_place + tree + 64 + 2 * tree + 44);
+    }
+    limits.max_inflated_bytes = tree - 1;
+    Counted counted;
+    EXPECT_EQ(acdf::File::from_memory(bytes.data(), bytes.size(), file, limits).rule, 3012);
     EXPECT_EQ(calls, 0u);
 }
 

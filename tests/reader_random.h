@@ -29,14 +29,38 @@ public:
     RandomTree(std::uint32_t seed, const RandomOptions& options) : rng_(seed), options_(options) {}
 
     EnvironmentSpec make() {
-        const Range whole[2] = {{0, options_.columns}, {0, options_.rows}};
-        const int root = grow(whole, 0, 3, 1);
         EnvironmentSpec spec;
         spec.columns = options_.columns;
         spec.rows = options_.rows;
-        spec.tree = in_file_order(root);
+        spec.tree = make_within({0, 0}, {options_.columns, options_.rows});
         spec.root = 0;
         return spec;
+    }
+
+    /// A tree within a box of positions on both axes; its root is curve 0.
+    TreeSpec make_within(const std::array<std::uint32_t, 2>& low, const std::array<std::uint32_t, 2>& high) {
+        const Range box[2] = {{low[0], high[0]}, {low[1], high[1]}};
+        pool_.clear();
+        shareable_.clear();
+        return in_file_order(grow(box, 0, 3, 1), low);
+    }
+
+    /// Gives links that do not reach their child more bytes; false where all do.
+    static bool widen_links(TreeSpec& tree) {
+        bool changed = false;
+        tree.encode();
+        for (std::size_t i = 0; i < tree.curves.size(); ++i) {
+            CurveSpec& curve = tree.curves[i];
+            if (curve.link_bytes == 0 || curve.link_bytes == 4) continue;
+            const std::uint32_t most = curve.link_bytes == 1 ? 0xFF : 0xFFFF;
+            for (std::size_t s = 0; s < curve.segments(); ++s)
+                if (curve.children[s] >= 0 && tree.starts[curve.child_at(s)] - tree.starts[i] > most) {
+                    curve.link_bytes *= 2;
+                    changed = true;
+                    break;
+                }
+        }
+        return changed;
     }
 
 private:
@@ -141,7 +165,7 @@ private:
     }
 
     // Children after all their parents; links as wide as they must be, or wider.
-    TreeSpec in_file_order(int root) {
+    TreeSpec in_file_order(int root, const std::array<std::uint32_t, 2>& low) {
         std::vector<char> seen(pool_.size(), 0);
         std::vector<int> order, place(pool_.size(), -1);
         visit(root, seen, order);
@@ -155,17 +179,17 @@ private:
                 if (child >= 0) child = place[static_cast<std::size_t>(child)];
             tree.curves.push_back(curve);
         }
-        choose_positions(tree);
+        choose_positions(tree, low);
         while (widen_links(tree)) {
         }
         return tree;
     }
 
     // One byte where every path to the curve brings the same low end and the knots are near it.
-    void choose_positions(TreeSpec& tree) {
+    void choose_positions(TreeSpec& tree, const std::array<std::uint32_t, 2>& root_low) {
         constexpr std::uint32_t unset = 0xFFFFFFFF, many = 0xFFFFFFFE;
         std::vector<std::array<std::uint32_t, 2>> lows(tree.curves.size(), {unset, unset});
-        lows[0] = {0, 0};
+        lows[0] = root_low;
         for (std::size_t i = 0; i < tree.curves.size(); ++i) {
             CurveSpec& curve = tree.curves[i];
             const std::uint32_t low = lows[i][curve.axis],
@@ -185,23 +209,6 @@ private:
                 }
             }
         }
-    }
-
-    static bool widen_links(TreeSpec& tree) {
-        bool changed = false;
-        tree.encode();
-        for (std::size_t i = 0; i < tree.curves.size(); ++i) {
-            CurveSpec& curve = tree.curves[i];
-            if (curve.link_bytes == 0 || curve.link_bytes == 4) continue;
-            const std::uint32_t most = curve.link_bytes == 1 ? 0xFF : 0xFFFF;
-            for (std::size_t s = 0; s < curve.segments(); ++s)
-                if (curve.children[s] >= 0 && tree.starts[curve.child_at(s)] - tree.starts[i] > most) {
-                    curve.link_bytes *= 2;
-                    changed = true;
-                    break;
-                }
-        }
-        return changed;
     }
 
     std::mt19937 rng_;

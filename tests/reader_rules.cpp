@@ -1,6 +1,9 @@
 // For every rule of the table a file that breaks it and no other.
+#include "local_builder.h"
+#include "reader_cases.h"
 #include "reader_files.h"
 #include "reader_load.h"
+#include "reader_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +14,6 @@
 using namespace acdf_test;
 
 namespace {
-
-struct Case {
-    int rule;
-    const char* name;
-    std::function<Bytes()> make;
-    acdf::Limits limits = {};
-};
 
 // Changes the complete file, then makes the CRCs right again.
 std::function<Bytes()> changed(std::function<void(Bytes&)> change) {
@@ -45,10 +41,10 @@ std::function<Bytes()> payload_double(const char* type, std::size_t at, double v
     return payload_field(type, at, 8, bits);
 }
 
-// The same for a local environment, whose third axis no curve uses.
+// The same for a table whose third axis no curve splits.
 std::function<Bytes()> third_axis(std::size_t at, int size, std::uint64_t value) {
     return [=] {
-        Bytes file = local_file().encode();
+        Bytes file = spare_file().encode();
         set(file, payload_of(file, "DESC") + 64 + 2 * 48 + at, size, value);
         seal(file);
         return file;
@@ -177,7 +173,8 @@ std::vector<Case> container_cases() {
         {3004, "no_description", rebuilt([](FileSpec& f) { f.chunks.erase(f.chunks.begin()); })},
         {3004, "no_bins", rebuilt([](FileSpec& f) { f.chunks.erase(f.chunks.begin() + 1); })},
         {3004, "no_tree", rebuilt([](FileSpec& f) { f.chunks.erase(f.chunks.begin() + 2); })},
-        {3005, "codec_2", record_field("META", 8, 4, 2)},
+        {3005, "planes_of_metadata", record_field("META", 8, 4, 2)},
+        {3005, "codec_3", record_field("TREE", 8, 4, 3)},
         {3006, "gap", changed([](Bytes& file) {
              const std::size_t at = payload_of(file, "META");
              file.insert(file.begin() + static_cast<std::ptrdiff_t>(at), 64, 0);
@@ -250,6 +247,56 @@ std::vector<Case> container_cases() {
     };
 }
 
+// Streams of preorder_environment: 8 holds 2 1 0, for curve 0, then 1 1, for curve 1.
+std::vector<Case> plane_cases() {
+    const auto streams = [](PlaneChange change) {
+        return [change] { return as_planes(preorder_environment(), change).encode(); };
+    };
+    const auto bytes = [](std::function<void(Bytes&)> change) {
+        return [change] {
+            FileSpec file = as_planes(preorder_environment());
+            change(file.chunks[2].raw);
+            return file.encode();
+        };
+    };
+    return {
+        {4005, "counts_cut", bytes([](Bytes& planes) { planes.resize(43); })},
+        {4005, "byte_missing", bytes([](Bytes& planes) { planes.pop_back(); })},
+        {4005, "byte_more", bytes([](Bytes& planes) { planes.push_back(0); })},
+        {4005, "enormous_count", bytes([](Bytes& planes) { set(planes, 4, 4, 0xFFFFFFFF); })},
+        {4005, "longer_than_any", bytes([](Bytes& planes) { planes.resize(1000); })},
+        {4005, "longer_tree", streams([](PlaneStreams&, std::uint64_t& length) { length += 4; })},
+        {4005, "shorter_tree", streams([](PlaneStreams&, std::uint64_t& length) { length -= 4; })},
+        {4005, "odd_tree", streams([](PlaneStreams&, std::uint64_t& length) { length -= 1; })},
+        {4005, "value_left", streams([](PlaneStreams& s, std::uint64_t&) { s.values[3].push_back(1); })},
+        {4005, "value_missing", streams([](PlaneStreams& s, std::uint64_t&) { s.values[4].pop_back(); })},
+        {4005, "no_tilt", streams([](PlaneStreams& s, std::uint64_t&) { s.values[10].clear(); })},
+        {4005, "cumulative_code", streams([](PlaneStreams& s, std::uint64_t&) { s.values[0][0] |= 3u << 3; })},
+        {4005, "no_count", streams([](PlaneStreams& s, std::uint64_t&) { s.values[0][3] &= 0x3FFu; })},
+        {4005, "count_of_0", streams([](PlaneStreams& s, std::uint64_t&) {
+             s.values[0][3] &= 0x3FFu;
+             s.values[1] = {0};
+         })},
+        {4005, "enormous_curve", streams([](PlaneStreams& s, std::uint64_t&) {
+             s.values[0][3] &= 0x3FFu;
+             s.values[1] = {0xFFFFFFFF};
+         })},
+        {4005, "no_such_segment", streams([](PlaneStreams& s, std::uint64_t&) { s.values[8][1] = 3; })},
+        {4005, "two_children", streams([](PlaneStreams& s, std::uint64_t&) { s.values[8][2] = 1; })},
+        {4005, "more_children", streams([](PlaneStreams& s, std::uint64_t&) { s.values[8] = {3, 1, 0, 2, 1, 1}; })},
+        {4005, "too_many_children", streams([](PlaneStreams& s, std::uint64_t&) { s.values[8][0] = 9; })},
+        {4005, "not_zlib", record_field("TREE", 8, 4, 2)},
+        {4005, "bytes_after",
+         [] {
+             Bytes file = as_planes(preorder_environment()).encode();
+             const std::size_t length = record_of(file, "TREE") + 24; // into the padding
+             set(file, length, 8, get(file, length, 8) + 1);
+             seal(file);
+             return file;
+         }},
+    };
+}
+
 std::vector<Case> description_cases() {
     return {
         {5001, "zero", payload_field("DESC", 0, 4, 0)},
@@ -263,7 +310,7 @@ std::vector<Case> description_cases() {
         {5006, "nine", payload_field("DESC", 20, 4, 9)},
         {5007, "zero",
          [] {
-             FileSpec file = local_file();
+             FileSpec file = separate_local().file();
              set(file.chunks[0].raw, 24, 4, 0);
              file.chunks[1].raw.clear();
              return file.encode();
@@ -316,7 +363,7 @@ std::vector<Case> tree_cases() {
         {6003, "five", payload_field("TREE", 32, 2, 1 << 10 | 0x205)},
         {6003, "indexed",
          [] {
-             Bytes file = local_file().encode();
+             Bytes file = separate_local().encode();
              set(file, payload_of(file, "TREE") + 32, 2, 1 << 10 | 0x202);
              seal(file);
              return file;
@@ -474,7 +521,7 @@ std::vector<Case> table_cases() {
 
 std::vector<Case> cases() {
     std::vector<Case> all = container_cases();
-    for (auto make : {description_cases, tree_cases, table_cases})
+    for (auto make : {plane_cases, description_cases, tree_cases, table_cases, local_cases})
         for (const Case& c : make()) all.push_back(c);
     return all;
 }
@@ -507,7 +554,8 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 INSTANTIATE_TEST_SUITE_P(Rules, BrokenRule, testing::ValuesIn(cases()), case_name);
 
 TEST(Rules, theCompleteFilesBreakNone) {
-    for (const FileSpec& spec : {complete_file(), local_file(), table_file(), chain(1).file(), chain(64).file()}) {
+    for (const FileSpec& spec : {complete_file(), spare_file(), table_file(), chain(1).file(), chain(64).file(),
+                                 shared_local().file(), lit_local().file(), separate_local().file()}) {
         const Findings found = findings(spec.encode());
         EXPECT_TRUE(found.rules.empty()) << found.text;
     }
@@ -522,8 +570,11 @@ TEST(Rules, eachHasABrokenFile) {
 
 // With no sampled axis no curve can be right either.
 TEST(Rules, someAxisIsSampled) {
-    FileSpec file = local_file();
-    for (std::size_t axis = 0; axis < 3; ++axis) set(file.chunks[0].raw, 64 + 48 * axis + 16, 4, 1);
+    FileSpec file = spare_file();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        set(file.chunks[0].raw, 64 + 48 * axis + 16, 4, 1); // indexed
+        set(file.chunks[0].raw, 64 + 48 * axis + 24, 4, 1); // of one step
+    }
     EXPECT_EQ(load(file.encode()).rule, 5012);
     EXPECT_EQ(findings(file.encode()).rules, (std::multiset<int>{5012, 6003, 6003, 6003}));
 }

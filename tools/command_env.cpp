@@ -7,6 +7,7 @@
 #include "output.h"
 #include "probe_options.h"
 #include "sizes.h"
+#include "target_options.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -30,17 +31,6 @@ struct Options {
 
     bool given(const char* option) const { return command->get_option(option)->count() > 0; }
 };
-
-/// "64x32": segments of curves over phi and over theta.
-bool parse_knots(const std::string& text, std::uint32_t& phi, std::uint32_t& theta) {
-    unsigned a = 0, b = 0;
-    int end = 0;
-    if (std::sscanf(text.c_str(), "%7ux%7u%n", &a, &b, &end) != 2 || static_cast<std::size_t>(end) != text.size())
-        return false;
-    phi = a;
-    theta = b;
-    return a >= 1 && b >= 1 && a <= ACDF_MAX_SEGMENTS && b <= ACDF_MAX_SEGMENTS;
-}
 
 /// Which fits an option belongs to: with another it is a mistake, not something to ignore.
 struct OnlyFor {
@@ -93,7 +83,7 @@ void set_goal(const Options& options, compress::FitOptions& fit) {
 
 void set_knots(const Options& options, compress::FitOptions& fit) {
     if (options.given("--knots")) {
-        if (!parse_knots(options.knots, fit.column_segments, fit.row_segments))
+        if (!parse_pair(options.knots, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
             throw CLI::ValidationError("--knots", "needs two counts such as 64x64 (phi x theta)");
     } else if (options.given("--eps")) {
         fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
@@ -265,48 +255,6 @@ void add_fit_options(CLI::App& command, Options& options) {
                     "(all alike, as ibid., eq. 4, is printed)")
         ->transform(CLI::CheckedTransformer(conditionals).description(""))
         ->option_text("NAME [energy]")
-        ->group("Fit");
-}
-
-/// A name on the command line for what a renderer is noisy in.
-struct ChannelName {
-    const char* name;
-    AcdfChannels channels;
-    compress::ChannelWeights weights;
-};
-constexpr ChannelName channel_names[] = {
-    {"luminance", ACDF_CHANNELS_WEIGHTED, {}},          {"rgb", ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}},
-    {"max", ACDF_CHANNELS_LARGEST, {1.0, 1.0, 1.0}},    {"red", ACDF_CHANNELS_WEIGHTED, {1.0, 0.0, 0.0}},
-    {"green", ACDF_CHANNELS_WEIGHTED, {0.0, 1.0, 0.0}}, {"blue", ACDF_CHANNELS_WEIGHTED, {0.0, 0.0, 1.0}},
-};
-
-void add_target_options(CLI::App& command, compress::TargetOptions& target) {
-    std::vector<std::string> names;
-    for (const ChannelName& channel : channel_names) names.push_back(channel.name);
-    command
-        .add_option_function<std::string>(
-            "--channel",
-            [&target](const std::string& name) {
-                for (const ChannelName& channel : channel_names)
-                    if (name == channel.name) {
-                        target.channels = channel.channels;
-                        target.weights = channel.weights;
-                    }
-            },
-            "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
-            "coloured lights), max (the largest channel), red, green or blue alone")
-        ->check(CLI::IsMember(names).description(""))
-        ->option_text("NAME [luminance]")
-        ->group("Fit");
-    const std::map<std::string, AcdfFilter> filters{{"nearest", ACDF_FILTER_NEAREST},
-                                                    {"bilinear", ACDF_FILTER_BILINEAR}};
-    command
-        .add_option(
-            "--filter", target.filter,
-            "How your renderer looks the map up: nearest or bilinear. Set it right: a lookup that blends light "
-            "into dark texels finds light where a nearest fit has none, which is bias")
-        ->transform(CLI::CheckedTransformer(filters).description(""))
-        ->option_text("NAME [nearest]")
         ->group("Fit");
 }
 

@@ -27,7 +27,7 @@ constexpr Name parameterizations[] = {
 constexpr Name fits[] = {
     {ACDF_FIT_UNIFORM, "uniform"}, {ACDF_FIT_CDF, "cdf"}, {ACDF_FIT_PDF, "pdf"}, {ACDF_FIT_VARIANCE, "variance"}};
 constexpr Name filters[] = {{ACDF_FILTER_NEAREST, "nearest"}, {ACDF_FILTER_BILINEAR, "bilinear"}};
-constexpr Name codecs[] = {{ACDF_CODEC_NONE, "none"}, {ACDF_CODEC_ZLIB, "zlib"}};
+constexpr Name codecs[] = {{ACDF_CODEC_NONE, "none"}, {ACDF_CODEC_ZLIB, "zlib"}, {ACDF_CODEC_PLANES, "planes"}};
 constexpr Name roles[] = {{ACDF_AXIS_SAMPLED, "sampled"}, {ACDF_AXIS_INDEXED, "indexed"}};
 constexpr Name measures[] = {{ACDF_MEASURE_LINEAR, "linear"}, {ACDF_MEASURE_COSINE, "cosine"}};
 

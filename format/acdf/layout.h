@@ -30,7 +30,11 @@ typedef enum AcdfKind {
     ACDF_KIND_TABLE = 4
 } AcdfKind;
 
-typedef enum AcdfCodec { ACDF_CODEC_NONE = 0, ACDF_CODEC_ZLIB = 1 } AcdfCodec;
+typedef enum AcdfCodec {
+    ACDF_CODEC_NONE = 0,
+    ACDF_CODEC_ZLIB = 1,
+    ACDF_CODEC_PLANES = 2 /* zlib, and for TREE alone: its planes (SPEC.md §4) */
+} AcdfCodec;
 
 /* How sampled coordinates become directions (SPEC.md §6). */
 typedef enum AcdfParameterization {
@@ -63,6 +67,10 @@ typedef enum AcdfAxisMeasure {
 #define ACDF_CHUNK_BINS ACDF_FOURCC('B', 'I', 'N', 'S')
 #define ACDF_CHUNK_TREE ACDF_FOURCC('T', 'R', 'E', 'E')
 #define ACDF_CHUNK_METADATA ACDF_FOURCC('M', 'E', 'T', 'A')
+#define ACDF_CHUNK_TILES ACDF_FOURCC('T', 'I', 'L', 'E')
+#define ACDF_CHUNK_ROWS ACDF_FOURCC('R', 'O', 'W', 'S')
+#define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
+#define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
 
 #define ACDF_CHUNK_FLAG_CRITICAL 1u
 
@@ -132,6 +140,75 @@ typedef struct AcdfBin {
 #define ACDF_CURVE_SEGMENTS_SHIFT 10 /* 1 to 63 segments; 0: the count follows */
 #define ACDF_CURVE_SHORT_SEGMENTS 63u
 
+/* The streams of codec 2 (SPEC.md §4). Where there are several sizes, the stream of the smallest is named. */
+enum {
+    ACDF_PLANE_HEADERS = 0,
+    ACDF_PLANE_SEGMENTS = 1,
+    ACDF_PLANE_CUMULATIVE = 2, /* and 3, 4: by their code */
+    ACDF_PLANE_POSITIONS = 5,  /* and 6, 7 */
+    ACDF_PLANE_CHILDREN = 8,   /* and 9: of curves of more than 255 segments */
+    ACDF_PLANE_TILTS = 10,
+    ACDF_PLANE_STREAMS = 11
+};
+
+/* Bytes of a value of a stream. */
+#define ACDF_PLANE_VALUE_SIZES                                                                                     \
+    { 2, 4, 1, 2, 4, 1, 2, 4, 1, 4, 2 }
+
+/* What codec 2 inflates to: this, then the streams. */
+typedef struct AcdfPlanes {
+    uint32_t count[ACDF_PLANE_STREAMS]; /* of values in each stream */
+} AcdfPlanes;
+
+/* Chunk TILE: what bins share (SPEC.md §5.6): this, then tiles - 1 splits, then `root_count` (0 or `tiles`) uint32
+ * offsets in TREE, in units, of the tree within each tile; ACDF_NO_ROOT where a tile is a cell. */
+typedef struct AcdfTiles {
+    uint32_t tile_count;    /* 1 to ACDF_MAX_TILES */
+    uint32_t root_count;    /* 0: every tile is a cell */
+    uint32_t row_count;     /* rows of chunk ROWS */
+    uint32_t reserved;      /* 0 */
+    uint16_t codebook[256]; /* strictly increasing from 0 to 65535 */
+} AcdfTiles;
+
+/* A split of a box in two. Splits stand in preorder: the lower child, if a split, follows at once. */
+typedef struct AcdfSplit {
+    uint32_t place;    /* bits 0-2: axis; bits 3-31: position, strictly inside the box */
+    uint16_t child[2]; /* lower and upper part: a later split, or ACDF_TILE_FLAG | number of a tile */
+} AcdfSplit;
+
+/* Chunk ROWS: row_count rows of tile_count - 1 bytes: codebook[code] / 65535 is the probability of a split's lower
+ * part. */
+/* Chunk LOCL, of local environments: this, then its lights. */
+typedef struct AcdfLocalHeader {
+    float cosine_share; /* in [0, 1): of samples drawn around the normal with density cos / pi */
+    uint32_t light_count;
+} AcdfLocalHeader;
+
+/* A tile so small and bright that its weight is worked out for each normal (SPEC.md §6.7). */
+typedef struct AcdfLight {
+    float direction[3]; /* unit, to its middle */
+    float radius;       /* no point of it is farther from `direction`, > 0 */
+    float share;        /* of `total`, > 0 */
+    uint32_t tile;      /* its number; ascending */
+    uint32_t low[2];    /* its box: positions on the axes 0 and 1 */
+    uint32_t high[2];
+} AcdfLight;
+
+#define ACDF_NO_ROOT 0xFFFFFFFFu /* of a tile: it is a cell; of a bin: it is not stored */
+#define ACDF_TILE_FLAG 0x8000u
+#define ACDF_MAX_TILES 32768u
+#define ACDF_MAX_SPLITS_DEEP 48u /* on a path, so that no product of weights underflows */
+#define ACDF_MAX_LIGHTS 64u
+
+/* Chunk VIEW of a BRDF (SPEC.md §6.8): this, then `theta_count` f32, sqrt(1 - cos(theta_o)) of the stored views. */
+typedef struct AcdfViews {
+    uint32_t theta_count;
+    uint32_t phi_count;  /* 1: isotropic */
+    uint32_t flags;      /* ACDF_VIEWS_MIRRORED or 0 */
+    float diffuse_share; /* of a cosine lobe in the density */
+} AcdfViews;
+#define ACDF_VIEWS_MIRRORED 1u /* phi_h from 0 to pi stands for both sides */
+
 #ifdef __cplusplus
 #define ACDF_STATIC_ASSERT(condition) static_assert(condition, #condition)
 #else
@@ -149,5 +226,11 @@ ACDF_STATIC_ASSERT(offsetof(AcdfDescription, total) == 56);
 ACDF_STATIC_ASSERT(sizeof(AcdfAxis) == 48);
 ACDF_STATIC_ASSERT(offsetof(AcdfAxis, low) == 32);
 ACDF_STATIC_ASSERT(sizeof(AcdfBin) == 8);
+ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
+ACDF_STATIC_ASSERT(sizeof(AcdfTiles) == 528);
+ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);
+ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
+ACDF_STATIC_ASSERT(sizeof(AcdfLight) == 40);
+ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
 
 #endif

@@ -70,7 +70,7 @@ Packed pack(const Curve& curve, const Lows& lows, double reach, double price, do
     packed.curve = &curve;
     packed.probability = quantize(curve.probability, reach, price, most_ratio);
     const std::uint32_t last = curve.knots.empty() ? 0 : curve.knots.back(), low = lows[curve.axis];
-    if (low == kMany ? curve.knots.empty() : last - low <= 0xFF) {
+    if (curve.knots.empty() || (low != kMany && last - low <= 0xFF)) {
         packed.position_code = 0;
         packed.origin = low;
     } else if (last > 0xFFFF) {
@@ -182,6 +182,8 @@ EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio)
     EncodedTree tree;
     tree.bytes.reserve(offset.back());
     for (std::size_t i = 0; i < packed.size(); ++i) write_curve(packed[i], offset[i], offset, Block(tree.bytes));
+    for (std::size_t i = 0; i < packed.size(); ++i)
+        tree.offsets.push_back(static_cast<std::uint32_t>(offset[i] / 2));
     for (std::uint32_t root : cascade.roots) tree.roots.push_back(static_cast<std::uint32_t>(offset[root] / 2));
     return tree;
 }

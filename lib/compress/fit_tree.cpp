@@ -59,6 +59,7 @@ public:
             heaviest_ *= 0.95 * std::min(1.0, options_.max_weight / best.max_weight);
             best = search();
         }
+        progress(1.0);
         return std::move(best.fitted);
     }
 

@@ -195,13 +195,25 @@ double integral(const Grid& grid) {
 
 Partition::Partition(Grid grid, double total, std::int8_t first)
     : grid_(std::move(grid)), total_(total), first_(first) {
-    Part everything;
-    everything.box.end.fill(1);
-    for (std::size_t axis = 0; axis < grid_.dimensions(); ++axis) everything.box.end[axis] = grid_.shape[axis];
+    Box everything;
+    everything.end.fill(1);
+    for (std::size_t axis = 0; axis < grid_.dimensions(); ++axis) everything.end[axis] = grid_.shape[axis];
+    add_first_part(everything, 1);
+}
+
+Partition::Partition(Grid grid, double total, const Box& box, std::uint8_t depth)
+    : grid_(std::move(grid)), total_(total), first_(Part::whole) {
+    add_first_part(box, depth);
+}
+
+void Partition::add_first_part(const Box& box, std::uint8_t depth) {
+    Part first;
+    first.box = box;
+    first.depth = depth;
     Projections projections;
-    project(grid_, total, everything.box, projections);
-    for (const Moments& slice : projections[0]) everything.moments.add(slice);
-    parts_.push_back(everything);
+    project(grid_, total_, box, projections);
+    for (const Moments& slice : projections[0]) first.moments.add(slice);
+    parts_.push_back(first);
 }
 
 void Partition::refine(double finest, double heaviest) {

@@ -58,6 +58,9 @@ public:
     /// `total` is the integral over the grid, > 0. `first` is the axis along which everything is divided first,
     /// Part::whole to choose it as for any other part.
     Partition(Grid grid, double total, std::int8_t first = Part::whole);
+    /// Divides `box` of the grid alone, `depth` curves below a root; `total` is that of the whole grid all the
+    /// same.
+    Partition(Grid grid, double total, const Box& box, std::uint8_t depth);
 
     /// Divides on until no part is left whose cost could fall by more than `finest` or whose weight() is above
     /// `heaviest`. May be called again with smaller values; a part is divided in the same way whenever that
@@ -69,6 +72,8 @@ public:
     double total() const { return total_; }
 
 private:
+    void add_first_part(const Box& box, std::uint8_t depth);
+
     Grid grid_;
     double total_;
     std::int8_t first_;

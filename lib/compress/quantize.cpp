@@ -10,6 +10,7 @@ namespace acdf::compress {
 namespace {
 
 constexpr std::uint64_t kMaximum[] = {0xFF, 0xFFFF, 0xFFFFFFFF};
+constexpr double kFaint = 1e-200;
 constexpr std::uint64_t kSmallest[] = {1, 1, 256}; // 256 of 2^32: 2^-24
 
 QuantizedCurve accumulate(const std::vector<std::uint64_t>& shares, std::uint32_t code) {
@@ -36,6 +37,12 @@ double worst_ratio(const std::vector<double>& probability, const std::vector<std
 std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std::uint64_t maximum,
                                      std::uint64_t smallest) {
     const std::size_t n = probability.size();
+    const double largest = n == 0 ? 0.0 : *std::max_element(probability.begin(), probability.end());
+    if (largest > 0.0 && largest < kFaint) { // scaled to `maximum` they would overflow
+        std::vector<double> relative = probability;
+        for (double& p : relative) p /= largest;
+        return apportion(relative, maximum, smallest);
+    }
     std::vector<std::uint64_t> shares(n, 0);
     // Raising small shares to the floor leaves less for the others, which may
     // then fall below it in turn.

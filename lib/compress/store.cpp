@@ -1,9 +1,12 @@
 #include "compress/store.h"
 
+#include "compress/planes.h"
+
 #include <acdf/sample.h>
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -85,6 +88,16 @@ Bytes deflated(const Bytes& raw) {
     return out;
 }
 
+/// Puts deflated bytes in place of the payload; a chunk that would grow is stored as it is.
+void compress_payload(Payload& payload, AcdfChunk& chunk) {
+    const Bytes planes = payload.type == ACDF_CHUNK_TREE ? tree_to_planes(payload.raw) : Bytes();
+    Bytes small = deflated(planes.empty() ? payload.raw : planes);
+    const bool too_small = chunk.raw_length / 1032 > small.size(); // padding, which planes leave out; rule 3011
+    if (small.size() >= payload.raw.size() || too_small) return;
+    chunk.codec = planes.empty() ? ACDF_CODEC_ZLIB : ACDF_CODEC_PLANES;
+    payload.raw = std::move(small);
+}
+
 std::size_t rounded(std::size_t offset) { return (offset + ACDF_ALIGNMENT - 1) / ACDF_ALIGNMENT * ACDF_ALIGNMENT; }
 
 Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
@@ -96,11 +109,7 @@ Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
         chunk.flags = payload.flags;
         chunk.raw_length = payload.raw.size();
         if (codec == ACDF_CODEC_ZLIB && payload.type != ACDF_CHUNK_METADATA) {
-            Bytes small = deflated(payload.raw);
-            if (small.size() < payload.raw.size()) { // a chunk that would grow is stored as it is
-                chunk.codec = ACDF_CODEC_ZLIB;
-                payload.raw = std::move(small);
-            }
+            compress_payload(payload, chunk);
         }
         chunk.stored_length = payload.raw.size();
         chunk.offset = rounded(end);
@@ -142,11 +151,33 @@ Description environment_description(std::uint32_t columns, std::uint32_t rows) {
     return d;
 }
 
+std::vector<Chunk> shared_chunks(const StoredRows& rows) {
+    AcdfTiles header = {};
+    header.tile_count = static_cast<std::uint32_t>(rows.splits.size() + 1);
+    header.root_count = static_cast<std::uint32_t>(rows.tile_roots.size());
+    header.row_count = rows.row_count;
+    std::copy(rows.codebook.begin(), rows.codebook.end(), header.codebook);
+    Chunk tiles{ACDF_CHUNK_TILES, {}};
+    append(tiles.bytes, header);
+    for (const AcdfSplit& split : rows.splits) append(tiles.bytes, split);
+    for (std::uint32_t root : rows.tile_roots) append(tiles.bytes, root);
+    return {std::move(tiles), {ACDF_CHUNK_ROWS, rows.codes}};
+}
+
+Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights) {
+    Chunk chunk{ACDF_CHUNK_LOCAL, {}};
+    append(chunk.bytes, AcdfLocalHeader{cosine_share, static_cast<std::uint32_t>(lights.size())});
+    for (const AcdfLight& light : lights) append(chunk.bytes, light);
+    return chunk;
+}
+
 std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description, AcdfCodec codec) {
     std::vector<Payload> payloads;
     payloads.push_back({ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_FLAG_CRITICAL, description_payload(description)});
     payloads.push_back({ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree, description)});
     payloads.push_back({ACDF_CHUNK_TREE, ACDF_CHUNK_FLAG_CRITICAL, tree.bytes});
+    for (const Chunk& chunk : description.chunks)
+        payloads.push_back({chunk.type, ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
     if (!description.metadata.empty())
         payloads.push_back({ACDF_CHUNK_METADATA, 0, metadata_payload(description.metadata)});
     return assemble(description.kind, std::move(payloads), codec);

@@ -22,6 +22,12 @@ struct AxisDescription {
     double low = 0.0, high = 1.0;
 };
 
+/// A critical chunk beside those that every file has.
+struct Chunk {
+    std::uint32_t type = 0;
+    std::vector<std::uint8_t> bytes;
+};
+
 /// What a file says of itself beside its curves.
 struct Description {
     AcdfKind kind = ACDF_KIND_ENVIRONMENT;
@@ -33,16 +39,18 @@ struct Description {
     double total = 1.0;
     std::vector<AxisDescription> axes;
     std::vector<float> shares{1.0f}; ///< one a root: its integral over `total`
+    std::vector<Chunk> chunks;       ///< what the kind needs beside the curves
     Metadata metadata;
 };
 
 /// An environment of columns x rows texels in the lat-long parameterization.
 Description environment_description(std::uint32_t columns, std::uint32_t rows);
 
-/// The bytes of chunk TREE and the word offset of each root in it.
+/// The bytes of chunk TREE, and offsets in it in units of two bytes: of each root, and of each curve.
 struct EncodedTree {
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint32_t> roots;
+    std::vector<std::uint32_t> offsets; ///< of every curve
 };
 
 /// Quantizes and packs the curves in the order given. Probabilities get the width at which bytes, at `price`
@@ -50,6 +58,21 @@ struct EncodedTree {
 /// std::invalid_argument where the cascade breaks a limit of the format.
 EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8,
                         double most_ratio = std::numeric_limits<double>::infinity());
+
+/// What the bins of local environments and BRDFs share, and a row for each.
+struct StoredRows {
+    std::vector<AcdfSplit> splits;         ///< in preorder
+    std::vector<std::uint32_t> tile_roots; ///< one a tile, or empty: all tiles are cells
+    std::vector<std::uint16_t> codebook;   ///< 256
+    std::uint32_t row_count = 0;
+    std::vector<std::uint8_t> codes; ///< row_count x splits
+};
+
+/// Chunks TILE and ROWS.
+std::vector<Chunk> shared_chunks(const StoredRows& rows);
+
+/// Chunk LOCL.
+Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights);
 
 /// The whole file. The same arguments give the same bytes. Metadata is never compressed: it is short, stays
 /// readable, and keeps its size whatever numbers it tells.

@@ -36,6 +36,12 @@ void for_each_cell(const File& file, std::uint32_t root, const std::function<voi
     descend(file.tree(), root, whole<2>(file), visit);
 }
 
+void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* range,
+                      const std::function<void(const Cell&)>& visit) {
+    Cell cell = {{range[0], range[1]}, 1.0};
+    descend(file.tree(), root, cell, visit);
+}
+
 void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit) {
     descend(file.tree(), root, whole<ACDF_MAX_AXES>(file), visit);
 }

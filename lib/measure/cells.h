@@ -20,6 +20,10 @@ using TableCell = CellOf<ACDF_MAX_AXES>;
 /// [0, columns) x [0, rows).
 void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit);
 
+/// The same for a tree within a box: range[2], without tilts.
+void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* range,
+                      const std::function<void(const Cell&)>& visit);
+
 /// The same for a tree of any number of axes; on indexed axes, and on those that the file lacks, the range is
 /// of no meaning.
 void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit);

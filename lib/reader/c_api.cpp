@@ -62,6 +62,18 @@ int acdf_environment(const AcdfFile* file, AcdfEnvironment* out) {
     return 1;
 }
 
+int acdf_local(const AcdfFile* file, AcdfLocal* out) {
+    if (file->file.kind() != ACDF_KIND_LOCAL) return 0;
+    *out = file->file.local().data();
+    return 1;
+}
+
+int acdf_brdf(const AcdfFile* file, AcdfBrdf* out) {
+    if (file->file.kind() != ACDF_KIND_BRDF) return 0;
+    *out = file->file.brdf().data();
+    return 1;
+}
+
 int acdf_table(const AcdfFile* file, AcdfTable* out) {
     if (file->file.kind() != ACDF_KIND_TABLE) return 0;
     *out = file->file.table().data();

@@ -1,5 +1,6 @@
 // The file as a container: header, chunk table, payloads.
 #include "checker.h"
+#include "planes.h"
 
 #include <zlib.h>
 
@@ -141,8 +142,18 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 
 // ---- chunk table ----------------------------------------------------------------------------------------
 
-constexpr u32 known_types[known_chunks] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE,
-                                           ACDF_CHUNK_METADATA};
+constexpr u32 known_types[known_chunks] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS,  ACDF_CHUNK_TREE,
+                                           ACDF_CHUNK_METADATA,    ACDF_CHUNK_TILES, ACDF_CHUNK_ROWS,
+                                           ACDF_CHUNK_LOCAL,       ACDF_CHUNK_VIEWS};
+constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
+
+// Whether a known chunk has a place in files of a kind.
+bool belongs(int known, u32 kind) {
+    if (known == chunk_local) return kind == ACDF_KIND_LOCAL;
+    if (known == chunk_views) return kind == ACDF_KIND_BRDF;
+    if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
+    return true;
+}
 
 int known_chunk(u32 type) {
     for (int i = 0; i < known_chunks; ++i)
@@ -171,7 +182,7 @@ struct Table {
     u64 end() const { return offset_of(count); }
 };
 
-void check_type_and_flags(const Table& table, u32 i, Report& report) {
+void check_type_and_flags(const Table& table, u32 i, u32 kind, Report& report) {
     const AcdfChunk& chunk = table.chunks[i];
     const int known = known_chunk(chunk.type);
     const u64 at = table.offset_of(i);
@@ -180,12 +191,13 @@ void check_type_and_flags(const Table& table, u32 i, Report& report) {
     if (known < 0 && critical)
         report.add(3002, at, "the critical chunk '%s' (%08x) is unknown: a newer reader is needed", name.text,
                    chunk.type);
+    if (known >= 0 && !belongs(known, kind)) report.add(3013, at, "'%s' with kind %u", name.text, kind);
     for (u32 j = 0; j < i; ++j)
         if (table.chunks[j].type == chunk.type) {
             report.add(3003, at, "chunks %u and %u are both '%s'", j, i, name.text);
             break;
         }
-    if (chunk.codec > ACDF_CODEC_ZLIB)
+    if (chunk.codec > (chunk.type == ACDF_CHUNK_TREE ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB))
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
         report.add(3009, at + offsetof(AcdfChunk, flags), "flags %08x of '%s'", chunk.flags, name.text);
@@ -227,7 +239,7 @@ void check_lengths(const Table& table, u32 i, Report& report) {
         report.add(3010, at, "'%s': %llu stored, %llu raw", name.text, static_cast<ull>(chunk.stored_length),
                    static_cast<ull>(chunk.raw_length));
     // Division, so that nothing overflows. The longest match of deflate makes 258 bytes of 2 bits.
-    if (chunk.codec == ACDF_CODEC_ZLIB && chunk.raw_length / 1032 > chunk.stored_length)
+    if (chunk.codec != ACDF_CODEC_NONE && chunk.raw_length / 1032 > chunk.stored_length)
         report.add(3011, at, "'%s': %llu bytes cannot come from %llu", name.text,
                    static_cast<ull>(chunk.raw_length), static_cast<ull>(chunk.stored_length));
 }
@@ -236,12 +248,12 @@ void check_table(Table& table, const AcdfHeader& header, u64 size, Report& repor
     u64 end = table.end();
     table.legal = true;
     for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
-        check_type_and_flags(table, i, report);
+        check_type_and_flags(table, i, header.kind, report);
         end = check_place(table, i, round_up(end, ACDF_ALIGNMENT), size, report);
         check_lengths(table, i, report);
     }
-    for (const u32 type : known_types) {
-        bool found = type == ACDF_CHUNK_METADATA;
+    for (const u32 type : required_types) {
+        bool found = false;
         for (u32 i = 0; i < table.count; ++i) found = found || table.chunks[i].type == type;
         if (!found) report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(type).text);
     }
@@ -278,8 +290,8 @@ void check_crcs(const Table& table, const u8* bytes, Report& report) {
     }
 }
 
-// Inflates a whole zlib stream to exactly `size` bytes; null, or what is wrong.
-const char* inflate_exactly(const u8* in, u64 in_size, u8* out, u64 out_size) {
+// Inflates a whole zlib stream to at most `out_size` bytes, and sets that to how many; null, or what is wrong.
+const char* inflate_within(const u8* in, u64 in_size, u8* out, u64& out_size) {
     constexpr u64 step = u64{1} << 30; // zlib counts in 32 bits
     z_stream stream = {};
     if (inflateInit(&stream) != Z_OK) return "zlib cannot start";
@@ -299,13 +311,36 @@ const char* inflate_exactly(const u8* in, u64 in_size, u8* out, u64 out_size) {
     }
     inflateEnd(&stream);
     if (result != Z_STREAM_END) return out_left == 0 ? "it goes on after `raw_length`" : "the stream is damaged";
-    if (out_left != 0) return "it ends before `raw_length`";
+    out_size -= out_left;
     return in_left != 0 ? "bytes follow the stream" : nullptr;
+}
+
+// The same to exactly `size` bytes.
+const char* inflate_exactly(const u8* in, u64 in_size, u8* out, u64 size) {
+    u64 inflated = size;
+    const char* wrong = inflate_within(in, in_size, out, inflated);
+    if (inflated != size) return "it ends before `raw_length`";
+    return wrong;
+}
+
+// Inflates the planes of a tree of `size` bytes, and puts it together.
+void inflate_tree(const AcdfChunk& chunk, const u8* in, u8* tree, Report& report, Payload& payload) {
+    u64 size = 2 * chunk.raw_length + sizeof(AcdfPlanes); // more than those of any tree
+    auto* planes = static_cast<u8*>(std::malloc(size));
+    if (!planes) return report.add(1003, 0, "%llu bytes for planes", static_cast<ull>(size));
+    const char* wrong = inflate_within(in, chunk.stored_length, planes, size);
+    if (!wrong && !planes_to_tree(planes, size, tree, chunk.raw_length))
+        wrong = "they are not those of such a tree";
+    std::free(planes);
+    if (wrong) return report.add(4005, chunk.offset, "planes: %s", wrong);
+    payload = {tree, chunk.raw_length, chunk.offset, true};
 }
 
 bool is_compressed(const Table& table, u32 i) {
     const AcdfChunk& chunk = table.chunks[i];
-    return table.inside[i] && chunk.codec == ACDF_CODEC_ZLIB && known_chunk(chunk.type) >= 0 &&
+    return table.inside[i] && known_chunk(chunk.type) >= 0 &&
+           (chunk.codec == ACDF_CODEC_ZLIB ||
+            (chunk.codec == ACDF_CODEC_PLANES && chunk.type == ACDF_CHUNK_TREE)) &&
            chunk.raw_length / 1032 <= chunk.stored_length;
 }
 
@@ -342,12 +377,18 @@ void read_payloads(const Table& table, const u8* bytes, const Limits& limits, Re
         if (!is_compressed(table, i) || !have_memory) continue;
         static u8 nothing; // zlib wants an address even for no bytes
         u8* const out = chunk.raw_length ? block : &nothing;
+        u8* const after = block + round_up(chunk.raw_length, ACDF_ALIGNMENT);
+        if (chunk.codec == ACDF_CODEC_PLANES) {
+            inflate_tree(chunk, bytes + chunk.offset, out, report, payloads.of[known]);
+            block = after;
+            continue;
+        }
         payload = {out, chunk.raw_length, chunk.offset, true};
         if (const char* wrong = inflate_exactly(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length)) {
             report.add(4003, chunk.offset, "'%s': %s", ChunkName(chunk.type).text, wrong);
             continue;
         }
-        block += round_up(chunk.raw_length, ACDF_ALIGNMENT);
+        block = after;
         payloads.of[known] = payload;
     }
 }
@@ -372,7 +413,16 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     if (payloads.of[chunk_metadata].data && !report.stopped())
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
-    check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], report, parts);
+    TileBoxes boxes;
+    if (belongs(chunk_tiles, header.kind)) // else rule 3013
+        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], report, parts, boxes);
+    const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
+    if (tiles_ok && !report.stopped())
+        check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
+    if (header.kind == ACDF_KIND_LOCAL && !report.stopped())
+        check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
+    if (header.kind == ACDF_KIND_BRDF && !report.stopped())
+        check_brdf_kind(description, payloads.of[chunk_views], report, parts);
     if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped()) check_environment(description, report, parts);
     if (header.kind == ACDF_KIND_TABLE && !report.stopped()) check_table_kind(description, report, parts);
     return report.verdict();

@@ -48,7 +48,15 @@ struct Parts {
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
     std::uint32_t tree_units = 0;
-    const std::uint8_t* metadata = nullptr; ///< the payload of META after its count; null where absent
+    const AcdfViews* views = nullptr; ///< of a BRDF
+    const float* nodes = nullptr;     ///< views->theta_count
+    const AcdfTiles* tiles = nullptr;          ///< null where bins share nothing
+    const AcdfSplit* splits = nullptr;         ///< tiles->tile_count - 1
+    const std::uint32_t* tile_roots = nullptr; ///< tiles->tile_count, or null: all tiles are cells
+    const std::uint8_t* rows = nullptr;        ///< tiles->row_count rows of tiles->tile_count - 1 codes
+    const AcdfLocalHeader* local = nullptr;    ///< of local environments
+    const AcdfLight* lights = nullptr;         ///< local->light_count
+    const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
     void* inflated = nullptr; ///< block of the inflated chunks, from std::aligned_alloc; the caller frees it
 };

@@ -199,14 +199,11 @@ void check_metadata(const Payload& payload, Report& report, Parts& parts) noexce
     parts.metadata_count = count;
 }
 
-void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept {
+void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept {
     static constexpr u8 names[2][16] = {{'p', 'h', 'i'}, {'t', 'h', 'e', 't', 'a'}};
     static constexpr double low[2] = {pi, 0.0}, high[2] = {-pi, pi};
     static constexpr u32 measures[2] = {ACDF_MEASURE_LINEAR, ACDF_MEASURE_COSINE};
-    const AcdfDescription& d = *parts.description;
-    if (d.axis_count != 2)
-        report.add(7001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
-    for (u32 i = 0; i < 2 && d.axis_count == 2; ++i) {
+    for (u32 i = 0; i < 2; ++i) {
         const AcdfAxis& axis = parts.axes[i];
         const char* fault = nullptr;
         if (std::memcmp(axis.name, names[i], sizeof axis.name) != 0) fault = "name";
@@ -214,8 +211,17 @@ void check_environment(const Payload& payload, Report& report, const Parts& part
         else if (axis.measure != measures[i]) fault = "measure";
         else if (axis.low != low[i] || axis.high != high[i]) fault = "range";
         else if (axis.resolution > max_environment_resolution) fault = "resolution";
-        if (fault) report.add(7001, payload.at(sizeof d + i * sizeof axis), "axis %u: the %s differs", i, fault);
+        if (fault)
+            report.add(7001, payload.at(sizeof(AcdfDescription) + i * sizeof axis), "axis %u: the %s differs", i,
+                       fault);
     }
+}
+
+void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept {
+    const AcdfDescription& d = *parts.description;
+    if (d.axis_count != 2)
+        report.add(7001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
+    else check_environment_axes(payload, report, parts);
     if (d.bin_count != 1)
         report.add(7002, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins", d.bin_count);
 }

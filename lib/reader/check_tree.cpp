@@ -37,7 +37,10 @@ struct Starts {
 
 struct Tree {
     const Payload& payload;
+    const Payload& bins;
     const Parts& parts;
+    u32 kind;
+    const TileBoxes& tiles; // where bins share them
     u32 units;
     Starts starts;
     Mark* marks;
@@ -51,6 +54,23 @@ struct Tree {
     bool starts_at(u64 unit) const { return unit < units && starts.at(static_cast<u32>(unit)); }
     Mark& mark(u32 unit) const { return marks[starts.index(unit)]; }
 };
+
+/// Calls `visit(unit, box, offset, index)` wherever a tree begins: for each bin or, where bins share tiles, for
+/// each tile, with its box (null: everything), the place in the file that says so and the number of the bin or
+/// tile. In local environments and BRDFs unit 0 is one too.
+template <class Visit>
+void for_each_root(const Tree& tree, Visit visit) {
+    const bool indexed = tree.kind == ACDF_KIND_LOCAL || tree.kind == ACDF_KIND_BRDF;
+    if (indexed) visit(u32{0}, static_cast<const TileBox*>(nullptr), tree.payload.at(0), u32{0});
+    const u32 count = tree.parts.tiles ? tree.parts.tiles->root_count : tree.parts.description->bin_count;
+    for (u32 i = 0; i < count; ++i) {
+        const TileBox* box = tree.tiles.of ? &tree.tiles.of[i] : nullptr;
+        const u32 root = box ? tree.parts.tile_roots[i] : tree.parts.bins[i].root;
+        if (indexed && root == ACDF_NO_ROOT) continue;
+        visit(root, box, box ? tree.tiles.roots.at(u64{i} * sizeof(u32)) : tree.bins.at(u64{i} * sizeof(AcdfBin)),
+              i);
+    }
+}
 
 u32 unit_at(const Payload& payload, u32 unit) { return reinterpret_cast<const u16*>(payload.data)[unit]; }
 
@@ -222,10 +242,9 @@ void check_reach(const Tree& tree, u32 unit, Report& report) {
 }
 
 void check_curves(const Tree& tree, Report& report) {
-    for (u32 i = 0; i < tree.parts.description->bin_count; ++i) {
-        const u32 root = tree.parts.bins[i].root;
+    for_each_root(tree, [&](u32 root, const TileBox*, u64, u32) {
         if (tree.starts_at(root)) tree.mark(root).b = 1; // depth 1, nothing tilted
-    }
+    });
     for_each_curve(tree, report, [&](u32 unit, const AcdfCurve& curve) {
         check_reach(tree, unit, report);
         check_values(tree, unit, curve, report);
@@ -286,38 +305,45 @@ void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
     const u32 resolution = tree.parts.axes[axis].resolution;
     if (resolution == 0 || resolution >= disagree) return; // rule 5014
     for (u32 i = 0; i < curves; ++i) tree.marks[i] = {0, unreached};
-    for (u32 i = 0; i < tree.parts.description->bin_count; ++i)
-        narrow(tree.mark(tree.parts.bins[i].root), 0, resolution);
+    for_each_root(tree, [&](u32 root, const TileBox* box, u64, u32) {
+        narrow(tree.mark(root), box && axis < 2 ? box->low[axis] : 0,
+               box && axis < 2 ? box->high[axis] : resolution);
+    });
     for_each_curve(tree, report,
                    [&](u32 unit, const AcdfCurve& curve) { check_knots(tree, unit, curve, axis, report); });
 }
 
 // ---- bins -----------------------------------------------------------------------------------------------
 
-bool check_bins(const Payload& payload, Report& report, Parts& parts) {
+bool check_bins(const Payload& payload, u32 kind, Report& report, Parts& parts) {
     const u32 count = parts.description->bin_count;
     if (payload.size != u64{count} * sizeof(AcdfBin)) {
         report.add(4004, payload.at(0), "BINS has %llu bytes for %u bins", static_cast<ull>(payload.size), count);
         return false;
     }
     parts.bins = reinterpret_cast<const AcdfBin*>(payload.data);
-    for (u32 i = 0; i < count && !report.stopped(); ++i)
-        if (const float share = parts.bins[i].share; !std::isfinite(share) || share < 0.0f)
-            report.add(6017, payload.at(i * sizeof(AcdfBin) + offsetof(AcdfBin, share)), "bin %u: it is %g", i,
-                       static_cast<double>(share));
+    for (u32 i = 0; i < count && !report.stopped(); ++i) {
+        const AcdfBin& bin = parts.bins[i];
+        const u64 at = payload.at(i * sizeof(AcdfBin));
+        if (!std::isfinite(bin.share) || bin.share < 0.0f)
+            report.add(6017, at + offsetof(AcdfBin, share), "bin %u: it is %g", i, static_cast<double>(bin.share));
+        const bool stored = bin.root != ACDF_NO_ROOT || (kind != ACDF_KIND_LOCAL && kind != ACDF_KIND_BRDF);
+        if (parts.tiles && stored && bin.root >= parts.tiles->row_count)
+            report.add(6026, at, "bin %u: row %u of %u", i, bin.root, parts.tiles->row_count);
+    }
     return true;
 }
 
-void check_roots(const Tree& tree, const Payload& bins, Report& report) {
-    for (u32 i = 0; i < tree.parts.description->bin_count && !report.stopped(); ++i) {
-        const u32 root = tree.parts.bins[i].root;
-        if (!tree.starts_at(root)) report.add(6010, bins.at(i * sizeof(AcdfBin)), "bin %u: unit %u", i, root);
-    }
+void check_roots(const Tree& tree, Report& report) {
+    for_each_root(tree, [&](u32 root, const TileBox* box, u64 at, u32 index) {
+        if (tree.starts_at(root) || report.stopped()) return;
+        report.add(box ? 6024 : 6010, at, "%s %u: unit %u", box ? "tile" : "bin", index, root);
+    });
 }
 
-void check_marked_tree(const Tree& tree, u32 curves, const Payload& bins, Report& report) {
+void check_marked_tree(const Tree& tree, u32 curves, Report& report) {
     const u64 errors = report.verdict().errors;
-    check_roots(tree, bins, report);
+    check_roots(tree, report);
     if (!report.stopped()) check_curves(tree, report);
     if (report.stopped() || report.verdict().errors != errors) return;
     for (u32 axis = 0; axis < tree.parts.description->axis_count && !report.stopped(); ++axis)
@@ -328,21 +354,22 @@ void no_memory(const Payload& payload, u64 bytes, Report& report) {
     report.add(1003, payload.at(0), "%llu bytes to check the tree", static_cast<ull>(bytes));
 }
 
-void check_found_curves(const Payload& bins, const Payload& payload, const Starts& starts, Report& report,
-                        const Parts& parts) {
+void check_found_curves(Tree& tree, Report& report) {
     u32 curves = 0;
-    if (!find_curves(payload, parts.tree_units, starts.bits, curves, report)) return;
-    count_before(parts.tree_units, starts);
-    Mark* marks = static_cast<Mark*>(std::calloc(curves, sizeof(Mark)));
-    if (!marks) return no_memory(payload, u64{curves} * sizeof(Mark), report);
-    check_marked_tree(Tree{payload, parts, parts.tree_units, starts, marks}, curves, bins, report);
-    std::free(marks);
+    const Payload& payload = tree.payload;
+    if (!find_curves(payload, tree.units, tree.starts.bits, curves, report)) return;
+    count_before(tree.units, tree.starts);
+    tree.marks = static_cast<Mark*>(std::calloc(curves, sizeof(Mark)));
+    if (!tree.marks) return no_memory(payload, u64{curves} * sizeof(Mark), report);
+    check_marked_tree(tree, curves, report);
+    std::free(tree.marks);
 }
 
 } // namespace
 
-void check_tree(const Payload& bins, const Payload& payload, Report& report, Parts& parts) noexcept {
-    const bool bins_ok = bins.data && check_bins(bins, report, parts);
+void check_tree(const Payload& bins, const Payload& payload, u32 kind, const TileBoxes& boxes, Report& report,
+                Parts& parts) noexcept {
+    const bool bins_ok = bins.data && check_bins(bins, kind, report, parts);
     if (!payload.data || report.stopped()) return;
     const u64 units = payload.size / 2;
     if (payload.size == 0 || payload.size % 2 != 0 || units > 0xFFFFFFFE) {
@@ -355,7 +382,8 @@ void check_tree(const Payload& bins, const Payload& payload, Report& report, Par
     const u64 runs = units / 64 + 1;
     const Starts starts{static_cast<u64*>(std::calloc(runs, sizeof(u64))),
                         static_cast<u32*>(std::calloc(runs, sizeof(u32)))};
-    if (starts.bits && starts.before) check_found_curves(bins, payload, starts, report, parts);
+    Tree tree{payload, bins, parts, kind, boxes, parts.tree_units, starts, nullptr};
+    if (starts.bits && starts.before) check_found_curves(tree, report);
     else no_memory(payload, runs * (sizeof(u64) + sizeof(u32)), report);
     std::free(starts.bits);
     std::free(starts.before);

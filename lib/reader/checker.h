@@ -39,7 +39,34 @@ struct Payload {
     }
 };
 
-enum KnownChunk { chunk_description, chunk_bins, chunk_tree, chunk_metadata, known_chunks };
+enum KnownChunk {
+    chunk_description,
+    chunk_bins,
+    chunk_tree,
+    chunk_metadata,
+    chunk_tiles,
+    chunk_rows,
+    chunk_local,
+    chunk_views,
+    known_chunks
+};
+
+/// Positions on the first two axes.
+struct TileBox {
+    std::uint32_t low[2], high[2];
+};
+
+/// The boxes of all tiles; `of` is null where there are none. Frees them.
+struct TileBoxes {
+    TileBox* of = nullptr;
+    bool given = false; ///< there is a TILE, right or wrong
+    Payload roots;      ///< the part of TILE that tells the roots of tiles
+
+    TileBoxes() = default;
+    TileBoxes(const TileBoxes&) = delete;
+    TileBoxes& operator=(const TileBoxes&) = delete;
+    ~TileBoxes();
+};
 
 struct Payloads {
     Payload of[known_chunks];
@@ -51,10 +78,21 @@ inline std::uint64_t round_up(std::uint64_t n, std::uint64_t to) noexcept { retu
 void check_description(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 /// META. Sets parts.metadata if it is well-formed.
 void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
-/// BINS and TREE; needs parts.description. Sets parts.bins, parts.tree.
-void check_tree(const Payload& bins, const Payload& tree, Report& report, Parts& parts) noexcept;
+/// TILE and ROWS; needs parts.description. Sets parts.tiles and what belongs to it, and `boxes`, if they are right.
+void check_tiles(const Payload& tiles, const Payload& rows, Report& report, Parts& parts,
+                 TileBoxes& boxes) noexcept;
+/// BINS and TREE; needs parts.description and, where there are tiles, those. Sets parts.bins, parts.tree.
+void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, const TileBoxes& boxes,
+                Report& report, Parts& parts) noexcept;
 /// What the kind asks of axes and bins; needs parts.description.
+/// Axes 0 and 1 must be those of an environment.
+void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
 void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept;
+/// The same of local environments, and LOCL. Sets parts.local and parts.lights.
+void check_local_kind(const Payload& description, const Payload& local, const TileBoxes& boxes, Report& report,
+                      Parts& parts) noexcept;
+/// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
+void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
 void check_table_kind(const Payload& payload, Report& report, const Parts& parts) noexcept;
 
 } // namespace acdf

@@ -160,6 +160,11 @@ File& File::operator=(File&& other) noexcept {
     bins_ = std::exchange(other.bins_, nullptr);
     tree_ = std::exchange(other.tree_, nullptr);
     tree_units_ = std::exchange(other.tree_units_, 0);
+    blend_ = std::exchange(other.blend_, AcdfBlend{});
+    local_ = std::exchange(other.local_, nullptr);
+    lights_ = std::exchange(other.lights_, nullptr);
+    views_ = std::exchange(other.views_, nullptr);
+    nodes_ = std::exchange(other.nodes_, nullptr);
     metadata_ = std::exchange(other.metadata_, nullptr);
     metadata_count_ = std::exchange(other.metadata_count_, 0);
     for (int i = 0; i < 2; ++i) owned_[i] = std::exchange(other.owned_[i], nullptr);
@@ -203,6 +208,11 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.bins_ = parts.bins;
     loaded.tree_ = parts.tree;
     loaded.tree_units_ = parts.tree_units;
+    loaded.blend_ = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
+    loaded.local_ = parts.local;
+    loaded.lights_ = parts.lights;
+    loaded.views_ = parts.views;
+    loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
     loaded.metadata_count_ = parts.metadata_count;
     file = std::move(loaded);
@@ -232,6 +242,28 @@ Text File::metadata(const char* key) const noexcept {
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total});
+}
+
+LocalEnvironmentView File::local() const noexcept {
+    AcdfLocal local = {};
+    local.blend = blend_;
+    local.environment = {tree_, 0, axes_[ACDF_AXIS_PHI].resolution, axes_[ACDF_AXIS_THETA].resolution,
+                         description_->total};
+    local.bins = bins_;
+    local.lights = lights_;
+    local.light_count = local_->light_count;
+    local.cosine_share = static_cast<double>(local_->cosine_share);
+    if (description_->axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
+        while (4 * local.subdivisions * local.subdivisions + 2 < axes_[2].resolution) ++local.subdivisions;
+    } else {
+        local.rows = axes_[2].resolution;
+        local.columns = axes_[3].resolution;
+    }
+    return LocalEnvironmentView(local);
+}
+
+BrdfView File::brdf() const noexcept {
+    return BrdfView({blend_, tree_, bins_, views_, nodes_, axes_[0].resolution, axes_[1].resolution, description_->total});
 }
 
 TableView File::table() const noexcept {

@@ -73,7 +73,8 @@ FileSpec taken_apart(const Bytes& file) {
         ChunkSpec chunk;
         chunk.type.assign(reinterpret_cast<const char*>(file.data() + chunk_at(i)), 4);
         chunk.flags = static_cast<std::uint32_t>(get(file, chunk_at(i) + 4, 4));
-        chunk.zlib = codec == 1;
+        chunk.zlib = codec == 1 || codec == 2;
+        if (codec == 2) chunk.planes_of = get(file, chunk_at(i) + 32, 8);
         chunk.raw.assign(begin, begin + stored);
         if (chunk.zlib) {
             uLongf size = 1 << 16;
@@ -92,8 +93,9 @@ Bytes mutated_payload(FileSpec spec, std::size_t max_size, std::mt19937& rng) {
     const std::size_t size = chunk.raw.size();
     chunk.raw.resize(std::max(size + 64, size) + 1);
     chunk.raw.resize(LLVMFuzzerMutate(chunk.raw.data(), size, chunk.raw.size()));
-    if (chunk.type == "TREE" && rng() % 8 != 0) pad_to(chunk.raw, 2);
-    if (rng() % 16 == 0) chunk.zlib = !chunk.zlib;
+    if (chunk.type == "TREE" && chunk.planes_of == 0 && rng() % 8 != 0) pad_to(chunk.raw, 2);
+    if (chunk.planes_of != 0 && rng() % 8 == 0) chunk.planes_of = rng() % (4 * size + 2);
+    else if (rng() % 16 == 0) chunk.zlib = !chunk.zlib;
     Bytes file = spec.encode();
     return file.size() <= max_size ? file : Bytes();
 }

@@ -1,5 +1,6 @@
 // Writes the seeds of fuzz_reader: small valid files that use everything. make_corpus FOLDER
-#include "reader_files.h"
+#include "local_builder.h"
+#include "reader_planes.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -24,11 +25,14 @@ int main(int argc, char** argv) {
     EnvironmentSpec complete = complete_environment();
     write(folder / "smallest", EnvironmentSpec().encode());
     write(folder / "complete", complete.encode());
-    write(folder / "local", local_file().encode());
+    write(folder / "local", lit_local().encode());
+    write(folder / "separate", separate_local().encode());
+    write(folder / "spare", spare_file().encode());
     write(folder / "table", table_file().encode());
     write(folder / "chain", chain(64).encode());
     complete.zlib = true;
     write(folder / "compressed", complete.encode());
+    write(folder / "planes", as_planes(preorder_environment()).encode());
     for (std::uint32_t seed = 0; seed < 12; ++seed) {
         RandomOptions options;
         options.columns = seed % 2 ? 65536 : 64;

@@ -15,7 +15,9 @@
 #ifndef ACDF_ACDF_H
 #define ACDF_ACDF_H
 
+#include <acdf/brdf.h>
 #include <acdf/layout.h>
+#include <acdf/local.h>
 #include <acdf/sample.h>
 #include <acdf/table.h>
 
@@ -55,6 +57,10 @@ void acdf_close(AcdfFile* file);
 
 /* The view of an environment file. Returns 1, or 0 (and `out` unset) where the file is of another kind. */
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out);
+/* The same for a local environment file, to be used with acdf/local.h. */
+int acdf_local(const AcdfFile* file, AcdfLocal* out);
+/* The same for a BRDF file, to be used with acdf/brdf.h. */
+int acdf_brdf(const AcdfFile* file, AcdfBrdf* out);
 /* The same for a table file, to be used with acdf/table.h. */
 int acdf_table(const AcdfFile* file, AcdfTable* out);
 

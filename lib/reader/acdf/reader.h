@@ -12,6 +12,8 @@
 // file and its inflated chunks, and 1 MiB; the limits are checked before any of it is allocated.
 #pragma once
 
+#include <acdf/brdf.h>
+#include <acdf/local.h>
 #include <acdf/sample.h>
 #include <acdf/table.h>
 
@@ -70,6 +72,65 @@ public:
 
 private:
     AcdfEnvironment data_;
+};
+
+/// For each normal a probability density over the sphere that follows the light above its horizon, times the
+/// cosine. A few words by value; valid while its File lives. All functions are const, thread-safe, allocate and
+/// throw nothing. Normals are of any length > 0, in the frame of directions.
+class LocalEnvironmentView {
+public:
+    explicit LocalEnvironmentView(const AcdfLocal& data) noexcept : data_(data) {}
+
+    /// Draws a direction for a normal; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite and > 0; 0
+    /// where the normal is zero or NaN or no light can reach it. A direction may lie below the horizon: it counts
+    /// as 0.
+    DirectionSample sample(const float normal[3], double u0, double u1) const noexcept {
+        return acdf_local_sample(&data_, normal, u0, u1);
+    }
+    /// Density in sr^-1 of a unit direction for a normal; exactly that of `sample` for what it returned.
+    float pdf(const float normal[3], const float direction[3]) const noexcept {
+        return acdf_local_pdf(&data_, normal, direction);
+    }
+    /// Integral of the light above the horizon times the cosine (luminance times sr), about: bins are interpolated,
+    /// which is exact but for light at the horizon. For light selection. Where a normal's bins are not stored, that
+    /// of all light, which is more; 0 for a normal that is zero or NaN.
+    double irradiance(const float normal[3]) const noexcept { return acdf_local_irradiance(&data_, normal); }
+    /// Whether a normal has a density of its own; else it is served by that of the whole environment.
+    bool stored(const float normal[3]) const noexcept { return acdf_local_stored(&data_, normal) != 0; }
+    /// The density of the whole environment, whatever the normal.
+    EnvironmentView environment() const noexcept { return EnvironmentView(data_.environment); }
+    /// The plain data, for acdf/local.h in another language or on a GPU.
+    const AcdfLocal& data() const noexcept { return data_; }
+
+private:
+    AcdfLocal data_;
+};
+
+/// For each view a probability density over the directions of light that a surface reflects to it, times the cosine. A
+/// few words by value; valid while its File lives. All functions are const, thread-safe, allocate and throw nothing.
+/// wo (towards the viewer) and wi (towards the light) are unit vectors in the surface's frame, z its normal.
+class BrdfView {
+public:
+    explicit BrdfView(const AcdfBrdf& data) noexcept : data_(data) {}
+
+    /// Draws wi for wo; u0 (azimuth of the half-vector) and u1 (its elevation) in [0, 1]. pdf in sr^-1 of wi, finite and
+    /// > 0; 0 where wo is not a unit vector above the surface. wi may lie below it: it counts as 0.
+    DirectionSample sample(const float wo[3], double u0, double u1) const noexcept {
+        return acdf_brdf_sample(&data_, wo, u0, u1);
+    }
+    /// Density in sr^-1 of wi for wo; exactly that of `sample` for what it returned.
+    float pdf(const float wo[3], const float wi[3]) const noexcept { return acdf_brdf_pdf(&data_, wo, wi); }
+    /// The random numbers that draw wi for wo; false where the table's density is 0.
+    bool invert(const float wo[3], const float wi[3], double u[2]) const noexcept {
+        return acdf_brdf_invert(&data_, wo, wi, u) != 0;
+    }
+    /// Share of light that is reflected to wo, about: stored views are interpolated. To choose between lobes or layers.
+    double albedo(const float wo[3]) const noexcept { return acdf_brdf_albedo(&data_, wo); }
+    /// The plain data, for acdf/brdf.h in another language or on a GPU.
+    const AcdfBrdf& data() const noexcept { return data_; }
+
+private:
+    AcdfBrdf data_;
 };
 
 /// A probability density over the sampled axes of a table, one for each bin of its indexed axes. A few words by
@@ -144,6 +205,8 @@ public:
     const AcdfBin& bin(std::uint32_t i) const noexcept { return bins_[i]; }
     /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
     const std::uint8_t* tree() const noexcept { return tree_; }
+    /// What bins share; `tiles` is null where each has a tree of its own.
+    const AcdfBlend& blend() const noexcept { return blend_; }
     std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
 
@@ -155,6 +218,10 @@ public:
 
     /// The view of an environment file: only where kind() == ACDF_KIND_ENVIRONMENT.
     EnvironmentView environment() const noexcept;
+    /// The view of a local environment file: only where kind() == ACDF_KIND_LOCAL.
+    LocalEnvironmentView local() const noexcept;
+    /// The view of a BRDF file: only where kind() == ACDF_KIND_BRDF.
+    BrdfView brdf() const noexcept;
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
 
@@ -166,6 +233,11 @@ private:
     const AcdfBin* bins_ = nullptr;
     const std::uint8_t* tree_ = nullptr;
     std::uint32_t tree_units_ = 0;
+    AcdfBlend blend_ = {};
+    const AcdfLocalHeader* local_ = nullptr;
+    const AcdfLight* lights_ = nullptr;
+    const AcdfViews* views_ = nullptr;
+    const float* nodes_ = nullptr;
     const std::uint8_t* metadata_ = nullptr;
     std::uint32_t metadata_count_ = 0;
     void* owned_[2] = {nullptr, nullptr}; // the file's bytes; inflated chunks

@@ -330,29 +330,30 @@ ACDF_FN float acdf_cell_pdf(double p, uint32_t width, uint32_t columns, double d
 
 ACDF_FN double acdf_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
-/* Draws a direction. u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
- * Monotone in each of them within a segment: strata of random numbers stay strata of directions. */
-ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
-    AcdfDirectionSample out;
-    double u[2];
-    AcdfRange range[2];
-    double p, tx, tz, x, z, z0, z1, sin_theta, sine, cosine, border;
-    u[0] = u0 > 0.0 ? (u0 < 1.0 ? u0 : 1.0) : 0.0; /* also NaN */
-    u[1] = u1 > 0.0 ? (u1 < 1.0 ? u1 : 1.0) : 0.0;
+/* The whole sphere, before a tree narrows it. */
+ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range[2]) {
     range[0].low = range[1].low = 0;
-    range[0].high = env->columns;
-    range[1].high = env->rows;
+    range[0].high = columns;
+    range[1].high = rows;
     range[0].tilt = range[1].tilt = 0.0;
-    p = acdf_tree_sample(env->tree, env->root, u, range);
+}
 
+/* A random number in [0, 1]; values outside are clamped, NaN counts as 0. */
+ACDF_FN double acdf_unit_interval(double u) { return u > 0.0 ? (u < 1.0 ? u : 1.0) : 0.0; }
+
+/* The direction that what is left of the random numbers picks in a cell of probability p. */
+ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, const AcdfRange range[2],
+                                              const double u[2], double p) {
+    AcdfDirectionSample out;
+    double tx, tz, x, z, z0, z1, sin_theta, sine, cosine, border;
     tx = acdf_tilt_sample(range[0].tilt, u[0]);
-    border = (double)env->columns * (ACDF_BORDER / (2.0 * ACDF_PI));
+    border = (double)columns * (ACDF_BORDER / (2.0 * ACDF_PI));
     x = (double)range[0].low + tx * (double)(range[0].high - range[0].low);
     x = acdf_clamp(x, (double)range[0].low + border, (double)range[0].high - border);
 
     tz = acdf_tilt_sample(range[1].tilt, u[1]);
-    z0 = acdf_row_z(range[1].low, env->rows);
-    z1 = acdf_row_z(range[1].high, env->rows);
+    z0 = acdf_row_z(range[1].low, rows);
+    z1 = acdf_row_z(range[1].high, rows);
     z = z0 + tz * (z1 - z0);
     sin_theta = sqrt((1.0 - z) * (1.0 + z));
     border = ACDF_BORDER * sin_theta;
@@ -360,13 +361,54 @@ ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, 
     z = acdf_clamp(z, -1.0 + 0.5 * ACDF_BORDER * ACDF_BORDER, 1.0 - 0.5 * ACDF_BORDER * ACDF_BORDER);
     sin_theta = sqrt((1.0 - z) * (1.0 + z));
 
-    acdf_sincospi(1.0 - 2.0 * x / (double)env->columns, &sine, &cosine);
+    acdf_sincospi(1.0 - 2.0 * x / (double)columns, &sine, &cosine);
     out.direction[0] = (float)(sin_theta * cosine);
     out.direction[1] = (float)(sin_theta * sine);
     out.direction[2] = (float)z;
-    out.pdf = acdf_cell_pdf(p, range[0].high - range[0].low, env->columns, z0 - z1,
+    out.pdf = acdf_cell_pdf(p, range[0].high - range[0].low, columns, z0 - z1,
                             acdf_tilt_density(range[0].tilt, tx) * acdf_tilt_density(range[1].tilt, tz));
     return out;
+}
+
+/* The grid square of a direction, and where on the columns axis it lies. Returns 0 for directions that are NaN or
+ * whose length differs from 1 by more than about 5e-4. */
+ACDF_FN int acdf_sphere_square(uint32_t columns, uint32_t rows, const float direction[3], uint32_t square[2],
+                               double* column) {
+    const double x = direction[0], y = direction[1], z = direction[2];
+    const double sin2 = x * x + y * y;
+    const double length = sqrt(sin2 + z * z);
+    if (!(length > 0.9995 && length < 1.0005)) return 0;
+    *column = (double)columns * (0.5 - 0.5 * acdf_atan2pi(y, x));
+    if (*column >= (double)columns) *column = 0.0; /* phi = -pi is phi = +pi */
+    if (*column < 0.0) *column = 0.0;
+    square[0] = (uint32_t)*column;
+    square[1] = (uint32_t)((double)rows * acdf_atan2pi(sqrt(sin2), z));
+    if (square[1] >= rows) square[1] = rows - 1;
+    return 1;
+}
+
+/* The fractions t[axis] at which a direction lies across its cell (t[1] in z, from z0 down by dz). */
+ACDF_FN void acdf_sphere_fractions(const float direction[3], double column, const AcdfRange range[2], double z0,
+                                   double dz, double t[2]) {
+    const double x = direction[0], y = direction[1], z = direction[2];
+    const double sin2 = x * x + y * y;
+    const double length = sqrt(sin2 + z * z);
+    const double cap =
+        sin2 / (length * (length + fabs(z))); /* 1 - |cos(theta)|, exact near the poles where z is not */
+    t[0] = acdf_clamp((column - (double)range[0].low) / (double)(range[0].high - range[0].low), 0.0, 1.0);
+    t[1] = acdf_clamp((z0 - (z < 0.0 ? cap - 1.0 : 1.0 - cap)) / dz, 0.0, 1.0);
+}
+
+/* Draws a direction. u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
+ * Monotone in each of them within a segment: strata of random numbers stay strata of directions. */
+ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
+    double u[2], p;
+    AcdfRange range[2];
+    u[0] = acdf_unit_interval(u0);
+    u[1] = acdf_unit_interval(u1);
+    acdf_sphere_ranges(env->columns, env->rows, range);
+    p = acdf_tree_sample(env->tree, env->root, u, range);
+    return acdf_sphere_place(env->columns, env->rows, range, u, p);
 }
 
 /* Where a direction falls: its cell and, if `strata` is not null, the random numbers that lead there; if that
@@ -374,32 +416,16 @@ ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, 
  * probability; 0 for directions that are NaN or whose length differs from 1 by more than about 5e-4. */
 ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float direction[3], AcdfRange range[2],
                                      double t[2], double dz[1], AcdfStratum* strata) {
-    const double x = direction[0], y = direction[1], z = direction[2];
-    const double sin2 = x * x + y * y;
-    const double length = sqrt(sin2 + z * z);
-    double column, row, p, z0, z1, cap;
+    double column, p, z0;
     uint32_t square[2];
-    if (!(length > 0.9995 && length < 1.0005)) return 0.0;
-    column = (double)env->columns * (0.5 - 0.5 * acdf_atan2pi(y, x));
-    row = (double)env->rows * acdf_atan2pi(sqrt(sin2), z);
-    if (column >= (double)env->columns) column = 0.0; /* phi = -pi is phi = +pi */
-    if (column < 0.0) column = 0.0;
-    square[0] = (uint32_t)column;
-    square[1] = (uint32_t)row;
-    if (square[1] >= env->rows) square[1] = env->rows - 1;
-    range[0].low = range[1].low = 0;
-    range[0].high = env->columns;
-    range[1].high = env->rows;
-    range[0].tilt = range[1].tilt = 0.0;
+    if (!acdf_sphere_square(env->columns, env->rows, direction, square, &column)) return 0.0;
+    acdf_sphere_ranges(env->columns, env->rows, range);
     p = acdf_tree_find(env->tree, env->root, square, range, strata);
     z0 = acdf_row_z(range[1].low, env->rows);
-    z1 = acdf_row_z(range[1].high, env->rows);
-    dz[0] = z0 - z1;
+    dz[0] = z0 - acdf_row_z(range[1].high, env->rows);
     t[0] = t[1] = 0.5;
-    if (!strata && range[0].tilt == 0.0 && range[1].tilt == 0.0) return p;
-    t[0] = acdf_clamp((column - (double)range[0].low) / (double)(range[0].high - range[0].low), 0.0, 1.0);
-    cap = sin2 / (length * (length + fabs(z))); /* 1 - |cos(theta)|, exact near the poles where z is not */
-    t[1] = acdf_clamp((z0 - (z < 0.0 ? cap - 1.0 : 1.0 - cap)) / dz[0], 0.0, 1.0);
+    if (strata || range[0].tilt != 0.0 || range[1].tilt != 0.0)
+        acdf_sphere_fractions(direction, column, range, z0, dz[0], t);
     return p;
 }
 

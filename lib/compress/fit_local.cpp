@@ -1,0 +1,217 @@
+// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin: docs/local.md.
+#include "compress/fit_local.h"
+
+#include "compress/fit_shared.h"
+#include "compress/light.h"
+#include "compress/tile_curves.h"
+
+#include <acdf/local.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+/// Rounding of normals and directions to float must not take light over the horizon that was not expected.
+constexpr double kHorizonMargin = 1e-4;
+/// Of a tile that may be seen though none of its points are: its cost, of that of all it holds.
+constexpr double kGlimpse = 1e-7;
+/// Radians across which light in a cell is taken to have one cosine.
+constexpr double kPointStep = 0.02;
+
+std::vector<double> worth_of_tiles(const Target& target, const std::vector<Box>& tiles, const Worth& worth) {
+    std::vector<double> out;
+    for (const Box& tile : tiles) {
+        double sum = 0.0;
+        for_each_block(target, tile, 0.05, [&](const Box& block, double share) {
+            sum += share *
+                   worth.mean.at(double(block.begin[1]) / target.columns, double(block.begin[0]) / target.rows);
+        });
+        out.push_back(sum);
+    }
+    return out;
+}
+
+struct Curves {
+    std::unique_ptr<TileCascade> cascade;
+    EncodedTree tree;
+};
+
+/// The curves at the lowest price at which they take at most `bytes`.
+Curves fit_curves(const TileTree& tiles, TileCurves& curves, std::uint64_t bytes) {
+    const auto at = [&](double price) {
+        Curves out;
+        out.cascade = std::make_unique<TileCascade>(tiles, curves, price);
+        out.tree = encode_tree(out.cascade->cascade, 2.0 * price);
+        return out;
+    };
+    constexpr double cheapest = 1e-14; // of the sum of costs: rounding, no gain
+    double price = 1e-4;
+    Curves best;
+    for (;; price *= 0.25) {
+        curves.refine(price);
+        best = at(price);
+        if (best.tree.bytes.size() > bytes || price < cheapest) break;
+    }
+    if (best.tree.bytes.size() <= bytes) return best;
+    double low = price, high = 1.0;
+    best = at(high);
+    for (int step = 0; step < 24; ++step) {
+        const double middle = std::sqrt(low * high);
+        Curves candidate = at(middle);
+        if (candidate.tree.bytes.size() > bytes) {
+            low = middle;
+        } else {
+            high = middle;
+            best = std::move(candidate);
+        }
+    }
+    return best;
+}
+
+/// Tiles of light so bright that, near the horizon, mixing the rows of bins would draw many samples below it.
+std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, const TileCascade& cascade,
+                                   double total, const Worth& worth) {
+    std::vector<std::pair<double, AcdfLight>> found;
+    for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
+        const Box& box = tiles.tiles[t];
+        const double reach = radius(target, box), share = cascade.tile_cost(t);
+        const double alarm =
+            share * total *
+            worth.alarm.at(double(box.begin[1]) / target.columns, double(box.begin[0]) / target.rows);
+        if (reach > kLightRadius || alarm < kAlarm || !(static_cast<float>(share) > 0.0f)) continue;
+        const Direction middle = centre(target, box);
+        AcdfLight light = {};
+        for (std::size_t k = 0; k < 3; ++k) light.direction[k] = static_cast<float>(middle[k]);
+        light.radius = static_cast<float>(reach + kHorizonMargin);
+        light.share = static_cast<float>(share);
+        light.tile = static_cast<std::uint32_t>(t);
+        light.low[ACDF_AXIS_PHI] = box.begin[1];
+        light.high[ACDF_AXIS_PHI] = box.end[1];
+        light.low[ACDF_AXIS_THETA] = box.begin[0];
+        light.high[ACDF_AXIS_THETA] = box.end[0];
+        found.push_back({alarm, light});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    if (found.size() > ACDF_MAX_LIGHTS) found.resize(ACDF_MAX_LIGHTS);
+    std::vector<AcdfLight> out;
+    for (const auto& light : found) out.push_back(light.second);
+    std::sort(out.begin(), out.end(), [](const AcdfLight& a, const AcdfLight& b) { return a.tile < b.tile; });
+    return out;
+}
+
+/// What rows are made from: of each tile but the lights, its light as points, weighted so that the sum of
+/// amount . cos^2 is the square of the cost of the tile for a normal.
+class TileLight {
+public:
+    TileLight(const Target& target, const TileTree& tiles, const TileCascade& cascade,
+              const std::vector<AcdfLight>& lights)
+        : target_(target), tiles_(tiles), points_(tiles.tiles.size()), least_(tiles.tiles.size(), 0.0) {
+        std::vector<bool> is_light(points_.size(), false);
+        for (const AcdfLight& light : lights) is_light[light.tile] = true;
+        tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t t) {
+            const double cost = cascade.tile_cost(t);
+            if (is_light[t] || !(cost > 0.0)) return;
+            least_[t] = kGlimpse * cost;
+            cascade.for_each_cell(t, [&](const Part& part) {
+                // A cell of measure mu and probability P within the tile, P = cost of cell / cost of tile, adds
+                // mu / P times the integral of g^2 cos^2: cost of tile . cost of cell . cos^2.
+                const double amount = cost * part.moments.cost();
+                if (!(amount > 0.0)) return;
+                for_each_block(target, part.box, kPointStep, [&](const Box& block, double share) {
+                    points_[t].push_back({centre(target, block), amount * share});
+                });
+            });
+        });
+    }
+
+    /// The cost of each tile for a normal: positive wherever light in it can be seen.
+    std::vector<double> costs(const Direction& normal) const {
+        std::vector<double> out(points_.size(), 0.0);
+        for (std::size_t t = 0; t < points_.size(); ++t) {
+            double sum = 0.0;
+            for (const LightPoint& p : points_[t]) {
+                const double cosine = std::max(0.0, dot(p.direction, normal));
+                sum += p.amount * cosine * cosine;
+            }
+            out[t] = std::sqrt(sum);
+            if (out[t] < least_[t] && largest_cosine(target_, tiles_.tiles[t], normal) > -kHorizonMargin)
+                out[t] = least_[t];
+        }
+        return out;
+    }
+
+private:
+    const Target& target_;
+    const TileTree& tiles_;
+    std::vector<std::vector<LightPoint>> points_;
+    std::vector<double> least_;
+};
+
+std::vector<AcdfSplit> stored_splits(const TileTree& tiles) {
+    std::vector<AcdfSplit> out;
+    for (const TileTree::Split& split : tiles.splits) {
+        AcdfSplit stored = {};
+        stored.place = (split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI) | split.position << 3;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::uint32_t child = split.child[k];
+            const std::uint32_t number = child & ~TileTree::tile;
+            stored.child[k] = static_cast<std::uint16_t>(child & TileTree::tile ? number | ACDF_TILE_FLAG : number);
+        }
+        out.push_back(stored);
+    }
+    return out;
+}
+
+/// Rows and shares of all bins that occur.
+void fill_rows(const TileLight& light, const NormalBins& bins, LocalFit& out) {
+    const std::size_t count = bins.normals.size(), width = out.tiles.splits.size();
+    out.shares.assign(count, 0.0f);
+    out.tree.roots.assign(count, ACDF_NO_ROOT);
+    for (std::size_t b = 0; b < count; ++b)
+        if (bins.weight[b] > 0.0) out.tree.roots[b] = out.shared.row_count++;
+    out.shared.codes.resize(out.shared.row_count * width);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
+        if (out.tree.roots[b] == ACDF_NO_ROOT) return;
+        const std::vector<double> cost = light.costs(bins.normals[b]);
+        double sum = 0.0;
+        for (double c : cost) sum += c;
+        const std::vector<std::uint8_t> row = encode_row(out.tiles, cost);
+        std::copy(row.begin(), row.end(), out.shared.codes.begin() + std::ptrdiff_t(out.tree.roots[b] * width));
+        out.shares[b] = static_cast<float>(sum);
+    });
+}
+
+} // namespace
+
+LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress) {
+    const auto report = [&](double share) {
+        if (progress) progress(share);
+    };
+    if (!(integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    const Worth light_worth = worth(bins, irradiance(light_points(target), bins));
+    report(0.1);
+    LocalFit out;
+    out.tiles = divide_tiles(target, light_worth, std::min(size.tiles, ACDF_MAX_TILES));
+    report(0.4);
+    TileCurves tile_curves(target, out.tiles.tiles, worth_of_tiles(target, out.tiles.tiles, light_worth));
+    Curves curves = fit_curves(out.tiles, tile_curves, size.tree_bytes);
+    report(0.8);
+    out.lights = find_lights(target, out.tiles, *curves.cascade, tile_curves.total(), light_worth);
+    out.tree = std::move(curves.tree);
+    out.shared.splits = stored_splits(out.tiles);
+    out.shared.codebook = row_codebook();
+    for (std::int32_t curve : curves.cascade->tile_curve)
+        out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);
+    fill_rows(TileLight(target, out.tiles, *curves.cascade, out.lights), bins, out);
+    out.cascade = std::move(curves.cascade->cascade);
+    report(1.0);
+    return out;
+}
+
+} // namespace acdf::compress

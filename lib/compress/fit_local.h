@@ -1,0 +1,36 @@
+// The fit of a local environment map: one probe, for every normal the light above its horizon times the cosine.
+#pragma once
+
+#include "compress/fit.h"
+#include "compress/normals.h"
+#include "compress/tiles.h"
+
+#include <acdf/layout.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace acdf::compress {
+
+/// How large a local environment map becomes.
+struct LocalSize {
+    std::uint32_t tiles = 900;         ///< at most so many
+    std::uint64_t tree_bytes = 131072; ///< of the curves within tiles, at most (but for the least there must be)
+};
+
+/// A local environment map, ready to be stored.
+struct LocalFit {
+    TileTree tiles;
+    Cascade cascade;   ///< root 0: the environment as a whole
+    EncodedTree tree;  ///< roots: one a bin, its row or ACDF_NO_ROOT where it is not stored
+    StoredRows shared; ///< tiles, and a row for each bin
+    std::vector<AcdfLight> lights;
+    std::vector<float> shares; ///< one a bin: its irradiance, lights excepted, over the integral of the probe
+};
+
+/// Fits tiles, the curves in them, lights, and the rows of all bins that occur. Deterministic for any number of
+/// threads. Throws std::invalid_argument where the target has no energy.
+LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size,
+                   const Progress& progress = {});
+
+} // namespace acdf::compress

@@ -1,0 +1,76 @@
+#include "compress/light.h"
+
+#include "compress/sum.h"
+
+#include <acdf/sample.h>
+
+#include <tbb/parallel_for.h>
+
+namespace acdf::compress {
+namespace {
+
+Direction direction_of(const Target& target, double row, double column) {
+    double s, c, z, r;
+    acdf_sincospi(1.0 - 2.0 * column / target.columns, &s, &c);
+    acdf_sincospi(row / target.rows, &r, &z);
+    return {r * c, r * s, z};
+}
+
+/// Light near the horizon of a normal is that within this sine: as far as its bins are apart.
+double horizon_band(const NormalBins& bins) { return 2.0 / bins.subdivisions; }
+
+} // namespace
+
+double solid_angle(const Target& target, const Box& box) {
+    return 2.0 * ACDF_PI / target.columns * box.length(1) *
+           (acdf_row_z(box.begin[0], target.rows) - acdf_row_z(box.end[0], target.rows));
+}
+
+std::vector<LightPoint> light_points(const Target& target) {
+    constexpr double step = 0.02;
+    Box all;
+    all.end = {};
+    all.end[0] = target.rows;
+    all.end[1] = target.columns;
+    std::vector<Box> blocks;
+    for_each_block(target, all, step, [&](const Box& block, double) { blocks.push_back(block); });
+    std::vector<LightPoint> points(blocks.size());
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+        Sum sum;
+        for (std::uint32_t r = blocks[i].begin[0]; r < blocks[i].end[0]; ++r)
+            for (std::uint32_t c = blocks[i].begin[1]; c < blocks[i].end[1]; ++c)
+                sum.add(target.row(r)[c] * target.row_measure[r] * target.column_measure[c]);
+        points[i] = {centre(target, blocks[i]), sum.value()};
+    });
+    return points;
+}
+
+std::vector<double> irradiance(const std::vector<LightPoint>& points, const NormalBins& bins) {
+    std::vector<double> out(bins.normals.size());
+    tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t b) {
+        for (const LightPoint& p : points) out[b] += p.amount * std::max(0.0, dot(p.direction, bins.normals[b]));
+    });
+    return out;
+}
+
+Worth worth(const NormalBins& bins, const std::vector<double>& irradiance) {
+    Worth out;
+    Target grid;
+    grid.columns = CoarseMap::columns;
+    grid.rows = CoarseMap::rows;
+    const double band = horizon_band(bins);
+    tbb::parallel_for(std::size_t{0}, out.mean.values.size(), [&](std::size_t i) {
+        const Direction d = direction_of(grid, double(i / grid.columns) + 0.5, double(i % grid.columns) + 0.5);
+        for (std::size_t b = 0; b < bins.normals.size(); ++b) {
+            if (!(irradiance[b] > 0.0)) continue;
+            const double cosine = dot(d, bins.normals[b]);
+            out.mean.values[i] += bins.weight[b] * std::max(0.0, cosine) / irradiance[b];
+            // Between bins the weight of light at the horizon is too large by up to a quarter of their distance.
+            if (std::abs(cosine) < band)
+                out.alarm.values[i] = std::max(out.alarm.values[i], 0.25 * band / irradiance[b]);
+        }
+    });
+    return out;
+}
+
+} // namespace acdf::compress

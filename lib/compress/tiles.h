@@ -1,0 +1,64 @@
+// Tiles of a probe: boxes that are small where much light comes from, so that the cosine to any normal hardly
+// changes within one.
+#pragma once
+
+#include "compress/partition.h"
+#include "compress/target.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace acdf::compress {
+
+/// A tree of splits in two, in preorder. A child is the index of a later split, or `tile` | number of a tile; tiles
+/// are numbered in the order in which a walk meets them.
+struct TileTree {
+    static constexpr std::uint32_t tile = 0x80000000u;
+    static constexpr std::uint32_t most_depth = 32; ///< splits on a path
+    struct Split {
+        std::uint32_t axis = 0; ///< of the grid
+        std::uint32_t position = 0;
+        std::uint32_t child[2] = {};
+    };
+    std::vector<Split> splits;
+    std::vector<Box> tiles; ///< one more than splits
+};
+
+/// Numbers on a coarse lat-long grid.
+struct CoarseMap {
+    static constexpr std::uint32_t columns = 128, rows = 64;
+    std::vector<double> values = std::vector<double>(std::size_t{columns} * rows);
+
+    /// At a place given as fractions of the whole sphere's columns and rows, in [0, 1).
+    double at(double column, double row) const {
+        return values[std::size_t(row * rows) * columns + std::size_t(column * columns)];
+    }
+};
+
+/// What light is worth.
+struct Worth {
+    CoarseMap mean; ///< mean over the bins of cos / E
+    /// Largest share of the samples of any normal that light at its horizon could draw by mistake, per unit of
+    /// light.
+    CoarseMap alarm;
+};
+
+constexpr double kAlarm = 0.01;       ///< tiles whose light could draw more by mistake become lights
+constexpr double kLightRadius = 0.03; ///< radians; a light is no larger
+
+/// Divides a probe (rows theta, columns phi) into at most `count` tiles. Each split is the one that lowers most the
+/// sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2: to first order, what the cosine to a
+/// normal adds to the variance within a tile. Tiles of bright light that are too large for a light come first.
+TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count);
+
+/// The middle of a box in phi and z, and so of its solid angle.
+std::array<double, 3> centre(const Target& target, const Box& box);
+
+/// The largest cosine between a unit vector and any direction of a box.
+double largest_cosine(const Target& target, const Box& box, const std::array<double, 3>& n);
+
+/// The largest distance of any point of a box on the unit sphere from its centre.
+double radius(const Target& target, const Box& box);
+
+} // namespace acdf::compress

@@ -1,0 +1,132 @@
+#include "input/image.h"
+#include "input/scene_sources.h"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace acdf::input {
+namespace {
+
+/// Shows the importer the mesh and nothing else: material libraries that an OBJ names are none of its business.
+class OneFile : public Assimp::DefaultIOSystem {
+public:
+    explicit OneFile(std::string path) : path_(std::move(path)) {}
+    bool Exists(const char* path) const override { return path == path_ && DefaultIOSystem::Exists(path); }
+    Assimp::IOStream* Open(const char* path, const char* mode) override {
+        return path == path_ ? DefaultIOSystem::Open(path, mode) : nullptr;
+    }
+
+private:
+    std::string path_;
+};
+
+/// Refuses a PLY header that claims more elements than the file has bytes, before memory is asked for.
+void check_ply_counts(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    char line[1024];
+    std::error_code error;
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    if (error || !file.getline(line, sizeof line) || std::string(line).substr(0, 3) != "ply")
+        throw input_error(path, "it does not begin with \"ply\": no PLY mesh, or damaged");
+    while (file.getline(line, sizeof line)) {
+        std::istringstream words(line);
+        std::string word, name;
+        std::uint64_t count = 0;
+        words >> word;
+        if (word == "end_header") return;
+        if (word != "element") continue;
+        if (!(words >> name >> count) || count > size)
+            throw input_error(path, "its header claims more elements than the file has bytes; it is damaged");
+    }
+    throw input_error(path, "its header does not end; it is cut short or damaged");
+}
+
+struct Vector {
+    double x = 0.0, y = 0.0, z = 0.0;
+};
+
+/// Half the cross product of two edges: the area, along the normal.
+Vector area_of(const aiVector3D& a, const aiVector3D& b, const aiVector3D& c) {
+    const Vector u{double{b.x} - a.x, double{b.y} - a.y, double{b.z} - a.z};
+    const Vector v{double{c.x} - a.x, double{c.y} - a.y, double{c.z} - a.z};
+    return {0.5 * (u.y * v.z - u.z * v.y), 0.5 * (u.z * v.x - u.x * v.z), 0.5 * (u.x * v.y - u.y * v.x)};
+}
+
+double length_of(const Vector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+bool has_direction(const aiVector3D& n) {
+    const float square = n.x * n.x + n.y * n.y + n.z * n.z;
+    return std::isfinite(square) && square > 0.0f;
+}
+
+/// Interpolated normals at the seven points of a quadrature of degree 3 (Stroud 1971, T2:3-1 with corners), with
+/// the triangle's area as weight.
+void add_smooth_triangle(const aiVector3D normal[3], double area, NormalHistogram& histogram) {
+    const auto add = [&](double a, double b, double c, double share) {
+        histogram.add(a * normal[0].x + b * normal[1].x + c * normal[2].x,
+                      a * normal[0].y + b * normal[1].y + c * normal[2].y,
+                      a * normal[0].z + b * normal[1].z + c * normal[2].z, area * share);
+    };
+    constexpr double third = 1.0 / 3.0;
+    add(third, third, third, 9.0 / 20.0);
+    for (const auto& edge : {std::array{0.5, 0.5, 0.0}, std::array{0.0, 0.5, 0.5}, std::array{0.5, 0.0, 0.5}})
+        add(edge[0], edge[1], edge[2], 2.0 / 15.0);
+    add(1.0, 0.0, 0.0, 1.0 / 20.0);
+    add(0.0, 1.0, 0.0, 1.0 / 20.0);
+    add(0.0, 0.0, 1.0, 1.0 / 20.0);
+}
+
+bool corners_exist(const aiMesh& mesh, const aiFace& face) {
+    return std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
+                       [&](unsigned corner) { return corner < mesh.mNumVertices; });
+}
+
+/// A polygon of three corners or more as a fan of triangles. The sum of their areas, as vectors, is exact for a
+/// flat polygon of any shape (Newell's method); smooth polygons are taken to be convex.
+void add_polygon(const aiMesh& mesh, const aiFace& face, NormalHistogram& histogram) {
+    if (!corners_exist(mesh, face)) return histogram.skip();
+    const unsigned* corner = face.mIndices;
+    bool smooth = mesh.mNormals != nullptr;
+    for (unsigned i = 0; smooth && i < face.mNumIndices; ++i) smooth = has_direction(mesh.mNormals[corner[i]]);
+    Vector sum;
+    for (unsigned i = 1; i + 1 < face.mNumIndices; ++i) {
+        const Vector area =
+            area_of(mesh.mVertices[corner[0]], mesh.mVertices[corner[i]], mesh.mVertices[corner[i + 1]]);
+        sum = {sum.x + area.x, sum.y + area.y, sum.z + area.z};
+        const double size = length_of(area);
+        if (!smooth || !(size > 0.0 && std::isfinite(size))) continue;
+        aiVector3D normal[3] = {mesh.mNormals[corner[0]], mesh.mNormals[corner[i]], mesh.mNormals[corner[i + 1]]};
+        for (aiVector3D& n : normal) n.NormalizeSafe();
+        add_smooth_triangle(normal, size, histogram);
+    }
+    const double size = length_of(sum);
+    if (!(size > 0.0 && std::isfinite(size))) return histogram.skip();
+    if (!smooth) histogram.add(sum.x, sum.y, sum.z, size);
+}
+
+} // namespace
+
+void add_mesh_normals(const std::string& path, bool ply, NormalHistogram& histogram) {
+    if (ply) check_ply_counts(path);
+    Assimp::Importer importer;                // logs nowhere but where a program asks it to
+    importer.SetIOHandler(new OneFile(path)); // owned by the importer
+    const aiScene* scene = importer.ReadFile(path, 0);
+    if (!scene)
+        throw input_error(path, std::string("no mesh that can be read (") + importer.GetErrorString() +
+                                    "); give triangles or polygons as .obj or .ply");
+    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene->mMeshes[m];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) // lines and points have no normal
+            if (mesh.mFaces[f].mNumIndices >= 3) add_polygon(mesh, mesh.mFaces[f], histogram);
+    }
+}
+
+} // namespace acdf::input

@@ -1,0 +1,158 @@
+#include "input/image.h"
+#include "input/scene_sources.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+
+namespace acdf::input {
+namespace {
+
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 30;
+constexpr int kMaxSide = 1 << 18;
+
+std::string lower(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+bool ends_in(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Whether a layer (lower case, with the layers that it is part of) holds normals: "n", "ns", "view.normal", ...
+bool is_normal_layer(const std::string& layer) {
+    const std::string last = layer.substr(layer.rfind('.') + 1);
+    return last == "n" || last == "ns" || ends_in(last, "normal") || ends_in(last, "normals");
+}
+
+using Channels = std::array<int, 3>;
+
+std::optional<Channels> find_triple(const std::vector<std::string>& names,
+                                    const std::array<std::string, 3>& triple) {
+    Channels out{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto found = std::find(names.begin(), names.end(), triple[i]);
+        if (found == names.end()) return std::nullopt;
+        out[i] = static_cast<int>(found - names.begin());
+    }
+    return out;
+}
+
+std::optional<Channels> find_normals(std::vector<std::string> names, bool rgb) {
+    for (std::string& name : names) name = lower(name);
+    for (const std::string& name : names) {
+        const std::string stem = name.substr(0, name.size() - std::min<std::size_t>(name.size(), 1));
+        if (ends_in(name, ".x") && is_normal_layer(stem.substr(0, stem.size() - 1)))
+            if (const auto found = find_triple(names, {stem + "x", stem + "y", stem + "z"})) return found;
+        if (ends_in(name, ".r") && is_normal_layer(stem.substr(0, stem.size() - 1)))
+            if (const auto found = find_triple(names, {stem + "r", stem + "g", stem + "b"})) return found;
+        if (ends_in(name, "x") && !ends_in(name, ".x") && is_normal_layer(stem))
+            if (const auto found = find_triple(names, {stem + "x", stem + "y", stem + "z"})) return found;
+    }
+    return rgb ? find_triple(names, {"r", "g", "b"}) : std::nullopt;
+}
+
+class PassReader {
+public:
+    explicit PassReader(const std::string& path) : path_(path), input_(OIIO::ImageInput::open(path)) {
+        if (!input_)
+            fail(
+                "neither a mesh (.obj, .ply), nor a list of normals (.txt, .csv), nor an image that can be read (" +
+                OIIO::geterror() + ")");
+        input_->threads(1);
+    }
+
+    void add(bool rgb, NormalHistogram& histogram) {
+        const Channels channels = seek_normals(rgb);
+        check_spec();
+        const OIIO::ImageSpec& s = spec();
+        const int rows = s.tile_height > 0 ? s.tile_height : std::min(s.height, 64);
+        for (int y = 0; y < s.height; y += rows) add_rows(y, std::min(y + rows, s.height), channels, histogram);
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& what) const { throw input_error(path_, what); }
+    const OIIO::ImageSpec& spec() const { return input_->spec(); }
+
+    /// Goes to the first part that has normals.
+    Channels seek_normals(bool rgb) {
+        std::string names;
+        for (part_ = 0; input_->seek_subimage(part_, 0); ++part_) {
+            if (const auto found = find_normals(spec().channelnames, rgb)) return *found;
+            for (const std::string& name : spec().channelnames)
+                if (names.size() < 200) names += (names.empty() ? "" : ", ") + name;
+        }
+        input_->geterror(); // there being no further part is no error
+        fail("its channels are " + names +
+             ", and none are N.X, N.Y, N.Z or the like; rename them (oiiotool IN --ch N.X=R,N.Y=G,N.Z=B -o "
+             "OUT.exr)");
+    }
+
+    void check_spec() const {
+        const OIIO::ImageSpec& s = spec();
+        if (s.deep || s.depth > 1)
+            fail("it is a deep image or a volume; flatten it (oiiotool IN --flatten -o OUT)");
+        if (s.format.basetype != OIIO::TypeDesc::HALF && s.format.basetype != OIIO::TypeDesc::FLOAT &&
+            s.format.basetype != OIIO::TypeDesc::DOUBLE)
+            fail(
+                "it holds integers, which cannot be normals from -1 to 1; write the pass as a floating-point .exr");
+        if (s.width <= 0 || s.height <= 0 || s.width > kMaxSide || s.height > kMaxSide ||
+            s.tile_height > kMaxSide || std::int64_t{s.width} * s.height > kMaxPixels)
+            fail("its size " + std::to_string(s.width) + "x" + std::to_string(s.height) +
+                 " is not that of an image that can be read; at most 2^30 pixels");
+    }
+
+    /// Rows [begin, end) of the data window, counted from its top; what lies outside it is background.
+    void add_rows(int begin, int end, const Channels& channels, NormalHistogram& histogram) {
+        const auto [first, last] = std::minmax_element(channels.begin(), channels.end());
+        const int low = *first, high = *last + 1, count = high - low;
+        const OIIO::ImageSpec& s = spec();
+        const std::size_t pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(end - begin);
+        const bool far_apart = count > 16; // among very many channels each is read on its own
+        buffer_.resize(pixels * (far_apart ? 3 : static_cast<std::size_t>(count)));
+        std::array<std::size_t, 3> at{};
+        if (far_apart) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                read(begin, end, channels[i], channels[i] + 1, buffer_.data() + i, 3);
+                at[i] = i;
+            }
+        } else {
+            read(begin, end, low, high, buffer_.data(), count);
+            for (std::size_t i = 0; i < 3; ++i) at[i] = static_cast<std::size_t>(channels[i] - low);
+        }
+        const std::size_t stride = far_apart ? 3 : static_cast<std::size_t>(count);
+        for (const float* pixel = buffer_.data(); pixel != buffer_.data() + pixels * stride; pixel += stride)
+            histogram.add(double{pixel[at[0]]}, double{pixel[at[1]]}, double{pixel[at[2]]}, 1.0);
+    }
+
+    void read(int begin, int end, int channel0, int channel1, float* at, int stride) {
+        const OIIO::ImageSpec& s = spec();
+        const auto pixel = static_cast<OIIO::stride_t>(sizeof(float)) * stride;
+        const bool ok = s.tile_width > 0
+                            ? input_->read_tiles(part_, 0, s.x, s.x + s.width, s.y + begin, s.y + end, s.z, s.z + 1,
+                                                 channel0, channel1, OIIO::TypeDesc::FLOAT, at, pixel)
+                            : input_->read_scanlines(part_, 0, s.y + begin, s.y + end, s.z, channel0, channel1,
+                                                     OIIO::TypeDesc::FLOAT, at, pixel);
+        // Some readers report what is missing, but say they succeeded.
+        if (!ok || input_->has_error())
+            fail("its pixels cannot be read (" + input_->geterror() + "); the file is cut short or damaged");
+    }
+
+    std::string path_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+    int part_ = 0;
+    std::vector<float> buffer_;
+};
+
+} // namespace
+
+void add_pixel_normals(const std::string& path, bool rgb, NormalHistogram& histogram) {
+    PassReader(path).add(rgb, histogram);
+}
+
+} // namespace acdf::input

@@ -1,0 +1,59 @@
+#include "input/scene_normals.h"
+
+#include "input/image.h"
+#include "input/normal_histogram.h"
+#include "input/scene_sources.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <new>
+
+namespace acdf::input {
+namespace {
+
+std::string extension_of(const std::string& path) {
+    std::string text = std::filesystem::path(path).extension().string();
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+void check_file(const std::string& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) throw input_error(path, "there is no such file");
+    if (std::filesystem::is_directory(status)) throw input_error(path, "it is a folder; give a file in it");
+    if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0 && !error)
+        throw input_error(path, "the file is empty");
+}
+
+} // namespace
+
+SceneNormals read_scene_normals(const std::string& path, const SceneOptions& options) {
+    check_file(path);
+    const std::string extension = extension_of(path);
+    SceneNormals out;
+    try {
+        NormalHistogram histogram(options.up);
+        if (extension == ".obj" || extension == ".ply") {
+            out.kind = "mesh";
+            add_mesh_normals(path, extension == ".ply", histogram);
+        } else if (extension == ".txt" || extension == ".csv") {
+            out.kind = "list";
+            add_listed_normals(path, histogram);
+        } else {
+            out.kind = "normal pass";
+            add_pixel_normals(path, options.rgb_is_normal, histogram);
+        }
+        out.normals = histogram.normals();
+        out.skipped = histogram.skipped();
+    } catch (const std::bad_alloc&) {
+        throw input_error(path, "there is not enough memory to read it");
+    }
+    if (out.normals.empty())
+        throw input_error(path, "this " + out.kind + " has no normals (" + std::to_string(out.skipped) +
+                                    " are zero, NaN or of polygons without area)");
+    return out;
+}
+
+} // namespace acdf::input

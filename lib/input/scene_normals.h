@@ -1,0 +1,47 @@
+// The normals that occur in a scene, and how often: what a local environment map has to serve.
+#pragma once
+
+#include "input/probe.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace acdf::input {
+
+struct WeightedNormal {
+    float n[3];          ///< unit, in the frame of docs/conventions.md: z up
+    double weight = 0.0; ///< > 0: how often it occurs: area of a mesh, pixels of an image, as a list says
+};
+
+struct SceneNormals {
+    std::vector<WeightedNormal> normals; ///< at least one, at most about a million; in a fixed order
+    std::string kind;                    ///< "mesh", "normal pass", "list"
+    std::uint64_t skipped = 0;           ///< normals that are zero or NaN, polygons without area
+};
+
+/// Which axis of the scene points up. `y` turns (x, y, z) into (x, -z, y), as Blender does on import: use it for a
+/// scene with y up (OBJ, glTF, USD). The probe must then be turned the same way.
+enum class UpAxis { z, y };
+
+struct SceneOptions {
+    UpAxis up = UpAxis::z;
+    bool rgb_is_normal = false; ///< take R, G and B of an image in which no channel is named as a normal
+};
+
+/// Reads, by the file's extension:
+///
+/// | file | normals | weight |
+/// |---|---|---|
+/// | mesh: .obj, .ply | of the vertices, interpolated over each polygon; else of the face, as it is wound | area |
+/// | list: .txt, .csv | one a line, `x y z [weight]`, blanks or commas between; # starts a comment | 1, or as given
+/// | | any other: an image of a normal in each pixel, not encoded: components from -1 to 1 (floating point) |
+/// channels
+///   N.X, N.Y, N.Z of any layer; also Nx, normal.X, normal.R, ... | 1 a pixel |
+///
+/// Normals need not be unit; antialiased pixels are not. Those that agree to about 0.1 degree are merged into their
+/// weighted mean, so that memory does not grow with the scene (but for meshes). Throws Error (a
+/// std::runtime_error): one line, also where no normal is left.
+SceneNormals read_scene_normals(const std::string& path, const SceneOptions& options = {});
+
+} // namespace acdf::input

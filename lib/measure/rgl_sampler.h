@@ -1,0 +1,25 @@
+// The sampler that the authors of the RGL material database publish for its files: a baseline.
+#pragma once
+
+#include "input/rgl_brdf.h"
+#include "measure/brdf_samplers.h"
+
+namespace acdf::measure {
+
+/// Warps a uniform point by the luminance of the view, then by the density of visible normals, both bilinear with
+/// marginal and conditional CDFs (Dupuy and Jakob 2018, §4.3); then reflects wo at that normal. In double
+/// precision: the published program computes in single precision.
+class RglSampler {
+public:
+    explicit RglSampler(const input::RglBrdf& brdf) : tables_(brdf.tables()) {} ///< which must live as long
+
+    BrdfSample sample(const double wo[3], const double u[2]) const; ///< u in [0, 1]
+    double pdf(const double wo[3], const double wi[3]) const;
+    /// Of the tables that sampling needs, CDFs included, as floats.
+    std::size_t bytes() const { return tables_.vndf.bytes() + tables_.luminance.bytes(); }
+
+private:
+    const input::RglTables& tables_;
+};
+
+} // namespace acdf::measure

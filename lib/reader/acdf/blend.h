@@ -1,0 +1,148 @@
+/* Distributions that share their fine structure: one freestanding header over acdf/sample.h, valid C99, C++17 and
+ * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.6, §6.7).
+ *
+ * Boxes are split in two until tiles are left. Splits and tiles are stored once; each bin has a *row* of one byte a
+ * split: the probability of its lower part. What a caller draws from is a *mixture* of up to four rows, walked side
+ * by side: its density is exactly the weighted sum of theirs, at the price of one more byte read a split and row.
+ * Within a tile a tree of curves refines, for all bins alike. */
+#ifndef ACDF_BLEND_H
+#define ACDF_BLEND_H
+
+#include <acdf/sample.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ACDF_MAX_ROWS_MIXED = 4 };
+
+typedef struct AcdfBlend {
+    const AcdfTiles* tiles;  /* chunk TILE */
+    const AcdfSplit* splits; /* tile_count - 1, behind it */
+    const uint32_t* roots;   /* one a tile in `tree`; null where all tiles are cells */
+    const uint8_t* rows;     /* chunk ROWS */
+    const uint8_t* tree;     /* chunk TREE */
+} AcdfBlend;
+
+/* Rows and their weights, >= 0 and finite. */
+typedef struct AcdfMixture {
+    const uint8_t* row[ACDF_MAX_ROWS_MIXED];
+    double weight[ACDF_MAX_ROWS_MIXED];
+    int count;
+} AcdfMixture;
+
+/* Adds row `index` unless its weight is 0. */
+ACDF_FN void acdf_mixture_add(AcdfMixture* mix, const AcdfBlend* blend, uint32_t index, double weight) {
+    if (!(weight > 0.0)) return;
+    mix->row[mix->count] = blend->rows + (size_t)index * (blend->tiles->tile_count - 1);
+    mix->weight[mix->count] = weight;
+    ++mix->count;
+}
+
+ACDF_FN double acdf_mixture_sum(const AcdfMixture* mix) {
+    double sum = 0.0;
+    int i;
+    for (i = 0; i < mix->count; ++i) sum += mix->weight[i];
+    return sum;
+}
+
+/* What of each row's weight falls into the lower part of a split; out[1] the same of the upper one. */
+ACDF_FN void acdf_mixture_split(const AcdfMixture* mix, const AcdfBlend* blend, uint32_t split, AcdfMixture out[2],
+                                double sum[2]) {
+    int i;
+    sum[0] = sum[1] = 0.0;
+    for (i = 0; i < mix->count; ++i) {
+        const double code = (double)blend->tiles->codebook[mix->row[i][split]];
+        out[0].weight[i] = mix->weight[i] * (code * (1.0 / 65535.0));
+        out[1].weight[i] = mix->weight[i] * ((65535.0 - code) * (1.0 / 65535.0));
+        sum[0] += out[0].weight[i];
+        sum[1] += out[1].weight[i];
+    }
+}
+
+ACDF_FN void acdf_range_cut(AcdfRange* range, uint32_t position, int upper) {
+    if (upper) range->low = position;
+    else range->high = position;
+}
+
+/* Draws a tile of the mixture, whose sum is positive; u and range as in acdf_tree_sample, `mix` is used up. Returns
+ * the tile's number; *probability becomes its share of the mixture. */
+ACDF_FN uint32_t acdf_blend_sample_tile(const AcdfBlend* blend, AcdfMixture* mix, double* u, AcdfRange* range,
+                                        double* probability) {
+    const double whole = acdf_mixture_sum(mix);
+    double chosen = whole;
+    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit* split = &blend->splits[node];
+        const uint32_t axis = split->place & 7u;
+        AcdfMixture part[2];
+        double sum[2], x;
+        int upper, i;
+        acdf_mixture_split(mix, blend, node, part, sum);
+        x = u[axis] * (sum[0] + sum[1]);
+        upper = !(x < sum[0]) && sum[1] > 0.0;
+        u[axis] = upper ? acdf_unit_interval((x - sum[0]) / sum[1]) : x < sum[0] ? x / sum[0] : 1.0;
+        chosen = sum[upper];
+        for (i = 0; i < mix->count; ++i) mix->weight[i] = part[upper].weight[i];
+        acdf_range_cut(&range[axis], split->place >> 3, upper);
+        node = split->child[upper];
+    }
+    *probability = acdf_positive(chosen / whole);
+    return node & ~ACDF_TILE_FLAG;
+}
+
+/* Finds the tile of a grid square; square, range and strata as in acdf_tree_find. *probability becomes its share of
+ * the mixture, 0 where no sample can fall. */
+ACDF_FN uint32_t acdf_blend_find_tile(const AcdfBlend* blend, AcdfMixture* mix, const uint32_t* square,
+                                      AcdfRange* range, AcdfStratum* strata, double* probability) {
+    const double whole = acdf_mixture_sum(mix);
+    double chosen = whole;
+    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit* split = &blend->splits[node];
+        const uint32_t axis = split->place & 7u;
+        const int upper = square[axis] >= split->place >> 3;
+        AcdfMixture part[2];
+        double sum[2];
+        int i;
+        acdf_mixture_split(mix, blend, node, part, sum);
+        chosen = sum[upper];
+        if (strata) {
+            const double below = sum[0] / (sum[0] + sum[1]);
+            if (upper) strata[axis].low += strata[axis].width * below;
+            strata[axis].width *= upper ? sum[1] / (sum[0] + sum[1]) : below;
+        }
+        for (i = 0; i < mix->count; ++i) mix->weight[i] = part[upper].weight[i];
+        acdf_range_cut(&range[axis], split->place >> 3, upper);
+        node = split->child[upper];
+        if (!(chosen > 0.0)) {
+            *probability = 0.0;
+            return 0;
+        }
+    }
+    *probability = acdf_positive(chosen / whole);
+    return node & ~ACDF_TILE_FLAG;
+}
+
+/* Draws a cell of the mixture, as acdf_tree_sample does of a tree. Returns its probability, > 0. */
+ACDF_FN double acdf_blend_sample(const AcdfBlend* blend, AcdfMixture* mix, double* u, AcdfRange* range) {
+    double probability;
+    const uint32_t tile = acdf_blend_sample_tile(blend, mix, u, range, &probability);
+    if (!blend->roots || blend->roots[tile] == ACDF_NO_ROOT) return probability;
+    return acdf_positive(probability * acdf_tree_sample(blend->tree, blend->roots[tile], u, range));
+}
+
+/* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
+ACDF_FN double acdf_blend_find(const AcdfBlend* blend, AcdfMixture* mix, const uint32_t* square, AcdfRange* range,
+                               AcdfStratum* strata) {
+    double probability, inside;
+    const uint32_t tile = acdf_blend_find_tile(blend, mix, square, range, strata, &probability);
+    if (!(probability > 0.0) || !blend->roots || blend->roots[tile] == ACDF_NO_ROOT) return probability;
+    inside = acdf_tree_find(blend->tree, blend->roots[tile], square, range, strata);
+    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,346 @@
+/* Sampling and evaluating local environment maps: for every normal n the light that arrives above its horizon,
+ * times the cosine (Lawrence et al. 2005, §7.1). One freestanding header over acdf/blend.h, valid C99, C++17 and
+ * CUDA/HIP/SYCL, with the same contract.
+ *
+ * Frame and densities are those of acdf/sample.h. Normals need not be of unit length; a normal that is zero or NaN
+ * gets density 0. A normal whose bins are not stored is served by the environment's own table: unbiased, noisier.
+ */
+#ifndef ACDF_LOCAL_H
+#define ACDF_LOCAL_H
+
+#include <acdf/blend.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct AcdfLocal {
+    AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
+    AcdfEnvironment environment; /* the 2D table that is always there */
+    const AcdfBin* bins;
+    const AcdfLight* lights; /* of the blend */
+    uint32_t light_count;
+    uint32_t subdivisions; /* of an octahedron's edge; 0: bins are cells of a lat-long grid */
+    uint32_t columns;      /* of that grid */
+    uint32_t rows;
+    double cosine_share;
+} AcdfLocal;
+
+/* Up to three bins that surround a normal, and weights whose sum with the bins' corners is the normal itself, times
+ * a positive number. */
+typedef struct AcdfNormalBins {
+    uint32_t bin[3];
+    double weight[3];
+    int count;
+} AcdfNormalBins;
+
+/* Number of the corner (x, y, z), |x| + |y| + |z| = n, of an octahedron whose edges are divided by n: levels from
+ * z = n down, each once around from +x towards +y. There are 4 n^2 + 2. */
+ACDF_FN uint32_t acdf_octahedral_corner(uint32_t n, int32_t x, int32_t y, int32_t z) {
+    const uint32_t r = n - (uint32_t)(z < 0 ? -z : z); /* 4 r corners on this level, one at a pole */
+    const uint32_t before = z >= 0 ? (r == 0 ? 0 : 1 + 2 * r * (r - 1)) : 4 * n * n + 1 - 2 * r * (r + 1);
+    const int32_t s = (int32_t)r;
+    if (r == 0) return before;
+    if (x > 0 && y >= 0) return before + (uint32_t)y;
+    if (y > 0) return before + (uint32_t)(s - x);
+    if (x < 0) return before + (uint32_t)(2 * s - y);
+    return before + (uint32_t)(3 * s + x);
+}
+
+/* The corners of the triangle that holds a normal. On the faces |x| + |y| + |z| = 1 the normal is the weighted mean
+ * of the corners. Returns 0 for normals that are zero, NaN or infinite. */
+ACDF_FN int acdf_octahedral_bins(uint32_t n, const float normal[3], AcdfNormalBins* out) {
+    const double ax = fabs((double)normal[0]), ay = fabs((double)normal[1]), az = fabs((double)normal[2]);
+    const double sum = ax + ay + az;
+    double a[3], f[3], rest;
+    int32_t base[3], sign[3];
+    int i, k, down;
+    if (!(sum > 0.0 && sum < 1e300)) return 0;
+    a[0] = ax / sum * n;
+    a[1] = ay / sum * n;
+    a[2] = az / sum * n;
+    rest = (double)n;
+    for (i = 0; i < 3; ++i) {
+        sign[i] = normal[i] < 0.0f ? -1 : 1;
+        base[i] = (int32_t)a[i];
+        f[i] = a[i] - base[i];
+        rest -= base[i];
+    }
+    /* The fractions add up to 0, 1 or 2 but for rounding: at a corner, or in a triangle that points up or down. */
+    if (rest > 2.5) /* at a corner too, all three rounded down */
+        for (i = 0; i < 3; ++i, rest -= 1.0) ++base[i];
+    down = rest > 1.5;
+    out->count = 0;
+    for (i = 0; i < 3; ++i) {
+        int32_t c[3];
+        double weight = down ? 1.0 - f[i] : f[i];
+        if (rest < 0.5) weight = i == 0 ? 1.0 : 0.0;
+        if (!(weight > 0.0)) continue;
+        for (k = 0; k < 3; ++k) c[k] = base[k] + (rest < 0.5 ? 0 : (k == i) != down);
+        /* The corner lies at |c| / n from the centre: times that, its unit vector is the point on the face. */
+        weight *= sqrt((double)(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]));
+        out->bin[out->count] = acdf_octahedral_corner(n, sign[0] * c[0], sign[1] * c[1], sign[2] * c[2]);
+        out->weight[out->count++] = weight;
+    }
+    return out->count > 0;
+}
+
+/* The cell of a lat-long grid of normals: columns in phi, rows in theta, as those of a probe. */
+ACDF_FN int acdf_latlong_bins(uint32_t columns, uint32_t rows, const float normal[3], AcdfNormalBins* out) {
+    const double x = normal[0], y = normal[1], z = normal[2];
+    uint32_t column, row;
+    if (!(fabs(x) + fabs(y) + fabs(z) > 0.0 && fabs(x) + fabs(y) + fabs(z) < 1e300)) return 0;
+    column = (uint32_t)((double)columns * (0.5 - 0.5 * acdf_atan2pi(y, x)));
+    row = (uint32_t)((double)rows * acdf_atan2pi(sqrt(x * x + y * y), z));
+    if (column >= columns) column = 0;
+    if (row >= rows) row = rows - 1;
+    out->count = 1;
+    out->bin[0] = row * columns + column;
+    out->weight[0] = 1.0;
+    return 1;
+}
+
+ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
+    if (local->subdivisions > 0) return acdf_octahedral_bins(local->subdivisions, normal, out);
+    return acdf_latlong_bins(local->columns, local->rows, normal, out);
+}
+
+/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share. */
+enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND };
+
+typedef struct AcdfLocalSource {
+    int what;
+    uint32_t root;    /* of the tree */
+    double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
+    double length;    /* of that */
+    AcdfMixture mix;  /* of the blend */
+    double lights;    /* sum of the weights of the lights */
+    double sum;       /* of all weights */
+} AcdfLocalSource;
+
+/* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
+ * from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
+ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalSource* source) {
+    const double radius = (double)light->radius * source->length;
+    const double height = source->normal[0] * (double)light->direction[0] +
+                          source->normal[1] * (double)light->direction[1] +
+                          source->normal[2] * (double)light->direction[2];
+    if (height >= radius) return (double)light->share * height;
+    if (height <= -radius) return 0.0;
+    return (double)light->share * ((height + radius) * (height + radius) / (4.0 * radius));
+}
+
+/* The bin of the largest weight. */
+ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
+    int i, nearest = 0;
+    for (i = 1; i < bins->count; ++i)
+        if (bins->weight[i] > bins->weight[nearest]) nearest = i;
+    return bins->bin[nearest];
+}
+
+/* Sets the normal in the scale of the weights of its bins. */
+ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], AcdfLocalSource* out) {
+    const double x = normal[0], y = normal[1], z = normal[2], length = sqrt(x * x + y * y + z * z);
+    const double scale =
+        local->subdivisions > 0 ? (double)local->subdivisions / (fabs(x) + fabs(y) + fabs(z)) : 1.0 / length;
+    out->normal[0] = scale * x;
+    out->normal[1] = scale * y;
+    out->normal[2] = scale * z;
+    out->length = scale * length;
+}
+
+ACDF_FN void acdf_local_source(const AcdfLocal* local, const float normal[3], AcdfLocalSource* out) {
+    AcdfNormalBins bins;
+    uint32_t k;
+    int i;
+    out->what = ACDF_LOCAL_NOTHING;
+    out->root = 0;
+    out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
+    out->mix.count = 0;
+    if (!acdf_local_bins(local, normal, &bins)) return;
+    if (!local->blend.tiles) {
+        const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
+        out->root = bin->root != ACDF_NO_ROOT ? bin->root : local->environment.root;
+        if (bin->root == ACDF_NO_ROOT || bin->share > 0.0f) out->what = ACDF_LOCAL_TREE;
+        return;
+    }
+    for (i = 0; i < bins.count; ++i) {
+        const AcdfBin* bin = &local->bins[bins.bin[i]];
+        if (bin->root == ACDF_NO_ROOT) {
+            out->what = ACDF_LOCAL_TREE;
+            out->root = local->environment.root;
+            return;
+        }
+        acdf_mixture_add(&out->mix, &local->blend, bin->root, bins.weight[i] * (double)bin->share);
+    }
+    acdf_local_normal(local, normal, out);
+    for (k = 0; k < local->light_count; ++k) out->lights += acdf_light_weight(&local->lights[k], out);
+    out->sum = out->lights + acdf_mixture_sum(&out->mix);
+    if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
+}
+
+/* Draws a cell of lights and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
+ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, AcdfLocalSource* source, double* u,
+                                       AcdfRange* range) {
+    double x = u[0] * source->sum, probability;
+    if (x < source->lights || source->mix.count == 0) {
+        const AcdfLight* light = 0;
+        double weight = 0.0;
+        uint32_t k, axis, root;
+        for (k = 0; k < local->light_count; ++k) {
+            const double w = acdf_light_weight(&local->lights[k], source);
+            if (!(w > 0.0)) continue;
+            if (light) x -= weight;
+            light = &local->lights[k];
+            weight = w;
+            if (x < w) break;
+        }
+        u[0] = acdf_unit_interval(x / weight);
+        for (axis = 0; axis < 2; ++axis) {
+            range[axis].low = light->low[axis];
+            range[axis].high = light->high[axis];
+        }
+        probability = acdf_positive(weight / source->sum);
+        root = local->blend.roots ? local->blend.roots[light->tile] : ACDF_NO_ROOT;
+        if (root == ACDF_NO_ROOT) return probability;
+        return acdf_positive(probability * acdf_tree_sample(local->blend.tree, root, u, range));
+    }
+    u[0] = acdf_unit_interval((x - source->lights) / (source->sum - source->lights));
+    probability = acdf_mixture_sum(&source->mix) / source->sum;
+    return acdf_positive(probability * acdf_blend_sample(&local->blend, &source->mix, u, range));
+}
+
+/* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
+ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalSource* source, const uint32_t* square,
+                                     AcdfRange* range) {
+    AcdfMixture mix = source->mix;
+    double probability, inside;
+    uint32_t k, axis, root;
+    for (k = 0; k < local->light_count; ++k) {
+        const AcdfLight* light = &local->lights[k];
+        if (square[0] < light->low[0] || square[0] >= light->high[0] || square[1] < light->low[1] ||
+            square[1] >= light->high[1])
+            continue;
+        for (axis = 0; axis < 2; ++axis) {
+            range[axis].low = light->low[axis];
+            range[axis].high = light->high[axis];
+        }
+        probability = acdf_light_weight(light, source) / source->sum;
+        if (!(probability > 0.0)) return 0.0;
+        root = local->blend.roots ? local->blend.roots[light->tile] : ACDF_NO_ROOT;
+        if (root == ACDF_NO_ROOT) return acdf_positive(probability);
+        inside = acdf_tree_find(local->blend.tree, root, square, range, 0);
+        return inside > 0.0 ? acdf_positive(acdf_positive(probability) * inside) : 0.0;
+    }
+    if (mix.count == 0) return 0.0;
+    probability = acdf_mixture_sum(&source->mix) / source->sum;
+    inside = acdf_blend_find(&local->blend, &mix, square, range, 0);
+    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
+}
+
+/* The part of the density that follows the light. */
+ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalSource* source,
+                                   const float direction[3]) {
+    const uint32_t columns = local->environment.columns, rows = local->environment.rows;
+    AcdfRange range[2];
+    double t[2] = {0.5, 0.5}, column, p, z0, dz;
+    uint32_t square[2];
+    if (source->what == ACDF_LOCAL_NOTHING || !acdf_sphere_square(columns, rows, direction, square, &column))
+        return 0.0f;
+    acdf_sphere_ranges(columns, rows, range);
+    p = source->what == ACDF_LOCAL_BLEND ? acdf_local_blend_find(local, source, square, range)
+                                         : acdf_tree_find(local->environment.tree, source->root, square, range, 0);
+    if (!(p > 0.0)) return 0.0f;
+    z0 = acdf_row_z(range[1].low, rows);
+    dz = z0 - acdf_row_z(range[1].high, rows);
+    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) acdf_sphere_fractions(direction, column, range, z0, dz, t);
+    return acdf_cell_pdf(p, range[0].high - range[0].low, columns, dz,
+                         acdf_tilt_density(range[0].tilt, t[0]) * acdf_tilt_density(range[1].tilt, t[1]));
+}
+
+/* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
+ACDF_FN float acdf_local_density(const AcdfLocal* local, const float normal[3], const float direction[3],
+                                 float light) {
+    const double x = normal[0], y = normal[1], z = normal[2];
+    const double share = local->cosine_share;
+    double cosine, pdf;
+    if (share == 0.0) return light;
+    cosine = (x * direction[0] + y * direction[1] + z * direction[2]) / sqrt(x * x + y * y + z * z);
+    pdf = (1.0 - share) * (double)light + (cosine > 0.0 ? share * cosine * (1.0 / ACDF_PI) : 0.0);
+    return pdf > 1.17549435e-38 || pdf == 0.0 ? (float)pdf : 1.17549435e-38f;
+}
+
+/* A direction around the normal with density cos / pi: the unit normal plus a point of the unit sphere. */
+ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, float direction[3]) {
+    const double nx = normal[0], ny = normal[1], nz = normal[2], length = sqrt(nx * nx + ny * ny + nz * nz);
+    /* Cosine to the normal, kept above what rounding to float could take below the horizon, and sine. */
+    const double h = sqrt(u1 < 1.0 - 0x1p-40 ? 1.0 - u1 : 0x1p-40), r = sqrt(1.0 - h * h);
+    const double n[3] = {nx / length, ny / length, nz / length};
+    /* A frame around n without a branch on its size (Duff et al. 2017). */
+    const double sign = n[2] < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
+    const double s[3] = {1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]};
+    const double t[3] = {b, sign + n[1] * n[1] * a, -n[1]};
+    double sine, cosine;
+    int i;
+    acdf_sincospi(2.0 * u0 - 1.0, &sine, &cosine);
+    for (i = 0; i < 3; ++i) direction[i] = (float)(r * (cosine * s[i] + sine * t[i]) + h * n[i]);
+}
+
+/* Density per steradian with which acdf_local_sample draws `direction` (unit) for `normal`. */
+ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
+    AcdfLocalSource source;
+    acdf_local_source(local, normal, &source);
+    if (source.what == ACDF_LOCAL_NOTHING) return 0.0f;
+    return acdf_local_density(local, normal, direction, acdf_local_light_pdf(local, &source, direction));
+}
+
+/* Draws a direction for `normal`; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
+ * pdf 0 (and no direction) where the normal is not valid or nothing shines on it. */
+ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
+    const uint32_t columns = local->environment.columns, rows = local->environment.rows;
+    AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    AcdfLocalSource source;
+    AcdfRange range[2];
+    double u[2], p;
+    acdf_local_source(local, normal, &source);
+    if (source.what == ACDF_LOCAL_NOTHING) return out;
+    u[0] = acdf_unit_interval(u0);
+    u[1] = acdf_unit_interval(u1);
+    if (u[0] < local->cosine_share) {
+        acdf_cosine_direction(normal, u[0] / local->cosine_share, u[1], out.direction);
+        out.pdf = acdf_local_light_pdf(local, &source, out.direction);
+    } else {
+        if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
+        acdf_sphere_ranges(columns, rows, range);
+        p = source.what == ACDF_LOCAL_BLEND ? acdf_local_blend_sample(local, &source, u, range)
+                                            : acdf_tree_sample(local->environment.tree, source.root, u, range);
+        out = acdf_sphere_place(columns, rows, range, u, p);
+    }
+    out.pdf = acdf_local_density(local, normal, out.direction, out.pdf);
+    return out;
+}
+
+/* Integral of the light above the horizon times the cosine, interpolated between bins; where those of the normal
+ * are not stored that of all light; 0 for normals that are not valid. */
+ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[3]) {
+    AcdfNormalBins bins;
+    AcdfLocalSource source;
+    acdf_local_source(local, normal, &source);
+    if (source.what == ACDF_LOCAL_BLEND) return local->environment.total * source.sum / source.length;
+    if (source.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
+    if (source.root == local->environment.root) return local->environment.total;
+    return local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share;
+}
+
+/* Whether the bins of a normal are stored. */
+ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
+    AcdfLocalSource source;
+    acdf_local_source(local, normal, &source);
+    return source.what == ACDF_LOCAL_BLEND ||
+           (source.what == ACDF_LOCAL_TREE && source.root != local->environment.root);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,14 @@
+// Codec 2 of format/SPEC.md §4: a tree taken apart into planes, which deflate better. Not installed.
+#pragma once
+
+#include <cstdint>
+
+namespace acdf {
+
+/// Puts the tree of `tree_size` bytes at `tree` (aligned to 4) together from `size` bytes of planes. False where
+/// they are not the planes of a tree of that size; `tree` then holds anything. Whether the tree itself keeps the
+/// rules is for others to check. Reads and writes nothing else, allocates nothing; linear in both sizes.
+bool planes_to_tree(const std::uint8_t* planes, std::uint64_t size, std::uint8_t* tree,
+                    std::uint64_t tree_size) noexcept;
+
+} // namespace acdf
