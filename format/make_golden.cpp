@@ -7,8 +7,8 @@
 //
 //   u0 u1  x y z  pdf
 //
-// in hexadecimal floating point (C99 %a). None of the files is symmetric, so that a mirrored, turned or
-// transposed frame shows.
+// in hexadecimal floating point (C99 %a), of a local environment with the normal before it. None of the files is
+// symmetric, so that a mirrored, turned or transposed frame shows.
 #include "compress/fit.h"
 #include "compress/store.h"
 
@@ -123,7 +123,7 @@ Golden wide() {
 }
 
 /// More segments than the short form of a count holds, and a child behind them that takes a longer link.
-Golden many_segments() {
+Golden many_segments(const char* name, AcdfCodec codec) {
     Curve many{kPhi, {}, {}, {}, {}};
     double sum = 0.0;
     for (std::uint32_t i = 0; i < 150; ++i) {
@@ -136,7 +136,60 @@ Golden many_segments() {
                               std::move(many),
                               {kPhi, {10, 290}, {0.25, 0.25, 0.5}, {}, {}}},
                              {0}};
-    return golden("many_segments", cascade, environment_description(301, 9));
+    return {name, store(encode_tree(cascade), environment_description(301, 9), codec)};
+}
+
+Description local_axes(Description d, const std::vector<AxisDescription>& normals, std::size_t bins) {
+    d.kind = ACDF_KIND_LOCAL;
+    d.total = 3.0;
+    d.axes.insert(d.axes.end(), normals.begin(), normals.end());
+    d.shares.clear();
+    for (std::size_t i = 0; i < bins; ++i) d.shares.push_back(float(1 + i % 4) / 8.0f);
+    return d;
+}
+
+/// A local environment with everything that bins can share: tiles with a curve and without, one of them a light; bin 7
+/// is not stored.
+Golden local() {
+    const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
+                              {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
+                              {kTheta, {3}, {0.75, 0.25}, {3, -1}, {}},
+                              {kPhi, {7, 9}, {0.5, 0.0, 0.5}, {}, {}}},
+                             {0}};
+    EncodedTree tree = encode_tree(cascade);
+    StoredRows rows;
+    rows.splits = {{kPhi | 5u << 3, {ACDF_TILE_FLAG, 1}}, {kTheta | 3u << 3, {ACDF_TILE_FLAG | 1, ACDF_TILE_FLAG | 2}}};
+    rows.tile_roots = {tree.offsets[1], tree.offsets[3], ACDF_NO_ROOT};
+    for (std::uint32_t i = 0; i < 256; ++i) rows.codebook.push_back(static_cast<std::uint16_t>(257 * i));
+    rows.row_count = 5;
+    for (std::uint32_t r = 0; r < rows.row_count; ++r)
+        rows.codes.insert(rows.codes.end(), {static_cast<std::uint8_t>(20 + 40 * r), 0}); // nothing for the light
+    tree.roots.clear();
+    for (std::uint32_t bin = 0; bin < 18; ++bin) tree.roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % 5);
+    Description d = local_axes(environment_description(12, 8),
+                               {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
+    d.chunks = shared_chunks(rows);
+    d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, 1, {5, 0}, {12, 3}}}));
+    return {"local", store(tree, d)};
+}
+
+/// A tree for each bin of a grid of normals, some of them the same; bin 2 is not stored, bin 4 dark.
+Golden local_grid() {
+    const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {-1, 1}, {}},
+                              {kTheta, {3}, {0.75, 0.25}, {}, {}},
+                              {kTheta, {1, 4}, {0.125, 0.75, 0.125}, {-1, 3, -1}, {}},
+                              {kPhi, {2, 11}, {0.25, 0.5, 0.25}, {}, {}}},
+                             {0, 2}};
+    EncodedTree tree = encode_tree(cascade);
+    tree.roots = {tree.roots[1], tree.offsets[3], ACDF_NO_ROOT, 0, tree.roots[1], tree.offsets[1]};
+    constexpr double pi = 3.141592653589793;
+    Description d = local_axes(environment_description(12, 8),
+                               {{"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 2, 0.0, pi},
+                                {"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 3, pi, -pi}},
+                               6);
+    d.shares[4] = 0.0f;
+    d.chunks = {local_chunk(0.0f, {})};
+    return {"local_grid", store(tree, d)};
 }
 
 // ---- samples --------------------------------------------------------------------------------------------
@@ -156,10 +209,28 @@ std::vector<std::pair<double, double>> random_numbers() {
     return numbers;
 }
 
+/// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is drawn.
+constexpr float kNormals[][3] = {{0, 0, 1}, {1, 0, 0}, {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f}, {-2, 1, 1}, {0, 0.5f, -5}};
+
+std::string local_samples(const acdf::LocalEnvironmentView& view) {
+    std::string text;
+    for (const auto& n : kNormals)
+        for (const auto& [u0, u1] : random_numbers()) {
+            const acdf::DirectionSample s = view.sample(n, u0, u1);
+            char line[300];
+            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{n[0]}, double{n[1]},
+                          double{n[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
+                          double{s.direction[2]}, double{s.pdf});
+            text += line;
+        }
+    return text;
+}
+
 std::string samples(const Golden& golden) {
     acdf::File file;
     const acdf::Status status = acdf::File::from_memory(golden.bytes.data(), golden.bytes.size(), file);
     if (!status.ok()) throw std::runtime_error(golden.name + ": " + status.message);
+    if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
     std::string text;
     for (const auto& [u0, u1] : random_numbers()) {
         const acdf::DirectionSample s = file.environment().sample(u0, u1);
@@ -188,7 +259,8 @@ int main(int argc, char** argv) try {
     for (const Golden& golden :
          {smallest(), one_texel(), fitted("untilted", ACDF_FIT_VARIANCE, Order::z, ACDF_CODEC_NONE),
           fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB), tilted(), deep(), shared_child(), wide(),
-          many_segments()}) {
+          many_segments("many_segments", ACDF_CODEC_NONE), many_segments("planes", ACDF_CODEC_ZLIB), local(),
+          local_grid()}) {
         const std::string text = samples(golden);
         write(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
         write(folder + golden.name + ".txt", text.data(), text.size());

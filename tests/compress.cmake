@@ -24,7 +24,7 @@ acdf_add_test(test_compress_probes
     SOURCES compress_checks.cpp compress_probes.cpp
     LIBRARIES acdf_input acdf_measure)
 acdf_add_test(test_compress_golden
-    SOURCES compress_golden.cpp
+    SOURCES compress_golden.cpp local_golden.cpp
     LIBRARIES acdf_compress)
 target_compile_definitions(test_compress_golden PRIVATE ACDF_MAKE_GOLDEN="$<TARGET_FILE:make_golden>")
 add_dependencies(test_compress_golden make_golden)

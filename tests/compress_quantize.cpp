@@ -100,6 +100,8 @@ TEST(Apportion, MillionsToOne) {
 
 TEST(Apportion, AllTiny) { // sums that a caller forgot to normalise
     check_widths(std::vector<double>(500, 1e-300));
+    // At once, not one share at a time, where the scale to whole shares would be infinite.
+    EXPECT_EQ(apportion({3e-310, 1e-310}, kWide, 256), apportion({0.75, 0.25}, kWide, 256));
 }
 
 TEST(Apportion, AsManyAsThereAreShares) {

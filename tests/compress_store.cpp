@@ -232,6 +232,13 @@ TEST(Store, RefusesWhatTheFormatCannotHold) {
     EXPECT_THROW(store(tree, description), std::invalid_argument);
 }
 
+TEST(Store, ACurveWithoutKnotsTakesNoWiderPositions) { // wherever its range begins
+    const EncodedTree tree = encode_tree({{{0, {300}, {0.5, 0.5}, {-1, 1}, {}}, {0, {}, {1.0}, {}, {}}}, {0}}, 0.0);
+    const AcdfCurve child = acdf_curve_at(tree.bytes.data(), tree.offsets[1]);
+    EXPECT_EQ(child.segments, 1u);
+    EXPECT_EQ(ACDF_CURVE_POSITION_CODE(child.header), 0u);
+}
+
 TEST(Store, DescribesTheFile) {
     Description d = environment_description(12, 7);
     d.fit = ACDF_FIT_PDF;

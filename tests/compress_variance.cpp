@@ -95,10 +95,13 @@ Partition slow_columns(const Target& t, const std::vector<Run>& bands, std::size
 Partition slow_variance(const Target& t, std::size_t count) {
     Partition best;
     best.cost = INFINITY;
-    for (double bands = 4.0; bands <= t.rows && bands <= double(count) / 2; bands *= std::sqrt(2.0)) {
+    std::vector<std::size_t> counts;
+    for (double bands = 4.0; bands <= t.rows && bands <= double(count) / 2; bands *= std::sqrt(2.0))
+        counts.push_back(static_cast<std::size_t>(bands));
+    for (const std::size_t bands : counts) {
         std::vector<Run> rows;
         for (std::uint32_t r = 0; r < t.rows; ++r) rows.push_back({r, r + 1});
-        join_down(rows, static_cast<std::size_t>(bands), [&](Run run) { return band_cost(t, run); });
+        join_down(rows, bands, [&](Run run) { return band_cost(t, run); });
         Partition p = slow_columns(t, rows, count);
         if (p.cost < best.cost) best = std::move(p);
     }
@@ -119,6 +122,26 @@ TEST(FitVariance, CascadeJoinsWhatTheSlowReferenceJoins) {
             EXPECT_EQ(std::make_pair(cells[i].low[1], cells[i].high[1]), rows);
             EXPECT_EQ(std::make_pair(cells[i].low[0], cells[i].high[0]), columns);
         }
+    }
+}
+
+TEST(FitVariance, RefusesAGoalOfNoCells) {
+    const Target t = acdf_test::noise_target(8, 4, 2);
+    EXPECT_THROW(fit(t, variance(0)), std::invalid_argument);
+    EXPECT_THROW(fit(t, variance(0, Shape::tree)), std::invalid_argument);
+}
+
+TEST(FitVariance, ProgressRisesAndEndsAtOne) {
+    const Target t = acdf_test::noise_target(64, 40, 2);
+    for (const Shape shape : {Shape::cascade, Shape::tree}) {
+        FitOptions options = variance(200, shape);
+        double last = 0.0;
+        options.progress = [&](double share) {
+            EXPECT_GE(share, last);
+            last = share;
+        };
+        fit(t, options);
+        EXPECT_EQ(last, 1.0);
     }
 }
 

@@ -14,3 +14,14 @@ if(TARGET acdf_input)
             input_scene_hostile.cpp
         LIBRARIES acdf_input OpenImageIO::OpenImageIO OpenEXR::OpenEXR OpenEXR::OpenEXRUtil)
 endif()
+
+# BRDFs: measured ones, models, tables.
+if(TARGET acdf_input)
+    acdf_add_test(test_input_brdf
+        SOURCES
+            input_brdf_files.cpp
+            input_brdf_merl.cpp
+            input_brdf_models.cpp
+            input_brdf_rgl.cpp
+        LIBRARIES acdf_input OpenImageIO::OpenImageIO)
+endif()

@@ -68,8 +68,8 @@ TEST(SceneNormals, YUpIsTurned) {
                                           "v 0 0 0\nv 0 2 0\nv 0 0 1\nf 7 8 9\n"); // +x, area 1
     const SceneNormals scene = read_scene_normals(folder.file("floor.OBJ"), {UpAxis::y, false});
     EXPECT_NEAR(weight_of(scene, 0, 0, 1), 8.0, 1e-6);
-    EXPECT_NEAR(weight_of(scene, 0, -1, 0), 0.5, 1e-6);
-    EXPECT_NEAR(weight_of(scene, 1, 0, 0), 1.0, 1e-6);
+    EXPECT_NEAR(weight_of(scene, 1, 0, 0), 0.5, 1e-6);
+    EXPECT_NEAR(weight_of(scene, 0, 1, 0), 1.0, 1e-6);
     EXPECT_NEAR(weight_of(read_scene_normals(folder.file("floor.OBJ")), 0, 1, 0), 8.0, 1e-6);
 }
 
@@ -208,7 +208,7 @@ TEST(SceneNormals, RgbOnlyWhereAsked) {
     const Folder folder;
     write_pass(folder.file("n.exr"), {"R", "G", "B"}, 0);
     EXPECT_EQ(weight_of(read_scene_normals(folder.file("n.exr"), {UpAxis::z, true}), 0, 0.6, 0.8), 6.0);
-    EXPECT_EQ(weight_of(read_scene_normals(folder.file("n.exr"), {UpAxis::y, true}), 0, -0.8, 0.6), 6.0);
+    EXPECT_EQ(weight_of(read_scene_normals(folder.file("n.exr"), {UpAxis::y, true}), 0.8, 0, 0.6), 6.0);
     try {
         read_scene_normals(folder.file("n.exr"));
         ADD_FAILURE();

@@ -16,3 +16,8 @@ acdf_add_test(test_measure_local
         measure_tiling.cpp
         measure_rival_probes.cpp
     LIBRARIES acdf_measure acdf_input)
+
+# The rivals of BRDF files.
+acdf_add_test(test_measure_brdf_rivals
+    SOURCES measure_brdf_rivals.cpp
+    LIBRARIES acdf_measure acdf_input)

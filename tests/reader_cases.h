@@ -17,6 +17,7 @@ struct Case {
     acdf::Limits limits = {};
 };
 
+std::vector<Case> brdf_cases();  ///< of kind 3
 std::vector<Case> local_cases(); ///< of kind 2 and of what bins share
 
 } // namespace acdf_test

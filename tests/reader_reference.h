@@ -21,6 +21,12 @@ inline std::uint64_t number(const Bytes& b, std::size_t at, int size) {
     for (int i = size - 1; i >= 0; --i) v = v << 8 | b.at(at + static_cast<std::size_t>(i));
     return v;
 }
+inline double f32(const Bytes& b, std::size_t at) {
+    const auto bits = static_cast<std::uint32_t>(number(b, at, 4));
+    float v;
+    std::memcpy(&v, &bits, 4);
+    return static_cast<double>(v);
+}
 inline double f64(const Bytes& b, std::size_t at) {
     const std::uint64_t bits = number(b, at, 8);
     double v;
@@ -112,30 +118,43 @@ public:
         Cell cell;
         cell.high[0] = columns;
         cell.high[1] = rows;
-        for (std::size_t unit = root;;) {
+        walk_from(root, cell, choose);
+        cell.p = std::max(cell.p, cell.p > 0.0 ? std::ldexp(1.0, -1000) : 0.0);
+        return cell;
+    }
+
+    /// On from `cell`; its p becomes 0 where no sample can fall.
+    void walk_from(std::size_t unit, Cell& cell, const std::function<std::size_t(const Curve&)>& choose) const {
+        for (;;) {
             const Curve c = inherit(curve(unit), cell);
             const std::size_t i = choose(c);
             enter(c, i, cell);
-            if (cell.p == 0.0) return cell;
-            if (c.children[i] == 0) break;
+            if (cell.p == 0.0 || c.children[i] == 0) return;
             unit = c.children[i];
         }
-        cell.p = std::max(cell.p, std::ldexp(1.0, -1000));
-        return cell;
     }
 
     Sample sample(double u0, double u1) const {
         double u[2] = {u0, u1};
         for (double& v : u) v = v > 0.0 ? std::min(v, 1.0) : 0.0;
         Sample s;
-        s.cell = walk([&](const Curve& c) {
-            double v = u[c.axis] * c.maximum;
-            if (v >= c.maximum) v = c.maximum * (1.0 - std::ldexp(1.0, -53));
-            std::size_t i = 0;
-            while (!(c.cumulative[i] <= v && v < c.cumulative[i + 1])) ++i;
-            u[c.axis] = (v - c.cumulative[i]) / (c.cumulative[i + 1] - c.cumulative[i]);
-            return i;
-        });
+        s.cell = walk([&](const Curve& c) { return draw(c, u); });
+        place(s, u);
+        return s;
+    }
+
+    /// Steps 1 to 3.
+    static std::size_t draw(const Curve& c, double (&u)[2]) {
+        double v = u[c.axis] * c.maximum;
+        if (v >= c.maximum) v = c.maximum * (1.0 - std::ldexp(1.0, -53));
+        std::size_t i = 0;
+        while (!(c.cumulative[i] <= v && v < c.cumulative[i + 1])) ++i;
+        u[c.axis] = (v - c.cumulative[i]) / (c.cumulative[i + 1] - c.cumulative[i]);
+        return i;
+    }
+
+    /// Direction and density in s.cell.
+    void place(Sample& s, const double (&u)[2]) const {
         const double t0 = solve(s.cell.tilt[0], u[0]), t1 = solve(s.cell.tilt[1], u[1]);
         const double beta = std::ldexp(1.0, -22), x0 = s.cell.low[0], x1 = s.cell.high[0];
         const double z0 = z_of(s.cell.low[1]), z1 = z_of(s.cell.high[1]);
@@ -149,21 +168,34 @@ public:
         s.direction[1] = sine * std::sin(phi);
         s.direction[2] = z;
         s.pdf = density(s.cell, t0, t1);
-        return s;
     }
 
     // SPEC.md §6.3 and §6.4
     double pdf(const double (&d)[3], Cell* found = nullptr) const {
-        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        if (!(std::fabs(length - 1.0) < 0.0005)) return 0.0;
-        const double sine = std::hypot(d[0], d[1]);
-        double column = columns * (0.5 - (sine > 0 ? std::atan2(d[1], d[0]) : 0.0) / (2 * M_PI));
-        if (column >= columns) column = 0.0;
-        const double row = rows * std::atan2(sine, d[2]) / M_PI;
-        const double square[2] = {std::floor(column), std::min(std::floor(row), rows - 1)};
+        double square[2];
+        if (!square_of(d, columns, rows, square)) return 0.0;
         const Cell cell = find(square);
         if (found) *found = cell;
+        return density_at(cell, d);
+    }
+
+    /// The grid square of a direction; false where its length is wrong.
+    static bool square_of(const double (&d)[3], double columns, double rows, double (&square)[2]) {
+        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        if (!(std::fabs(length - 1.0) < 0.0005)) return false;
+        square[0] = std::floor(column_of(d, columns));
+        square[1] = std::min(std::floor(rows * std::atan2(std::hypot(d[0], d[1]), d[2]) / M_PI), rows - 1);
+        return true;
+    }
+    static double column_of(const double (&d)[3], double columns) {
+        const double sine = std::hypot(d[0], d[1]);
+        const double column = columns * (0.5 - (sine > 0 ? std::atan2(d[1], d[0]) : 0.0) / (2 * M_PI));
+        return column >= columns ? 0.0 : column;
+    }
+
+    double density_at(const Cell& cell, const double (&d)[3]) const {
         if (cell.p == 0.0) return 0.0;
+        const double sine = std::hypot(d[0], d[1]), column = column_of(d, columns);
         const double t0 = (column - cell.low[0]) / (cell.high[0] - cell.low[0]);
         const double z0 = z_of(cell.low[1]), z1 = z_of(cell.high[1]);
         const double t1 = (z0 - std::cos(std::atan2(sine, d[2]))) / (z0 - z1);
@@ -171,11 +203,12 @@ public:
     }
 
     Cell find(const double (&square)[2]) const {
-        return walk([&](const Curve& c) {
-            std::size_t i = 0;
-            while (i + 1 < c.n() && square[c.axis] >= c.positions[i + 1]) ++i;
-            return i;
-        });
+        return walk([&](const Curve& c) { return segment_of(c, square); });
+    }
+    static std::size_t segment_of(const Curve& c, const double (&square)[2]) {
+        std::size_t i = 0;
+        while (i + 1 < c.n() && square[c.axis] >= c.positions[i + 1]) ++i;
+        return i;
     }
 
     /// Every cell, those of probability 0 included.
@@ -214,6 +247,9 @@ private:
         if (type == "DESC") description_ = bytes;
         if (type == "BINS") bins_ = bytes;
         if (type == "TREE") tree_ = bytes;
+        if (type == "TILE") tiles_ = bytes;
+        if (type == "ROWS") rows_ = bytes;
+        if (type == "LOCL") local_ = bytes;
     }
 
     // Positions on the axis: the ends are those of the range so far.
@@ -241,7 +277,8 @@ private:
         }
     }
 
-    Bytes description_, bins_, tree_;
+protected:
+    Bytes description_, bins_, tree_, tiles_, rows_, local_;
 };
 
 } // namespace acdf_reference

@@ -1,4 +1,5 @@
 // For every rule of the table a file that breaks it and no other.
+#include "brdf_builder.h"
 #include "local_builder.h"
 #include "reader_cases.h"
 #include "reader_files.h"
@@ -521,7 +522,7 @@ std::vector<Case> table_cases() {
 
 std::vector<Case> cases() {
     std::vector<Case> all = container_cases();
-    for (auto make : {plane_cases, description_cases, tree_cases, table_cases, local_cases})
+    for (auto make : {plane_cases, description_cases, tree_cases, table_cases, local_cases, brdf_cases})
         for (const Case& c : make()) all.push_back(c);
     return all;
 }
@@ -555,7 +556,8 @@ INSTANTIATE_TEST_SUITE_P(Rules, BrokenRule, testing::ValuesIn(cases()), case_nam
 
 TEST(Rules, theCompleteFilesBreakNone) {
     for (const FileSpec& spec : {complete_file(), spare_file(), table_file(), chain(1).file(), chain(64).file(),
-                                 shared_local().file(), lit_local().file(), separate_local().file()}) {
+                                 shared_local().file(), lit_local().file(), separate_local().file(),
+                                 shared_brdf().file(), separate_brdf().file()}) {
         const Findings found = findings(spec.encode());
         EXPECT_TRUE(found.rules.empty()) << found.text;
     }

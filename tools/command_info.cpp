@@ -33,6 +33,11 @@ struct TreeCounts {
 
 TreeCounts count_tree(const File& file) {
     TreeCounts counts;
+    if (const AcdfTiles* tiles = file.blend().tiles; tiles && tiles->root_count == 0) {
+        counts.cells = tiles->tile_count; // shared by all bins, and no curve divides them
+        counts.curves = 0;
+        return counts;
+    }
     for (std::uint32_t at = 0; at < file.tree_units();) {
         AcdfCurve curve;
         const std::size_t next = acdf_curve_decode(file.tree(), at, &curve);
@@ -111,6 +116,23 @@ void add_metadata(const File& file, Json& report) {
     if (!other.empty()) report["metadata"] = other;
 }
 
+/// What a local environment has beside its trees.
+Json local_json(const File& file) {
+    const AcdfLocal local = file.local().data();
+    std::uint64_t stored = 0;
+    for (std::uint32_t i = 0; i < file.description().bin_count; ++i)
+        stored += file.bin(i).root != ACDF_NO_ROOT;
+    Json report;
+    report["normals"] = local.subdivisions > 0 ? std::to_string(local.subdivisions)
+                                               : std::to_string(local.columns) + "x" + std::to_string(local.rows);
+    report["bins_stored"] = stored;
+    report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
+    report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
+    report["lights"] = local.light_count;
+    report["cosine_share"] = local.cosine_share;
+    return report;
+}
+
 Json describe(const std::string& path, const File& file) {
     const AcdfHeader& header = file.header();
     const AcdfDescription& description = file.description();
@@ -123,6 +145,7 @@ Json describe(const std::string& path, const File& file) {
     report["bins"] = description.bin_count;
     report["cells"] = counts.cells;
     report["curves"] = counts.curves;
+    if (header.kind == ACDF_KIND_LOCAL) report["local"] = local_json(file);
     report["axes"] = axes_json(file);
     report["fit"] = fit_name(description.fit);
     report["filter"] = filter_name(description.filter);
@@ -159,6 +182,15 @@ std::string target_text(const Json& report) {
            text_of(report["filter"]) + "; integral " + number(report["total"]);
 }
 
+std::string local_text(const Json& local) {
+    const std::string bins = "--normals " + text_of(local["normals"]) + ", " + text_of(local["bins_stored"]) + " stored; ";
+    const std::string shared = local["tiles"] == 0 ? "a tree each"
+                                                   : text_of(local["tiles"]) + " tiles shared by " +
+                                                         text_of(local["rows"]) + " rows, " +
+                                                         text_of(local["lights"]) + " lights";
+    return bins + shared + "; cosine share " + number(local["cosine_share"]);
+}
+
 std::string source_text(const Json& source) {
     std::string text;
     for (const auto& [key, value] : source.items()) {
@@ -184,6 +216,7 @@ void print(const Json& report) {
     line("fit", text_of(report["fit"]) + "; stored: " + text_of(report["cells"]) + " cells in " +
                     text_of(report["curves"]) + " curves, " + text_of(report["bins"]) +
                     (report["bins"] == 1 ? " bin" : " bins"));
+    if (report.contains("local")) line("normals", local_text(report["local"]));
     line("source", source_text(report["source"]));
     line("made by", text_of(report["tool"]));
     line("options", text_of(report["options"]));

@@ -69,6 +69,8 @@ void set_separate(Options& options) {
     if (local.sharing) {
         for (const char* option : {"--fit", "--knots", "--eps", "--order", "--bin-target"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
+        if (local.columns > 0)
+            throw CLI::ValidationError("--normals", "of columns and rows is for --no-sharing; give one number");
         return;
     }
     if (options.given("--tiles")) throw CLI::ValidationError("--tiles", "is for files whose bins share tiles");
@@ -195,8 +197,9 @@ void add_bins(CLI::App& command, Options& options) {
         ->group("Normals");
     const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
     command
-        .add_option("--scene-up", options.scene_input.up,
-                    "Which axis of the scene points up; y turns (x, y, z) into (x, -z, y)")
+        .add_option(
+            "--scene-up", options.scene_input.up,
+            "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
         ->transform(CLI::CheckedTransformer(axes).description(""))
         ->option_text("y|z [z]")
         ->group("Normals");

@@ -1,8 +1,10 @@
 // acdf measure: how accurate a file is, by summation over its source.
+#include "brdf_measure.h"
 #include "commands.h"
 #include "environment.h"
 #include "file_input.h"
 #include "help.h"
+#include "local_measure.h"
 #include "measure/full_cdf.h"
 #include "options.h"
 #include "probe_options.h"
@@ -22,7 +24,8 @@ namespace {
 struct Options {
     std::string file, source;
     input::ProbeOptions input;
-    bool json = false, quiet = false;
+    std::uint32_t normals = 256;
+    bool rivals = false, json = false, quiet = false;
 };
 
 nlohmann::ordered_json report(const Options& options, const File& file, const measure::Accuracy& a,
@@ -56,34 +59,23 @@ void print_text(const Options& options, const File& file, const measure::Accurac
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
 }
 
-void remark_on_source(const Options& options, const File& file, const input::Probe& probe) {
-    const Text hash = file.metadata("source.sha256");
-    if (hash.size > 0 && std::string(hash.data, hash.size) != probe.source_sha256 && !options.quiet)
-        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", options.file.c_str(),
-                     options.source.c_str());
-}
-
-/// What the file says it was fitted to.
-compress::TargetOptions target_options(const File& file) {
-    const AcdfDescription& d = file.description();
-    return {{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
-            static_cast<AcdfChannels>(d.channels),
-            static_cast<AcdfFilter>(d.filter)};
-}
-
 void run(const Options& options) {
-    const LoadedFile loaded = load_environment_or_table(options.file, "measure");
-    if (loaded.file.kind() == ACDF_KIND_TABLE)
+    const LoadedFile loaded = load_file(options.file);
+    switch (loaded.file.kind()) {
+    case ACDF_KIND_TABLE:
         return measure_table(options.file, loaded.file, options.source, options.json, options.quiet);
-    const input::Probe probe = load_probe(options.source, options.input, options.quiet);
-    remark_on_source(options, loaded.file, probe);
-    const compress::Target target = probe_target(options.source, probe, target_options(loaded.file));
-    const AcdfAxis &phi = loaded.file.axis(ACDF_AXIS_PHI), &theta = loaded.file.axis(ACDF_AXIS_THETA);
-    if (phi.resolution != target.columns || theta.resolution != target.rows)
-        throw Failure(options.source + ": is " + std::to_string(target.columns) + "x" +
-                      std::to_string(target.rows) + " as a lat-long map, but " + options.file + " was made from " +
-                      std::to_string(phi.resolution) + "x" + std::to_string(theta.resolution) +
-                      "; measure against the source it was made from");
+    case ACDF_KIND_BRDF:
+        return measure_brdf(options.file, loaded.file, options.source, options.json, options.quiet);
+    case ACDF_KIND_LOCAL:
+        return measure_local(loaded.file, {options.file, options.source, options.input, options.normals,
+                                           options.rivals, options.json, options.quiet});
+    default:
+        break;
+    }
+    if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT)
+        fail_kind(options.file, loaded.file, "measure", "files of every other kind");
+    const compress::Target target =
+        source_target(options.file, loaded.file, options.source, options.input, options.quiet);
     const measure::Accuracy accuracy = measure::measure_environment(loaded.file, target);
     const double full_cdf = measure::full_cdf_relative_variance(target);
     if (options.json) std::printf("%s\n", report(options, loaded.file, accuracy, full_cdf).dump(2).c_str());
@@ -102,11 +94,22 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->group("Input");
     command
         .add_option("--against", options->source,
-                    "The probe, or the .npy of a table, that it stands for: usually the one it was made from")
+                    "The probe, the .npy of a table or the BRDF that it stands for: usually the one it was made from")
         ->required()
         ->type_name("SOURCE")
         ->group("Input");
     add_projection(command, options->input.projection);
+    command
+        .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")
+        ->check(CLI::Range(1u, 1u << 20))
+        ->option_text("N [256]")
+        ->group("Input");
+    command
+        .add_flag(
+            "--rivals", options->rivals,
+            "Of a local environment: beside it what a renderer can do without one: resampling 32 candidates, tiles "
+            "weighted on the fly, cosine sampling")
+        ->group("Output");
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help_footer("No samples are drawn, so the figures carry no noise of their own.",

@@ -3,6 +3,7 @@
 #include "directions_csv.h"
 #include "file_input.h"
 #include "help.h"
+#include "normal_option.h"
 #include "options.h"
 #include "output.h"
 #include "table_points.h"
@@ -22,22 +23,26 @@ struct Options {
     std::string directions = "-";
     std::string output = "-";
     std::vector<std::uint32_t> at;
+    std::vector<float> normal;
     bool normalize = false, csv = false, force = false;
 };
 
-std::string density_line(const EnvironmentView& view, std::vector<double> v, const Options& options) {
+/// The line of a direction (and what stands behind it); `density` is a function of a unit vector of floats.
+template <class Density>
+std::string density_line(std::vector<double> v, const Options& options, const Density& density) {
     if (options.normalize) {
         const double length = std::hypot(v[0], v[1], v[2]);
-        for (double& x : v) x /= length; // 0/0 is NaN: density 0
+        for (std::size_t i = 0; i < 3; ++i) v[i] /= length; // 0/0 is NaN: density 0
     }
     const float direction[3] = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-    const double pdf = static_cast<double>(view.pdf(direction));
-    char text[96];
-    if (options.csv)
-        std::snprintf(text, sizeof(text), "%.9g,%.9g,%.9g,%.9g\n", static_cast<double>(direction[0]),
-                      static_cast<double>(direction[1]), static_cast<double>(direction[2]), pdf);
-    else std::snprintf(text, sizeof(text), "%.9g\n", pdf);
-    return text;
+    std::string line;
+    char text[32];
+    for (const double x : v) {
+        std::snprintf(text, sizeof(text), "%.9g,", static_cast<double>(static_cast<float>(x)));
+        if (options.csv) line += text;
+    }
+    std::snprintf(text, sizeof(text), "%.9g\n", static_cast<double>(density(direction)));
+    return line + text;
 }
 
 /// Writes `answer(point)` for each point in `in`.
@@ -60,7 +65,28 @@ void evaluate_environment(const File& file, std::istream& in, const Options& opt
     const EnvironmentView view = file.environment();
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output,
-             [&](const std::vector<double>& direction) { return density_line(view, direction, options); });
+             [&](const std::vector<double>& direction) {
+                 return density_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
+             });
+}
+
+void evaluate_local(const File& file, std::istream& in, const Options& options, Output& output) {
+    if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
+    const LocalEnvironmentView view = file.local();
+    if (!options.normal.empty()) {
+        const AcdfLocalPoint point = view.at(chosen_normal(options.file, options.normal).data());
+        if (options.csv) output.write("x,y,z,pdf\n");
+        return evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
+            return density_line(direction, options, [&](const float d[3]) { return view.pdf(point, d); });
+        });
+    }
+    if (options.csv) output.write("x,y,z,nx,ny,nz,pdf\n");
+    evaluate(in, PointParser({"x", "y", "z", "nx", "ny", "nz"}), options, output,
+             [&](const std::vector<double>& both) {
+                 const float n[3] = {static_cast<float>(both[3]), static_cast<float>(both[4]),
+                                     static_cast<float>(both[5])};
+                 return density_line(both, options, [&](const float d[3]) { return view.pdf(n, d); });
+             });
 }
 
 void evaluate_table(const File& file, std::istream& in, const Options& options, Output& output) {
@@ -79,7 +105,9 @@ void run(const Options& options) {
     if (options.file == "-" && options.directions == "-")
         throw CLI::ValidationError("FILE", "the .acdf file and the directions cannot both come from stdin");
     Output output(options.output, options.force, {options.file, options.directions});
-    const LoadedFile loaded = load_environment_or_table(options.file, "pdf");
+    const LoadedFile loaded = load_file(options.file);
+    const AcdfKind kind = loaded.file.kind();
+    if (kind != ACDF_KIND_LOCAL) refuse_normal(options.file, options.normal);
     std::ifstream file;
     if (options.directions != "-") {
         file.open(options.directions);
@@ -90,8 +118,10 @@ void run(const Options& options) {
         }
     }
     std::istream& in = options.directions == "-" ? std::cin : file;
-    if (loaded.file.kind() == ACDF_KIND_TABLE) evaluate_table(loaded.file, in, options, output);
-    else evaluate_environment(loaded.file, in, options, output);
+    if (kind == ACDF_KIND_ENVIRONMENT) evaluate_environment(loaded.file, in, options, output);
+    else if (kind == ACDF_KIND_LOCAL) evaluate_local(loaded.file, in, options, output);
+    else if (kind == ACDF_KIND_TABLE) evaluate_table(loaded.file, in, options, output);
+    else fail_kind(options.file, loaded.file, "pdf", "environments, local environments and tables");
     output.commit();
 }
 
@@ -114,6 +144,8 @@ void add_pdf(CLI::App& program, int& exit_code) {
                    "Scale directions to unit length first. Without it a direction that is not of unit length has "
                    "density 0, as in a renderer, where it tells of a mistake")
         ->group("Evaluation");
+    add_normal(*command, options->normal, "Evaluation",
+               "; without it each line has one: x y z nx ny nz");
     add_bin(*command, options->at, "Evaluation");
     command->add_flag("--csv", options->csv, "Print x,y,z,pdf instead of the density alone")->group("Output");
     add_output(*command, options->output, options->force, "The file to write, stdout by default");
@@ -123,6 +155,7 @@ void add_pdf(CLI::App& program, int& exit_code) {
                                 "sampled axes, densities per product of these units.",
                                 "echo '0 0 1' | acdf pdf sky.acdf\n"
                                 "acdf pdf sky.acdf directions.csv --csv -o densities.csv\n"
+                                "acdf sample local.acdf -n 9 --normal 0,0,1 | acdf pdf local.acdf --normal 0,0,1\n"
                                 "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf"));
     command->callback([options, &exit_code] {
         run(*options);

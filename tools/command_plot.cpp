@@ -6,10 +6,12 @@
 #include "help.h"
 #include "options.h"
 #include "output.h"
+#include "plot_brdf.h"
 #include "plot_colour.h"
 #include "plot_image.h"
 #include "plot_knots.h"
 #include "plot_legend.h"
+#include "plot_local.h"
 #include "probe_options.h"
 #include "progress.h"
 #include "sizes.h"
@@ -31,7 +33,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string file, output, range;
+    std::string file, output, range, view;
+    std::vector<float> normal;
     input::ProbeOptions input;
     input::Layout layout = input::Layout::latlong;
     int width = 0; // 0: by the resolution
@@ -46,6 +49,8 @@ struct Source {
     compress::Target target; // of a probe, else empty
     Density density;
     std::uint32_t columns = 0, rows = 0;
+    std::optional<PlottedView> brdf;    // of a BRDF file
+    std::optional<PlottedNormal> local; // of a local environment file
     std::vector<std::string> title;
 };
 
@@ -82,8 +87,51 @@ std::uint64_t count_cells(const std::uint8_t* tree, std::uint32_t at,
     return cells;
 }
 
+void load_brdf(const Options& options, Source& source) {
+    const File& file = source.stored.file;
+    const auto view = parse_view(options.view.empty() ? "45" : options.view);
+    if (!view) throw CLI::ValidationError("--view", "needs angles in degrees such as 60 or 60,30; theta below 90");
+    source.brdf.emplace(PlottedView{file.brdf(), *view});
+    source.density = density_of(*source.brdf);
+    source.columns = 1024;
+    source.rows = 512;
+    source.title = {shown_name(options.file), "view " + to_string(*view), fit_name(file.description().fit) + " fit",
+                    to_readable_size(file.size())};
+}
+
+/// The accuracy that a file tells of itself, for a title.
+void add_variance(const File& file, std::vector<std::string>& title) {
+    const Text variance = file.metadata("accuracy.relative_variance");
+    const std::string text(variance.data ? variance.data : "", variance.size);
+    if (double value = 0.0; std::sscanf(text.c_str(), "%lf", &value) == 1) {
+        char rounded[64];
+        std::snprintf(rounded, sizeof rounded, "relative variance %.3g", value);
+        title.emplace_back(rounded);
+    }
+}
+
+void load_local(const Options& options, Source& source) {
+    const File& file = source.stored.file;
+    source.local.emplace(PlottedNormal{file.local(), chosen_normal(options.file, options.normal)});
+    source.density = density_of(*source.local);
+    source.columns = file.axis(ACDF_AXIS_PHI).resolution;
+    source.rows = file.axis(ACDF_AXIS_THETA).resolution;
+    const Normal& n = source.local->normal;
+    char normal[64];
+    std::snprintf(normal, sizeof normal, "normal %.3g, %.3g, %.3g", double{n[0]}, double{n[1]}, double{n[2]});
+    source.title = {shown_name(options.file), normal, to_readable_size(file.size())};
+    add_variance(file, source.title);
+}
+
 void load_stored(const Options& options, Source& source) {
-    source.stored = load_environment(options.file, "plot");
+    source.stored = load_file(options.file);
+    if (source.stored.file.kind() == ACDF_KIND_BRDF) return load_brdf(options, source);
+    if (!options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
+    if (source.stored.file.kind() == ACDF_KIND_LOCAL) return load_local(options, source);
+    refuse_normal(options.file, options.normal);
+    if (source.stored.file.kind() != ACDF_KIND_ENVIRONMENT)
+        fail_kind(options.file, source.stored.file, "plot",
+                  "environments and BRDFs, as `acdf env` and `acdf brdf` make them");
     const File& file = source.stored.file;
     source.density = density_of(file.environment());
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
@@ -92,13 +140,7 @@ void load_stored(const Options& options, Source& source) {
     const std::uint64_t cells = count_cells(file.tree(), file.bin(0).root, known);
     source.title = {shown_name(options.file), fit_name(file.description().fit) + " fit",
                     std::to_string(cells) + (cells == 1 ? " cell" : " cells"), to_readable_size(file.size())};
-    const Text variance = file.metadata("accuracy.relative_variance");
-    const std::string text(variance.data ? variance.data : "", variance.size);
-    if (double value = 0.0; std::sscanf(text.c_str(), "%lf", &value) == 1) {
-        char rounded[64];
-        std::snprintf(rounded, sizeof rounded, "relative variance %.3g", value);
-        source.title.emplace_back(rounded);
-    }
+    add_variance(file, source.title);
 }
 
 void load_image(const Options& options, Source& source) {
@@ -137,7 +179,8 @@ std::string joined(const std::vector<std::string>& parts) {
 /// The numbers of a plot, before they become a picture.
 struct Drawing {
     DensityImage image;
-    std::vector<float> knots; // opacity; empty where none are drawn
+    std::vector<float> knots;   // opacity; empty where none are drawn
+    std::vector<float> horizon; // the same
 };
 
 Drawing draw(const Options& options, const Source& source, bool with_knots) {
@@ -148,7 +191,11 @@ Drawing draw(const Options& options, const Source& source, bool with_knots) {
     };
     Drawing drawing;
     drawing.image = draw_density(picture_map(options, source), source.density, part(0.0, share));
-    if (with_knots)
+    if (source.local) drawing.horizon = horizon_opacity(source.local->normal, drawing.image.map);
+    if (with_knots && source.brdf) drawing.knots = knot_opacity(*source.brdf, drawing.image.map);
+    else if (with_knots && source.local)
+        drawing.knots = knot_opacity(*source.local, drawing.image.map, part(share, 1.0 - share));
+    else if (with_knots)
         drawing.knots = knot_opacity(source.stored.file.environment(), drawing.image.map, part(share, 1.0 - share));
     return drawing;
 }
@@ -169,6 +216,7 @@ std::vector<std::uint8_t> make_png(const Options& options, const Source& source)
     const DensityRange range = chosen_range(options, drawing.image);
     OIIO::ImageBuf picture = false_colour(drawing.image, range);
     if (!drawing.knots.empty()) draw_knots(picture, drawing.knots);
+    if (!drawing.horizon.empty()) draw_horizon(picture, drawing.horizon);
     if (options.legend) {
         const bool zero = std::find(density.begin(), density.end(), 0.0f) != density.end();
         picture = add_legend(picture, {source.title, range, zero}, checked_font(options));
@@ -251,13 +299,21 @@ void add_plot(CLI::App& program, int& exit_code) {
     CLI::App& command =
         *program.add_subcommand("plot", "Show a density in false colours, and the cells that hold it");
     command
-        .add_option("FILE", options->file,
-                    "An .acdf environment file (- is stdin), or a probe, whose own density is then shown at full "
-                    "resolution")
+        .add_option(
+            "FILE", options->file,
+            "An .acdf file of an environment, local or not, or of a BRDF (- is stdin), or a probe, whose own "
+            "density is then shown at full resolution")
         ->required()
         ->type_name("")
         ->group("Input");
     add_projection(command, options->input.projection, "--probe-projection");
+    command
+        .add_option(
+            "--view", options->view,
+            "For a BRDF file, the direction of view in degrees: theta from the normal, phi from the tangent")
+        ->option_text("THETA[,PHI] [45]")
+        ->group("Input");
+    add_normal(command, options->normal, "Input", "; the white line is its horizon");
     add_picture_options(command, *options);
     add_output(command, options->output, options->force,
                "The picture to write: .png, or .exr for the densities themselves as floats, for other programs")
@@ -269,6 +325,7 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "0, where no sample ever falls. Each pixel shows the density of the direction at its centre.",
                     "acdf plot sky.acdf -o sky.png\n"
                     "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
+                    "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
                     "acdf plot sky.acdf -o sky.exr --width 4096"));
     command.callback([options, &exit_code] {
         run(*options);

@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "file_input.h"
 #include "help.h"
+#include "normal_option.h"
 #include "options.h"
 #include "output.h"
 #include "progress.h"
@@ -20,6 +21,7 @@ struct Options {
     std::optional<std::uint64_t> seed;
     SequenceKind sequence = SequenceKind::random;
     std::vector<std::uint32_t> at;
+    std::vector<float> normal;
     std::string output = "-";
     bool force = false, quiet = false;
 };
@@ -57,6 +59,20 @@ void sample_environment(const File& file, const Options& options, Output& output
     });
 }
 
+void sample_local(const File& file, const Options& options, Output& output) {
+    if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
+    const LocalEnvironmentView view = file.local();
+    const AcdfLocalPoint point = view.at(chosen_normal(options.file, options.normal).data());
+    if (point.what == ACDF_LOCAL_NOTHING)
+        throw Failure(options.file + ": no light reaches this normal, so there is nothing to draw; choose another");
+    Sequence sequence(options.sequence, options.count, options.seed);
+    output.write("u0,u1,x,y,z,pdf\n");
+    write_samples(options, output, [&] {
+        const std::array<double, 2> u = sequence.next();
+        return csv_line(u, view.sample(point, u[0], u[1]));
+    });
+}
+
 void sample_table(const File& file, const Options& options, Output& output) {
     const TableView view = file.table();
     const std::uint32_t n = view.sampled_count();
@@ -78,9 +94,13 @@ void sample_table(const File& file, const Options& options, Output& output) {
 
 void run(const Options& options) {
     Output output(options.output, options.force, {options.file});
-    const LoadedFile loaded = load_environment_or_table(options.file, "sample");
-    if (loaded.file.kind() == ACDF_KIND_TABLE) sample_table(loaded.file, options, output);
-    else sample_environment(loaded.file, options, output);
+    const LoadedFile loaded = load_file(options.file);
+    const AcdfKind kind = loaded.file.kind();
+    if (kind != ACDF_KIND_LOCAL) refuse_normal(options.file, options.normal);
+    if (kind == ACDF_KIND_ENVIRONMENT) sample_environment(loaded.file, options, output);
+    else if (kind == ACDF_KIND_LOCAL) sample_local(loaded.file, options, output);
+    else if (kind == ACDF_KIND_TABLE) sample_table(loaded.file, options, output);
+    else fail_kind(options.file, loaded.file, "sample", "environments, local environments and tables");
     output.commit();
 }
 
@@ -114,6 +134,7 @@ void add_sample(CLI::App& program, int& exit_code) {
             "Without one sobol is the plain sequence")
         ->option_text("S [0]")
         ->group("Sampling");
+    add_normal(*command, options->normal, "Sampling");
     add_bin(*command, options->at, "Sampling");
     add_output(*command, options->output, options->force, "The CSV file to write, stdout by default");
     add_quiet(*command, options->quiet);
@@ -126,6 +147,7 @@ void add_sample(CLI::App& program, int& exit_code) {
         "units, all with 17 digits.",
         "acdf sample sky.acdf -n 1000 > directions.csv\n"
         "acdf sample sky.acdf -n 4096 --sequence sobol -o directions.csv\n"
+        "acdf sample local.acdf -n 1000 --normal 0,0.6,0.8 > directions.csv\n"
         "acdf sample sky.acdf -n 1000 | acdf pdf sky.acdf      # the densities again"));
     command->callback([options, &exit_code] {
         run(*options);

@@ -152,4 +152,24 @@ input::Probe load_probe(const std::string& path, const input::ProbeOptions& opti
     return probe;
 }
 
+compress::Target source_target(const std::string& path, const File& file, const std::string& source,
+                               const input::ProbeOptions& options, bool quiet) {
+    const input::Probe probe = load_probe(source, options, quiet);
+    const Text hash = file.metadata("source.sha256");
+    if (hash.size > 0 && std::string(hash.data, hash.size) != probe.source_sha256 && !quiet)
+        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
+                     source.c_str());
+    const AcdfDescription& d = file.description();
+    compress::Target target = probe_target(source, probe,
+                                           {{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
+                                            static_cast<AcdfChannels>(d.channels),
+                                            static_cast<AcdfFilter>(d.filter)});
+    const AcdfAxis &phi = file.axis(ACDF_AXIS_PHI), &theta = file.axis(ACDF_AXIS_THETA);
+    if (phi.resolution != target.columns || theta.resolution != target.rows)
+        throw Failure(source + ": is " + std::to_string(target.columns) + "x" + std::to_string(target.rows) +
+                      " as a lat-long map, but " + path + " was made from " + std::to_string(phi.resolution) + "x" +
+                      std::to_string(theta.resolution) + "; measure against the source it was made from");
+    return target;
+}
+
 } // namespace acdf::tools

@@ -43,6 +43,12 @@ compress::Target probe_target(const std::string& path, const input::Probe& probe
 /// Reads a probe and tells on stderr, unless `quiet`, what was assumed and what was mended. Throws Failure.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
 
+/// The target that a file was fitted to, from its source: what it says of channels and filter. Tells on stderr,
+/// unless `quiet`, where the source is another file than it was made from. Throws Failure where the resolution is
+/// another.
+compress::Target source_target(const std::string& path, const File& file, const std::string& source,
+                               const input::ProbeOptions& options, bool quiet);
+
 /// "phi" or "z".
 const char* to_string(compress::Order order);
 

@@ -33,11 +33,6 @@ std::unique_ptr<std::FILE, Close> open_input(const std::string& path) {
     return file;
 }
 
-[[noreturn]] void fail_kind(const std::string& path, const File& file, const char* command, const char* reads) {
-    throw Failure(shown(path) + ": holds a file of kind '" + kind_name(file.kind()) + "'; acdf " + command +
-                  " reads " + reads);
-}
-
 } // namespace
 
 std::vector<std::uint8_t> read_bytes(const std::string& path) {
@@ -58,6 +53,11 @@ LoadedFile load_file(const std::string& path) {
     std::string text = shown(path) + ": " + status.message;
     if (status.code == ErrorCode::malformed) text += "; `acdf validate` lists every fault";
     throw Failure(text);
+}
+
+void fail_kind(const std::string& path, const File& file, const char* command, const char* wanted) {
+    throw Failure(shown(path) + ": holds a file of kind '" + kind_name(file.kind()) + "'; acdf " + command +
+                  " reads " + wanted);
 }
 
 LoadedFile load_environment(const std::string& path, const char* command) {

@@ -21,6 +21,9 @@ struct LoadedFile {
 /// Throws Failure, which names the file, the broken rule and what would help.
 LoadedFile load_file(const std::string& path);
 
+/// Throws the Failure that tells that `command` reads `wanted`, not a file of this kind.
+[[noreturn]] void fail_kind(const std::string& path, const File& file, const char* command, const char* wanted);
+
 /// As load_file, and fails where the file is no environment; `command` is named in the message.
 LoadedFile load_environment(const std::string& path, const char* command);
 /// The same for environments and tables.

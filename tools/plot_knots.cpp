@@ -30,15 +30,14 @@ struct GridPoint {
 
 class Tracer {
 public:
-    Tracer(const AcdfEnvironment& env, const input::Map& map)
-        : env_(env), map_(map), grid_{input::Layout::latlong, 1, 1} {} // of any size: it is scaled below
+    Tracer(const FindCell& find, std::uint32_t columns, std::uint32_t rows, const input::Map& map)
+        : find_(find), columns_(columns), rows_(rows), map_(map), grid_{input::Layout::latlong, 1, 1} {} // of any size: it is scaled below
 
     Extents extents(int x, int y) const {
         float direction[3];
         if (!pixel_direction(map_, x + 0.5, y + 0.5, direction)) return {};
         AcdfRange range[2];
-        double t[2], dz[1];
-        acdf_environment_find(&env_, direction, range, t, dz, nullptr);
+        find_(direction, range);
         const GridPoint here = grid_point(x + 0.5, y + 0.5);
         Extents out;
         for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -50,25 +49,26 @@ public:
     }
 
 private:
-    const AcdfEnvironment& env_;
+    const FindCell& find_;
+    std::uint32_t columns_, rows_;
     input::Map map_, grid_;
 
-    std::uint32_t resolution(std::size_t axis) const { return axis == ACDF_AXIS_PHI ? env_.columns : env_.rows; }
+    std::uint32_t resolution(std::size_t axis) const { return axis == ACDF_AXIS_PHI ? columns_ : rows_; }
 
     GridPoint grid_point(double x, double y) const {
         if (map_.layout == input::Layout::latlong) // the same map: no detour, which would lose columns at the poles
-            return {true, {x / map_.width * env_.columns, y / map_.height * env_.rows}};
+            return {true, {x / map_.width * columns_, y / map_.height * rows_}};
         input::Direction d;
         if (!input::to_direction(map_, x / map_.width, y / map_.height, d)) return {};
         const input::ImagePoint p = input::to_image(grid_, d);
-        return {true, {p.u * env_.columns, p.v * env_.rows}};
+        return {true, {p.u * columns_, p.v * rows_}};
     }
 
     // Change of the position on `axis` between two points; columns are periodic.
     double difference(const GridPoint& a, const GridPoint& b, std::size_t axis) const {
         const double d = b.at[axis] - a.at[axis];
         if (axis != ACDF_AXIS_PHI) return d;
-        return d - env_.columns * std::round(d / env_.columns);
+        return d - columns_ * std::round(d / columns_);
     }
 
     // How far the position on `axis` moves per pixel, in the direction in which it moves fastest.
@@ -126,14 +126,24 @@ float opacity_at(const std::vector<Extents>& extents, const input::Map& map, int
 } // namespace
 
 std::vector<float> knot_opacity(const EnvironmentView& view, const input::Map& map, const Progress& progress) {
-    const Tracer tracer(view.data(), map);
+    const AcdfEnvironment& env = view.data();
+    const FindCell find = [&env](const float direction[3], AcdfRange range[2]) {
+        double t[2], dz[1];
+        acdf_environment_find(&env, direction, range, t, dz, nullptr);
+    };
+    return knot_opacity(find, env.columns, env.rows, map, progress);
+}
+
+std::vector<float> knot_opacity(const FindCell& find, std::uint32_t columns, std::uint32_t rows,
+                                const input::Map& map, const Progress& progress) {
+    const Tracer tracer(find, columns, rows, map);
     const auto width = static_cast<std::size_t>(map.width);
     std::vector<Extents> extents(width * static_cast<std::size_t>(map.height));
-    std::atomic<int> rows{0};
+    std::atomic<int> finished{0};
     tbb::parallel_for(0, map.height, [&](int y) {
         for (int x = 0; x < map.width; ++x)
             extents[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = tracer.extents(x, y);
-        if (progress) progress(++rows / static_cast<double>(map.height), "tracing cells");
+        if (progress) progress(++finished / static_cast<double>(map.height), "tracing cells");
     });
     std::vector<float> opacity(extents.size());
     tbb::parallel_for(0, map.height, [&](int y) {

@@ -7,6 +7,8 @@
 #include <OpenImageIO/imagebuf.h>
 #include <acdf/reader.h>
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace acdf::tools {
@@ -15,6 +17,12 @@ namespace acdf::tools {
 /// Where cells are narrower than about three pixels lines would hide what they delimit, and fade out. Borders that
 /// pass between pixels belong to the pixel on their right or below.
 std::vector<float> knot_opacity(const EnvironmentView& view, const input::Map& map, const Progress& progress = {});
+
+/// Finds the cell of a unit direction: its positions on the axes of a grid of columns x rows. Called from several
+/// threads.
+using FindCell = std::function<void(const float direction[3], AcdfRange range[2])>;
+std::vector<float> knot_opacity(const FindCell& find, std::uint32_t columns, std::uint32_t rows,
+                                const input::Map& map, const Progress& progress = {});
 
 /// Blends the lines into `picture` (RGB floats as displayed, as large as `map`): black over light colours, white
 /// over dark ones.

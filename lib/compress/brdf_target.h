@@ -52,14 +52,14 @@ struct ViewTarget {
     std::vector<float> square; ///< row-major, (f / albedo)^2 in 1 / sr^2 of half-vectors, and the prior
 };
 
-/// f is taken at the centre of each square, times the Jacobian 4 |wo . wh|. To its square is added, wherever any part
-/// of a square reflects above the horizon, that of a small diffuse density (kPrior of all): a value that the centres
-/// miss then still meets a density. In an isotropic BRDF phi_h counts from the azimuth of the view.
+/// f is taken at the centre of each square, times the Jacobian 4 |wo . wh|. To its square is added, wherever any
+/// part of a square reflects above the horizon, that of a small diffuse density (kPrior of all): a value that the
+/// centres miss then still meets a density. In an isotropic BRDF phi_h counts from the azimuth of the view.
 ViewTarget view_target(const Reflected& reflected, const HalfGrid& grid, const View& view);
 constexpr double kPrior = 0.001;
 
-/// Squares (1: yes) of which some half-vector reflects above the horizon for some view with x in [low.x, high.x] and
-/// phi in [low.phi, high.phi] (isotropic: phi of both is 0). Exact.
+/// Squares (1: yes) of which some half-vector reflects above the horizon for some view with x in [low.x, high.x]
+/// and phi in [low.phi, high.phi] (isotropic: phi of both is 0). Exact.
 std::vector<std::uint8_t> visible_squares(const HalfGrid& grid, const View& low, const View& high);
 
 } // namespace acdf::compress

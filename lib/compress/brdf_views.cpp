@@ -26,7 +26,8 @@ std::vector<double> view_positions(std::size_t count) {
 std::vector<double> position_weights(const std::vector<double>& x) {
     std::vector<double> weight;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const double low = i > 0 ? 0.5 * (x[i - 1] + x[i]) : 0.0, high = i + 1 < x.size() ? 0.5 * (x[i] + x[i + 1]) : 1.0;
+        const double low = i > 0 ? 0.5 * (x[i - 1] + x[i]) : 0.0,
+                     high = i + 1 < x.size() ? 0.5 * (x[i] + x[i + 1]) : 1.0;
         weight.push_back((high * high - low * low) * (1.0 - kBaseWeight) + (high - low) * kBaseWeight);
     }
     return weight;

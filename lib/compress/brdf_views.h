@@ -21,7 +21,8 @@ struct BrdfViews {
     double weight(std::size_t ix) const { return x_weight[ix] / static_cast<double>(phi.size()); }
 };
 
-/// Looks at every view of a grid of x (increasing) and phi. Throws std::invalid_argument where a value is not finite.
+/// Looks at every view of a grid of x (increasing) and phi. Throws std::invalid_argument where a value is not
+/// finite.
 BrdfViews look_at(const Reflected& reflected, const HalfGrid& grid, const std::vector<double>& x,
                   const std::vector<double>& phi);
 
@@ -29,8 +30,8 @@ BrdfViews look_at(const Reflected& reflected, const HalfGrid& grid, const std::v
 std::vector<double> azimuths(std::size_t count);
 
 /// Where views are stored: `count` x, fewer where no more can help, the least and the largest first and then in the
-/// order of what they gain. Each is put where a mixture of its neighbours is worst at what lies between them, so that
-/// they are dense where the distribution changes fast.
+/// order of what they gain. Each is put where a mixture of its neighbours is worst at what lies between them, so
+/// that they are dense where the distribution changes fast.
 std::vector<double> choose_nodes(const Reflected& reflected, const BrdfSymmetry& symmetry, std::size_t count);
 
 /// `nodes` (increasing), and `parts` - 1 views between each two of them.

@@ -21,7 +21,7 @@ constexpr std::uint32_t kFileRow = 1;    // axis of the file: cos_theta_h
 constexpr std::uint32_t kFileColumn = 0; // phi_h
 constexpr std::uint32_t kLeastCells = 16;
 constexpr std::size_t kMostNodes = 64, kViews = 150;
-constexpr double kCellsPerView = 70.0;
+constexpr double kCellsPerView = 70.0, kCellsPerTurnedView = 16.0; // isotropic, anisotropic
 
 /// The stored views of one candidate: indices in BrdfViews.
 struct Nodes {
@@ -43,7 +43,8 @@ Between between(const std::vector<std::size_t>& nodes, const std::vector<double>
     out.lower = static_cast<std::size_t>(above - nodes.begin()) - 1;
     out.upper = std::min(out.lower + 1, nodes.size() - 1);
     if (out.upper > out.lower)
-        out.t = (positions[i] - positions[nodes[out.lower]]) / (positions[nodes[out.upper]] - positions[nodes[out.lower]]);
+        out.t = (positions[i] - positions[nodes[out.lower]]) /
+                (positions[nodes[out.upper]] - positions[nodes[out.lower]]);
     return out;
 }
 
@@ -152,7 +153,8 @@ private:
     }
 
     /// The best row for a node by itself; every cell of which some half-vector is seen keeps something.
-    std::vector<double> first_row(std::size_t bin, const TileTree& tree, const std::vector<std::uint32_t>& cell) const {
+    std::vector<double> first_row(std::size_t bin, const TileTree& tree,
+                                  const std::vector<std::uint32_t>& cell) const {
         std::vector<double> row = moments(targets_[bin].square, tree, cell);
         for (double& p : row) p = std::sqrt(p);
         const auto [low, high] = views_around(bin);
@@ -160,8 +162,7 @@ private:
         std::vector<bool> seen(row.size(), false);
         for (std::size_t i = 0; i < visible.size(); ++i)
             if (visible[i]) seen[cell[i]] = true;
-        for (std::size_t c = 0; c < row.size(); ++c)
-            row[c] = seen[c] ? std::max(row[c], 1e-9) : 0.0;
+        for (std::size_t c = 0; c < row.size(); ++c) row[c] = seen[c] ? std::max(row[c], 1e-9) : 0.0;
         const double sum = std::accumulate(row.begin(), row.end(), 0.0);
         for (double& p : row) p /= sum;
         return row;
@@ -209,7 +210,8 @@ private:
             AcdfSplit record = {(row ? kFileRow : kFileColumn) | position << 3, {}};
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::uint32_t child = split.child[k], number = child & ~TileTree::tile;
-                record.child[k] = static_cast<std::uint16_t>(number | (child & TileTree::tile ? ACDF_TILE_FLAG : 0u));
+                record.child[k] =
+                    static_cast<std::uint16_t>(number | (child & TileTree::tile ? ACDF_TILE_FLAG : 0u));
             }
             out.push_back(record);
         }
@@ -256,15 +258,16 @@ struct Plan {
     std::uint32_t thetas = 0, azimuths = 1, cells = 0;
 };
 
-/// Another view is worth about as much as another cell for all where there are some 45 to 80 cells for each view.
+/// Another view is worth about as much as cells for its bytes where there are so many cells for each view.
 Plan plan(const BrdfOptions& options, std::uint64_t budget) {
     const bool isotropic = options.symmetry.isotropic;
-    const double bins = std::sqrt(double(budget) / kCellsPerView);
+    const double bins = std::sqrt(double(budget) / (isotropic ? kCellsPerView : kCellsPerTurnedView));
     Plan out;
-    out.azimuths = options.phi_views ? options.phi_views : isotropic ? 1 : bins < 60.0 ? 8 : 16;
+    out.azimuths = options.phi_views ? options.phi_views : isotropic ? 1 : bins < 90.0 ? 8 : 16;
     out.thetas = options.theta_views;
     if (out.thetas == 0)
-        out.thetas = std::clamp(static_cast<std::uint32_t>(std::lround(bins / out.azimuths)), isotropic ? 6u : 4u, 64u);
+        out.thetas =
+            std::clamp(static_cast<std::uint32_t>(std::lround(bins / out.azimuths)), isotropic ? 6u : 4u, 64u);
     out.cells = cells_within(budget, out.thetas, out.azimuths, options);
     return out;
 }
@@ -273,7 +276,9 @@ class Search {
 public:
     Search(const Reflected& reflected, const BrdfOptions& options)
         : reflected_(reflected), options_(options),
-          grid_(options.symmetry.mirrored ? 256 : options.symmetry.isotropic ? 384 : 256,
+          grid_(options.symmetry.mirrored    ? 256
+                : options.symmetry.isotropic ? 384
+                                             : 256,
                 options.symmetry.isotropic ? 540 : 270, options.symmetry.mirrored),
           order_(choose_nodes(reflected, options.symmetry, kMostNodes)) {}
 
@@ -287,13 +292,15 @@ public:
 
     /// Looks at the stored views and some between them, and fits.
     BrdfFit one(const Plan& p) const {
-        std::vector<double> x(order_.begin(), order_.begin() + std::min<std::ptrdiff_t>(p.thetas, std::ptrdiff_t(order_.size())));
+        std::vector<double> x(order_.begin(),
+                              order_.begin() + std::min<std::ptrdiff_t>(p.thetas, std::ptrdiff_t(order_.size())));
         std::sort(x.begin(), x.end());
         const bool isotropic = options_.symmetry.isotropic;
         const std::size_t parts = isotropic ? std::clamp<std::size_t>(kViews / x.size(), 3, 8) : 2,
                           turns = isotropic ? 1 : p.azimuths * std::max(2u, 24 / p.azimuths);
         const BrdfViews views = look_at(reflected_, grid_, subdivided(x, parts), azimuths(turns));
-        if (std::none_of(views.targets.begin(), views.targets.end(), [](const ViewTarget& t) { return t.albedo > 0.0; }))
+        if (std::none_of(views.targets.begin(), views.targets.end(),
+                         [](const ViewTarget& t) { return t.albedo > 0.0; }))
             throw std::invalid_argument("it reflects nothing, so there is nothing to sample");
         if (options_.progress) options_.progress(0.6);
         Nodes nodes;
@@ -310,8 +317,8 @@ public:
         for (; fit.relative_variance > variance; fit = within(high)) {
             if (high >= (std::uint64_t{4} << 20)) {
                 char text[96];
-                std::snprintf(text, sizeof text, "a relative variance of %.3g is out of reach; 4 MiB come to %.3g", variance,
-                              fit.relative_variance);
+                std::snprintf(text, sizeof text, "a relative variance of %.3g is out of reach; 4 MiB come to %.3g",
+                              variance, fit.relative_variance);
                 throw std::runtime_error(text);
             }
             low = high;
@@ -349,8 +356,12 @@ BrdfFit fit_brdf(const Reflected& reflected, const BrdfOptions& given) {
         return search.within(options.goal.budget);
     default: {
         const bool isotropic = options.symmetry.isotropic;
-        return search.one({options.theta_views ? options.theta_views : isotropic ? 32u : 12u,
-                           options.phi_views ? options.phi_views : isotropic ? 1u : 16u,
+        return search.one({options.theta_views ? options.theta_views
+                           : isotropic         ? 32u
+                                               : 12u,
+                           options.phi_views ? options.phi_views
+                           : isotropic       ? 1u
+                                             : 16u,
                            std::min(options.goal.cells, ACDF_MAX_TILES)});
     }
     }

@@ -16,11 +16,11 @@ struct BrdfFit {
     std::vector<float> nodes;    ///< x = sqrt(1 - cos(theta_o)) of the stored views, increasing
     std::uint32_t phi_views = 1; ///< azimuths -pi + 2 pi k / phi_views; 1: isotropic
     bool mirrored = true;
-    StoredRows rows;          ///< a row a bin; no codebook where bins share nothing
-    EncodedTree tree;         ///< one root a bin; where they share cells a uniform curve, and roots are rows
-    std::vector<float> shares; ///< of the bins' albedos in their sum
-    double total = 0.0;       ///< that sum
-    double relative_variance = 0.0;      ///< as estimated over the views that were fitted
+    StoredRows rows;                ///< a row a bin; no codebook where bins share nothing
+    EncodedTree tree;               ///< one root a bin; where they share cells a uniform curve, and roots are rows
+    std::vector<float> shares;      ///< of the bins' albedos in their sum
+    double total = 0.0;             ///< that sum
+    double relative_variance = 0.0; ///< as estimated over the views that were fitted
 
     bool shared() const { return !rows.codebook.empty(); }
     std::uint32_t bins() const { return static_cast<std::uint32_t>(nodes.size()) * phi_views; }
@@ -40,8 +40,8 @@ struct BrdfOptions {
     Progress progress;
 };
 
-/// Deterministic for any number of threads. Throws std::invalid_argument where nothing is reflected or a value is not
-/// finite, std::runtime_error where the goal is out of reach.
+/// Deterministic for any number of threads. Throws std::invalid_argument where nothing is reflected or a value is
+/// not finite, std::runtime_error where the goal is out of reach.
 BrdfFit fit_brdf(const Reflected& reflected, const BrdfOptions& options);
 
 } // namespace acdf::compress

@@ -20,7 +20,7 @@ namespace {
 /// Rounding of normals and directions to float must not take light over the horizon that was not expected.
 constexpr double kHorizonMargin = 1e-4;
 /// Of a tile that may be seen though none of its points are: its cost, of that of all it holds.
-constexpr double kGlimpse = 1e-7;
+constexpr double kGlimpse = 1e-3;
 /// Radians across which light in a cell is taken to have one cosine.
 constexpr double kPointStep = 0.02;
 
@@ -194,6 +194,7 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
         if (progress) progress(share);
     };
     if (!(integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
     const Worth light_worth = worth(bins, irradiance(light_points(target), bins));
     report(0.1);
     LocalFit out;

@@ -25,7 +25,8 @@ struct BinRange {
 
 std::vector<BinRange> bin_ranges(std::uint32_t thetas, std::uint32_t azimuths) {
     std::vector<double> x;
-    for (std::uint32_t i = 0; i < thetas; ++i) x.push_back(std::sqrt(1.0 - std::cos(0.5 * ACDF_PI * (i + 0.5) / thetas)));
+    for (std::uint32_t i = 0; i < thetas; ++i)
+        x.push_back(std::sqrt(1.0 - std::cos(0.5 * ACDF_PI * (i + 0.5) / thetas)));
     std::vector<BinRange> out;
     for (std::uint32_t i = 0; i < thetas; ++i)
         for (std::uint32_t k = 0; k < azimuths; ++k) {
@@ -122,8 +123,8 @@ EncodedTree fit_variance(const std::vector<Target>& targets, const HalfGrid& gri
     FitOptions fit;
     fit.goal = options.goal;
     if (fit.goal.kind == Goal::Kind::cells)
-        fit.goal.cells = static_cast<std::uint32_t>(std::min<std::uint64_t>(
-            std::uint64_t{options.goal.cells} * targets.size(), std::uint64_t{0xFFFFFFFF}));
+        fit.goal.cells = static_cast<std::uint32_t>(
+            std::min<std::uint64_t>(std::uint64_t{options.goal.cells} * targets.size(), std::uint64_t{0xFFFFFFFF}));
     // Positions of the file take up to four bytes where the steps of the grid take two.
     const auto placed = [&](Cascade cascade) {
         place_knots(cascade, grid);
@@ -154,7 +155,8 @@ BrdfFit fit_separate(const Reflected& reflected, const BrdfOptions& options) {
     BrdfFit out;
     out.mirrored = options.symmetry.mirrored;
     out.phi_views = azimuths;
-    for (std::size_t b = 0; b < ranges.size(); b += azimuths) out.nodes.push_back(static_cast<float>(ranges[b].node.x));
+    for (std::size_t b = 0; b < ranges.size(); b += azimuths)
+        out.nodes.push_back(static_cast<float>(ranges[b].node.x));
     out.total = std::accumulate(albedo.begin(), albedo.end(), 0.0);
     if (!(out.total > 0.0)) throw std::invalid_argument("it reflects nothing, so there is nothing to sample");
     for (const double a : albedo) out.shares.push_back(static_cast<float>(std::max(a / out.total, 1e-12)));

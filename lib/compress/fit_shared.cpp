@@ -10,9 +10,9 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::size_t kBatch = 32;     // boxes divided at once: the same for any number of threads
-constexpr double kLeastGain = 1e-9;    // of the sum of costs, which is about 1: less is rounding
-constexpr double kLeastShare = 1e-9;   // of a cell that may be needed
+constexpr std::size_t kBatch = 32;   // boxes divided at once: the same for any number of threads
+constexpr double kLeastGain = 1e-9;  // of the sum of costs, which is about 1: less is rounding
+constexpr double kLeastShare = 1e-9; // of a cell that may be needed
 constexpr std::uint32_t kBisections = 60;
 
 /// For each line across a box, and each target, the integral of its square: lines x targets.
@@ -57,7 +57,8 @@ void project(const SharedGrid& grid, const std::vector<SharedTarget>& targets, c
 
 /// Cost of the first lines, for each number of them; backwards: of the last ones. Sums of what is added, so that
 /// nothing cancels.
-std::vector<double> running_cost(const Projection& lines, const std::vector<SharedTarget>& targets, bool backwards) {
+std::vector<double> running_cost(const Projection& lines, const std::vector<SharedTarget>& targets,
+                                 bool backwards) {
     const std::size_t count = lines.measure.size(), bins = targets.size();
     std::vector<double> out(count + 1, 0.0), energy(bins, 0.0);
     double measure = 0.0;
@@ -70,8 +71,7 @@ std::vector<double> running_cost(const Projection& lines, const std::vector<Shar
     return out;
 }
 
-double part_sum(std::uint32_t child, const std::vector<double>& cells,
-                const std::vector<double>& splits) {
+double part_sum(std::uint32_t child, const std::vector<double>& cells, const std::vector<double>& splits) {
     return child & TileTree::tile ? cells[child & ~TileTree::tile] : splits[child];
 }
 
@@ -188,7 +188,8 @@ std::vector<std::uint32_t> cell_of_squares(const SharedGrid& grid, const TileTre
     for (std::uint32_t i = 0; i < tree.tiles.size(); ++i) {
         const Box& box = tree.tiles[i];
         for (std::uint32_t r = box.begin[0]; r < box.end[0]; ++r)
-            std::fill_n(out.begin() + std::ptrdiff_t(std::size_t{r} * grid.columns() + box.begin[1]), box.length(1), i);
+            std::fill_n(out.begin() + std::ptrdiff_t(std::size_t{r} * grid.columns() + box.begin[1]), box.length(1),
+                        i);
     }
     return out;
 }
@@ -228,7 +229,8 @@ void optimise_rows(RowProbabilities& rows, const std::vector<SharedMixture>& mix
                     for (int i = 0; i < mix.count; ++i) slope[mix.bin[i]] += mix.share[i] * g;
                 }
                 for (std::size_t b = 0; b < rows.size(); ++b)
-                    if (rows[b][c] > 0.0) rows[b][c] = std::max(rows[b][c] * std::sqrt(slope[b]), kLeastShare * 1e-9);
+                    if (rows[b][c] > 0.0)
+                        rows[b][c] = std::max(rows[b][c] * std::sqrt(slope[b]), kLeastShare * 1e-9);
             }
         });
         tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t b) {

@@ -10,8 +10,8 @@
 
 namespace acdf::compress {
 
-/// Rows x columns squares; the measure of a square is the product of its row's and its column's. Axis 0 of boxes and
-/// splits are the rows, axis 1 the columns.
+/// Rows x columns squares; the measure of a square is the product of its row's and its column's. Axis 0 of boxes
+/// and splits are the rows, axis 1 the columns.
 struct SharedGrid {
     std::vector<double> row_measure, column_measure; ///< > 0
 
@@ -27,8 +27,8 @@ struct SharedTarget {
 };
 
 /// Divides the grid so that the weighted sum over targets of E[(f/p)^2]^(1/2) = sum over cells of
-/// sqrt(measure . integral of f^2) is small. Each division is the one that lowers it most; of more divisions than are
-/// wanted those are taken back that gain least.
+/// sqrt(measure . integral of f^2) is small. Each division is the one that lowers it most; of more divisions than
+/// are wanted those are taken back that gain least.
 class SharedPartition {
 public:
     /// Divides until there are `cells` cells or nothing is gained. The same for any number of threads.
@@ -53,8 +53,8 @@ private:
 /// The cell of each square.
 std::vector<std::uint32_t> cell_of_squares(const SharedGrid& grid, const TileTree& tree);
 
-/// A distribution that is drawn from as a mixture of rows: q = sum of share[i] row[bin[i]] (Lawrence et al. 2005 take
-/// the nearest bin; mixtures are what acdf/blend.h draws from).
+/// A distribution that is drawn from as a mixture of rows: q = sum of share[i] row[bin[i]] (Lawrence et al. 2005
+/// take the nearest bin; mixtures are what acdf/blend.h draws from).
 struct SharedMixture {
     std::vector<double> moment; ///< one a cell: measure . integral of f^2, f normalised
     double weight = 1.0;        ///< in the mean of relative variances
@@ -72,8 +72,8 @@ double second_moment(const RowProbabilities& rows, const std::vector<SharedMixtu
 /// Lowers second_moment, which is convex in the rows, step by step. A probability that is positive stays so.
 void optimise_rows(RowProbabilities& rows, const std::vector<SharedMixture>& mixtures, int steps);
 
-/// 256 probabilities out of 65535, p = x^2 / (x^2 + (1 - x)^2) with x = code / 255: steps of a few per cent at the ends
-/// and in the middle alike.
+/// 256 probabilities out of 65535, p = x^2 / (x^2 + (1 - x)^2) with x = code / 255: steps of a few per cent at the
+/// ends and in the middle alike.
 std::vector<std::uint16_t> row_codebook();
 /// The code nearest to the probability lower / (lower + upper). Neither part vanishes unless it is 0.
 std::uint8_t row_code(double lower, double upper);

@@ -174,14 +174,13 @@ std::vector<std::uint32_t> band_starts(const std::vector<std::uint32_t>& joins, 
     return begin;
 }
 
-/// Band counts worth trying, in steps of sqrt(2) and at last every row, as long as
-/// a band keeps two cells on average.
+/// Band counts worth trying, in steps of sqrt(2), as long as a band keeps two
+/// cells on average.
 std::vector<std::size_t> band_counts(std::size_t rows, std::size_t cells) {
     std::vector<std::size_t> counts;
     for (double count = 4.0; count <= double(rows) && count <= double(cells) / 2.0; count *= std::sqrt(2.0))
         counts.push_back(static_cast<std::size_t>(count));
     if (counts.empty()) counts.push_back(std::min(rows, cells));
-    else if (counts.back() < rows && rows <= cells / 2) counts.push_back(rows);
     return counts;
 }
 

@@ -58,7 +58,7 @@ Worth worth(const NormalBins& bins, const std::vector<double>& irradiance) {
     Target grid;
     grid.columns = CoarseMap::columns;
     grid.rows = CoarseMap::rows;
-    const double band = horizon_band(bins);
+    const double band = out.band = horizon_band(bins);
     tbb::parallel_for(std::size_t{0}, out.mean.values.size(), [&](std::size_t i) {
         const Direction d = direction_of(grid, double(i / grid.columns) + 0.5, double(i % grid.columns) + 0.5);
         for (std::size_t b = 0; b < bins.normals.size(); ++b) {

@@ -88,13 +88,16 @@ Bytes deflated(const Bytes& raw) {
     return out;
 }
 
-/// Puts deflated bytes in place of the payload; a chunk that would grow is stored as it is.
+/// Puts deflated bytes in place of the payload, of a tree those of its planes where they are fewer; a chunk that
+/// would grow is stored as it is.
 void compress_payload(Payload& payload, AcdfChunk& chunk) {
     const Bytes planes = payload.type == ACDF_CHUNK_TREE ? tree_to_planes(payload.raw) : Bytes();
-    Bytes small = deflated(planes.empty() ? payload.raw : planes);
-    const bool too_small = chunk.raw_length / 1032 > small.size(); // padding, which planes leave out; rule 3011
-    if (small.size() >= payload.raw.size() || too_small) return;
-    chunk.codec = planes.empty() ? ACDF_CODEC_ZLIB : ACDF_CODEC_PLANES;
+    Bytes small = deflated(payload.raw), smaller = planes.empty() ? Bytes() : deflated(planes);
+    // Padding, which planes leave out, could make the tree longer than rule 3011 lets it be.
+    const bool take = !planes.empty() && smaller.size() < small.size() && chunk.raw_length / 1032 <= smaller.size();
+    if (take) small = std::move(smaller);
+    if (small.size() >= payload.raw.size()) return;
+    chunk.codec = take ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB;
     payload.raw = std::move(small);
 }
 

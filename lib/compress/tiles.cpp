@@ -149,7 +149,10 @@ private:
         if (best.position == 0) return;
         const double worth = at(worth_.mean, box.begin[0], box.begin[1]);
         const double alarm = worth > 0.0 ? all.flux / worth * at(worth_.alarm, box.begin[0], box.begin[1]) : 0.0;
-        if (alarm > kAlarm && radius(target_, box) > kLightRadius) best.gain += 1e6 * alarm; // first of all
+        // A light that crosses the horizon may draw in vain as it does between bins, over its radius instead.
+        const double reach = radius(target_, box);
+        if (alarm > kAlarm && (reach > kLightRadius || alarm * reach > kAlarm * worth_.band))
+            best.gain += 1e6 * alarm; // first of all
         queue_.push(best);
     }
 
@@ -204,12 +207,15 @@ double largest_cosine(const Target& target, const Box& box, const std::array<dou
         }
     }
     const double a = sine * best; // cosine = a sin(theta) + n.z cos(theta), largest at atan2(a, n.z)
-    double row = target.rows * acdf_atan2pi(a, n[2]);
-    if (row < 0.0) row = n[2] > 0.0 ? 0.0 : target.rows;
-    row = std::clamp(row, double(box.begin[0]), double(box.end[0]));
-    double s, c;
-    acdf_sincospi(row / target.rows, &s, &c);
-    return a * s + n[2] * c;
+    const double row = target.rows * acdf_atan2pi(a, n[2]);
+    if (row >= box.begin[0] && row <= box.end[0]) return std::hypot(a, n[2]);
+    double largest = -1.0;
+    for (std::uint32_t end : {box.begin[0], box.end[0]}) {
+        double s, c;
+        acdf_sincospi(double(end) / target.rows, &s, &c);
+        largest = std::max(largest, a * s + n[2] * c);
+    }
+    return largest;
 }
 
 double radius(const Target& target, const Box& box) {

@@ -42,10 +42,11 @@ struct Worth {
     /// Largest share of the samples of any normal that light at its horizon could draw by mistake, per unit of
     /// light.
     CoarseMap alarm;
+    double band = 0.0; ///< sine below which light counts as at the horizon
 };
 
-constexpr double kAlarm = 0.01;       ///< tiles whose light could draw more by mistake become lights
-constexpr double kLightRadius = 0.03; ///< radians; a light is no larger
+constexpr double kAlarm = 0.002;      ///< tiles whose light could draw more by mistake become lights
+constexpr double kLightRadius = 0.03; ///< radians; a light is no larger, and the smaller the brighter it is
 
 /// Divides a probe (rows theta, columns phi) into at most `count` tiles. Each split is the one that lowers most the
 /// sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2: to first order, what the cosine to a

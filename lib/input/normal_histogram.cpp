@@ -29,8 +29,8 @@ void NormalHistogram::add(double x, double y, double z, double weight) {
     y /= largest;
     z /= largest;
     if (up_ == UpAxis::y) {
-        std::swap(y, z);
-        y = -y;
+        std::swap(x, y); // (x, y, z) -> (z, x, y)
+        std::swap(x, z);
     }
     const double manhattan = std::abs(x) + std::abs(y) + std::abs(z);
     const double scale = weight / std::sqrt(x * x + y * y + z * z);

@@ -20,8 +20,8 @@ struct SceneNormals {
     std::uint64_t skipped = 0;           ///< normals that are zero or NaN, polygons without area
 };
 
-/// Which axis of the scene points up. `y` turns (x, y, z) into (x, -z, y), as Blender does on import: use it for a
-/// scene with y up (OBJ, glTF, USD). The probe must then be turned the same way.
+/// Which axis of the scene points up. `y` turns (x, y, z) into (z, x, y), as docs/conventions.md maps the frames of
+/// programs with y up (OpenEXR, USD, Mitsuba).
 enum class UpAxis { z, y };
 
 struct SceneOptions {

@@ -112,9 +112,8 @@ std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compre
                                         const std::vector<compress::View>& views, std::uint32_t columns,
                                         std::uint32_t rows) {
     std::vector<ViewAccuracy> out(views.size());
-    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
-        out[v] = measure_view(density, reflected, views[v], columns, rows);
-    });
+    tbb::parallel_for(std::size_t{0}, views.size(),
+                      [&](std::size_t v) { out[v] = measure_view(density, reflected, views[v], columns, rows); });
     return out;
 }
 
@@ -153,7 +152,8 @@ BrdfAccuracy summary(const std::vector<ViewAccuracy>& views) {
     const double count = out.views;
     std::sort(sorted.begin(), sorted.end());
     out.median = 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
-    out.relative_variance = out.support_violations > 0 ? std::numeric_limits<double>::infinity() : variance.value() / count;
+    out.relative_variance =
+        out.support_violations > 0 ? std::numeric_limits<double>::infinity() : variance.value() / count;
     out.rms_pdf_error = std::sqrt(std::max(0.0, square_error.value()) / (2.0 * ACDF_PI * count));
     out.kl_divergence = kl.value() / count;
     out.share_above_horizon = above.value() / count;

@@ -21,7 +21,7 @@ struct BrdfTableSize {
 enum class BrdfTableKind {
     centre, ///< as described: the light of the view at the bin's centre, at the centre of each cell; biased between
     mean,   ///< repaired: the root of the mean of (f / integral of f)^2 over 3x3 views of the bin and five
-          ///< half-vectors of the cell, corners included, with the prior that files have too (compress::kPrior)
+            ///< half-vectors of the cell, corners included, with the prior that files have too (compress::kPrior)
 };
 
 /// Every view is served by the bin that it lies in, also if the BRDF is isotropic: give views of any azimuth. In a

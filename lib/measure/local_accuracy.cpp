@@ -44,8 +44,8 @@ public:
     }
 
     NormalAccuracy measure(const Normal& normal, TilePicture& own) const {
-        AcdfLocalSource source;
-        acdf_local_source(&local_, normal.data(), &source);
+        AcdfLocalPoint source;
+        acdf_local_at(&local_, normal.data(), &source);
         const double length = std::hypot(double{normal[0]}, double{normal[1]}, double{normal[2]});
         const float unit[3] = {static_cast<float>(normal[0] / length), static_cast<float>(normal[1] / length),
                                static_cast<float>(normal[2] / length)};
@@ -114,7 +114,7 @@ private:
             spread(local_.blend.splits[node].child[upper], part[upper], whole, out);
     }
 
-    std::vector<double> tile_probabilities(const AcdfLocalSource& source) const {
+    std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
         std::vector<double> out(boxes_.size());
         spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
         for (std::uint32_t k = 0; k < local_.light_count; ++k)

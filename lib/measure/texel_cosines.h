@@ -2,7 +2,6 @@
 // L max(0, n . omega) is summed over.
 #pragma once
 
-#include "compress/sum.h"
 #include "compress/target.h"
 
 #include <acdf/sample.h>

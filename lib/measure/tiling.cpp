@@ -83,7 +83,7 @@ void TilingOnTheFly::largest_cosines(const float n[3], double* across, double* b
             const double b = across[c];
             const double border = std::max(z * c0 + b * s0, z * c1 + b * s1);
             const bool rises = b * c0 >= z * s0, falls = b * c1 <= z * s1; // at the top and at the foot
-            bound[r * columns + c] = std::max((rises & falls ? across[columns + c] : border) + kSlack, 0.0);
+            bound[r * columns + c] = std::max((rises && falls ? across[columns + c] : border) + kSlack, 0.0);
         }
     }
 }

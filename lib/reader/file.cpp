@@ -263,7 +263,8 @@ LocalEnvironmentView File::local() const noexcept {
 }
 
 BrdfView File::brdf() const noexcept {
-    return BrdfView({blend_, tree_, bins_, views_, nodes_, axes_[0].resolution, axes_[1].resolution, description_->total});
+    return BrdfView(
+        {blend_, tree_, bins_, views_, nodes_, axes_[0].resolution, axes_[1].resolution, description_->total});
 }
 
 TableView File::table() const noexcept {

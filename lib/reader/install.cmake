@@ -10,7 +10,9 @@ install(TARGETS acdf_reader EXPORT acdfTargets COMPONENT reader
 install(FILES
     ${PROJECT_SOURCE_DIR}/format/acdf/layout.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h

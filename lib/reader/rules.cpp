@@ -43,7 +43,8 @@ const Rule rules[] = {
     {3012, error, ErrorCode::limit_exceeded, "inflate-limit",
      "The compressed chunks inflate to no more than the reader's limit."},
     {3013, error, malformed, "chunk-kind",
-     "TILE and ROWS come only in files of kinds 2 and 3, LOCL only in those of kind 2, VIEW only in those of kind 3."},
+     "TILE and ROWS come only in files of kinds 2 and 3, LOCL only in those of kind 2, VIEW only in those of kind "
+     "3."},
 
     {4001, error, malformed, "chunk-crc", "`crc` is the CRC-32 of the stored bytes."},
     {4002, error, malformed, "padding", "The bytes between payloads and after the last one are zero."},
@@ -127,14 +128,16 @@ const Rule rules[] = {
     {7006, error, malformed, "light",
      "A light is a tile, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
      "positive finite share."},
-    {7007, error, malformed, "light-row", "In the row of a bin of positive share a light's tile has probability 0."},
+    {7007, error, malformed, "light-row",
+     "In the row of a bin of positive share a light's tile has probability 0."},
 
     {8001, error, malformed, "brdf-axes",
      "A BRDF has the axes of §6.8, phi_h of at most 65536 steps and cos_theta_h of at most 268435456."},
     {8002, error, malformed, "brdf-bins", "A BRDF has as many bins as the product of its axes of views."},
     {8003, error, malformed, "views",
-     "A BRDF has VIEW, as long as `theta_count` tells, with the counts of the axes; only flag bit 0 may be set, and phi_h "
-     "ends at 0 and pi where it is."},
+     "A BRDF has VIEW, as long as `theta_count` tells, with the counts of the axes; only flag bit 0 may be set, "
+     "and phi_h "
+     "begins at 0 where it is."},
     {8004, error, malformed, "view-nodes", "The stored views are in [0, 1] and strictly increasing."},
     {8005, error, malformed, "diffuse-share", "`diffuse_share` is in [0, 1)."},
     {8006, error, malformed, "brdf-stored", "Each bin of a BRDF is stored: no root is FFFFFFFF."},

@@ -1,19 +1,19 @@
 // layouts FILE.acdf...: what chunk TREE would take in other layouts before deflate, as Markdown on stdout. Every
 // layout here can be undone: sizes of the arrays follow from the headers, in the order of the curves.
+#include "compress/planes.h"
+
 #include <acdf/reader.h>
 #include <acdf/sample.h>
 
 #include <zlib.h>
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -67,15 +67,6 @@ void delta(Array& array) {
     for (std::size_t i = array.values.size(); i-- > 1;) array.values[i] -= array.values[i - 1];
 }
 
-/// A link's rank among those of its curve, from 1: subtrees lie one after the other behind their parent, so that
-/// their sizes give the distances back.
-void rank(Array& links) {
-    const std::set<std::uint32_t> sorted(links.values.begin(), links.values.end());
-    for (std::uint32_t& link : links.values)
-        if (link != 0)
-            link = static_cast<std::uint32_t>(std::distance(sorted.begin(), sorted.find(link))) + !sorted.count(0);
-}
-
 void put(Bytes& bytes, std::uint32_t value, std::uint32_t size) {
     for (std::uint32_t i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
@@ -90,15 +81,13 @@ std::size_t deflated(const Bytes& raw) {
 
 struct Layout {
     const char* name;
-    bool delta, grouped, planes, ranks;
+    bool delta, grouped, planes;
 };
-constexpr Layout layouts[] = {{"as stored", false, false, false, false},
-                              {"delta", true, false, false, false},
-                              {"by kind", false, true, false, false},
-                              {"by kind, delta", true, true, false, false},
-                              {"by kind, byte planes", false, true, true, false},
-                              {"by kind, delta, byte planes", true, true, true, false},
-                              {"by kind, delta, byte planes, links as ranks", true, true, true, true}};
+constexpr Layout layouts[] = {{"delta", true, false, false},
+                              {"by kind", false, true, false},
+                              {"by kind, delta", true, true, false},
+                              {"by kind, byte planes", false, true, true},
+                              {"by kind, delta, byte planes", true, true, true}};
 
 /// One stream per kind of array, per size of its values, and per byte of these, in that order.
 Bytes laid_out(std::vector<StoredCurve> curves, const Layout& layout) {
@@ -106,7 +95,6 @@ Bytes laid_out(std::vector<StoredCurve> curves, const Layout& layout) {
     for (StoredCurve& curve : curves)
         for (Array& array : curve.arrays) {
             if (layout.delta && (array.kind == Array::cumulative || array.kind == Array::positions)) delta(array);
-            if (layout.ranks && array.kind == Array::links) rank(array);
             const std::uint32_t kind = layout.grouped ? array.kind : Array::header;
             for (const std::uint32_t value : array.values) {
                 if (!layout.planes) put(streams[{kind}], value, array.size);
@@ -120,15 +108,50 @@ Bytes laid_out(std::vector<StoredCurve> curves, const Layout& layout) {
     return out;
 }
 
-/// Bytes of curves without links that repeat an earlier one, and so could be shared (if links reached them).
-std::size_t repeated(const acdf::File& file, const std::vector<StoredCurve>& curves) {
-    std::set<Bytes> seen;
-    std::size_t bytes = 0;
-    for (const StoredCurve& curve : curves) {
-        const bool links = std::any_of(curve.arrays.begin(), curve.arrays.end(),
-                                       [](const Array& array) { return array.kind == Array::links; });
-        const Bytes own(file.tree() + 2 * std::size_t{curve.offset}, file.tree() + 2 * std::size_t{curve.end});
-        if (!links && !seen.insert(own).second) bytes += own.size();
+/// What a curve without links must be equal in to be shared: its bytes, and where its range begins (rule 6019).
+struct Place {
+    std::uint32_t parent = 0;
+    std::array<std::uint32_t, ACDF_MAX_AXES> low{};
+};
+
+std::map<std::uint32_t, Place> places_of(const acdf::File& file, const std::vector<StoredCurve>& curves) {
+    std::map<std::uint32_t, Place> places;
+    for (const StoredCurve& stored : curves) {
+        const AcdfCurve curve = acdf_curve_at(file.tree(), stored.offset);
+        const std::uint32_t axis = acdf_curve_axis(&curve), code = ACDF_CURVE_POSITION_CODE(curve.header);
+        const Place own = places[stored.offset];
+        for (std::uint32_t s = 0; curve.links && s < curve.segments; ++s) {
+            const std::uint32_t link = acdf_curve_link(&curve, s);
+            if (link == 0) continue;
+            Place& place = places[stored.offset + link] = {stored.offset, own.low};
+            if (s > 0) place.low[axis] = acdf_load(curve.positions, s - 1, code) + (code == 0 ? own.low[axis] : 0);
+        }
+    }
+    return places;
+}
+
+/// Bytes of curves without links that a later one repeats: all; those that a link of one byte reaches; and of these
+/// the ones that may be shared.
+std::array<std::size_t, 3> repeated(const acdf::File& file, const std::vector<StoredCurve>& curves) {
+    const std::map<std::uint32_t, Place> places = places_of(file, curves);
+    std::array<std::size_t, 3> bytes{};
+    std::map<Bytes, std::uint32_t> anywhere, alike; // the nearest one behind
+    for (auto curve = curves.rbegin(); curve != curves.rend(); ++curve) {
+        const AcdfCurve header = acdf_curve_at(file.tree(), curve->offset);
+        if (header.links) continue;
+        Bytes own(file.tree() + 2 * std::size_t{curve->offset}, file.tree() + 2 * std::size_t{curve->end});
+        const Place& place = places.at(curve->offset);
+        const std::size_t size = own.size();
+        const auto reaches = [&](std::uint32_t at) { return at - place.parent <= 0xFF; };
+        const auto [same, first] = anywhere.try_emplace(own, curve->offset);
+        if (!first) bytes[0] += size;
+        if (!first && reaches(same->second)) bytes[1] += size;
+        else same->second = curve->offset;
+        put(own, place.low[acdf_curve_axis(&header)], 4);
+        put(own, acdf_curve_axis(&header), 1);
+        const auto [may, only] = alike.try_emplace(own, curve->offset);
+        if (!only && reaches(may->second)) bytes[2] += size;
+        else may->second = curve->offset;
     }
     return bytes;
 }
@@ -147,12 +170,11 @@ void report(const char* path) {
                 2 * std::size_t{file.tree_units()});
     for (int kind : {Array::header, Array::cumulative, Array::positions, Array::links})
         std::printf(" | %zu", kinds[kind]);
-    std::printf(" | %zu", repeated(file, curves));
-    for (const Layout& layout : layouts) {
-        const Bytes stored(file.tree(), file.tree() + 2 * std::size_t{file.tree_units()});
-        std::printf(" | %zu", deflated(&layout == layouts ? stored : laid_out(curves, layout)));
-    }
-    std::printf(" |\n");
+    for (const std::size_t bytes : repeated(file, curves)) std::printf(" | %zu", bytes);
+    const Bytes stored(file.tree(), file.tree() + 2 * std::size_t{file.tree_units()});
+    std::printf(" | %zu", deflated(stored));
+    for (const Layout& layout : layouts) std::printf(" | %zu", deflated(laid_out(curves, layout)));
+    std::printf(" | %zu |\n", deflated(acdf::compress::tree_to_planes(stored)));
 }
 
 } // namespace
@@ -162,10 +184,12 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: layouts FILE.acdf...\n");
         return 2;
     }
-    std::printf("| file | TREE | headers | cumulative | positions | links | repeated curves");
-    for (const Layout& layout : layouts) std::printf(" | deflated, %s", layout.name);
-    std::printf(" |\n|");
-    for (std::size_t i = 0; i < 7 + std::size(layouts); ++i) std::printf("---|");
+    std::printf(
+        "| file | TREE | headers | cumulative | positions | links | repeated curves | in reach | may be shared");
+    std::printf(" | deflated, as stored");
+    for (const Layout& layout : layouts) std::printf(" | %s", layout.name);
+    std::printf(" | codec 2 |\n|");
+    for (std::size_t i = 0; i < 11 + std::size(layouts); ++i) std::printf("---|");
     std::printf("\n");
     for (int i = 1; i < argc; ++i) report(argv[i]);
 }

@@ -61,7 +61,7 @@ void run(benchmark::State& state, std::size_t samples, const Begin& begin, const
         for (std::size_t k = 0; k < samples; ++k, draw = (draw + 1) % kPoints) work(all[i], all[draw].u);
         i = (i + 1) % kPoints;
     }
-    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * samples));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(samples));
 }
 void nothing(const Point&) {}
 

@@ -38,6 +38,30 @@ void sample_everything(const acdf::EnvironmentView& view, std::uint32_t seed) {
     }
 }
 
+void sample_everything(const acdf::LocalEnvironmentView& view, std::uint32_t seed) {
+    const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 0x1p-30};
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (int n = 0; n < 96; ++n) {
+        float normal[3], any[3];
+        for (int k = 0; k < 3; ++k) {
+            normal[k] = n % 3 == 0 ? static_cast<float>(static_cast<int>(rng() % 5) - 2)
+                                   : static_cast<float>(2 * uniform(rng) - 1);
+            any[k] = static_cast<float>(2 * uniform(rng) - 1);
+        }
+        const double u0 = n < 25 ? edges[n / 5] : uniform(rng), u1 = n < 25 ? edges[n % 5] : uniform(rng);
+        const acdf::DirectionSample s = view.sample(normal, u0, u1);
+        require(s.pdf >= 0.0f && std::isfinite(s.pdf));
+        require(std::isfinite(view.irradiance(normal)) && view.irradiance(normal) >= 0.0);
+        require(view.pdf(normal, any) >= 0.0f);
+        if (s.pdf == 0.0f) continue;
+        const double length2 = double{s.direction[0]} * s.direction[0] + double{s.direction[1]} * s.direction[1] +
+                               double{s.direction[2]} * s.direction[2];
+        require(std::fabs(length2 - 1.0) < 1e-6);
+        require(view.pdf(normal, s.direction) > 0.0f); // of tilted curves it may differ by rounding
+    }
+}
+
 void sample_everything(const acdf::TableView& view, std::uint32_t seed) {
     const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 0x1p-30};
     std::mt19937 rng(seed);
@@ -136,6 +160,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             for (std::uint32_t i = 0; i < file.metadata_count(); ++i) file.metadata(i, key, value);
             if (file.kind() == ACDF_KIND_ENVIRONMENT)
                 sample_everything(file.environment(), static_cast<std::uint32_t>(size));
+            if (file.kind() == ACDF_KIND_LOCAL) {
+                sample_everything(file.local(), static_cast<std::uint32_t>(size));
+                sample_everything(file.local().environment(), static_cast<std::uint32_t>(size));
+            }
             if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), static_cast<std::uint32_t>(size));
         }
     }

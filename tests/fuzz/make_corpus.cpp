@@ -1,5 +1,5 @@
 // Writes the seeds of fuzz_reader: small valid files that use everything. make_corpus FOLDER
-#include "local_builder.h"
+#include "local_random.h"
 #include "reader_planes.h"
 
 #include <cstdio>
@@ -43,6 +43,10 @@ int main(int argc, char** argv) {
         EnvironmentSpec spec = RandomTree(seed, options).make();
         spec.zlib = seed % 4 == 0;
         write(folder / ("tree" + std::to_string(seed)), spec.encode());
+        options.depth = 3;
+        LocalSpec local = RandomLocal(seed, options).make();
+        local.zlib = seed % 4 == 0;
+        write(folder / ("local" + std::to_string(seed)), local.encode());
     }
     return 0;
 }

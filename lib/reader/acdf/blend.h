@@ -46,17 +46,15 @@ ACDF_FN double acdf_mixture_sum(const AcdfMixture* mix) {
     return sum;
 }
 
-/* What of each row's weight falls into the lower part of a split; out[1] the same of the upper one. */
+/* What of each row's weight falls into the two parts of a split; sum[k] is their sum. */
 ACDF_FN void acdf_mixture_split(const AcdfMixture* mix, const AcdfBlend* blend, uint32_t split, AcdfMixture out[2],
                                 double sum[2]) {
     int i;
     sum[0] = sum[1] = 0.0;
     for (i = 0; i < mix->count; ++i) {
         const double code = (double)blend->tiles->codebook[mix->row[i][split]];
-        out[0].weight[i] = mix->weight[i] * (code * (1.0 / 65535.0));
-        out[1].weight[i] = mix->weight[i] * ((65535.0 - code) * (1.0 / 65535.0));
-        sum[0] += out[0].weight[i];
-        sum[1] += out[1].weight[i];
+        sum[0] += out[0].weight[i] = mix->weight[i] * (code * (1.0 / 65535.0));
+        sum[1] += out[1].weight[i] = mix->weight[i] * ((65535.0 - code) * (1.0 / 65535.0));
     }
 }
 
@@ -65,25 +63,40 @@ ACDF_FN void acdf_range_cut(AcdfRange* range, uint32_t position, int upper) {
     else range->high = position;
 }
 
-/* Draws a tile of the mixture, whose sum is positive; u and range as in acdf_tree_sample, `mix` is used up. Returns
- * the tile's number; *probability becomes its share of the mixture. */
-ACDF_FN uint32_t acdf_blend_sample_tile(const AcdfBlend* blend, AcdfMixture* mix, double* u, AcdfRange* range,
-                                        double* probability) {
+/* The walks below are written for a number of rows that the compiler knows: weights then stay in registers. */
+#ifndef ACDF_INLINE
+#if defined(__CUDACC__)
+#define ACDF_INLINE static __forceinline__ __host__ __device__
+#elif defined(__GNUC__)
+#define ACDF_INLINE static inline __attribute__((always_inline))
+#else
+#define ACDF_INLINE ACDF_FN
+#endif
+#endif
+
+ACDF_INLINE uint32_t acdf_blend_sample_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
+                                            double* u, AcdfRange* range, double* probability) {
+    const uint16_t* codebook = blend->tiles->codebook;
     const double whole = acdf_mixture_sum(mix);
-    double chosen = whole;
+    double weight[ACDF_MAX_ROWS_MIXED], chosen = whole;
     uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
+    int i;
+    for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &blend->splits[node];
         const uint32_t axis = split->place & 7u;
-        AcdfMixture part[2];
-        double sum[2], x;
-        int upper, i;
-        acdf_mixture_split(mix, blend, node, part, sum);
-        x = u[axis] * (sum[0] + sum[1]);
-        upper = !(x < sum[0]) && sum[1] > 0.0;
-        u[axis] = upper ? acdf_unit_interval((x - sum[0]) / sum[1]) : x < sum[0] ? x / sum[0] : 1.0;
-        chosen = sum[upper];
-        for (i = 0; i < mix->count; ++i) mix->weight[i] = part[upper].weight[i];
+        double lower[ACDF_MAX_ROWS_MIXED], higher[ACDF_MAX_ROWS_MIXED], low = 0.0, high = 0.0, x;
+        int upper;
+        for (i = 0; i < rows; ++i) {
+            const double code = (double)codebook[mix->row[i][node]];
+            low += lower[i] = weight[i] * (code * (1.0 / 65535.0));
+            high += higher[i] = weight[i] * ((65535.0 - code) * (1.0 / 65535.0));
+        }
+        x = u[axis] * (low + high);
+        upper = !(x < low) && high > 0.0;
+        u[axis] = upper ? (x - low) / high : x < low ? x / low : 1.0;
+        chosen = upper ? high : low;
+        for (i = 0; i < rows; ++i) weight[i] = upper ? higher[i] : lower[i];
         acdf_range_cut(&range[axis], split->place >> 3, upper);
         node = split->child[upper];
     }
@@ -91,41 +104,77 @@ ACDF_FN uint32_t acdf_blend_sample_tile(const AcdfBlend* blend, AcdfMixture* mix
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* Finds the tile of a grid square; square, range and strata as in acdf_tree_find. *probability becomes its share of
- * the mixture, 0 where no sample can fall. */
-ACDF_FN uint32_t acdf_blend_find_tile(const AcdfBlend* blend, AcdfMixture* mix, const uint32_t* square,
-                                      AcdfRange* range, AcdfStratum* strata, double* probability) {
+ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
+                                          const uint32_t* square, AcdfRange* range, AcdfStratum* strata,
+                                          double* probability) {
+    const uint16_t* codebook = blend->tiles->codebook;
     const double whole = acdf_mixture_sum(mix);
-    double chosen = whole;
+    double weight[ACDF_MAX_ROWS_MIXED], chosen = whole;
     uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
+    int i;
+    for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &blend->splits[node];
         const uint32_t axis = split->place & 7u;
         const int upper = square[axis] >= split->place >> 3;
-        AcdfMixture part[2];
-        double sum[2];
-        int i;
-        acdf_mixture_split(mix, blend, node, part, sum);
-        chosen = sum[upper];
-        if (strata) {
-            const double below = sum[0] / (sum[0] + sum[1]);
-            if (upper) strata[axis].low += strata[axis].width * below;
-            strata[axis].width *= upper ? sum[1] / (sum[0] + sum[1]) : below;
+        double low = 0.0, high = 0.0;
+        for (i = 0; i < rows; ++i) {
+            const double code = (double)codebook[mix->row[i][node]];
+            const double lower = weight[i] * (code * (1.0 / 65535.0));
+            const double higher = weight[i] * ((65535.0 - code) * (1.0 / 65535.0));
+            low += lower;
+            high += higher;
+            weight[i] = upper ? higher : lower;
         }
-        for (i = 0; i < mix->count; ++i) mix->weight[i] = part[upper].weight[i];
+        chosen = upper ? high : low;
+        if (strata) {
+            const double below = low / (low + high);
+            if (upper) strata[axis].low += strata[axis].width * below;
+            strata[axis].width *= upper ? high / (low + high) : below;
+        }
         acdf_range_cut(&range[axis], split->place >> 3, upper);
         node = split->child[upper];
-        if (!(chosen > 0.0)) {
-            *probability = 0.0;
-            return 0;
-        }
     }
-    *probability = acdf_positive(chosen / whole);
+    *probability = chosen > 0.0 ? acdf_positive(chosen / whole) : 0.0;
     return node & ~ACDF_TILE_FLAG;
 }
 
+/* Draws a tile of the mixture, whose sum is positive; u and range as in acdf_tree_sample. Returns the tile's
+ * number; *probability becomes its share of the mixture. */
+ACDF_FN uint32_t acdf_blend_sample_tile(const AcdfBlend* blend, const AcdfMixture* mix, double* u, AcdfRange* range,
+                                        double* probability) {
+    switch (mix->count) {
+    case 1:
+        return acdf_blend_sample_rows(blend, mix, 1, u, range, probability);
+    case 2:
+        return acdf_blend_sample_rows(blend, mix, 2, u, range, probability);
+    case 3:
+        return acdf_blend_sample_rows(blend, mix, 3, u, range, probability);
+    default:
+        return acdf_blend_sample_rows(blend, mix, 4, u, range, probability);
+    }
+}
+
+/* Finds the tile of a grid square; square, range and strata as in acdf_tree_find. *probability becomes its share of
+ * the mixture, 0 where no sample can fall. */
+ACDF_FN uint32_t acdf_blend_find_tile(const AcdfBlend* blend, const AcdfMixture* mix, const uint32_t* square,
+                                      AcdfRange* range, AcdfStratum* strata, double* probability) {
+    switch (mix->count) {
+    case 0:
+        return acdf_blend_find_rows(blend, mix, 0, square, range, strata, probability);
+    case 1:
+        return acdf_blend_find_rows(blend, mix, 1, square, range, strata, probability);
+    case 2:
+        return acdf_blend_find_rows(blend, mix, 2, square, range, strata, probability);
+    case 3:
+        return acdf_blend_find_rows(blend, mix, 3, square, range, strata, probability);
+    default:
+        return acdf_blend_find_rows(blend, mix, 4, square, range, strata, probability);
+    }
+}
+
 /* Draws a cell of the mixture, as acdf_tree_sample does of a tree. Returns its probability, > 0. */
-ACDF_FN double acdf_blend_sample(const AcdfBlend* blend, AcdfMixture* mix, double* u, AcdfRange* range) {
+ACDF_FN double acdf_blend_sample(const AcdfBlend* blend, const AcdfMixture* mix, double* u, AcdfRange* range) {
     double probability;
     const uint32_t tile = acdf_blend_sample_tile(blend, mix, u, range, &probability);
     if (!blend->roots || blend->roots[tile] == ACDF_NO_ROOT) return probability;
@@ -133,8 +182,8 @@ ACDF_FN double acdf_blend_sample(const AcdfBlend* blend, AcdfMixture* mix, doubl
 }
 
 /* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_blend_find(const AcdfBlend* blend, AcdfMixture* mix, const uint32_t* square, AcdfRange* range,
-                               AcdfStratum* strata) {
+ACDF_FN double acdf_blend_find(const AcdfBlend* blend, const AcdfMixture* mix, const uint32_t* square,
+                               AcdfRange* range, AcdfStratum* strata) {
     double probability, inside;
     const uint32_t tile = acdf_blend_find_tile(blend, mix, square, range, strata, &probability);
     if (!(probability > 0.0) || !blend->roots || blend->roots[tile] == ACDF_NO_ROOT) return probability;

@@ -50,13 +50,14 @@ ACDF_FN double acdf_view_coordinate(double cos_theta) { return cos_theta < 1.0 ?
 
 /* The nodes on both sides of x and how far x is from the lower to the upper one. */
 ACDF_FN double acdf_view_nodes(const float* nodes, uint32_t count, double x, uint32_t node[2]) {
-    uint32_t low = 0, high = count - 1;
+    uint32_t low = 0, length = count - 1, high;
     double t;
-    while (high - low > 1) {
-        const uint32_t middle = (low + high) / 2;
-        if ((double)nodes[middle] <= x) low = middle;
-        else high = middle;
+    while (length > 1) { /* without branches on the data */
+        const uint32_t half = length / 2;
+        low += (double)nodes[low + half] <= x ? half : 0;
+        length -= half;
     }
+    high = low + length;
     node[0] = low;
     node[1] = high;
     if (low == high) return 0.0;

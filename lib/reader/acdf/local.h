@@ -105,26 +105,28 @@ ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfN
     return acdf_latlong_bins(local->columns, local->rows, normal, out);
 }
 
-/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share. */
+/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share. Made once
+ * for a shading point, it serves all samples there. */
 enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND };
 
-typedef struct AcdfLocalSource {
+typedef struct AcdfLocalPoint {
     int what;
     uint32_t root;    /* of the tree */
+    float surface[3]; /* the normal as given */
     double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
     double length;    /* of that */
     AcdfMixture mix;  /* of the blend */
     double lights;    /* sum of the weights of the lights */
     double sum;       /* of all weights */
-} AcdfLocalSource;
+} AcdfLocalPoint;
 
 /* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
  * from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
-ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalSource* source) {
-    const double radius = (double)light->radius * source->length;
-    const double height = source->normal[0] * (double)light->direction[0] +
-                          source->normal[1] * (double)light->direction[1] +
-                          source->normal[2] * (double)light->direction[2];
+ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
+    const double radius = (double)light->radius * point->length;
+    const double height = point->normal[0] * (double)light->direction[0] +
+                          point->normal[1] * (double)light->direction[1] +
+                          point->normal[2] * (double)light->direction[2];
     if (height >= radius) return (double)light->share * height;
     if (height <= -radius) return 0.0;
     return (double)light->share * ((height + radius) * (height + radius) / (4.0 * radius));
@@ -139,7 +141,7 @@ ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
 }
 
 /* Sets the normal in the scale of the weights of its bins. */
-ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], AcdfLocalSource* out) {
+ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     const double x = normal[0], y = normal[1], z = normal[2], length = sqrt(x * x + y * y + z * z);
     const double scale =
         local->subdivisions > 0 ? (double)local->subdivisions / (fabs(x) + fabs(y) + fabs(z)) : 1.0 / length;
@@ -149,14 +151,20 @@ ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], Ac
     out->length = scale * length;
 }
 
-ACDF_FN void acdf_local_source(const AcdfLocal* local, const float normal[3], AcdfLocalSource* out) {
+/* Finds what serves a normal. */
+ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     uint32_t k;
     int i;
     out->what = ACDF_LOCAL_NOTHING;
     out->root = 0;
+    for (i = 0; i < 3; ++i) out->surface[i] = normal[i];
     out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
     out->mix.count = 0;
+    for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
+        out->mix.row[i] = 0;
+        out->mix.weight[i] = 0.0;
+    }
     if (!acdf_local_bins(local, normal, &bins)) return;
     if (!local->blend.tiles) {
         const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
@@ -180,15 +188,16 @@ ACDF_FN void acdf_local_source(const AcdfLocal* local, const float normal[3], Ac
 }
 
 /* Draws a cell of lights and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
-ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, AcdfLocalSource* source, double* u,
+ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                        AcdfRange* range) {
-    double x = u[0] * source->sum, probability;
-    if (x < source->lights || source->mix.count == 0) {
+    double x = u[0] * point->sum, probability;
+    uint32_t tile, root;
+    if (x < point->lights || point->mix.count == 0) {
         const AcdfLight* light = 0;
         double weight = 0.0;
-        uint32_t k, axis, root;
+        uint32_t k, axis;
         for (k = 0; k < local->light_count; ++k) {
-            const double w = acdf_light_weight(&local->lights[k], source);
+            const double w = acdf_light_weight(&local->lights[k], point);
             if (!(w > 0.0)) continue;
             if (light) x -= weight;
             light = &local->lights[k];
@@ -200,56 +209,54 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, AcdfLocalSource* 
             range[axis].low = light->low[axis];
             range[axis].high = light->high[axis];
         }
-        probability = acdf_positive(weight / source->sum);
+        probability = acdf_positive(weight / point->sum);
         root = local->blend.roots ? local->blend.roots[light->tile] : ACDF_NO_ROOT;
         if (root == ACDF_NO_ROOT) return probability;
         return acdf_positive(probability * acdf_tree_sample(local->blend.tree, root, u, range));
     }
-    u[0] = acdf_unit_interval((x - source->lights) / (source->sum - source->lights));
-    probability = acdf_mixture_sum(&source->mix) / source->sum;
-    return acdf_positive(probability * acdf_blend_sample(&local->blend, &source->mix, u, range));
+    u[0] = acdf_unit_interval((x - point->lights) / (point->sum - point->lights));
+    tile = acdf_blend_sample_tile(&local->blend, &point->mix, u, range, &probability);
+    probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
+    root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
+    if (root == ACDF_NO_ROOT) return probability;
+    return acdf_positive(probability * acdf_tree_sample(local->blend.tree, root, u, range));
 }
 
 /* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalSource* source, const uint32_t* square,
+ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
                                      AcdfRange* range) {
-    AcdfMixture mix = source->mix;
     double probability, inside;
-    uint32_t k, axis, root;
-    for (k = 0; k < local->light_count; ++k) {
-        const AcdfLight* light = &local->lights[k];
-        if (square[0] < light->low[0] || square[0] >= light->high[0] || square[1] < light->low[1] ||
-            square[1] >= light->high[1])
-            continue;
-        for (axis = 0; axis < 2; ++axis) {
-            range[axis].low = light->low[axis];
-            range[axis].high = light->high[axis];
+    uint32_t low = 0, high = local->light_count, root;
+    const uint32_t tile = acdf_blend_find_tile(&local->blend, &point->mix, square, range, 0, &probability);
+    root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
+    if (probability > 0.0) {
+        probability = acdf_mixture_sum(&point->mix) / point->sum * probability;
+    } else { /* no row gives a light any probability */
+        while (low < high) {
+            const uint32_t middle = (low + high) / 2;
+            if (local->lights[middle].tile < tile) low = middle + 1;
+            else high = middle;
         }
-        probability = acdf_light_weight(light, source) / source->sum;
+        if (low == local->light_count || local->lights[low].tile != tile) return 0.0;
+        probability = acdf_light_weight(&local->lights[low], point) / point->sum;
         if (!(probability > 0.0)) return 0.0;
-        root = local->blend.roots ? local->blend.roots[light->tile] : ACDF_NO_ROOT;
-        if (root == ACDF_NO_ROOT) return acdf_positive(probability);
-        inside = acdf_tree_find(local->blend.tree, root, square, range, 0);
-        return inside > 0.0 ? acdf_positive(acdf_positive(probability) * inside) : 0.0;
     }
-    if (mix.count == 0) return 0.0;
-    probability = acdf_mixture_sum(&source->mix) / source->sum;
-    inside = acdf_blend_find(&local->blend, &mix, square, range, 0);
-    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
+    if (root == ACDF_NO_ROOT) return acdf_positive(probability);
+    inside = acdf_tree_find(local->blend.tree, root, square, range, 0);
+    return inside > 0.0 ? acdf_positive(acdf_positive(probability) * inside) : 0.0;
 }
 
 /* The part of the density that follows the light. */
-ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalSource* source,
-                                   const float direction[3]) {
+ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const uint32_t columns = local->environment.columns, rows = local->environment.rows;
     AcdfRange range[2];
     double t[2] = {0.5, 0.5}, column, p, z0, dz;
     uint32_t square[2];
-    if (source->what == ACDF_LOCAL_NOTHING || !acdf_sphere_square(columns, rows, direction, square, &column))
+    if (point->what == ACDF_LOCAL_NOTHING || !acdf_sphere_square(columns, rows, direction, square, &column))
         return 0.0f;
     acdf_sphere_ranges(columns, rows, range);
-    p = source->what == ACDF_LOCAL_BLEND ? acdf_local_blend_find(local, source, square, range)
-                                         : acdf_tree_find(local->environment.tree, source->root, square, range, 0);
+    p = point->what == ACDF_LOCAL_BLEND ? acdf_local_blend_find(local, point, square, range)
+                                        : acdf_tree_find(local->environment.tree, point->root, square, range, 0);
     if (!(p > 0.0)) return 0.0f;
     z0 = acdf_row_z(range[1].low, rows);
     dz = z0 - acdf_row_z(range[1].high, rows);
@@ -259,13 +266,15 @@ ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalSource
 }
 
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
-ACDF_FN float acdf_local_density(const AcdfLocal* local, const float normal[3], const float direction[3],
+ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
                                  float light) {
-    const double x = normal[0], y = normal[1], z = normal[2];
+    const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
     const double share = local->cosine_share;
+    const double dx = direction[0], dy = direction[1], dz = direction[2], size = sqrt(dx * dx + dy * dy + dz * dz);
     double cosine, pdf;
     if (share == 0.0) return light;
-    cosine = (x * direction[0] + y * direction[1] + z * direction[2]) / sqrt(x * x + y * y + z * z);
+    if (!(size > 0.9995 && size < 1.0005)) return 0.0f;
+    cosine = (x * dx + y * dy + z * dz) / sqrt(x * x + y * y + z * z);
     pdf = (1.0 - share) * (double)light + (cosine > 0.0 ? share * cosine * (1.0 / ACDF_PI) : 0.0);
     return pdf > 1.17549435e-38 || pdf == 0.0 ? (float)pdf : 1.17549435e-38f;
 }
@@ -286,58 +295,67 @@ ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, 
     for (i = 0; i < 3; ++i) direction[i] = (float)(r * (cosine * s[i] + sine * t[i]) + h * n[i]);
 }
 
-/* Density per steradian with which acdf_local_sample draws `direction` (unit) for `normal`. */
-ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
-    AcdfLocalSource source;
-    acdf_local_source(local, normal, &source);
-    if (source.what == ACDF_LOCAL_NOTHING) return 0.0f;
-    return acdf_local_density(local, normal, direction, acdf_local_light_pdf(local, &source, direction));
+/* Density per steradian with which acdf_local_sample_at draws `direction` (unit). */
+ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+    if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
+    return acdf_local_density(local, point, direction, acdf_local_light_pdf(local, point, direction));
 }
 
-/* Draws a direction for `normal`; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
- * pdf 0 (and no direction) where the normal is not valid or nothing shines on it. */
-ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
+/* Draws a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
+ * direction) where the normal is not valid or nothing shines on it. */
+ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
+                                                 double u1) {
     const uint32_t columns = local->environment.columns, rows = local->environment.rows;
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
-    AcdfLocalSource source;
     AcdfRange range[2];
     double u[2], p;
-    acdf_local_source(local, normal, &source);
-    if (source.what == ACDF_LOCAL_NOTHING) return out;
+    if (point->what == ACDF_LOCAL_NOTHING) return out;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     if (u[0] < local->cosine_share) {
-        acdf_cosine_direction(normal, u[0] / local->cosine_share, u[1], out.direction);
-        out.pdf = acdf_local_light_pdf(local, &source, out.direction);
+        acdf_cosine_direction(point->surface, u[0] / local->cosine_share, u[1], out.direction);
+        out.pdf = acdf_local_light_pdf(local, point, out.direction);
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
         acdf_sphere_ranges(columns, rows, range);
-        p = source.what == ACDF_LOCAL_BLEND ? acdf_local_blend_sample(local, &source, u, range)
-                                            : acdf_tree_sample(local->environment.tree, source.root, u, range);
+        p = point->what == ACDF_LOCAL_BLEND ? acdf_local_blend_sample(local, point, u, range)
+                                            : acdf_tree_sample(local->environment.tree, point->root, u, range);
         out = acdf_sphere_place(columns, rows, range, u, p);
     }
-    out.pdf = acdf_local_density(local, normal, out.direction, out.pdf);
+    out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
     return out;
+}
+
+/* The same for a normal that serves once. */
+ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
+    AcdfLocalPoint point;
+    acdf_local_at(local, normal, &point);
+    return acdf_local_pdf_at(local, &point, direction);
+}
+ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
+    AcdfLocalPoint point;
+    acdf_local_at(local, normal, &point);
+    return acdf_local_sample_at(local, &point, u0, u1);
 }
 
 /* Integral of the light above the horizon times the cosine, interpolated between bins; where those of the normal
  * are not stored that of all light; 0 for normals that are not valid. */
 ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[3]) {
     AcdfNormalBins bins;
-    AcdfLocalSource source;
-    acdf_local_source(local, normal, &source);
-    if (source.what == ACDF_LOCAL_BLEND) return local->environment.total * source.sum / source.length;
-    if (source.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
-    if (source.root == local->environment.root) return local->environment.total;
+    AcdfLocalPoint point;
+    acdf_local_at(local, normal, &point);
+    if (point.what == ACDF_LOCAL_BLEND) return local->environment.total * point.sum / point.length;
+    if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
+    if (point.root == local->environment.root) return local->environment.total;
     return local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share;
 }
 
 /* Whether the bins of a normal are stored. */
 ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
-    AcdfLocalSource source;
-    acdf_local_source(local, normal, &source);
-    return source.what == ACDF_LOCAL_BLEND ||
-           (source.what == ACDF_LOCAL_TREE && source.root != local->environment.root);
+    AcdfLocalPoint point;
+    acdf_local_at(local, normal, &point);
+    return point.what == ACDF_LOCAL_BLEND ||
+           (point.what == ACDF_LOCAL_TREE && point.root != local->environment.root);
 }
 
 #ifdef __cplusplus

@@ -91,9 +91,22 @@ public:
     float pdf(const float normal[3], const float direction[3]) const noexcept {
         return acdf_local_pdf(&data_, normal, direction);
     }
-    /// Integral of the light above the horizon times the cosine (luminance times sr), about: bins are interpolated,
-    /// which is exact but for light at the horizon. For light selection. Where a normal's bins are not stored, that
-    /// of all light, which is more; 0 for a normal that is zero or NaN.
+    /// Both for a shading point, whose normal is looked up once for all of its samples.
+    AcdfLocalPoint at(const float normal[3]) const noexcept {
+        AcdfLocalPoint point;
+        acdf_local_at(&data_, normal, &point);
+        return point;
+    }
+    DirectionSample sample(const AcdfLocalPoint& point, double u0, double u1) const noexcept {
+        return acdf_local_sample_at(&data_, &point, u0, u1);
+    }
+    float pdf(const AcdfLocalPoint& point, const float direction[3]) const noexcept {
+        return acdf_local_pdf_at(&data_, &point, direction);
+    }
+    /// Integral of the light above the horizon times the cosine (luminance times sr), about: where bins share tiles
+    /// the root mean square of an estimate from their samples, interpolated, which is more by a few per cent or by
+    /// as much as the samples are noisy; else that of the bin. For light selection. Where a normal's bins are not
+    /// stored, that of all light, which is more; 0 for a normal that is zero or NaN.
     double irradiance(const float normal[3]) const noexcept { return acdf_local_irradiance(&data_, normal); }
     /// Whether a normal has a density of its own; else it is served by that of the whole environment.
     bool stored(const float normal[3]) const noexcept { return acdf_local_stored(&data_, normal) != 0; }
@@ -106,15 +119,16 @@ private:
     AcdfLocal data_;
 };
 
-/// For each view a probability density over the directions of light that a surface reflects to it, times the cosine. A
-/// few words by value; valid while its File lives. All functions are const, thread-safe, allocate and throw nothing.
-/// wo (towards the viewer) and wi (towards the light) are unit vectors in the surface's frame, z its normal.
+/// For each view a probability density over the directions of light that a surface reflects to it, times the
+/// cosine. A few words by value; valid while its File lives. All functions are const, thread-safe, allocate and
+/// throw nothing. wo (towards the viewer) and wi (towards the light) are unit vectors in the surface's frame, z its
+/// normal.
 class BrdfView {
 public:
     explicit BrdfView(const AcdfBrdf& data) noexcept : data_(data) {}
 
-    /// Draws wi for wo; u0 (azimuth of the half-vector) and u1 (its elevation) in [0, 1]. pdf in sr^-1 of wi, finite and
-    /// > 0; 0 where wo is not a unit vector above the surface. wi may lie below it: it counts as 0.
+    /// Draws wi for wo; u0 (azimuth of the half-vector) and u1 (its elevation) in [0, 1]. pdf in sr^-1 of wi,
+    /// finite and > 0; 0 where wo is not a unit vector above the surface. wi may lie below it: it counts as 0.
     DirectionSample sample(const float wo[3], double u0, double u1) const noexcept {
         return acdf_brdf_sample(&data_, wo, u0, u1);
     }
@@ -124,7 +138,8 @@ public:
     bool invert(const float wo[3], const float wi[3], double u[2]) const noexcept {
         return acdf_brdf_invert(&data_, wo, wi, u) != 0;
     }
-    /// Share of light that is reflected to wo, about: stored views are interpolated. To choose between lobes or layers.
+    /// Share of light that is reflected to wo, about: stored views are interpolated. To choose between lobes or
+    /// layers.
     double albedo(const float wo[3]) const noexcept { return acdf_brdf_albedo(&data_, wo); }
     /// The plain data, for acdf/brdf.h in another language or on a GPU.
     const AcdfBrdf& data() const noexcept { return data_; }
