@@ -148,8 +148,8 @@ Description local_axes(Description d, const std::vector<AxisDescription>& normal
     return d;
 }
 
-/// A local environment with everything that bins can share: tiles with a curve and without, one of them a light; bin 7
-/// is not stored.
+/// A local environment with everything that bins can share: tiles with a curve and without, one of them a light;
+/// bin 7 is not stored.
 Golden local() {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
                               {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
@@ -158,7 +158,8 @@ Golden local() {
                              {0}};
     EncodedTree tree = encode_tree(cascade);
     StoredRows rows;
-    rows.splits = {{kPhi | 5u << 3, {ACDF_TILE_FLAG, 1}}, {kTheta | 3u << 3, {ACDF_TILE_FLAG | 1, ACDF_TILE_FLAG | 2}}};
+    rows.splits = {{kPhi | 5u << 3, {ACDF_TILE_FLAG, 1}},
+                   {kTheta | 3u << 3, {ACDF_TILE_FLAG | 1, ACDF_TILE_FLAG | 2}}};
     rows.tile_roots = {tree.offsets[1], tree.offsets[3], ACDF_NO_ROOT};
     for (std::uint32_t i = 0; i < 256; ++i) rows.codebook.push_back(static_cast<std::uint16_t>(257 * i));
     rows.row_count = 5;
@@ -210,7 +211,8 @@ std::vector<std::pair<double, double>> random_numbers() {
 }
 
 /// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is drawn.
-constexpr float kNormals[][3] = {{0, 0, 1}, {1, 0, 0}, {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f}, {-2, 1, 1}, {0, 0.5f, -5}};
+constexpr float kNormals[][3] = {{0, 0, 1},  {1, 0, 0},    {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f},
+                                 {-2, 1, 1}, {0, 0.5f, -5}};
 
 std::string local_samples(const acdf::LocalEnvironmentView& view) {
     std::string text;

@@ -14,6 +14,7 @@ acdf_add_test(test_local
     LIBRARIES acdf_compress acdf_input TBB::tbb)
 # The figures that docs/local.md tells.
 acdf_add_test(test_local_probes SOURCES local_probes.cpp LIBRARIES acdf_files)
+acdf_add_test(test_local_files SOURCES local_files.cpp LIBRARIES acdf_files)
 if(TARGET acdf)
     acdf_add_test(test_local_tools
         SOURCES local_tools.cpp

@@ -22,15 +22,15 @@ struct LightSpec {
 /// A local environment. Bins have rows where there are tiles, else trees.
 struct LocalSpec {
     std::uint32_t columns = 8, rows = 8;
-    std::uint32_t subdivisions = 1;                ///< 0: lat-long bins
-    std::uint32_t bin_columns = 0, bin_rows = 0;   ///< of these
-    TreeSpec tree;                                 ///< curve 0 is the root of the environment
-    std::uint32_t tiles = 0;                       ///< 0: bins share nothing
-    std::vector<SplitSpec> splits;                 ///< tiles - 1
-    std::vector<int> tile_curves;                  ///< empty, or one a tile: its first curve, -1: it is a cell
-    std::vector<std::uint16_t> codebook;           ///< 256
-    std::vector<Bytes> codes;                      ///< rows of one byte a split
-    std::vector<BinSpec> bins;                     ///< root: the row, or a curve of `tree`; no_root: not stored
+    std::uint32_t subdivisions = 1;              ///< 0: lat-long bins
+    std::uint32_t bin_columns = 0, bin_rows = 0; ///< of these
+    TreeSpec tree;                               ///< curve 0 is the root of the environment
+    std::uint32_t tiles = 0;                     ///< 0: bins share nothing
+    std::vector<SplitSpec> splits;               ///< tiles - 1
+    std::vector<int> tile_curves;                ///< empty, or one a tile: its first curve, -1: it is a cell
+    std::vector<std::uint16_t> codebook;         ///< 256
+    std::vector<Bytes> codes;                    ///< rows of one byte a split
+    std::vector<BinSpec> bins;                   ///< root: the row, or a curve of `tree`; no_root: not stored
     std::vector<LightSpec> lights;
     float cosine_share = 0.0f;
     double total = 3.0;
@@ -115,7 +115,8 @@ inline std::vector<std::uint16_t> even_codebook() {
 }
 
 /// The six corners of the octahedron and three tiles of the curves of complete_environment:
-///   tile 0 columns [0, 3), curve 1; tile 1 columns [3, 8) x rows [0, 2), a cell; tile 2 rows [2, 8) of those, curve 2.
+///   tile 0 columns [0, 3), curve 1; tile 1 columns [3, 8) x rows [0, 2), a cell; tile 2 rows [2, 8) of those,
+///   curve 2.
 inline LocalSpec shared_local() {
     LocalSpec spec;
     spec.tree = complete_environment().tree;

@@ -161,7 +161,8 @@ TEST_P(Maps, LengthOfNormalsDoesNotMatter) {
         for (const float scale : {1e-20f, 1e-3f, 3.0f, 1e20f}) {
             const Normal scaled = {n[0] * scale, n[1] * scale, n[2] * scale};
             EXPECT_NEAR(view.pdf(scaled.data(), d.data()), expected, 1e-5 * expected) << scale;
-            EXPECT_NEAR(view.irradiance(scaled.data()), view.irradiance(n.data()), 1e-5 * view.irradiance(n.data()));
+            EXPECT_NEAR(view.irradiance(scaled.data()), view.irradiance(n.data()),
+                        1e-5 * view.irradiance(n.data()));
         }
     }
 }
@@ -194,8 +195,8 @@ TEST_P(Maps, ChiSquare) {
         }
         const ChiSquare test = chi_square(observed, probability);
         EXPECT_FALSE(test.impossible) << n[0] << ' ' << n[1] << ' ' << n[2];
-        EXPECT_GT(test.p_value, significance) << n[0] << ' ' << n[1] << ' ' << n[2] << ": " << test.statistic
-                                              << " with " << test.degrees;
+        EXPECT_GT(test.p_value, significance)
+            << n[0] << ' ' << n[1] << ' ' << n[2] << ": " << test.statistic << " with " << test.degrees;
     }
 }
 
@@ -227,7 +228,8 @@ TEST_P(Maps, CoverTheLight) {
     while (pairs < 100000) {
         const auto& from = random() % 4 == 0 ? bright : lit;
         const std::size_t texel = from[random() % from.size()];
-        const Normal d = within(target, std::uint32_t(texel % target.columns), std::uint32_t(texel / target.columns), random);
+        const Normal d =
+            within(target, std::uint32_t(texel % target.columns), std::uint32_t(texel / target.columns), random);
         if (!(map_->radiance(d.data()) > 0.0f)) continue; // carried over a border
         Normal n = random_direction(random);
         if (random() % 8 == 0) n = special[random() % special.size()];
@@ -246,8 +248,8 @@ TEST_P(Maps, CoverTheLight) {
     EXPECT_GT(near_horizon, 5000);
 }
 
-/// The mean of f/p over samples is the irradiance: over all maps, of ten million of them. The standard error is that
-/// of the density where that is larger than of the samples, which may have missed what is rare and large.
+/// The mean of f/p over samples is the irradiance: over all maps, of ten million of them. The standard error is
+/// that of the density where that is larger than of the samples, which may have missed what is rare and large.
 TEST_P(FineMaps, EstimatesAreUnbiased) {
     constexpr int normals = 100, samples = 4500;
     const auto view = map_->view();

@@ -85,10 +85,12 @@ TEST_P(OneLamp, IsSeenDownToTheHorizonAndNotFromBelow) {
     const double reach = kPi * std::hypot(0.5 / GetParam().rows, 1.0 / GetParam().columns);
     int nothing = 0;
     for (int i = 0; i < 4000; ++i) {
-        const double height = i % 2 == 0 ? reach * (2.0 * uniform(random) - 1.0) : std::pow(10.0, -9.0 * uniform(random));
+        const double height =
+            i % 2 == 0 ? reach * (2.0 * uniform(random) - 1.0) : std::pow(10.0, -9.0 * uniform(random));
         Normal n = random_direction(random);
         const double down = dot(n.data(), middle.data());
-        for (std::size_t k = 0; k < 3; ++k) n[k] = static_cast<float>(double{n[k]} - (down - height) * double{middle[k]});
+        for (std::size_t k = 0; k < 3; ++k)
+            n[k] = static_cast<float>(double{n[k]} - (down - height) * double{middle[k]});
         const Normal d = in_lamp(0.001 + 0.998 * uniform(random), 0.001 + 0.998 * uniform(random));
         const auto s = view.sample(n.data(), uniform(random), uniform(random));
         if (dot(n.data(), d.data()) > 0.0) {
@@ -149,7 +151,8 @@ TEST(Tiles, LargestCosineIsThatOfNoPlaceLess) {
             for (int x = 0; x <= 20; ++x) {
                 const double theta = kPi * (box.begin[0] + y / 20.0 * box.length(0)) / 12.0;
                 const double phi = kPi - 2.0 * kPi * (box.begin[1] + x / 20.0 * box.length(1)) / 24.0;
-                const Direction d = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+                const Direction d = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                     std::cos(theta)};
                 most = std::max(most, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
                 ASSERT_LE(std::hypot(d[0] - m[0], d[1] - m[1], d[2] - m[2]), reach + 1e-9);
             }
@@ -229,8 +232,10 @@ TEST(LocalFit, TenMillionSamplesAgree) {
             square.add(f * f);
         }
         const double mean = sum.value() / samples, exact = exact_irradiance(map.target, n.data());
-        const double variance = std::max(square.value() / samples - mean * mean, second_moment(map, n.data()) - exact * exact);
-        EXPECT_LE(std::fabs(mean - exact), 4.0 * std::sqrt(variance / samples)) << n[0] << ' ' << n[1] << ' ' << n[2];
+        const double variance =
+            std::max(square.value() / samples - mean * mean, second_moment(map, n.data()) - exact * exact);
+        EXPECT_LE(std::fabs(mean - exact), 4.0 * std::sqrt(variance / samples))
+            << n[0] << ' ' << n[1] << ' ' << n[2];
     });
 }
 

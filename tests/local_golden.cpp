@@ -39,7 +39,10 @@ protected:
             EXPECT_NE(end, at) << text;
             at = end;
         }
-        return {{float(v[0]), float(v[1]), float(v[2])}, {v[3], v[4]}, {float(v[5]), float(v[6]), float(v[7])}, float(v[8])};
+        return {{float(v[0]), float(v[1]), float(v[2])},
+                {v[3], v[4]},
+                {float(v[5]), float(v[6]), float(v[7])},
+                float(v[8])};
     }
 
     acdf::File file_;

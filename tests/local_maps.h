@@ -137,15 +137,14 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
                                  ? acdf_local_blend_find(&local, &source, square, range)
                                  : acdf_tree_find(env.tree, source.root, square, range, nullptr);
             const double height = acdf_row_z(range[1].low, env.rows) - acdf_row_z(range[1].high, env.rows);
-            out[std::size_t{r} * env.columns + c] =
-                p * (acdf_row_z(r, env.rows) - acdf_row_z(r + 1, env.rows)) / height /
-                (range[0].high - range[0].low);
+            out[std::size_t{r} * env.columns + c] = p * (acdf_row_z(r, env.rows) - acdf_row_z(r + 1, env.rows)) /
+                                                    height / (range[0].high - range[0].low);
         }
     return out;
 }
 
-/// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where no
-/// part is below the horizon, else of quarters, down to a thousandth of a radian.
+/// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where
+/// no part is below the horizon, else of quarters, down to a thousandth of a radian.
 inline double clamped_cosine(const double n[3], double phi0, double phi1, double theta0, double theta1) {
     const auto cosine = [&](double phi, double theta) {
         return std::sin(theta) * (n[0] * std::cos(phi) + n[1] * std::sin(phi)) + n[2] * std::cos(theta);
@@ -161,8 +160,7 @@ inline double clamped_cosine(const double n[3], double phi0, double phi1, double
                n[2] * (phi0 - phi1) * 0.5 *
                    (std::sin(theta1) * std::sin(theta1) - std::sin(theta0) * std::sin(theta0));
     }
-    return clamped_cosine(n, phi0, phi, theta0, theta) +
-           clamped_cosine(n, phi, phi1, theta0, theta) +
+    return clamped_cosine(n, phi0, phi, theta0, theta) + clamped_cosine(n, phi, phi1, theta0, theta) +
            clamped_cosine(n, phi0, phi, theta, theta1) + clamped_cosine(n, phi, phi1, theta, theta1);
 }
 
@@ -171,8 +169,9 @@ inline double clamped_cosine(const acdf::compress::Target& target, const float n
                              std::uint32_t row) {
     const double size = length(normal);
     const double n[3] = {normal[0] / size, normal[1] / size, normal[2] / size};
-    return clamped_cosine(n, kPi - 2.0 * kPi * column / target.columns, kPi - 2.0 * kPi * (column + 1) / target.columns,
-                          kPi * row / target.rows, kPi * (row + 1) / target.rows);
+    return clamped_cosine(n, kPi - 2.0 * kPi * column / target.columns,
+                          kPi - 2.0 * kPi * (column + 1) / target.columns, kPi * row / target.rows,
+                          kPi * (row + 1) / target.rows);
 }
 
 inline double exact_irradiance(const acdf::compress::Target& target, const float normal[3]) {
@@ -197,7 +196,8 @@ inline double second_moment(const LocalMap& map, const float normal[3]) {
                 direction_of(phi, std::cos(kPi * (r + 0.25 + 0.5 * (k / 2)) / rows), d);
                 const double cosine = dot(normal, d) / size, f = static_cast<double>(map.radiance(c, r)) * cosine;
                 if (!(cosine > 0.0)) continue;
-                sum.add(0.25 * square_area(view.data().environment, r) * f * f / static_cast<double>(view.pdf(normal, d)));
+                sum.add(0.25 * square_area(view.data().environment, r) * f * f /
+                        static_cast<double>(view.pdf(normal, d)));
             }
     return sum.value();
 }

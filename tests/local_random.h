@@ -55,10 +55,12 @@ private:
     void add_trees_of_bins(LocalSpec& spec, std::size_t bins) {
         std::vector<std::uint32_t> roots = {0};
         for (int i = 0; i < 4; ++i)
-            roots.push_back(static_cast<std::uint32_t>(add_tree(spec, Box{{0, 0}, {options_.columns, options_.rows}})));
+            roots.push_back(
+                static_cast<std::uint32_t>(add_tree(spec, Box{{0, 0}, {options_.columns, options_.rows}})));
         for (std::size_t b = 0; b < bins; ++b)
             spec.bins.push_back({b < roots.size() ? roots[b] : below(8) == 0 ? no_root : roots[below(5)], share()});
-        for (std::size_t i = bins; i < roots.size(); ++i) spec.bins[below(static_cast<std::uint32_t>(bins))].root = 0;
+        for (std::size_t i = bins; i < roots.size(); ++i)
+            spec.bins[below(static_cast<std::uint32_t>(bins))].root = 0;
     }
 
     // Returns what stands for the box in its parent.
@@ -93,7 +95,8 @@ private:
                 row.push_back(static_cast<std::uint8_t>(below(6) == 0 ? 255 * below(2) : below(256)));
             spec.codes.push_back(row);
         }
-        for (std::size_t b = 0; b < bins; ++b) spec.bins.push_back({below(20) == 0 ? no_root : below(rows), share()});
+        for (std::size_t b = 0; b < bins; ++b)
+            spec.bins.push_back({below(20) == 0 ? no_root : below(rows), share()});
         if (spec.tiles > 1)
             for (std::uint32_t t = 0; t < spec.tiles; ++t)
                 if (below(spec.tiles) < 2) add_light(spec, t);
@@ -120,8 +123,8 @@ private:
         const Path path = path_to(spec, light);
         const std::vector<Bytes> before = spec.codes;
         for (Bytes& row : spec.codes) {
-            const auto& [split, upper] = path[below(3) == 0 ? below(static_cast<std::uint32_t>(path.size()))
-                                                           : path.size() - 1];
+            const auto& [split, upper] =
+                path[below(3) == 0 ? below(static_cast<std::uint32_t>(path.size())) : path.size() - 1];
             row[split] = upper ? 255 : 0;
         }
         spec.lights.push_back(light);

@@ -60,12 +60,13 @@ Normal random_normal(std::mt19937_64& rng) {
         if (n.n[0] == 0.0f && n.n[1] == 0.0f && n.n[2] == 0.0f) n.n[rng() % 3] = 1.0f;
         return n;
     }
-    case 1: return {{static_cast<float>(unit(rng) - 0.5), 0.0f, static_cast<float>(unit(rng) - 0.5)}};
+    case 1:
+        return {{static_cast<float>(unit(rng) - 0.5), 0.0f, static_cast<float>(unit(rng) - 0.5)}};
     default: {
         const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), length = std::exp(20 * unit(rng) - 10);
         const double sine = std::sqrt(1 - z * z);
-        return {{static_cast<float>(length * sine * std::cos(phi)), static_cast<float>(length * sine * std::sin(phi)),
-                 static_cast<float>(length * z)}};
+        return {{static_cast<float>(length * sine * std::cos(phi)),
+                 static_cast<float>(length * sine * std::sin(phi)), static_cast<float>(length * z)}};
     }
     }
 }
@@ -188,7 +189,8 @@ TEST(NormalBins, everyCornerServesItself) {
 TEST(LocalView, normalsThatAreNoneHaveNoDensity) {
     const Loaded shared(lit_local()), separate(separate_local());
     const float up[3] = {0.0f, 0.0f, 1.0f}, nan = std::nanf(""), inf = HUGE_VALF;
-    const float bad[][3] = {{0, 0, 0}, {-0.0f, 0, 0}, {nan, 0, 1}, {0, nan, 1}, {1, 0, nan}, {inf, 0, 1}, {0, -inf, inf}};
+    const float bad[][3] = {{0, 0, 0},   {-0.0f, 0, 0}, {nan, 0, 1},   {0, nan, 1},
+                            {1, 0, nan}, {inf, 0, 1},   {0, -inf, inf}};
     for (const Loaded* loaded : {&shared, &separate})
         for (const auto& normal : bad) {
             const acdf::LocalEnvironmentView view = loaded->view();
@@ -244,7 +246,8 @@ TEST(LocalView, handMadeDensities) {
     const auto at = [&](double column, double row) { // positions
         const double phi = pi - 2 * pi * column / 8, theta = pi * row / 8;
         const float d[3] = {static_cast<float>(std::sin(theta) * std::cos(phi)),
-                            static_cast<float>(std::sin(theta) * std::sin(phi)), static_cast<float>(std::cos(theta))};
+                            static_cast<float>(std::sin(theta) * std::sin(phi)),
+                            static_cast<float>(std::cos(theta))};
         return static_cast<double>(loaded.view().pdf(x, d));
     };
     const double left = 200.0 / 255.0 / (2 * pi * 3 / 8 * 2);
@@ -270,7 +273,8 @@ TEST(LocalView, handMadeLight) {
     for (std::size_t i = 0; i < std::size(h); ++i) {
         // The light is at (0.6, 0, 0.8); (0.8, 0, -0.6) is at right angles to it.
         const double c = std::sqrt(1 - h[i] * h[i]);
-        const float n[3] = {static_cast<float>(0.6 * h[i] + 0.8 * c), 0.0f, static_cast<float>(0.8 * h[i] - 0.6 * c)};
+        const float n[3] = {static_cast<float>(0.6 * h[i] + 0.8 * c), 0.0f,
+                            static_cast<float>(0.8 * h[i] - 0.6 * c)};
         AcdfLocalPoint source;
         acdf_local_at(&loaded.view().data(), n, &source);
         EXPECT_NEAR(source.lights / source.length, weight[i], 1e-6) << h[i];

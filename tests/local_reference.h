@@ -1,5 +1,5 @@
-// A slow decoder of local environments that follows format/SPEC.md §5.6, §5.7 and §6.7 word by word. It shares nothing
-// with lib/reader. It expects valid files.
+// A slow decoder of local environments that follows format/SPEC.md §5.6, §5.7 and §6.7 word by word. It shares
+// nothing with lib/reader. It expects valid files.
 #pragma once
 
 #include "reader_reference.h"
@@ -132,9 +132,9 @@ public:
         if (from.what == Source::nothing) return 0.0;
         const double light = light_pdf(from, d);
         const double dot = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
-        return sigma == 0.0 ? light
-                            : (1 - sigma) * light +
-                                  sigma * std::max(0.0, dot) / (M_PI * std::hypot(n[0], n[1], n[2]));
+        return sigma == 0.0
+                   ? light
+                   : (1 - sigma) * light + sigma * std::max(0.0, dot) / (M_PI * std::hypot(n[0], n[1], n[2]));
     }
 
 private:

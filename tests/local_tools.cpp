@@ -11,10 +11,11 @@
 namespace acdf::test {
 namespace {
 
-using nlohmann::json;
 using acdf_test::length;
+using nlohmann::json;
 
-const std::string shared = ACDF_TEST_DIR "/golden/v1.0/local.acdf", grid = ACDF_TEST_DIR "/golden/v1.0/local_grid.acdf",
+const std::string shared = ACDF_TEST_DIR "/golden/v1.0/local.acdf",
+                  grid = ACDF_TEST_DIR "/golden/v1.0/local_grid.acdf",
                   environment = ACDF_TEST_DIR "/golden/v1.0/one_texel.acdf";
 
 class LocalCommands : public testing::Test {
@@ -44,7 +45,8 @@ std::vector<std::vector<double>> rows_of(const std::string& csv) {
     std::getline(in, line); // names
     while (std::getline(in, line)) {
         rows.emplace_back();
-        for (std::istringstream fields(line); std::getline(fields, field, ',');) rows.back().push_back(std::stod(field));
+        for (std::istringstream fields(line); std::getline(fields, field, ',');)
+            rows.back().push_back(std::stod(field));
     }
     return rows;
 }
@@ -90,7 +92,8 @@ TEST_F(LocalCommands, ValidateFindsWhatIsWrongWithRows) {
 
 TEST_F(LocalCommands, SamplesAreThoseOfTheReader) {
     for (const char* sequence : {"random", "stratified", "sobol"}) {
-        const Result result = run_acdf({"sample", shared, "-n", "50", "--normal", "-1,2,0.5", "--sequence", sequence});
+        const Result result =
+            run_acdf({"sample", shared, "-n", "50", "--normal", "-1,2,0.5", "--sequence", sequence});
         ASSERT_EQ(result.code, 0) << result.err;
         EXPECT_EQ(result.out.rfind("u0,u1,x,y,z,pdf\n", 0), 0u);
         const auto rows = rows_of(result.out);
@@ -127,7 +130,8 @@ TEST_F(LocalCommands, PdfReadsANormalFromEachLine) {
     const Result named = run_acdf({"pdf", shared, "--csv"}, "nx,ny,nz,weight,x,y,z\n-2,1,1,7,1,0,0\n");
     ASSERT_EQ(named.code, 0) << named.err;
     EXPECT_EQ(named.out.rfind("x,y,z,nx,ny,nz,pdf\n1,0,0,-2,1,1,", 0), 0u) << named.out;
-    EXPECT_EQ(run_acdf({"pdf", shared, "--normalize"}, "0 0 5 0 0 1\n").out, run_acdf({"pdf", shared}, "0 0 1 0 0 1\n").out);
+    EXPECT_EQ(run_acdf({"pdf", shared, "--normalize"}, "0 0 5 0 0 1\n").out,
+              run_acdf({"pdf", shared}, "0 0 1 0 0 1\n").out);
     const Result bad = run_acdf({"pdf", shared}, "0 0 1\n");
     EXPECT_EQ(bad.code, 1);
     EXPECT_NE(bad.err.find("line 1: expected 6 numbers x y z nx ny nz, found 3"), std::string::npos) << bad.err;
@@ -161,14 +165,16 @@ TEST_F(LocalCommands, PlotHoldsTheReadersDensities) {
             for (int x = 0; x < 60; ++x) {
                 float d[3];
                 latlong_direction(60, 30, x, y, d);
-                EXPECT_NEAR(image.at(x, y)[0], plotted.local().pdf(n, d), 1e-5 * image.at(x, y)[0]) << x << ' ' << y;
+                EXPECT_NEAR(image.at(x, y)[0], plotted.local().pdf(n, d), 1e-5 * image.at(x, y)[0])
+                    << x << ' ' << y;
             }
     }
 }
 
 TEST_F(LocalCommands, PlotDrawsTheHorizon) {
     const std::string png = folder / "up.png";
-    const Result result = run_acdf({"plot", shared, "-o", png, "--width", "64", "--no-legend", "--no-knots", "--normal", "0,0,3"});
+    const Result result =
+        run_acdf({"plot", shared, "-o", png, "--width", "64", "--no-legend", "--no-knots", "--normal", "0,0,3"});
     ASSERT_EQ(result.code, 0) << result.err;
     const LoadedImage image = load_image(png);
     ASSERT_EQ(image.spec.height, 32);

@@ -555,9 +555,9 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 INSTANTIATE_TEST_SUITE_P(Rules, BrokenRule, testing::ValuesIn(cases()), case_name);
 
 TEST(Rules, theCompleteFilesBreakNone) {
-    for (const FileSpec& spec : {complete_file(), spare_file(), table_file(), chain(1).file(), chain(64).file(),
-                                 shared_local().file(), lit_local().file(), separate_local().file(),
-                                 shared_brdf().file(), separate_brdf().file()}) {
+    for (const FileSpec& spec :
+         {complete_file(), spare_file(), table_file(), chain(1).file(), chain(64).file(), shared_local().file(),
+          lit_local().file(), separate_local().file(), shared_brdf().file(), separate_brdf().file()}) {
         const Findings found = findings(spec.encode());
         EXPECT_TRUE(found.rules.empty()) << found.text;
     }

@@ -133,7 +133,8 @@ std::vector<Case> chunk_cases() {
         {6021, "begins_late", shared([](LocalSpec& spec) { spec.codebook[0] = 1; })},
         {6021, "ends_early", shared([](LocalSpec& spec) { spec.codebook[255] = 65534; })},
         {6021, "equal", shared([](LocalSpec& spec) { spec.codebook[7] = spec.codebook[8]; })},
-        {6022, "tiles_swapped", lit([](LocalSpec& spec) { std::swap(spec.splits[1].child[0], spec.splits[1].child[1]); })},
+        {6022, "tiles_swapped",
+         lit([](LocalSpec& spec) { std::swap(spec.splits[1].child[0], spec.splits[1].child[1]); })},
         {6022, "tile_twice", shared([](LocalSpec& spec) { spec.splits[1].child[1] = tile_flag | 1; })},
         {6022, "no_such_tile", shared([](LocalSpec& spec) { spec.splits[1].child[1] = tile_flag | 3; })},
         {6022, "itself", shared([](LocalSpec& spec) { spec.splits[0].child[1] = 0; })},
@@ -147,7 +148,9 @@ std::vector<Case> chunk_cases() {
          })},
         {6022, "too_deep", chain_of_splits(49)},
         {6023, "third_axis", shared([](LocalSpec& spec) { spec.splits[1].axis = 2; })},
-        {6023, "at_the_low_end", shared([](LocalSpec& spec) { spec.splits[1] = {0, 3, {tile_flag | 1, tile_flag | 2}}; })},
+        {6023, "at_the_low_end", shared([](LocalSpec& spec) {
+             spec.splits[1] = {0, 3, {tile_flag | 1, tile_flag | 2}};
+         })},
         {6023, "at_the_high_end", shared([](LocalSpec& spec) { spec.splits[1].position = 8; })},
         {6023, "beyond", lit([](LocalSpec& spec) { spec.splits[0].position = 0x1FFFFFFF; })},
         {6024, "inside_a_curve", field(shared_local, "TILE", 528 + 16, 4, 1)},
@@ -155,6 +158,7 @@ std::vector<Case> chunk_cases() {
         {6025, "no_rows", without(shared_local, "ROWS")},
         {6025, "no_tiles", beside([] { return separate_local().file(); }, "ROWS", {1, 2, 3})},
         {6025, "too_long", payload(lit_local, "ROWS", [](Bytes& raw) { raw.push_back(0); })},
+        {6025, "far_too_short", payload(lit_local, "ROWS", [](Bytes& raw) { raw.clear(); })},
         {6025, "too_short", payload(shared_local, "ROWS", [](Bytes& raw) { raw.pop_back(); })},
         {6025, "more_rows", field(shared_local, "TILE", 8, 4, 3)},
         {6025, "most_rows", field(shared_local, "TILE", 8, 4, 0xFFFFFFFF)},
@@ -178,11 +182,14 @@ std::vector<Case> tree_cases() {
              return file.encode();
          }},
         {6012, "of_no_tile", shared([](LocalSpec& spec) { spec.tree.curves.push_back(even_curve(1, {4})); })},
-        {6012, "of_no_bin", with(separate_local, [](LocalSpec& spec) { spec.tree.curves.push_back(even_curve(1, {4})); })},
-        {6016, "behind_the_environment", with(separate_local, [](LocalSpec& spec) {
-             spec.tree = chain(65).tree;
-             for (BinSpec& bin : spec.bins) bin.root = no_root;
-         })},
+        {6012, "of_no_bin",
+         with(separate_local, [](LocalSpec& spec) { spec.tree.curves.push_back(even_curve(1, {4})); })},
+        {6016, "behind_the_environment",
+         with(separate_local,
+              [](LocalSpec& spec) {
+                  spec.tree = chain(65).tree;
+                  for (BinSpec& bin : spec.bins) bin.root = no_root;
+              })},
         {6017, "infinite", shared([](LocalSpec& spec) { spec.bins[2].share = HUGE_VALF; })},
         {6019, "two_tiles", // whose columns begin at 0 and 3
          shared([](LocalSpec& spec) {
@@ -197,36 +204,48 @@ std::vector<Case> kind_cases() {
         {5016, "table", field(shared_local, "DESC", 0, 4, 3)},
         {7001, "of_a_local", field(shared_local, "DESC", 64 + 48 + 20, 4, 0)},
         {7003, "two_axes", axes(separate_local, 1, [](auto& all) { all.resize(2); })},
-        {7003, "five_axes", axes(separate_local, 6, [](auto& all) { all.push_back({"more", 1, 0, 1, 0.0, 1.0}); })},
+        {7003, "five_axes",
+         axes(separate_local, 6,
+              [](auto& all) {
+                  all.push_back({"more", 1, 0, 1, 0.0, 1.0});
+              })},
         {7003, "name", axes(shared_local, 6, [](auto& all) { all[2].name = "normals"; })},
         {7003, "role", axes(shared_local, 6, [](auto& all) { all[2].role = 0; })},
         {7003, "measure", axes(shared_local, 6, [](auto& all) { all[2].measure = 1; })},
         {7003, "low", axes(shared_local, 6, [](auto& all) { all[2].low = 1.0; })},
         {7003, "high", axes(shared_local, 6, [](auto& all) { all[2].high = 1.0; })},
-        {7003, "no_octahedron", axes(shared_local, 7, [](auto& all) {
-             all[2].resolution = 7;
-             all[2].high = 7.0;
-         })},
+        {7003, "no_octahedron",
+         axes(shared_local, 7,
+              [](auto& all) {
+                  all[2].resolution = 7;
+                  all[2].high = 7.0;
+              })},
         {7003, "exchanged", axes(separate_local, 6, [](auto& all) { std::swap(all[2], all[3]); })},
         {7003, "theta_from_below", axes(separate_local, 6, [](auto& all) { std::swap(all[2].low, all[2].high); })},
         {7003, "phi_the_other_way", axes(separate_local, 6, [](auto& all) { std::swap(all[3].low, all[3].high); })},
-        {7003, "wide_grid", axes(separate_local, 65537, [](auto& all) {
-             all[2].resolution = 1;
-             all[3].resolution = 65537;
-         })},
+        {7003, "wide_grid",
+         axes(separate_local, 65537,
+              [](auto& all) {
+                  all[2].resolution = 1;
+                  all[3].resolution = 65537;
+              })},
         {7004, "one_less", axes(shared_local, 5, [](auto&) {})},
-        {7004, "wrapped", axes(separate_local, 0x10000, [](auto& all) { // 2^32 + 2^16 bins
-             all[2].resolution = 65536;
-             all[3].resolution = 65536;
-         })},
+        {7004, "wrapped",
+         axes(separate_local, 0x10000,
+              [](auto& all) { // 2^32 + 2^16 bins
+                  all[2].resolution = 65536;
+                  all[3].resolution = 65536;
+              })},
         {7005, "none", without(shared_local, "LOCL")},
         {7005, "empty", payload(shared_local, "LOCL", [](Bytes& raw) { raw.clear(); })},
         {7005, "cut", payload(lit_local, "LOCL", [](Bytes& raw) { raw.pop_back(); })},
         {7005, "too_long", payload(lit_local, "LOCL", [](Bytes& raw) { raw.push_back(0); })},
-        {7005, "too_many", payload(lit_local, "LOCL", [](Bytes& raw) {
-             raw.resize(8 + 65 * 40);
-             set(raw, 4, 4, 65);
-         })},
+        {7005, "too_many",
+         payload(lit_local, "LOCL",
+                 [](Bytes& raw) {
+                     raw.resize(8 + 65 * 40);
+                     set(raw, 4, 4, 65);
+                 })},
         {7005, "enormous", field(lit_local, "LOCL", 4, 4, 0xFFFFFFFF)},
         {7005, "all_cosine", shared([](LocalSpec& spec) { spec.cosine_share = 1.0f; })},
         {7005, "negative_cosine", with(separate_local, [](LocalSpec& spec) { spec.cosine_share = -0.25f; })},
@@ -240,8 +259,12 @@ std::vector<Case> kind_cases() {
              spec.lights[1].low = {0, 0};
              spec.lights[1].high = {3, 8};
          })},
-        {7006, "other_box", light([](LightSpec& l) { l.high = {8, 3}; })},
-        {7006, "other_corner", light([](LightSpec& l) { l.low = {4, 0}; })},
+        {7006, "other_box", light([](LightSpec& l) {
+             l.high = {8, 3};
+         })},
+        {7006, "other_corner", light([](LightSpec& l) {
+             l.low = {4, 0};
+         })},
         {7006, "long", light([](LightSpec& l) { l.direction[0] = 0.7f; })},
         {7006, "nowhere", light([](LightSpec& l) { l.direction[1] = not_a_number; })},
         {7006, "no_radius", light([](LightSpec& l) { l.radius = 0.0f; })},
@@ -249,9 +272,15 @@ std::vector<Case> kind_cases() {
         {7006, "nan_radius", light([](LightSpec& l) { l.radius = not_a_number; })},
         {7006, "dark", light([](LightSpec& l) { l.share = 0.0f; })},
         {7006, "infinite", light([](LightSpec& l) { l.share = HUGE_VALF; })},
-        {7007, "last_split", lit([](LocalSpec& spec) { spec.codes[0] = {100, 1}; })},
-        {7007, "first_split", lit([](LocalSpec& spec) { spec.codes[1] = {254, 77}; })},
-        {7007, "other_side", lit([](LocalSpec& spec) { spec.codes[0] = {0, 255}; })},
+        {7007, "last_split", lit([](LocalSpec& spec) {
+             spec.codes[0] = {100, 1};
+         })},
+        {7007, "first_split", lit([](LocalSpec& spec) {
+             spec.codes[1] = {254, 77};
+         })},
+        {7007, "other_side", lit([](LocalSpec& spec) {
+             spec.codes[0] = {0, 255};
+         })},
     };
 }
 

@@ -120,8 +120,7 @@ void add_metadata(const File& file, Json& report) {
 Json local_json(const File& file) {
     const AcdfLocal local = file.local().data();
     std::uint64_t stored = 0;
-    for (std::uint32_t i = 0; i < file.description().bin_count; ++i)
-        stored += file.bin(i).root != ACDF_NO_ROOT;
+    for (std::uint32_t i = 0; i < file.description().bin_count; ++i) stored += file.bin(i).root != ACDF_NO_ROOT;
     Json report;
     report["normals"] = local.subdivisions > 0 ? std::to_string(local.subdivisions)
                                                : std::to_string(local.columns) + "x" + std::to_string(local.rows);
@@ -183,11 +182,12 @@ std::string target_text(const Json& report) {
 }
 
 std::string local_text(const Json& local) {
-    const std::string bins = "--normals " + text_of(local["normals"]) + ", " + text_of(local["bins_stored"]) + " stored; ";
-    const std::string shared = local["tiles"] == 0 ? "a tree each"
-                                                   : text_of(local["tiles"]) + " tiles shared by " +
-                                                         text_of(local["rows"]) + " rows, " +
-                                                         text_of(local["lights"]) + " lights";
+    const std::string bins =
+        "--normals " + text_of(local["normals"]) + ", " + text_of(local["bins_stored"]) + " stored; ";
+    const std::string shared = local["tiles"] == 0
+                                   ? "a tree each"
+                                   : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
+                                         " rows, " + text_of(local["lights"]) + " lights";
     return bins + shared + "; cosine share " + number(local["cosine_share"]);
 }
 

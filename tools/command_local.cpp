@@ -67,6 +67,9 @@ void set_separate(Options& options) {
     compress::FitOptions& fit = local.fit;
     local.sharing = !options.no_sharing;
     if (local.sharing) {
+        if (local.columns > 0)
+            throw CLI::ValidationError("--normals",
+                                       "AxB is for --no-sharing: bins that share tiles are interpolated");
         for (const char* option : {"--fit", "--knots", "--eps", "--order", "--bin-target"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
         if (local.columns > 0)
@@ -184,7 +187,8 @@ void add_bins(CLI::App& command, Options& options) {
         .add_option(
             "--normals", options.normals,
             "Bins of normals: N divides each edge of an octahedron, 4 N^2 + 2 bins that are interpolated; AxB is "
-            "a lat-long grid (phi x theta), the nearest serves, as in the paper")
+            "a lat-long grid (phi x theta) whose nearest bin serves, as in the paper, for --no-sharing, with "
+            "--no-sharing")
         ->option_text("N|AxB [as suits the size]")
         ->group("Normals");
     command

@@ -64,10 +64,9 @@ void evaluate_environment(const File& file, std::istream& in, const Options& opt
     if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
     const EnvironmentView view = file.environment();
     if (options.csv) output.write("x,y,z,pdf\n");
-    evaluate(in, PointParser(), options, output,
-             [&](const std::vector<double>& direction) {
-                 return density_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
-             });
+    evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
+        return density_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
+    });
 }
 
 void evaluate_local(const File& file, std::istream& in, const Options& options, Output& output) {
@@ -144,8 +143,7 @@ void add_pdf(CLI::App& program, int& exit_code) {
                    "Scale directions to unit length first. Without it a direction that is not of unit length has "
                    "density 0, as in a renderer, where it tells of a mistake")
         ->group("Evaluation");
-    add_normal(*command, options->normal, "Evaluation",
-               "; without it each line has one: x y z nx ny nz");
+    add_normal(*command, options->normal, "Evaluation", "; without it each line has one: x y z nx ny nz");
     add_bin(*command, options->at, "Evaluation");
     command->add_flag("--csv", options->csv, "Print x,y,z,pdf instead of the density alone")->group("Output");
     add_output(*command, options->output, options->force, "The file to write, stdout by default");

@@ -31,7 +31,8 @@ struct GridPoint {
 class Tracer {
 public:
     Tracer(const FindCell& find, std::uint32_t columns, std::uint32_t rows, const input::Map& map)
-        : find_(find), columns_(columns), rows_(rows), map_(map), grid_{input::Layout::latlong, 1, 1} {} // of any size: it is scaled below
+        : find_(find), columns_(columns), rows_(rows), map_(map), grid_{input::Layout::latlong, 1, 1} {
+    } // of any size: it is scaled below
 
     Extents extents(int x, int y) const {
         float direction[3];

@@ -113,7 +113,8 @@ void check_light_rows(const Payload& payload, Report& report, const Parts& parts
             bool dark = false;
             for (u32 s = 0; s < steps && !dark; ++s) dark = row[path[s].split] == (path[s].upper ? 255 : 0);
             if (dark) continue;
-            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfLight)), "light %u in bin %u", i, b);
+            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfLight)), "light %u in bin %u", i,
+                       b);
             break;
         }
     }
@@ -140,7 +141,7 @@ void check_local_kind(const Payload& description, const Payload& payload, const 
     parts.local = header;
     parts.lights = reinterpret_cast<const AcdfLight*>(payload.data + sizeof *header);
     if (parts.tiles || !boxes.given) check_lights(payload, boxes, report, parts); // else told of TILE
-    if (parts.tiles && report.verdict().errors == errors) check_light_rows(payload, report, parts);
+    if (parts.rows && report.verdict().errors == errors) check_light_rows(payload, report, parts);
 }
 
 } // namespace acdf

@@ -141,13 +141,14 @@ void check_tiles(const Payload& payload, const Payload& rows, Report& report, Pa
     check_codebook(payload, header, report);
     const Tiles tiles{payload, header, reinterpret_cast<const AcdfSplit*>(payload.data + sizeof header)};
     const u64 size = u64{header.row_count} * (header.tile_count - 1);
-    if (!rows.data || rows.size != size)
+    const bool rows_ok = rows.data && rows.size == size;
+    if (!rows_ok)
         report.add(6025, rows.data ? rows.at(0) : payload.at(0), "ROWS has %llu bytes instead of %llu",
                    static_cast<ull>(rows.size), static_cast<ull>(size));
     if (report.stopped() || !find_boxes(tiles, parts, boxes, report)) return;
     parts.tiles = &header;
     parts.splits = tiles.splits;
-    parts.rows = rows.data;
+    parts.rows = rows_ok ? rows.data : nullptr;
     if (header.root_count == 0) return;
     parts.tile_roots = reinterpret_cast<const u32*>(tiles.splits + (header.tile_count - 1));
     const u64 at = sizeof header + u64{header.tile_count - 1} * sizeof(AcdfSplit);

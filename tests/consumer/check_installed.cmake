@@ -47,7 +47,7 @@ if(programs)
 endif()
 
 # The headers, each alone, as C and as C++.
-foreach(header layout sample acdf reader)
+foreach(header layout sample blend local brdf table acdf reader)
     if(NOT header STREQUAL reader)
         file(WRITE ${WORK}/alone.c "#include <acdf/${header}.h>\n")
         run(ignored ${CC} -std=c99 -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include
