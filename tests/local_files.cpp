@@ -52,7 +52,7 @@ tools::LocalOptions separate(AcdfFit fit) {
 }
 
 TEST(LocalFiles, BudgetsAreFilledAndKept) {
-    double before = INFINITY;
+    double before = INFINITY, full_cdf = 0.0;
     for (std::uint64_t budget : {12288u, 32768u, 131072u}) {
         tools::LocalOptions options;
         options.goal.budget = budget;
@@ -62,8 +62,9 @@ TEST(LocalFiles, BudgetsAreFilledAndKept) {
         EXPECT_EQ(local.accuracy.support_violations, 0u);
         EXPECT_LT(local.accuracy.relative_variance, before);
         before = local.accuracy.relative_variance;
+        full_cdf = local.accuracy.relative_variance_full_cdf;
     }
-    EXPECT_LT(before, 0.02);
+    EXPECT_LT(before, full_cdf / 50.0);
 }
 
 TEST(LocalFiles, BudgetsTooSmallAreRefused) {
@@ -201,13 +202,20 @@ TEST(LocalFiles, OnlyTheBinsOfASceneAreStored) {
     const std::vector<measure::NormalAccuracy> outside =
         measure::measure_normals(file, probe(), {{0.3f, 0.2f, -1.0f}});
     EXPECT_EQ(outside[0].support_violations, 0u); // served by the whole environment
-    EXPECT_LT(local.accuracy.relative_variance, 0.01);
+    tools::LocalOptions all;
+    all.goal = options.goal;
+    const tools::Local whole = build(all);
+    const File general = load(whole);
+    const std::vector<measure::Normal> normals = tools::test_normals(options.scene, 256);
+    EXPECT_LT(local.accuracy.relative_variance,
+              measure::summary(measure::measure_normals(general, probe(), normals)).relative_variance);
 }
 
 TEST(LocalFiles, ManyFilesAreTheSameBytes) {
     for (bool sharing : {true, false}) {
         tools::LocalOptions options = separate(ACDF_FIT_VARIANCE);
-        options.sharing = sharing;
+        if (sharing) options = {};
+        if (sharing) options.goal.budget = 32768;
         EXPECT_EQ(build(options).bytes, build(options).bytes);
     }
 }

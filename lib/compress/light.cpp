@@ -19,6 +19,15 @@ Direction direction_of(const Target& target, double row, double column) {
 /// Light near the horizon of a normal is that within this sine: as far as its bins are apart.
 double horizon_band(const NormalBins& bins) { return 2.0 / bins.subdivisions; }
 
+/// A tile whose directions differ by r adds r^2 sin^2 / cos to the sum of costs, and about r where it crosses the
+/// horizon: r is taken as a tenth there.
+double spread_worth(double cosine) {
+    constexpr double tile = 0.1;
+    if (cosine <= -tile) return 0.0;
+    if (cosine <= 0.0) return (1.0 + cosine / tile) / tile;
+    return (1.0 - cosine * cosine) / std::max(cosine, tile);
+}
+
 } // namespace
 
 double solid_angle(const Target& target, const Box& box) {
@@ -65,6 +74,7 @@ Worth worth(const NormalBins& bins, const std::vector<double>& irradiance) {
             if (!(irradiance[b] > 0.0)) continue;
             const double cosine = dot(d, bins.normals[b]);
             out.mean.values[i] += bins.weight[b] * std::max(0.0, cosine) / irradiance[b];
+            out.spread.values[i] += bins.weight[b] * spread_worth(cosine) / irradiance[b];
             // Between bins the weight of light at the horizon is too large by up to a quarter of their distance.
             if (std::abs(cosine) < band)
                 out.alarm.values[i] = std::max(out.alarm.values[i], 0.25 * band / irradiance[b]);

@@ -109,7 +109,7 @@ private:
             for (std::uint32_t c = box.begin[1]; c < box.end[1]; ++c) {
                 if (values[c] == 0.0f) continue;
                 const double flux =
-                    values[c] * at(worth_.mean, r, c) * target_.row_measure[r] * target_.column_measure[c];
+                    values[c] * at(worth_.spread, r, c) * target_.row_measure[r] * target_.column_measure[c];
                 Light light{flux, {flux * sine * sphere_.cosine[c], flux * sine * sphere_.sine[c], flux * z}};
                 row.add(light);
                 lines_[1][c - box.begin[1]].add(light);
@@ -147,7 +147,7 @@ private:
         best.node = index;
         for (std::uint32_t axis = 0; axis < 2; ++axis) consider(axis, box, all.spread(), best);
         if (best.position == 0) return;
-        const double worth = at(worth_.mean, box.begin[0], box.begin[1]);
+        const double worth = at(worth_.spread, box.begin[0], box.begin[1]);
         const double alarm = worth > 0.0 ? all.flux / worth * at(worth_.alarm, box.begin[0], box.begin[1]) : 0.0;
         // A light that crosses the horizon may draw in vain as it does between bins, over its radius instead.
         const double reach = radius(target_, box);

@@ -38,7 +38,10 @@ struct CoarseMap {
 
 /// What light is worth.
 struct Worth {
-    CoarseMap mean; ///< mean over the bins of cos / E
+    CoarseMap mean; ///< mean over the bins of cos / E: what a smaller cost of its cells saves
+    /// Mean over the bins of sin^2 / (cos E), kept finite near the horizon: what a smaller spread of its tile
+    /// saves.
+    CoarseMap spread;
     /// Largest share of the samples of any normal that light at its horizon could draw by mistake, per unit of
     /// light.
     CoarseMap alarm;
@@ -49,8 +52,9 @@ constexpr double kAlarm = 0.002;      ///< tiles whose light could draw more by 
 constexpr double kLightRadius = 0.03; ///< radians; a light is no larger, and the smaller the brighter it is
 
 /// Divides a probe (rows theta, columns phi) into at most `count` tiles. Each split is the one that lowers most the
-/// sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2: to first order, what the cosine to a
-/// normal adds to the variance within a tile. Tiles of bright light that are too large for a light come first.
+/// sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2 with w = worth.spread: to first order,
+/// what the cosine to a normal adds to the variance within a tile. Tiles of bright light that are too large for a
+/// light come first.
 TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count);
 
 /// The middle of a box in phi and z, and so of its solid angle.
