@@ -70,7 +70,8 @@ TEST_F(Commands, HelpOfEveryCommandHasExamplesAndExitCodes) {
 TEST_F(Commands, HelpOfTheProgramListsEveryCommand) {
     const Result result = run_acdf({"--help"});
     EXPECT_EQ(result.code, 0);
-    for (const char* name : {"env", "info", "validate", "measure", "sample", "pdf", "plot", "demo"})
+    for (const char* name :
+         {"env", "local", "brdf", "table", "info", "validate", "measure", "sample", "pdf", "plot", "demo"})
         EXPECT_NE(result.out.find(std::string("\n  ") + name + " "), std::string::npos) << result.out;
 }
 

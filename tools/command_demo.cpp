@@ -57,6 +57,23 @@ void show_probe(const Options& options, const std::string& probe, const std::str
     with_force({"sample", stem + ".acdf", "-n", "1000", "--sequence", "sobol", "-o", stem + ".samples.csv"});
     with_force({"pdf", stem + ".acdf", stem + ".samples.csv", "-o", stem + ".pdf.txt"});
     with_force({"plot", stem + ".acdf", "-o", stem + ".png"});
+    const std::string local = stem + ".local.acdf";
+    with_force({"local", probe, "-o", local, "--budget", "256KiB"});
+    run_command({"measure", local, "--against", probe, "--rivals"});
+    with_force({"plot", local, "-o", stem + ".local.png", "--normal", "1,0,1"});
+}
+
+/// The same with a BRDF.
+void show_brdf(const Options& options, const std::string& brdf, const std::string& name) {
+    const std::string stem = (fs::path(options.folder) / name).string();
+    const auto with_force = [&](std::vector<std::string> words) {
+        if (options.force) words.push_back("--force");
+        run_command(words);
+    };
+    std::printf("\n== %s\n", brdf.c_str());
+    with_force({"brdf", brdf, "-o", stem + ".acdf", "--budget", "32KiB"});
+    run_command({"info", stem + ".acdf"});
+    with_force({"plot", stem + ".acdf", "-o", stem + ".png", "--view", "60"});
 }
 
 void make_folder(const std::string& folder) {
@@ -74,6 +91,7 @@ void run(const Options& options) {
             std::printf("\n== %s: %s\n", path.c_str(), probe.what.c_str());
             show_probe(options, path, probe.name);
         }
+        show_brdf(options, "ggx:alpha=0.1", "ggx");
     } else {
         std::set<std::string> names;
         for (const std::string& probe : options.probes)

@@ -93,8 +93,9 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->type_name("")
         ->group("Input");
     command
-        .add_option("--against", options->source,
-                    "The probe, the .npy of a table or the BRDF that it stands for: usually the one it was made from")
+        .add_option(
+            "--against", options->source,
+            "The probe, the .npy of a table or the BRDF that it stands for: usually the one it was made from")
         ->required()
         ->type_name("SOURCE")
         ->group("Input");

@@ -63,8 +63,8 @@ struct Fitted {
 };
 
 /// Fits `target` (rows are theta, columns phi; integral > 0). Deterministic for any number of threads. Throws
-/// std::invalid_argument where the target has no energy or the goal is 0 cells, and std::runtime_error where the goal is out of reach:
-/// the message says what can be had.
+/// std::invalid_argument where the target has no energy or the goal is 0 cells, and std::runtime_error where the
+/// goal is out of reach: the message says what can be had.
 Fitted fit(const Target& target, const FitOptions& options);
 
 /// Fits uniform, cdf and pdf: marginal over the target's rows, one conditional over columns for each region

@@ -29,8 +29,8 @@ struct LocalFit {
 };
 
 /// Fits tiles, the curves in them, lights, and the rows of all bins that occur. Deterministic for any number of
-/// threads. Throws std::invalid_argument where the target has no energy, or the bins are cells of a grid: rows are made
-/// for corners, whose mixture covers what a normal between them sees.
+/// threads. Throws std::invalid_argument where the target has no energy, or the bins are cells of a grid: rows are
+/// made for corners, whose mixture covers what a normal between them sees.
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size,
                    const Progress& progress = {});
 

@@ -48,8 +48,8 @@ struct Parts {
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
     std::uint32_t tree_units = 0;
-    const AcdfViews* views = nullptr; ///< of a BRDF
-    const float* nodes = nullptr;     ///< views->theta_count
+    const AcdfViews* views = nullptr;          ///< of a BRDF
+    const float* nodes = nullptr;              ///< views->theta_count
     const AcdfTiles* tiles = nullptr;          ///< null where bins share nothing
     const AcdfSplit* splits = nullptr;         ///< tiles->tile_count - 1
     const std::uint32_t* tile_roots = nullptr; ///< tiles->tile_count, or null: all tiles are cells
