@@ -1,7 +1,9 @@
 // acdf brdf: a BRDF to an .acdf file.
 #include "brdf.h"
 #include "commands.h"
+#include "file_input.h"
 #include "format_names.h"
+#include "goal_options.h"
 #include "help.h"
 #include "options.h"
 #include "output.h"
@@ -10,7 +12,6 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -45,21 +46,6 @@ bool parse_views(const std::string& text, std::uint32_t& theta, std::uint32_t& p
            b != 3;
 }
 
-void set_goal(Options& options) {
-    int goals = 0;
-    for (const char* option : {"--cells", "--budget", "--target-variance"}) goals += options.given(option);
-    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
-    compress::Goal& goal = options.file.fit.goal;
-    if (options.given("--cells")) goal.kind = compress::Goal::Kind::cells;
-    else if (options.given("--target-variance")) goal.kind = compress::Goal::Kind::variance;
-    else {
-        const auto bytes = parse_size(options.given("--budget") ? options.budget : "64KiB");
-        if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 64KiB, 2MB or 20000");
-        goal.kind = compress::Goal::Kind::budget;
-        goal.budget = *bytes;
-    }
-}
-
 void check_options(Options& options) {
     compress::BrdfOptions& fit = options.file.fit;
     const bool variance = fit.fit == ACDF_FIT_VARIANCE;
@@ -79,13 +65,9 @@ void check_options(Options& options) {
     if (options.given("--eps") && !options.given("--knots"))
         fit.phi_segments = fit.theta_segments = ACDF_MAX_SEGMENTS;
     fit.sharing = !options.separate;
-    if (variance) set_goal(options);
-}
-
-void verify_bytes(const std::uint8_t* data, std::size_t size) {
-    File file;
-    if (const Status status = File::from_memory(data, size, file); !status.ok())
-        throw Failure(std::string("what was written does not read back: ") + status.message);
+    if (!variance) return;
+    fit.goal = {compress::Goal::Kind::budget, fit.goal.cells, std::uint64_t{64} << 10, fit.goal.variance};
+    read_goal(*options.command, options.budget, fit.goal);
 }
 
 nlohmann::ordered_json report(const Options& options, const BrdfFile& result) {
@@ -120,10 +102,7 @@ BrdfFile build(const Options& options, const input::Brdf& brdf) {
 
 void run(Options& options) {
     check_options(options);
-    std::unique_ptr<tbb::global_control> limit;
-    if (options.threads > 0)
-        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                      static_cast<std::size_t>(options.threads));
+    const auto limit = limit_threads(options.threads);
     std::vector<std::string> inputs;
     if (std::filesystem::exists(options.source)) inputs.push_back(options.source);
     Output output(options.output, options.force, inputs); // refuses early, before the work
@@ -133,7 +112,7 @@ void run(Options& options) {
             std::fprintf(stderr, "%s: %s\n", options.source.c_str(), note.c_str());
     const BrdfFile result = build(options, *brdf);
     output.write(result.bytes.data(), result.bytes.size());
-    output.commit(verify_bytes);
+    output.commit(check_reads_back);
 
     std::FILE* out = options.output == "-" ? stderr : stdout;
     const measure::BrdfAccuracy& a = result.accuracy;
@@ -200,21 +179,9 @@ void add_fit_options(CLI::App& command, Options& options) {
 
 void add_size_options(CLI::App& command, Options& options) {
     compress::BrdfOptions& fit = options.file.fit;
-    command
-        .add_option("--budget", options.budget, "The most accurate file of about this size at most, such as 64KiB")
-        ->option_text("SIZE [64KiB]")
-        ->group("Size and accuracy");
-    command
-        .add_option("--cells", fit.goal.cells, "Cells that all views share; without sharing: of each, on average")
-        ->check(CLI::Range(1u, ACDF_MAX_TILES))
-        ->option_text("N")
-        ->group("Size and accuracy");
-    command
-        .add_option("--target-variance", fit.goal.variance,
-                    "The smallest file whose samples have about this relative variance, as mean over views")
-        ->check(CLI::PositiveNumber)
-        ->option_text("V")
-        ->group("Size and accuracy");
+    add_goal(command, fit.goal.cells, options.budget, fit.goal.variance,
+             {"Cells that all views share; without sharing: of each, on average", "N", "SIZE [64KiB]",
+              ", about, as mean over views", 1, ACDF_MAX_TILES});
     command
         .add_option("--knots", options.knots,
                     "Segments of curves over phi_h and theta_h, for --fit uniform, cdf and pdf")

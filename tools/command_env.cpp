@@ -1,7 +1,9 @@
 // acdf env: an environment map to an .acdf file.
 #include "commands.h"
 #include "environment.h"
+#include "file_input.h"
 #include "format_names.h"
+#include "goal_options.h"
 #include "help.h"
 #include "options.h"
 #include "output.h"
@@ -11,7 +13,6 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <cstdio>
@@ -65,20 +66,12 @@ bool allows(const OnlyFor& rule, AcdfFit fit) {
 }
 
 void set_goal(const Options& options, compress::FitOptions& fit) {
-    int goals = 0;
-    for (const char* option : {"--cells", "--budget", "--target-variance"}) goals += options.given(option);
-    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
+    const int goals = read_goal(*options.command, options.budget, fit.goal);
     const bool only_cells = fit.shape == compress::Shape::cascade;
     if (only_cells && goals > 0 && !options.given("--cells"))
         throw CLI::ValidationError("--shape cascade", "is sized by --cells");
     if (only_cells && options.given("--max-weight"))
         throw CLI::ValidationError("--max-weight", "is for --shape tree");
-    if (options.given("--target-variance")) fit.goal.kind = compress::Goal::Kind::variance;
-    if (!options.given("--budget")) return;
-    const auto bytes = parse_size(options.budget);
-    if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 64KiB, 2MB or 20000");
-    fit.goal.kind = compress::Goal::Kind::budget;
-    fit.goal.budget = *bytes;
 }
 
 void set_knots(const Options& options, compress::FitOptions& fit) {
@@ -121,18 +114,9 @@ nlohmann::ordered_json report(const Options& options, const input::Probe& probe,
             {"support_violations", a.support_violations}};
 }
 
-void verify_bytes(const std::uint8_t* data, std::size_t size) {
-    File file;
-    if (const Status status = File::from_memory(data, size, file); !status.ok())
-        throw Failure(std::string("what was written does not read back: ") + status.message);
-}
-
 void run(Options& options) {
     check_options(options);
-    std::unique_ptr<tbb::global_control> limit;
-    if (options.threads > 0)
-        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                      static_cast<std::size_t>(options.threads));
+    const auto limit = limit_threads(options.threads);
     Output output(options.output, options.force, {options.probe}); // refuses early, before the work
 
     input::Probe probe = load_probe(options.probe, options.input, options.quiet);
@@ -149,7 +133,7 @@ void run(Options& options) {
         }
     }
     output.write(result.bytes.data(), result.bytes.size());
-    output.commit(verify_bytes);
+    output.commit(check_reads_back);
 
     std::FILE* out = options.output == "-" ? stderr : stdout;
     if (options.json) std::fprintf(out, "%s\n", report(options, probe, result).dump(2).c_str());
@@ -199,25 +183,9 @@ void add_fit_options(CLI::App& command, Options& options) {
         ->transform(CLI::CheckedTransformer(orders).description(""))
         ->option_text("NAME [auto]")
         ->group("Fit");
-    command.add_option("--cells", fit.goal.cells, "Cells in all: about 4 bytes each")
-        ->check(CLI::Range(1u, 1u << 28))
-        ->option_text("N [4096]")
-        ->group("Size and accuracy");
-    command
-        .add_option(
-            "--budget", options.budget,
-            "The most accurate file of at most this size, such as 64KiB or 20kB: for a fixed place in a cache, "
-            "or a download")
-        ->option_text("SIZE")
-        ->group("Size and accuracy");
-    command
-        .add_option(
-            "--target-variance", fit.goal.variance,
-            "The smallest file whose samples have at most this relative variance: 0.01 is a tenth of the mean "
-            "as standard deviation of one sample")
-        ->check(CLI::PositiveNumber)
-        ->option_text("V")
-        ->group("Size and accuracy");
+    add_goal(command, fit.goal.cells, options.budget, fit.goal.variance,
+             {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
+              ": 0.01 is a tenth of the mean as standard deviation of one sample"});
     command
         .add_option("--max-weight", fit.max_weight,
                     "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "

@@ -1,6 +1,8 @@
 // acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
 #include "commands.h"
+#include "file_input.h"
 #include "format_names.h"
+#include "goal_options.h"
 #include "help.h"
 #include "input/scene_normals.h"
 #include "local.h"
@@ -12,7 +14,6 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 
 #include <cstdio>
 #include <memory>
@@ -48,20 +49,6 @@ void set_normals(Options& options) {
         throw CLI::ValidationError("--normals", "needs a number from 1 to 256, or two such as 25x10 (phi x theta)");
 }
 
-void set_goal(Options& options) {
-    using Kind = compress::Goal::Kind;
-    LocalOptions& local = options.local;
-    int goals = 0;
-    for (const char* option : {"--cells", "--budget", "--target-variance"}) goals += options.given(option);
-    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
-    if (options.given("--target-variance")) local.goal.kind = Kind::variance;
-    else if (options.given("--cells")) local.goal.kind = Kind::cells;
-    if (!options.given("--budget")) return;
-    const auto bytes = parse_size(options.budget);
-    if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 256KiB, 1MB or 200000");
-    local.goal.budget = *bytes;
-}
-
 void set_separate(Options& options) {
     LocalOptions& local = options.local;
     compress::FitOptions& fit = local.fit;
@@ -72,8 +59,6 @@ void set_separate(Options& options) {
                                        "AxB is for --no-sharing: bins that share tiles are interpolated");
         for (const char* option : {"--fit", "--knots", "--eps", "--order", "--bin-target"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
-        if (local.columns > 0)
-            throw CLI::ValidationError("--normals", "of columns and rows is for --no-sharing; give one number");
         return;
     }
     if (options.given("--tiles")) throw CLI::ValidationError("--tiles", "is for files whose bins share tiles");
@@ -136,20 +121,11 @@ void print_text(const Options& options, const Local& result, std::FILE* out) {
                  a.lit_normals, gain(result), a.relative_variance_full_cdf, 100.0 * a.share_above_horizon);
 }
 
-void verify_bytes(const std::uint8_t* data, std::size_t size) {
-    File file;
-    if (const Status status = File::from_memory(data, size, file); !status.ok())
-        throw Failure(std::string("what was written does not read back: ") + status.message);
-}
-
 void run(Options& options) {
     set_normals(options);
-    set_goal(options);
+    read_goal(*options.command, options.budget, options.local.goal);
     set_separate(options);
-    std::unique_ptr<tbb::global_control> limit;
-    if (options.threads > 0)
-        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                      static_cast<std::size_t>(options.threads));
+    const auto limit = limit_threads(options.threads);
     Output output(options.output, options.force, {options.probe, options.scene}); // refuses early, before the work
     read_scene(options);
     input::Probe probe = load_probe(options.probe, options.input, options.quiet);
@@ -166,7 +142,7 @@ void run(Options& options) {
         }
     }
     output.write(result.bytes.data(), result.bytes.size());
-    output.commit(verify_bytes);
+    output.commit(check_reads_back);
 
     std::FILE* out = options.output == "-" ? stderr : stdout;
     File file;
@@ -223,21 +199,9 @@ void add_bins(CLI::App& command, Options& options) {
 
 void add_size(CLI::App& command, Options& options) {
     LocalOptions& local = options.local;
-    command.add_option("--budget", options.budget, "The most accurate file of at most this size")
-        ->option_text("SIZE [1MiB]")
-        ->group("Size and accuracy");
-    command
-        .add_option("--target-variance", local.goal.variance,
-                    "The smallest file whose samples have at most this relative variance, in the mean over normals")
-        ->check(CLI::PositiveNumber)
-        ->option_text("V")
-        ->group("Size and accuracy");
-    command
-        .add_option("--cells", local.goal.cells,
-                    "Cells of the curves that bins share, about; with --no-sharing: of a bin, in the mean")
-        ->check(CLI::Range(16u, 1u << 26))
-        ->option_text("N")
-        ->group("Size and accuracy");
+    add_goal(command, local.goal.cells, options.budget, local.goal.variance,
+             {"Cells of the curves that bins share, about; with --no-sharing: of a bin, in the mean", "N",
+              "SIZE [1MiB]", ", in the mean over normals", 16});
     command
         .add_option(
             "--tiles", local.tiles,

@@ -1,5 +1,7 @@
 // acdf table: an array of numbers of any number of axes to an .acdf file.
 #include "commands.h"
+#include "file_input.h"
+#include "goal_options.h"
 #include "help.h"
 #include "input/image.h"
 #include "input/npy.h"
@@ -10,7 +12,6 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 
 #include <charconv>
 #include <cinttypes>
@@ -33,19 +34,6 @@ struct Options {
 
     bool given(const char* option) const { return command->get_option(option)->count() > 0; }
 };
-
-void set_goal(Options& options) {
-    int goals = 0;
-    for (const char* option : {"--cells", "--budget", "--target-variance"}) goals += options.given(option);
-    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
-    compress::Goal& goal = options.table.fit.goal;
-    if (options.given("--target-variance")) goal.kind = compress::Goal::Kind::variance;
-    if (!options.given("--budget")) return;
-    const auto bytes = parse_size(options.budget);
-    if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 64KiB, 2MB or 20000");
-    goal.kind = compress::Goal::Kind::budget;
-    goal.budget = *bytes;
-}
 
 /// A number that fills all of `text`.
 template <class Number>
@@ -113,12 +101,6 @@ nlohmann::ordered_json report(const Options& options, const input::NpyArray& arr
             {"support_violations", a.support_violations}};
 }
 
-void verify_bytes(const std::uint8_t* data, std::size_t size) {
-    File file;
-    if (const Status status = File::from_memory(data, size, file); !status.ok())
-        throw Failure(std::string("what was written does not read back: ") + status.message);
-}
-
 Table build(const Options& options, const input::NpyArray& array) {
     const std::string name = std::filesystem::path(options.array).filename().string();
     const std::string sha256 = input::file_sha256(options.array);
@@ -133,18 +115,15 @@ Table build(const Options& options, const input::NpyArray& array) {
 }
 
 void run(Options& options) {
-    set_goal(options);
-    std::unique_ptr<tbb::global_control> limit;
-    if (options.threads > 0)
-        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                      static_cast<std::size_t>(options.threads));
+    read_goal(*options.command, options.budget, options.table.fit.goal);
+    const auto limit = limit_threads(options.threads);
     Output output(options.output, options.force, {options.array}); // refuses early, before the work
     const input::NpyArray array = input::read_npy(options.array, options.input);
     remark(options, array);
     set_ranges(options, array.shape);
     const Table result = build(options, array);
     output.write(result.bytes.data(), result.bytes.size());
-    output.commit(verify_bytes);
+    output.commit(check_reads_back);
 
     std::size_t bins = 1;
     for (std::uint32_t axis = 0; axis < options.table.indexed; ++axis) bins *= array.shape[axis];
@@ -195,23 +174,9 @@ void add_axis_options(CLI::App& command, Options& options) {
 
 void add_size_options(CLI::App& command, Options& options) {
     compress::FitOptions& fit = options.table.fit;
-    command
-        .add_option("--cells", options.table.cells,
-                    "Cells a bin, on average: a bin that is harder gets more of them")
-        ->check(CLI::Range(1u, 1u << 28))
-        ->option_text("N [4096 in all, at least 64 a bin]")
-        ->group("Size and accuracy");
-    command
-        .add_option("--budget", options.budget,
-                    "The most accurate file of at most this size, such as 64KiB or 20kB")
-        ->option_text("SIZE")
-        ->group("Size and accuracy");
-    command
-        .add_option("--target-variance", fit.goal.variance,
-                    "The smallest file whose samples have at most this relative variance, as mean over the bins")
-        ->check(CLI::PositiveNumber)
-        ->option_text("V")
-        ->group("Size and accuracy");
+    add_goal(command, options.table.cells, options.budget, fit.goal.variance,
+             {"Cells a bin, on average: a bin that is harder gets more of them",
+              "N [4096 in all, at least 64 a bin]", "SIZE", ", as mean over the bins"});
     command
         .add_option("--max-weight", fit.max_weight,
                     "Bound on f/p over its mean, in every bin: no sample counts for more (no fireflies)")

@@ -4,10 +4,12 @@
 #include <acdf/layout.h>
 
 #include <CLI/CLI.hpp>
+#include <tbb/global_control.h>
 
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace acdf::tools {
@@ -52,6 +54,13 @@ inline CLI::Option* add_codec(CLI::App& command, AcdfCodec& codec) {
         ->transform(CLI::CheckedTransformer(codecs).description(""))
         ->option_text("NAME [none]")
         ->group("Output");
+}
+
+/// Holds as long as it lives; 0: all cores.
+inline std::unique_ptr<tbb::global_control> limit_threads(int threads) {
+    if (threads == 0) return nullptr;
+    return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                 static_cast<std::size_t>(threads));
 }
 
 inline CLI::Option* add_threads(CLI::App& command, int& threads) {

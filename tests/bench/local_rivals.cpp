@@ -1,5 +1,6 @@
 // Time of a sample of the irradiance integrand by the rivals of a local environment map. Every shading point has
 // another normal; tiling on the fly builds its weights there and shares them among the samples of the point.
+#include "local.h"
 #include "synthetic.h"
 
 #include "measure/local_rivals.h"
@@ -108,12 +109,57 @@ void resampling_32(benchmark::State& state) {
     });
 }
 
+/// Ours, a file of 1 MB. Everything of a normal is looked up once a shading point.
+const tools::Local& local_map(std::uint32_t columns) {
+    static std::map<std::uint32_t, tools::Local> made;
+    const auto [found, missing] = made.try_emplace(columns);
+    if (missing) {
+        tools::LocalOptions options;
+        options.goal.budget = 1000000;
+        found->second = tools::build_local(sky(columns), {}, options);
+    }
+    return found->second;
+}
+
+File open_map(std::uint32_t columns) {
+    const tools::Local& map = local_map(columns);
+    File file;
+    File::from_memory(map.bytes.data(), map.bytes.size(), file);
+    return file;
+}
+
+void local(benchmark::State& state) {
+    const File file = open_map(static_cast<std::uint32_t>(state.range(0)));
+    const LocalEnvironmentView view = file.local();
+    AcdfLocalPoint at = {};
+    run(
+        state, static_cast<std::size_t>(state.range(1)), [&](const Point& p) { at = view.at(p.normal.data()); },
+        [&](const Point&, const std::array<double, 2>& u) {
+            benchmark::DoNotOptimize(view.sample(at, u[0], u[1]));
+        });
+}
+
+void local_pdf(benchmark::State& state) {
+    const File file = open_map(static_cast<std::uint32_t>(state.range(0)));
+    const LocalEnvironmentView view = file.local();
+    AcdfLocalPoint at = {};
+    std::size_t i = 0;
+    run(
+        state, 16, [&](const Point& p) { at = view.at(p.normal.data()); },
+        [&](const Point&, const std::array<double, 2>&) {
+            benchmark::DoNotOptimize(view.pdf(at, points()[i].normal.data()));
+            i = (i + 1) % kPoints;
+        });
+}
+
 void samples_a_point(benchmark::internal::Benchmark* benchmark) {
     for (const int columns : {1024, 4096})
         for (const int samples : {1, 4, 16, 64}) benchmark->Args({columns, samples});
 }
 
 BENCHMARK(full_cdf)->Arg(1024)->Arg(4096);
+BENCHMARK(local)->Apply(samples_a_point);
+BENCHMARK(local_pdf)->Arg(1024)->Arg(4096);
 BENCHMARK(tiling)->Apply(samples_a_point);
 BENCHMARK(resampling_32)->Arg(1024)->Arg(4096);
 BENCHMARK(cosine_hemisphere);
