@@ -80,6 +80,8 @@ options() {
 --channel rgb
 --channel max
 --channel red
+--channel green
+--channel blue
 --filter bilinear
 --compress zlib
 --threads 1

@@ -10,9 +10,11 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::size_t kBatch = 32;   // boxes divided at once: the same for any number of threads
-constexpr double kLeastGain = 1e-9;  // of the sum of costs, which is about 1: less is rounding
-constexpr double kLeastShare = 1e-9; // of a cell that may be needed
+constexpr std::size_t kBatch = 32;  // boxes divided at once: the same for any number of threads
+constexpr double kLeastGain = 1e-9; // of the sum of costs, which is about 1: less is rounding
+// Of all cells that may be needed together. What is known of a cell at the border of what a row sees may be less
+// than what is there: a floor bounds the weights, at the price of this share of the samples at most.
+constexpr double kLeastShares = 2e-4;
 constexpr std::uint32_t kBisections = 60;
 
 /// For each line across a box, and each target, the integral of its square: lines x targets.
@@ -215,6 +217,7 @@ double second_moment(const RowProbabilities& rows, const std::vector<SharedMixtu
 void optimise_rows(RowProbabilities& rows, const std::vector<SharedMixture>& mixtures, int steps) {
     const std::size_t cells = rows.front().size();
     constexpr std::size_t block = 64; // cells a task
+    const double least = kLeastShares / double(cells);
     for (int step = 0; step < steps; ++step) {
         // At the minimum the derivatives by the probabilities of a row are equal wherever these are positive.
         tbb::parallel_for(std::size_t{0}, (cells + block - 1) / block, [&](std::size_t task) {
@@ -229,15 +232,14 @@ void optimise_rows(RowProbabilities& rows, const std::vector<SharedMixture>& mix
                     for (int i = 0; i < mix.count; ++i) slope[mix.bin[i]] += mix.share[i] * g;
                 }
                 for (std::size_t b = 0; b < rows.size(); ++b)
-                    if (rows[b][c] > 0.0)
-                        rows[b][c] = std::max(rows[b][c] * std::sqrt(slope[b]), kLeastShare * 1e-9);
+                    if (rows[b][c] > 0.0) rows[b][c] = std::max(rows[b][c] * std::sqrt(slope[b]), least * 1e-9);
             }
         });
         tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t b) {
             double sum = 0.0;
             for (const double p : rows[b]) sum += p;
             for (double& p : rows[b])
-                if (p > 0.0) p = std::max(p / sum, kLeastShare);
+                if (p > 0.0) p = std::max(p / sum, least);
         });
     }
 }
