@@ -17,7 +17,7 @@ acdf_add_test(test_local_probes SOURCES local_probes.cpp LIBRARIES acdf_files)
 acdf_add_test(test_local_files SOURCES local_files.cpp LIBRARIES acdf_files)
 if(TARGET acdf)
     acdf_add_test(test_local_tools
-        SOURCES local_tools.cpp
+        SOURCES local_tools.cpp local_command.cpp
         LIBRARIES acdf_plot acdf_tools nlohmann_json::nlohmann_json)
     target_compile_definitions(test_local_tools PRIVATE ACDF_PROGRAM="$<TARGET_FILE:acdf>")
     add_dependencies(test_local_tools acdf)
