@@ -93,7 +93,7 @@ public:
     void floats(const std::string& name, const std::vector<std::uint64_t>& shape,
                 const std::vector<float>& values) {
         Bytes data(values.size() * sizeof(float));
-        std::memcpy(data.data(), values.data(), data.size());
+        if (!data.empty()) std::memcpy(data.data(), values.data(), data.size());
         add(name, 10, shape, std::move(data));
     }
     Bytes bytes() const {
