@@ -7,6 +7,7 @@
 #include "options.h"
 #include "output.h"
 #include "table_points.h"
+#include "view_option.h"
 
 #include <cerrno>
 #include <cmath>
@@ -25,6 +26,7 @@ struct Options {
     std::vector<std::uint32_t> at;
     std::vector<float> normal;
     bool normalize = false, csv = false, force = false;
+    std::string view;
 };
 
 /// The line of a direction (and what stands behind it); `density` is a function of a unit vector of floats.
@@ -88,6 +90,16 @@ void evaluate_local(const File& file, std::istream& in, const Options& options, 
              });
 }
 
+void evaluate_brdf(const File& file, std::istream& in, const Options& options, Output& output) {
+    if (!options.at.empty()) throw Failure(options.file + ": a BRDF has no --at; give --view THETA[,PHI]");
+    const BrdfView view = file.brdf();
+    const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
+    if (options.csv) output.write("x,y,z,pdf\n");
+    evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
+        return density_line(direction, options, [&](const float d[3]) { return view.pdf(wo.data(), d); });
+    });
+}
+
 void evaluate_table(const File& file, std::istream& in, const Options& options, Output& output) {
     if (options.normalize) throw Failure(options.file + ": a table has no directions; leave out --normalize");
     const TableView view = file.table();
@@ -107,6 +119,7 @@ void run(const Options& options) {
     const LoadedFile loaded = load_file(options.file);
     const AcdfKind kind = loaded.file.kind();
     if (kind != ACDF_KIND_LOCAL) refuse_normal(options.file, options.normal);
+    if (kind != ACDF_KIND_BRDF) refuse_view(options.file, options.view);
     std::ifstream file;
     if (options.directions != "-") {
         file.open(options.directions);
@@ -119,8 +132,8 @@ void run(const Options& options) {
     std::istream& in = options.directions == "-" ? std::cin : file;
     if (kind == ACDF_KIND_ENVIRONMENT) evaluate_environment(loaded.file, in, options, output);
     else if (kind == ACDF_KIND_LOCAL) evaluate_local(loaded.file, in, options, output);
+    else if (kind == ACDF_KIND_BRDF) evaluate_brdf(loaded.file, in, options, output);
     else if (kind == ACDF_KIND_TABLE) evaluate_table(loaded.file, in, options, output);
-    else fail_kind(options.file, loaded.file, "pdf", "environments, local environments and tables");
     output.commit();
 }
 
@@ -144,6 +157,7 @@ void add_pdf(CLI::App& program, int& exit_code) {
                    "density 0, as in a renderer, where it tells of a mistake")
         ->group("Evaluation");
     add_normal(*command, options->normal, "Evaluation", "; without it each line has one: x y z nx ny nz");
+    add_view(*command, options->view, "Evaluation");
     add_bin(*command, options->at, "Evaluation");
     command->add_flag("--csv", options->csv, "Print x,y,z,pdf instead of the density alone")->group("Output");
     add_output(*command, options->output, options->force, "The file to write, stdout by default");

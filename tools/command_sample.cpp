@@ -8,6 +8,7 @@
 #include "progress.h"
 #include "sequences.h"
 #include "table_points.h"
+#include "view_option.h"
 
 #include <cstdio>
 #include <map>
@@ -24,6 +25,7 @@ struct Options {
     std::vector<float> normal;
     std::string output = "-";
     bool force = false, quiet = false;
+    std::string view;
 };
 
 constexpr std::uint64_t max_count = std::uint64_t{1} << 32; // of the Sobol' sequence; 300 GB of text
@@ -73,6 +75,20 @@ void sample_local(const File& file, const Options& options, Output& output) {
     });
 }
 
+void sample_brdf(const File& file, const Options& options, Output& output) {
+    if (!options.at.empty()) throw Failure(options.file + ": a BRDF has no --at; give --view THETA[,PHI]");
+    const BrdfView view = file.brdf();
+    const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
+    if (!(view.albedo(wo.data()) > 0.0))
+        throw Failure(options.file + ": nothing is reflected to this view, so there is nothing to draw");
+    Sequence sequence(options.sequence, options.count, options.seed);
+    output.write("u0,u1,x,y,z,pdf\n");
+    write_samples(options, output, [&] {
+        const std::array<double, 2> u = sequence.next();
+        return csv_line(u, view.sample(wo.data(), u[0], u[1]));
+    });
+}
+
 void sample_table(const File& file, const Options& options, Output& output) {
     const TableView view = file.table();
     const std::uint32_t n = view.sampled_count();
@@ -97,10 +113,11 @@ void run(const Options& options) {
     const LoadedFile loaded = load_file(options.file);
     const AcdfKind kind = loaded.file.kind();
     if (kind != ACDF_KIND_LOCAL) refuse_normal(options.file, options.normal);
+    if (kind != ACDF_KIND_BRDF) refuse_view(options.file, options.view);
     if (kind == ACDF_KIND_ENVIRONMENT) sample_environment(loaded.file, options, output);
     else if (kind == ACDF_KIND_LOCAL) sample_local(loaded.file, options, output);
+    else if (kind == ACDF_KIND_BRDF) sample_brdf(loaded.file, options, output);
     else if (kind == ACDF_KIND_TABLE) sample_table(loaded.file, options, output);
-    else fail_kind(options.file, loaded.file, "sample", "environments, local environments and tables");
     output.commit();
 }
 
@@ -135,6 +152,7 @@ void add_sample(CLI::App& program, int& exit_code) {
         ->option_text("S [0]")
         ->group("Sampling");
     add_normal(*command, options->normal, "Sampling");
+    add_view(*command, options->view, "Sampling");
     add_bin(*command, options->at, "Sampling");
     add_output(*command, options->output, options->force, "The CSV file to write, stdout by default");
     add_quiet(*command, options->quiet);

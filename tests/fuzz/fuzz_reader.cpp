@@ -62,6 +62,23 @@ void sample_everything(const acdf::LocalEnvironmentView& view, std::uint32_t see
     }
 }
 
+void sample_everything(const acdf::BrdfView& view, std::uint32_t seed) {
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (int n = 0; n < 64; ++n) {
+        const double z = n < 8 ? 1.0 - n / 8.0 : uniform(rng), phi = 6.283 * uniform(rng),
+                     r = std::sqrt(1.0 - z * z);
+        const float wo[3] = {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
+                             static_cast<float>(z)};
+        const acdf::DirectionSample s = view.sample(wo, n % 3 ? uniform(rng) : 1.0, n % 5 ? uniform(rng) : 0.0);
+        require(std::isfinite(s.pdf) && s.pdf >= 0.0f && std::isfinite(view.albedo(wo)));
+        const float pdf = view.pdf(wo, s.direction);
+        require(std::isfinite(pdf) && pdf >= 0.0f);
+        double back[2];
+        view.invert(wo, s.direction, back);
+    }
+}
+
 void sample_everything(const acdf::TableView& view, std::uint32_t seed) {
     const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 0x1p-30};
     std::mt19937 rng(seed);
@@ -164,6 +181,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 sample_everything(file.local(), static_cast<std::uint32_t>(size));
                 sample_everything(file.local().environment(), static_cast<std::uint32_t>(size));
             }
+            if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), static_cast<std::uint32_t>(size));
             if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), static_cast<std::uint32_t>(size));
         }
     }

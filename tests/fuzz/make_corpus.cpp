@@ -1,4 +1,5 @@
 // Writes the seeds of fuzz_reader: small valid files that use everything. make_corpus FOLDER
+#include "brdf_builder.h"
 #include "local_random.h"
 #include "reader_planes.h"
 
@@ -27,6 +28,8 @@ int main(int argc, char** argv) {
     write(folder / "complete", complete.encode());
     write(folder / "local", lit_local().encode());
     write(folder / "separate", separate_local().encode());
+    write(folder / "brdf", shared_brdf().encode());
+    write(folder / "separate_brdf", separate_brdf().encode());
     write(folder / "spare", spare_file().encode());
     write(folder / "table", table_file().encode());
     write(folder / "chain", chain(64).encode());

@@ -132,7 +132,8 @@ public:
     DirectionSample sample(const float wo[3], double u0, double u1) const noexcept {
         return acdf_brdf_sample(&data_, wo, u0, u1);
     }
-    /// Density in sr^-1 of wi for wo; exactly that of `sample` for what it returned.
+    /// Density in sr^-1 of wi for wo; exactly that of `sample` for what it returned, but where wo and wi are so
+    /// nearly opposite that their half-vector is lost in rounding.
     float pdf(const float wo[3], const float wi[3]) const noexcept { return acdf_brdf_pdf(&data_, wo, wi); }
     /// The random numbers that draw wi for wo; false where the table's density is 0.
     bool invert(const float wo[3], const float wi[3], double u[2]) const noexcept {
