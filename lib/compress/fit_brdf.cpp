@@ -203,19 +203,11 @@ private:
 
     /// From steps and axes of the grid to those of the file.
     std::vector<AcdfSplit> in_file(const TileTree& tree) const {
-        std::vector<AcdfSplit> out;
-        for (const TileTree::Split& split : tree.splits) {
+        return stored_splits(tree, [&](const TileTree::Split& split) {
             const bool row = split.axis == 0;
             const std::uint32_t position = (row ? views_.grid.row_knots : views_.grid.column_knots)[split.position];
-            AcdfSplit record = {(row ? kFileRow : kFileColumn) | position << 3, {}};
-            for (std::size_t k = 0; k < 2; ++k) {
-                const std::uint32_t child = split.child[k], number = child & ~TileTree::tile;
-                record.child[k] =
-                    static_cast<std::uint16_t>(number | (child & TileTree::tile ? ACDF_TILE_FLAG : 0u));
-            }
-            out.push_back(record);
-        }
-        return out;
+            return (row ? kFileRow : kFileColumn) | position << 3;
+        });
     }
 
     const BrdfViews& views_;

@@ -153,21 +153,6 @@ private:
     std::vector<double> least_;
 };
 
-std::vector<AcdfSplit> stored_splits(const TileTree& tiles) {
-    std::vector<AcdfSplit> out;
-    for (const TileTree::Split& split : tiles.splits) {
-        AcdfSplit stored = {};
-        stored.place = (split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI) | split.position << 3;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::uint32_t child = split.child[k];
-            const std::uint32_t number = child & ~TileTree::tile;
-            stored.child[k] = static_cast<std::uint16_t>(child & TileTree::tile ? number | ACDF_TILE_FLAG : number);
-        }
-        out.push_back(stored);
-    }
-    return out;
-}
-
 /// Rows and shares of all bins that occur.
 void fill_rows(const TileLight& light, const NormalBins& bins, LocalFit& out) {
     const std::size_t count = bins.normals.size(), width = out.tiles.splits.size();
@@ -205,7 +190,9 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
     report(0.8);
     out.lights = find_lights(target, out.tiles, *curves.cascade, tile_curves.total(), light_worth);
     out.tree = std::move(curves.tree);
-    out.shared.splits = stored_splits(out.tiles);
+    out.shared.splits = stored_splits(out.tiles, [](const TileTree::Split& split) {
+        return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;
+    });
     out.shared.codebook = row_codebook();
     for (std::int32_t curve : curves.cascade->tile_curve)
         out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);

@@ -78,6 +78,21 @@ std::vector<std::uint16_t> row_codebook();
 /// The code nearest to the probability lower / (lower + upper). Neither part vanishes unless it is 0.
 std::uint8_t row_code(double lower, double upper);
 
+/// The splits as they are stored: `place(split)` is AcdfSplit::place.
+template <class Place>
+std::vector<AcdfSplit> stored_splits(const TileTree& tree, const Place& place) {
+    std::vector<AcdfSplit> out;
+    for (const TileTree::Split& split : tree.splits) {
+        AcdfSplit stored = {place(split), {}};
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::uint32_t child = split.child[k], number = child & ~TileTree::tile;
+            stored.child[k] = static_cast<std::uint16_t>(number | (child & TileTree::tile ? ACDF_TILE_FLAG : 0u));
+        }
+        out.push_back(stored);
+    }
+    return out;
+}
+
 /// The bytes of a row, one a split, and the probabilities that they give to the cells.
 std::vector<std::uint8_t> encode_row(const TileTree& tree, const std::vector<double>& probability);
 std::vector<double> decode_row(const TileTree& tree, const std::vector<std::uint16_t>& codebook,

@@ -154,14 +154,12 @@ ACDF_FN uint32_t acdf_brdf_step(double position, uint32_t resolution) {
 ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfBrdfPlace* place,
                               AcdfRange range[2], AcdfStratum* strata) {
     uint32_t square[2];
-    AcdfMixture mix;
     square[0] = acdf_brdf_step(place->position[0], brdf->columns);
     square[1] = acdf_brdf_step(place->position[1], brdf->rows);
     acdf_brdf_whole(brdf, range);
     if (!brdf->blend.tiles) return acdf_tree_find(brdf->tree, view->root, square, range, strata);
-    mix = view->mix;
-    if (mix.count == 0) return 0.0;
-    return acdf_blend_find(&brdf->blend, &mix, square, range, strata);
+    if (view->mix.count == 0) return 0.0;
+    return acdf_blend_find(&brdf->blend, &view->mix, square, range, strata);
 }
 
 ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
@@ -267,9 +265,8 @@ ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float w
     }
     acdf_brdf_whole(brdf, range);
     if (brdf->blend.tiles) {
-        AcdfMixture mix = view.mix;
-        if (mix.count == 0) return out;
-        p = acdf_blend_sample(&brdf->blend, &mix, u, range);
+        if (view.mix.count == 0) return out;
+        p = acdf_blend_sample(&brdf->blend, &view.mix, u, range);
     } else {
         p = acdf_tree_sample(brdf->tree, view.root, u, range);
     }
