@@ -1,0 +1,41 @@
+// What all samplers of incident light have in common, ours and their rivals: what renderings and timings compare.
+#pragma once
+
+#include <acdf/sample.h>
+
+#include <cstdint>
+#include <memory>
+
+namespace acdf::measure {
+
+/// Where light is gathered. Unit directions away from the surface, in the frame of docs/conventions.md.
+struct ShadingPoint {
+    float n[3] = {0.0f, 0.0f, 1.0f};  ///< normal
+    float wo[3] = {0.0f, 0.0f, 1.0f}; ///< towards the viewer
+};
+
+/// A sampler in the hands of one thread: at one shading point at a time.
+class PointSampler {
+public:
+    virtual ~PointSampler() = default;
+
+    /// Does whatever the sampler has to do once for all samples of a point.
+    virtual void move_to(const ShadingPoint& point) = 0;
+    /// u0, u1 in [0, 1). A pdf of 0: nothing was drawn (the sample counts, as 0). Directions below the horizon keep
+    /// their pdf: the integrand is 0 there.
+    virtual AcdfDirectionSample sample(double u0, double u1) const = 0;
+    /// sr^-1, of `sample` at this point; 0 for directions that it never draws.
+    virtual float pdf(const float wi[3]) const = 0;
+};
+
+/// Tables that are built once, for all threads; must outlive the PointSamplers that it makes.
+class LightSampler {
+public:
+    virtual ~LightSampler() = default;
+
+    virtual std::unique_ptr<PointSampler> point_sampler() const = 0;
+    /// Memory that sampling reads.
+    virtual std::uint64_t bytes() const = 0;
+};
+
+} // namespace acdf::measure
