@@ -244,6 +244,50 @@ TEST(InputFiles, BadTexelsAreCountedAndZeroed) {
     }
 }
 
+TEST(InputFiles, BadPixelsAreClampedOrRefusedWhereAsked) {
+    const Folder folder;
+    Pixels sky = latlong_sky(32);
+    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+    sky.at(7, 2)[0] = 900.0f; // the largest red
+    sky.at(20, 3)[0] = inf;
+    sky.at(20, 3)[1] = -inf;
+    sky.at(4, 5)[1] = nan;
+    sky.at(31, 15)[2] = -0.5f;
+    write_rgb(folder.file("bad.exr"), sky);
+    ProbeOptions options;
+    options.bad_pixels = BadPixels::clamp;
+    const Probe probe = read_probe(folder.file("bad.exr"), options);
+    EXPECT_EQ(probe.bad.count(), 3u);
+    for (std::size_t i = 0; i < sky.rgb.size(); ++i) {
+        const float v = sky.rgb[i], expected = v == inf ? 900.0f : v >= 0.0f ? v : 0.0f;
+        ASSERT_EQ(probe.rgb[i], expected) << i;
+    }
+    options.bad_pixels = BadPixels::error;
+    try {
+        read_probe(folder.file("bad.exr"), options);
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("1 NaN, 1 infinite and 1 negative texels, the first at 20,3"), std::string::npos)
+            << text;
+    }
+    write_rgb(folder.file("good.exr"), latlong_sky(32));
+    EXPECT_EQ(read_probe(folder.file("good.exr"), options).bad.count(), 0u);
+}
+
+TEST(InputFiles, BlackIsUniformWhereAsked) {
+    const Folder folder;
+    Pixels black = latlong_sky(16);
+    std::fill(black.rgb.begin(), black.rgb.end(), 0.0f);
+    write_rgb(folder.file("black.exr"), black);
+    for (const float v : read_probe(folder.file("black.exr")).rgb) ASSERT_EQ(v, 0.0f);
+    ProbeOptions options;
+    options.uniform_if_black = true;
+    const Probe probe = read_probe(folder.file("black.exr"), options);
+    for (const float v : probe.rgb) ASSERT_EQ(v, std::numeric_limits<float>::min());
+    EXPECT_EQ(probe.warnings.size(), 1u);
+}
+
 TEST(InputFiles, BadTexelsOfTheSourceAreLocatedThereAlsoWhenResampled) {
     const Folder folder;
     Pixels ball = render_sky(angular_reference, 64, 64);

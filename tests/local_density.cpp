@@ -2,6 +2,7 @@
 #include "local_maps.h"
 
 #include "compress_chi_square.h"
+#include "extreme_targets.h"
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,8 @@ LocalFileOptions with(std::uint32_t tiles, std::uint64_t bytes, double cosine_sh
 std::function<std::optional<Target>()> synthetic(const std::string& name) {
     return [name]() -> std::optional<Target> {
         for (NamedTarget& t : synthetic_targets())
+            if (t.name == name) return std::move(t.target);
+        for (NamedTarget& t : extreme_targets())
             if (t.name == name) return std::move(t.target);
         throw std::logic_error(name);
     };
@@ -75,6 +78,14 @@ std::vector<MapCase> map_cases() {
         {"one_tile", synthetic("odd_noise"), corners(2), with(1, 1000)},
         {"odd_noise", synthetic("odd_noise"), corners(6), with(100, 3000, 0.0625)},
         {"constant", synthetic("constant"), corners(1), with(40, 300)},
+        {"faint_texel", synthetic("faint_texel"), corners(3), with(30, 400)},
+        {"bright_texel_in_the_dark", synthetic("bright_texel_in_the_dark"), corners(3), with(60, 1000)},
+        {"largest_half", synthetic("largest_half"), corners(3), with(60, 1000)},
+        {"range_of_1e12", synthetic("range_of_1e12"), corners(3), with(150, 4000)},
+        {"sun_at_the_pole", synthetic("sun_at_the_pole"), corners(4), with(80, 1500)},
+        {"sun_at_the_seam", synthetic("sun_at_the_seam"), corners(4), with(80, 1500)},
+        {"sun_at_the_horizon", synthetic("sun_at_the_horizon"), corners(4), with(80, 1500)},
+        {"only_the_nadir", synthetic("only_the_nadir"), corners(4), with(60, 1000)},
         {"suns", [] { return std::optional(suns_target(256, 128)); }, corners(5), with(150, 3000)},
         {"suns_cosine", [] { return std::optional(suns_target(128, 64)); }, corners(4), with(100, 2000, 0.2)},
         {"scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, with(100, 2000)},

@@ -237,6 +237,7 @@ void add_env(CLI::App& program, int& exit_code) {
         ->type_name("")
         ->group("Input");
     add_projection(command, options->input.projection);
+    add_repairs(command, options->input);
     add_output(command, options->output, options->force, "The .acdf file to write")->required();
     add_fit_options(command, *options);
     add_target_options(command, options->environment.target);

@@ -266,6 +266,7 @@ void add_local(CLI::App& program, int& exit_code) {
         ->type_name("")
         ->group("Input");
     add_projection(command, options->input.projection);
+    add_repairs(command, options->input);
     add_output(command, options->output, options->force, "The .acdf file to write")->required();
     add_bins(command, *options);
     add_size(command, *options);

@@ -100,6 +100,7 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->type_name("SOURCE")
         ->group("Input");
     add_projection(command, options->input.projection);
+    add_repairs(command, options->input);
     command
         .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")
         ->check(CLI::Range(1u, 1u << 20))

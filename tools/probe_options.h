@@ -25,4 +25,27 @@ inline void add_projection(CLI::App& command, input::Projection& projection, con
         ->group("Input");
 }
 
+/// What is done with values that are no radiance, and with probes without any.
+inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
+    const std::map<std::string, input::BadPixels> policies{
+        {"zero", input::BadPixels::zero}, {"clamp", input::BadPixels::clamp}, {"error", input::BadPixels::error}};
+    command
+        .add_option(
+            "--bad-pixels", options.bad_pixels,
+            "What becomes of NaN, infinite and negative values: zero; clamp (+infinity becomes the largest "
+            "finite value of its channel, the others 0); error (refuse the probe). They are counted and told")
+        ->transform(CLI::CheckedTransformer(policies).description(""))
+        ->option_text("NAME [zero]")
+        ->group("Input");
+    const std::map<std::string, bool> when_black{{"error", false}, {"uniform", true}};
+    command
+        .add_option(
+            "--on-black", options.uniform_if_black,
+            "What becomes of a probe without any light: error, or uniform (all directions are equally likely; "
+            "the total is next to 0)")
+        ->transform(CLI::CheckedTransformer(when_black).description(""))
+        ->option_text("NAME [error]")
+        ->group("Input");
+}
+
 } // namespace acdf::tools

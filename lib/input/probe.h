@@ -19,16 +19,28 @@ enum class Projection { automatic, latlong, angular, mirrorball, cube_cross, oct
 /// "latlong", "angular", "mirrorball", "cube-cross", "octahedral", "auto".
 const char* to_string(Projection projection);
 
+/// What becomes of values that are no radiance: NaN, infinite, negative. None of them ever reaches a CDF.
+enum class BadPixels {
+    zero,  ///< all are 0
+    clamp, ///< +infinity is the largest finite value of its channel; the others are 0
+    error, ///< an image that has any is refused
+};
+
 struct ProbeOptions {
     Projection projection = Projection::automatic;
+    BadPixels bad_pixels = BadPixels::zero;
+    /// A probe without any light counts as one of the faintest constant light, so that it can be sampled.
+    bool uniform_if_black = false;
     int threads = 0; ///< 0: all cores
 };
 
-/// Texels with channels that are no radiance. Those channels are set to 0, and each texel is counted once, as
-/// the first of nan, infinite, negative that it has. `x`, `y`: the first in the source, row by row from the top.
+/// Texels with channels that are no radiance, each counted once, as the first of nan, infinite, negative that it
+/// has. `x`, `y`: the first in the source, row by row from the top.
 struct BadTexels {
     std::uint64_t nan = 0, infinite = 0, negative = 0;
     int x = -1, y = -1;
+
+    std::uint64_t count() const { return nan + infinite + negative; }
 };
 
 /// A probe as lat-long RGB radiance in the frame of docs/conventions.md: row 0 touches +z, column 0 begins

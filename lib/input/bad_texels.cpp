@@ -1,0 +1,90 @@
+#include "input/bad_texels.h"
+
+#include "input/threads.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace acdf::input {
+namespace {
+
+using Channels = std::array<float, 3>;
+
+/// Of a part of the image.
+struct Found {
+    std::uint64_t nan = 0, infinite = 0, negative = 0;
+    std::size_t first = SIZE_MAX;       // texel index
+    Channels largest{0.0f, 0.0f, 0.0f}; // finite value of each channel
+
+    Found& join(const Found& o) {
+        nan += o.nan;
+        infinite += o.infinite;
+        negative += o.negative;
+        first = std::min(first, o.first);
+        for (std::size_t k = 0; k < 3; ++k) largest[k] = std::max(largest[k], o.largest[k]);
+        return *this;
+    }
+};
+
+bool is_radiance(float value) { return value >= 0.0f && std::isfinite(value); }
+
+Found look_at(const float* rgb, std::size_t begin, std::size_t end, Found found) {
+    for (std::size_t i = begin; i < end; ++i) {
+        bool nan = false, infinite = false, negative = false;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float v = rgb[3 * i + k];
+            if (is_radiance(v)) found.largest[k] = std::max(found.largest[k], v);
+            else if (std::isnan(v)) nan = true;
+            else if (std::isinf(v)) infinite = true;
+            else negative = true;
+        }
+        if (!nan && !infinite && !negative) continue;
+        ++(nan ? found.nan : infinite ? found.infinite : found.negative);
+        found.first = std::min(found.first, i);
+    }
+    return found;
+}
+
+void replace(std::vector<float>& rgb, const Channels& for_infinity) {
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        if (is_radiance(rgb[i])) continue;
+        rgb[i] = std::isinf(rgb[i]) && rgb[i] > 0.0f ? for_infinity[i % 3] : 0.0f;
+    }
+}
+
+std::string text(const BadTexels& bad) {
+    return std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) + " infinite and " +
+           std::to_string(bad.negative) + " negative texels, the first at " + std::to_string(bad.x) + "," +
+           std::to_string(bad.y);
+}
+
+} // namespace
+
+BadTexels repair_texels(const std::string& path, Image& image, BadPixels policy, int threads) {
+    const std::size_t texels = image.rgb.size() / 3, grain = 1 << 16;
+    Found found;
+    with_threads(threads, [&] {
+        found = tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, texels, grain), Found{},
+            [&](const tbb::blocked_range<std::size_t>& range, const Found& sum) {
+                return look_at(image.rgb.data(), range.begin(), range.end(), sum);
+            },
+            [](Found a, const Found& b) { return a.join(b); });
+    });
+    BadTexels bad{found.nan, found.infinite, found.negative};
+    if (bad.count() == 0) return bad;
+    const auto width = static_cast<std::size_t>(image.width);
+    bad.x = static_cast<int>(found.first % width);
+    bad.y = static_cast<int>(found.first / width);
+    if (policy == BadPixels::error)
+        throw input_error(path, "it has " + text(bad) + "; mend it, or take --bad-pixels zero or clamp");
+    replace(image.rgb, policy == BadPixels::clamp ? found.largest : Channels{0.0f, 0.0f, 0.0f});
+    return bad;
+}
+
+} // namespace acdf::input
