@@ -3,5 +3,5 @@ if(NOT TARGET acdf_input)
     return()
 endif()
 acdf_add_test(test_extremes
-    SOURCES compress_checks.cpp extremes_fits.cpp
+    SOURCES compress_checks.cpp extremes_fits.cpp extremes_reach.cpp extremes_sums.cpp
     LIBRARIES acdf_measure)

@@ -1,0 +1,214 @@
+// Time of a sample and of a pdf of measured BRDFs: files of ours beside the sampler that the authors of the RGL
+// database publish, the full table, a GGX lobe and the cosine. Each call has another view, another direction and
+// other random numbers. The time of the RGL sampler on the same random numbers is taken in turns with that of what
+// is timed, a few microseconds apart: `of_rgl` is the ratio of the two.
+#include "brdf.h"
+
+#include "input/rgl_brdf.h"
+#include "measure/brdf_samplers.h"
+#include "measure/brdf_table.h"
+#include "measure/rgl_sampler.h"
+
+#include <acdf/reader.h>
+
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace acdf;
+
+constexpr std::size_t kQueries = 1 << 12; // so many before views and random numbers repeat
+constexpr std::size_t kTurn = 256;        // calls before the other sampler has its turn
+constexpr double kPi = 3.14159265358979323846;
+
+const char* const kRglFile = "cc_ibiza_sunset_rgb.bsdf";
+std::string path_of(const std::string& name) { return std::string(ACDF_TEST_DATA) + "/brdfs/" + name; }
+
+/// cos(theta_o) uniform in [0.1, 1]; wi reflected by the RGL sampler or, without its data, a GGX lobe: where light
+/// comes from is where densities are asked for.
+struct Query {
+    double wo[3], u[2], wi[3];
+    float wo_f[3], wi_f[3];
+};
+
+void direction(double cosine, double phi, double out[3]) {
+    const double sine = std::sqrt(1.0 - cosine * cosine);
+    out[0] = sine * std::cos(phi);
+    out[1] = sine * std::sin(phi);
+    out[2] = cosine;
+}
+
+const measure::RglSampler* rgl_sampler() {
+    static std::unique_ptr<input::Brdf> brdf;
+    static std::unique_ptr<measure::RglSampler> sampler;
+    if (!sampler && std::filesystem::exists(path_of(kRglFile))) {
+        brdf = input::open_brdf(path_of(kRglFile));
+        sampler = std::make_unique<measure::RglSampler>(dynamic_cast<const input::RglBrdf&>(*brdf));
+    }
+    return sampler.get();
+}
+
+const std::vector<Query>& queries() {
+    static const std::vector<Query> made = [] {
+        std::mt19937_64 random(1);
+        std::uniform_real_distribution<double> uniform(0.0, 1.0);
+        std::vector<Query> out(kQueries);
+        const measure::GgxSampler ggx(0.3);
+        for (Query& q : out) {
+            const double cosine = 0.1 + 0.9 * uniform(random), phi = 2.0 * kPi * uniform(random);
+            direction(cosine, phi, q.wo);
+            const double u[2] = {uniform(random), uniform(random)};
+            const measure::BrdfSample s = rgl_sampler() ? rgl_sampler()->sample(q.wo, u) : ggx.sample(q.wo, u);
+            for (int k = 0; k < 3; ++k) {
+                q.wi[k] = s.pdf > 0.0 ? s.wi[k] : q.wo[k];
+                q.wo_f[k] = static_cast<float>(q.wo[k]);
+                q.wi_f[k] = static_cast<float>(q.wi[k]);
+            }
+            q.u[0] = uniform(random);
+            q.u[1] = uniform(random);
+        }
+        return out;
+    }();
+    return made;
+}
+
+/// Seconds that `call` takes for the queries first .. first + kTurn - 1.
+template <class Call> double timed(std::size_t first, const Call& call) {
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t i = first; i < first + kTurn; ++i) call(queries()[i]);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Runs `turn(first query)`, which returns its seconds, and `rgl` (may be null) in turns.
+template <class Turn, class Rgl> void run_turns(benchmark::State& state, const Turn& turn, const Rgl& rgl) {
+    double ours = 0.0, theirs = 0.0;
+    std::size_t first = 0, calls = 0;
+    for (auto _ : state) {
+        const double seconds = turn(first);
+        state.SetIterationTime(seconds);
+        ours += seconds;
+        if (rgl_sampler()) theirs += timed(first, rgl);
+        first = (first + kTurn) % kQueries;
+        calls += kTurn;
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(calls));
+    state.counters["ns"] = 1e9 * ours / static_cast<double>(calls);
+    if (!rgl_sampler()) return;
+    state.counters["rgl_ns"] = 1e9 * theirs / static_cast<double>(calls);
+    state.counters["of_rgl"] = ours / theirs;
+}
+
+const auto rgl_sample = [](const Query& q) { benchmark::DoNotOptimize(rgl_sampler()->sample(q.wo, q.u)); };
+const auto rgl_pdf = [](const Query& q) { benchmark::DoNotOptimize(rgl_sampler()->pdf(q.wo, q.wi)); };
+
+template <class Call> void run_sample(benchmark::State& state, const Call& call) {
+    run_turns(state, [&](std::size_t first) { return timed(first, call); }, rgl_sample);
+}
+template <class Call> void run_pdf(benchmark::State& state, const Call& call) {
+    run_turns(state, [&](std::size_t first) { return timed(first, call); }, rgl_pdf);
+}
+
+/// A source (a file of the test data, or a model) at a size.
+struct Case {
+    std::string source;
+    std::uint64_t bytes;
+    std::string label() const { return source + "/" + std::to_string(bytes >> 10) + "KiB"; }
+};
+
+const File& file_of(const Case& given) {
+    static std::map<std::string, std::unique_ptr<File>> open;
+    static std::map<std::string, tools::BrdfFile> made;
+    const auto [found, missing] = open.try_emplace(given.label());
+    if (missing) {
+        const std::string path = path_of(given.source);
+        const auto brdf = input::open_brdf(std::filesystem::exists(path) ? path : given.source);
+        tools::BrdfFileOptions options;
+        options.fit.goal.kind = compress::Goal::Kind::budget;
+        options.fit.goal.budget = given.bytes;
+        const auto& bytes = (made[given.label()] = tools::build_brdf(*brdf, options)).bytes;
+        found->second = std::make_unique<File>();
+        File::from_memory(bytes.data(), bytes.size(), *found->second);
+    }
+    return *found->second;
+}
+
+void sample(benchmark::State& state, const Case& given) {
+    const BrdfView view = file_of(given).brdf();
+    run_sample(state, [&](const Query& q) { benchmark::DoNotOptimize(view.sample(q.wo_f, q.u[0], q.u[1])); });
+}
+void pdf(benchmark::State& state, const Case& given) {
+    const BrdfView view = file_of(given).brdf();
+    run_pdf(state, [&](const Query& q) { benchmark::DoNotOptimize(view.pdf(q.wo_f, q.wi_f)); });
+}
+
+/// The full table of the first case's source.
+const measure::TabulatedBrdf& table(const Case& given) {
+    static std::unique_ptr<input::Brdf> brdf;
+    static std::unique_ptr<measure::TabulatedBrdf> made;
+    if (!made) {
+        const std::string path = path_of(given.source);
+        brdf = input::open_brdf(std::filesystem::exists(path) ? path : given.source);
+        const tools::BrdfFileOptions options;
+        made = std::make_unique<measure::TabulatedBrdf>(
+            tools::reflected_light(*brdf, options.channels, options.weights), true, measure::BrdfTableKind::centre);
+    }
+    return *made;
+}
+
+void register_rivals(const Case& first) {
+    using benchmark::DoNotOptimize;
+    using benchmark::RegisterBenchmark;
+    using State = benchmark::State;
+    std::vector<benchmark::internal::Benchmark*> all;
+    all.push_back(RegisterBenchmark("sample/ggx", [](State& state) {
+        const measure::GgxSampler ggx(0.3);
+        run_sample(state, [&](const Query& q) { DoNotOptimize(ggx.sample(q.wo, q.u)); });
+    }));
+    all.push_back(RegisterBenchmark("pdf/ggx", [](State& state) {
+        const measure::GgxSampler ggx(0.3);
+        run_pdf(state, [&](const Query& q) { DoNotOptimize(ggx.pdf(q.wo, q.wi)); });
+    }));
+    all.push_back(RegisterBenchmark("sample/cosine", [](State& state) {
+        run_sample(state, [](const Query& q) { DoNotOptimize(measure::CosineSampler::sample(q.wo, q.u)); });
+    }));
+    all.push_back(RegisterBenchmark("sample/full_table", [first](State& state) {
+        const auto& full = table(first);
+        run_sample(state, [&](const Query& q) { DoNotOptimize(full.sample(q.wo, q.u)); });
+    }));
+    all.push_back(RegisterBenchmark("pdf/full_table", [first](State& state) {
+        const auto& full = table(first);
+        run_pdf(state, [&](const Query& q) { DoNotOptimize(full.pdf(q.wo, q.wi)); });
+    }));
+    for (auto* benchmark : all) benchmark->UseManualTime();
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    std::vector<Case> cases;
+    for (const std::uint64_t bytes : {std::uint64_t{64} << 10, std::uint64_t{200} << 10})
+        for (const char* name : {kRglFile, "satin_rosaline_rgb.bsdf", "nickel.binary", "blue-metallic-paint.binary"})
+            if (std::filesystem::exists(path_of(name))) cases.push_back({name, bytes});
+            else std::printf("%s is not there\n", path_of(name).c_str());
+    if (cases.empty()) {
+        std::printf("a model takes their place, and there is no sampler of the RGL database to compare with\n");
+        cases.push_back({"ggx:alpha=0.2", 64 << 10});
+    }
+    for (const Case& c : cases) {
+        benchmark::RegisterBenchmark(("sample/" + c.label()).c_str(), sample, c)->UseManualTime();
+        benchmark::RegisterBenchmark(("pdf/" + c.label()).c_str(), pdf, c)->UseManualTime();
+    }
+    register_rivals(cases.front());
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

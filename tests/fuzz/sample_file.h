@@ -1,0 +1,177 @@
+// Everything that a program may do with a file that was accepted: draw, evaluate and invert with random numbers,
+// directions, normals, views and indices of any kind, in C++ and in C. Aborts where a promise of acdf/reader.h
+// breaks.
+#pragma once
+
+#include <acdf/acdf.h>
+#include <acdf/reader.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace acdf_test {
+
+inline void require(bool condition) {
+    if (!condition) std::abort();
+}
+
+/// splitmix64: cheap to start, as each input starts one.
+class FuzzRandom {
+public:
+    explicit FuzzRandom(std::uint64_t seed) : state_(seed) {}
+
+    std::uint64_t next() {
+        std::uint64_t z = state_ += 0x9E3779B97F4A7C15u;
+        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+        return z ^ z >> 31;
+    }
+    std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(next() % n); }
+    double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+
+    /// A random number as careless callers have them: mostly in [0, 1), the ends, beyond them, NaN.
+    double any_u() {
+        static const double edges[] = {0.0,      1.0,       0.5,   1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30,
+                                       0x1p-149, 0x1p-1074, -0.25, 1.5,           HUGE_VAL,      std::nan("")};
+        return below(3) == 0 ? edges[below(sizeof edges / sizeof *edges)] : uniform();
+    }
+    /// A vector in [-1, 1]^3: often along axes, in planes of the seam and of the equator, at times not finite.
+    void any_vector(float v[3]) {
+        static const float edges[] = {0.0f, -0.0f, 1.0f, -1.0f, 0x1p-24f, 1e-38f, 3e38f, HUGE_VALF, std::nanf("")};
+        const std::uint32_t choice = below(8);
+        for (int k = 0; k < 3; ++k)
+            v[k] = choice == 0   ? edges[below(sizeof edges / sizeof *edges)]
+                   : choice == 1 ? static_cast<float>(static_cast<int>(below(3)) - 1)
+                                 : static_cast<float>(2.0 * uniform() - 1.0);
+    }
+    void unit_vector(float v[3], bool upper) {
+        const double z = below(8) == 0 ? static_cast<double>(below(2)) : upper ? uniform() : 2.0 * uniform() - 1.0;
+        const double phi = below(8) == 0 ? 0.5 * ACDF_PI * below(4) : 2.0 * ACDF_PI * uniform();
+        const double r = std::sqrt(1.0 - z * z);
+        v[0] = static_cast<float>(r * std::cos(phi));
+        v[1] = static_cast<float>(r * std::sin(phi));
+        v[2] = static_cast<float>(z);
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+inline bool is_unit(const float v[3]) {
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k) square += double{v[k]} * v[k];
+    return std::fabs(square - 1.0) < 2e-6;
+}
+inline bool is_density(double pdf) { return pdf >= 0.0 && std::isfinite(pdf); }
+inline bool in_unit_square(const double u[2]) {
+    return u[0] >= 0.0 && u[0] <= 1.0 + 1e-9 && u[1] >= 0.0 && u[1] <= 1.0 + 1e-9;
+}
+
+inline constexpr int samples_a_file = 24;
+
+inline void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
+    require(view.total() > 0.0);
+    for (int n = 0; n < samples_a_file; ++n) {
+        const acdf::DirectionSample s = view.sample(random.any_u(), random.any_u());
+        require(is_unit(s.direction) && s.pdf > 0.0f && std::isfinite(s.pdf));
+        require(view.pdf(s.direction) > 0.0f); // of tilted curves it may differ by rounding
+        double u[2];
+        require(view.invert(s.direction, u) && in_unit_square(u));
+        float any[3];
+        random.any_vector(any);
+        require(is_density(static_cast<double>(view.pdf(any))));
+        random.unit_vector(any, false);
+        require(view.invert(any, u) == (view.pdf(any) > 0.0f));
+    }
+}
+
+inline void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        float normal[3], any[3];
+        random.any_vector(normal);
+        random.any_vector(any);
+        const double u0 = random.any_u(), u1 = random.any_u();
+        const acdf::DirectionSample s = view.sample(normal, u0, u1);
+        require(is_density(static_cast<double>(s.pdf)) && is_density(view.irradiance(normal)));
+        require(is_density(static_cast<double>(view.pdf(normal, any))));
+        const AcdfLocalPoint point = view.at(normal);
+        const acdf::DirectionSample again = view.sample(point, u0, u1);
+        require(again.pdf == s.pdf && view.pdf(point, any) == view.pdf(normal, any));
+        (void)view.stored(normal);
+        if (s.pdf == 0.0f) continue;
+        require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
+    }
+    sample_everything(view.environment(), random);
+}
+
+inline void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        float wo[3], any[3];
+        if (n % 4 == 3) random.any_vector(wo);
+        else random.unit_vector(wo, true);
+        random.any_vector(any);
+        const acdf::DirectionSample s = view.sample(wo, random.any_u(), random.any_u());
+        require(is_density(static_cast<double>(s.pdf)) && is_density(view.albedo(wo)));
+        require(s.pdf == 0.0f || is_unit(s.direction));
+        require(is_density(static_cast<double>(view.pdf(wo, any))));
+        require(is_density(static_cast<double>(view.pdf(wo, s.direction))));
+        double u[2];
+        if (view.invert(wo, s.direction, u)) require(in_unit_square(u));
+        if (view.invert(wo, any, u)) require(in_unit_square(u));
+    }
+}
+
+inline void sample_everything(const acdf::TableView& view, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        std::uint32_t index[ACDF_MAX_AXES] = {};
+        double u[ACDF_MAX_AXES], x[ACDF_MAX_AXES] = {}, back[ACDF_MAX_AXES];
+        for (std::uint32_t i = 0; i < view.indexed_count(); ++i)
+            index[i] = random.below(view.data().axes[i].resolution + 1);
+        for (double& v : u) v = random.any_u();
+        const double pdf = view.sample(index, u, x);
+        require(is_density(pdf) && (pdf > 0.0) == (view.share(index) > 0.0));
+        require(view.pdf(index, x) == pdf || pdf == 0.0);
+        require(view.invert(index, x, back) || pdf == 0.0);
+        require(is_density(view.pdf(index, u)));
+    }
+}
+
+/// The same bytes through the C interface: the same densities.
+inline void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, FuzzRandom& random) {
+    AcdfError error;
+    AcdfFile* c = acdf_from_memory(bytes, size, &error);
+    require(c && error.code == ACDF_OK && acdf_kind(c) == file.kind() && acdf_size(c) == size);
+    require(acdf_metadata_count(c) == file.metadata_count());
+    require(!acdf_axis(c, file.description().axis_count) && !acdf_bin(c, file.description().bin_count));
+    AcdfEnvironment environment;
+    AcdfLocal local;
+    AcdfBrdf brdf;
+    AcdfTable table;
+    const int views =
+        acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) + acdf_table(c, &table);
+    require(views == 1);
+    float v[3], wi[3];
+    random.unit_vector(v, true);
+    random.unit_vector(wi, false);
+    if (file.kind() == ACDF_KIND_ENVIRONMENT)
+        require(acdf_environment_pdf(&environment, wi) == file.environment().pdf(wi));
+    if (file.kind() == ACDF_KIND_LOCAL) require(acdf_local_pdf(&local, v, wi) == file.local().pdf(v, wi));
+    if (file.kind() == ACDF_KIND_BRDF) require(acdf_brdf_pdf(&brdf, v, wi) == file.brdf().pdf(v, wi));
+    acdf_close(c);
+}
+
+inline void sample_everything(const acdf::File& file, const void* bytes, std::size_t size) {
+    FuzzRandom random(size);
+    acdf::Text key, value;
+    for (std::uint32_t i = 0; i < file.metadata_count() && i < 16; ++i) {
+        file.metadata(i, key, value);
+        require(key.size != 0 && (value.data || value.size == 0));
+    }
+    if (file.kind() == ACDF_KIND_ENVIRONMENT) sample_everything(file.environment(), random);
+    if (file.kind() == ACDF_KIND_LOCAL) sample_everything(file.local(), random);
+    if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), random);
+    if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), random);
+    if (size % 8 == 0 && file.header().header_crc % 8 == 0) sample_in_c(bytes, size, file, random); // loads again
+}
+
+} // namespace acdf_test
