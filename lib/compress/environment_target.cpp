@@ -20,35 +20,12 @@ constexpr std::size_t kChannels = 3;
 /// The integrand of a probe, one plane a channel that counts.
 struct Integrand {
     std::uint32_t columns, rows;
-    std::size_t planes = 1;
-    std::vector<float> values; ///< planes x rows x columns
+    const float* values; ///< planes x rows x columns
 
     const float* row(std::size_t plane, std::uint32_t r) const {
-        return values.data() + (plane * rows + r) * std::size_t{columns};
+        return values + (plane * rows + r) * std::size_t{columns};
     }
 };
-
-Integrand integrand(const float* rgb, std::uint32_t columns, std::uint32_t rows, const TargetOptions& options) {
-    Integrand out{columns, rows, options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1, {}};
-    const std::size_t texels = std::size_t{columns} * rows;
-    out.values.resize(out.planes * texels);
-    const ChannelWeights& w = options.weights;
-    tbb::parallel_for(std::uint32_t{0}, rows, [&](std::uint32_t row) {
-        for (std::size_t i = std::size_t{row} * columns; i < std::size_t{row + 1} * columns; ++i) {
-            std::array<float, kChannels> c;
-            for (std::size_t k = 0; k < kChannels; ++k) c[k] = std::max(rgb[kChannels * i + k], 0.0f);
-            if (options.channels == ACDF_CHANNELS_SEPARATE)
-                for (std::size_t k = 0; k < kChannels; ++k) out.values[k * texels + i] = c[k];
-            else if (options.channels == ACDF_CHANNELS_LARGEST) out.values[i] = std::max({c[0], c[1], c[2]});
-            else out.values[i] = static_cast<float>(w.r * c[0] + w.g * c[1] + w.b * c[2]);
-        }
-    });
-    // max(NaN, 0) may be either: the source is what is checked.
-    if (!std::all_of(rgb, rgb + kChannels * texels, [](float v) { return std::isfinite(v); }) ||
-        !std::all_of(out.values.begin(), out.values.end(), [](float v) { return std::isfinite(v); }))
-        throw std::invalid_argument("radiance that is not finite");
-    return out;
-}
 
 /// Means of f and f^2 over a texel, and the largest f in it.
 struct TexelMoments {
@@ -123,11 +100,8 @@ float positive_float(double value) {
     return rounded > 0.0f || !(value > 0.0) ? rounded : std::numeric_limits<float>::denorm_min();
 }
 
-} // namespace
-
-Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
-                          const TargetOptions& options) {
-    const Integrand f = integrand(rgb, columns, rows, options);
+/// What is the same for all targets of a resolution.
+Target sphere(std::uint32_t columns, std::uint32_t rows) {
     Target target;
     target.columns = columns;
     target.rows = rows;
@@ -136,37 +110,103 @@ Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t
     target.column_measure.assign(columns, 2.0 * ACDF_PI / columns);
     target.row_measure.resize(rows);
     for (std::uint32_t r = 0; r < rows; ++r) target.row_measure[r] = acdf_row_z(r, rows) - acdf_row_z(r + 1, rows);
+    return target;
+}
 
-    const bool bilinear = options.filter == ACDF_FILTER_BILINEAR;
-    target.values.resize(std::size_t{columns} * rows);
+} // namespace
+
+EnvironmentTarget::EnvironmentTarget(std::uint32_t columns, std::uint32_t rows, const TargetOptions& options)
+    : options_(options), columns_(columns), rows_(rows),
+      planes_(options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1),
+      values_(std::size_t{planes_} * columns * rows) {}
+
+void EnvironmentTarget::take(std::uint32_t first, std::uint32_t count, const float* rgb) {
+    const std::size_t texels = std::size_t{columns_} * rows_, begin = std::size_t{first} * columns_;
+    const ChannelWeights& w = options_.weights;
+    std::vector<std::uint8_t> finite(count, 1);
+    tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t row) {
+        for (std::size_t i = std::size_t{row} * columns_; i < std::size_t{row + 1} * columns_; ++i) {
+            std::array<float, kChannels> c;
+            for (std::size_t k = 0; k < kChannels; ++k) {
+                const float v = rgb[kChannels * i + k];
+                if (!std::isfinite(v)) finite[row] = 0;
+                c[k] = std::max(v, 0.0f);
+            }
+            float* out = values_.data() + begin + i;
+            if (planes_ == kChannels)
+                for (std::size_t k = 0; k < kChannels; ++k) out[k * texels] = c[k];
+            else if (options_.channels == ACDF_CHANNELS_LARGEST) *out = std::max({c[0], c[1], c[2]});
+            else *out = static_cast<float>(w.r * c[0] + w.g * c[1] + w.b * c[2]);
+            if (planes_ == 1 && !std::isfinite(*out)) finite[row] = 0;
+        }
+    });
+    if (std::find(finite.begin(), finite.end(), 0) != finite.end())
+        throw std::invalid_argument("radiance that is not finite");
+}
+
+Target EnvironmentTarget::finish() {
+    Target target = planes_ == 1 && options_.filter == ACDF_FILTER_NEAREST ? nearest() : moments();
+    values_ = {};
+    return target;
+}
+
+/// g is f.
+Target EnvironmentTarget::nearest() {
+    Target target = sphere(columns_, rows_);
+    target.values = std::move(values_);
+    std::vector<double> row_total(rows_);
+    tbb::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
+        Sum sum;
+        for (std::uint32_t c = 0; c < columns_; ++c) sum.add(double{target.row(r)[c]} * target.column_measure[c]);
+        row_total[r] = sum.value() * target.row_measure[r];
+    });
+    Sum total;
+    for (const double row : row_total) total.add(row);
+    target.total = total.value();
+    target.mean_square = target.total * target.total;
+    return target;
+}
+
+Target EnvironmentTarget::moments() {
+    const Integrand f{columns_, rows_, values_.data()};
+    Target target = sphere(columns_, rows_);
+    const bool bilinear = options_.filter == ACDF_FILTER_BILINEAR;
+    target.values.resize(std::size_t{columns_} * rows_);
     if (bilinear) target.peaks.resize(target.values.size());
-    std::vector<std::array<double, kChannels>> row_total(rows);
-    tbb::parallel_for(std::uint32_t{0}, rows, [&](std::uint32_t r) {
-        std::vector<TexelMoments> moments(columns);
-        std::vector<double> square(columns, 0.0), peak(columns, 0.0);
-        for (std::size_t plane = 0; plane < f.planes; ++plane) {
+    std::vector<std::array<double, kChannels>> row_total(rows_);
+    tbb::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
+        std::vector<TexelMoments> moments(columns_);
+        std::vector<double> square(columns_, 0.0), peak(columns_, 0.0);
+        for (std::size_t plane = 0; plane < planes_; ++plane) {
             bilinear ? bilinear_row(f, plane, r, moments) : nearest_row(f, plane, r, moments);
             Sum sum;
-            for (std::uint32_t c = 0; c < columns; ++c) {
+            for (std::uint32_t c = 0; c < columns_; ++c) {
                 sum.add(moments[c].mean * target.column_measure[c]);
                 square[c] += moments[c].square;
                 peak[c] = std::max(peak[c], moments[c].peak);
             }
             row_total[r][plane] = sum.value() * target.row_measure[r];
         }
-        float* values = target.values.data() + std::size_t{r} * columns;
-        for (std::uint32_t c = 0; c < columns; ++c) values[c] = positive_float(std::sqrt(square[c]));
+        float* values = target.values.data() + std::size_t{r} * columns_;
+        for (std::uint32_t c = 0; c < columns_; ++c) values[c] = positive_float(std::sqrt(square[c]));
         if (!bilinear) return;
-        float* peaks = target.peaks.data() + std::size_t{r} * columns;
-        for (std::uint32_t c = 0; c < columns; ++c) peaks[c] = positive_float(peak[c]);
+        float* peaks = target.peaks.data() + std::size_t{r} * columns_;
+        for (std::uint32_t c = 0; c < columns_; ++c) peaks[c] = positive_float(peak[c]);
     });
-    for (std::size_t plane = 0; plane < f.planes; ++plane) {
+    for (std::size_t plane = 0; plane < planes_; ++plane) {
         Sum sum;
-        for (std::uint32_t r = 0; r < rows; ++r) sum.add(row_total[r][plane]);
+        for (std::uint32_t r = 0; r < rows_; ++r) sum.add(row_total[r][plane]);
         target.total += sum.value();
         target.mean_square += sum.value() * sum.value();
     }
     return target;
+}
+
+Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
+                          const TargetOptions& options) {
+    EnvironmentTarget target(columns, rows, options);
+    target.take(0, rows, rgb);
+    return target.finish();
 }
 
 } // namespace acdf::compress

@@ -42,6 +42,27 @@ struct TargetOptions {
     AcdfFilter filter = ACDF_FILTER_NEAREST;        ///< bilinear: wraps at the seam, clamps at the poles
 };
 
+/// Makes the target of a lat-long probe of columns x rows RGB texels that come in bands of rows. One channel with
+/// nearest lookup takes four bytes a texel, and no more on the way.
+class EnvironmentTarget {
+public:
+    EnvironmentTarget(std::uint32_t columns, std::uint32_t rows, const TargetOptions& options);
+
+    /// `count` rows from row `first` on; negatives count as 0, channel by channel. Throws std::invalid_argument on
+    /// non-finite input.
+    void take(std::uint32_t first, std::uint32_t count, const float* rgb);
+    /// Once, after all rows were taken.
+    Target finish();
+
+private:
+    Target nearest();
+    Target moments();
+
+    TargetOptions options_;
+    std::uint32_t columns_, rows_, planes_;
+    std::vector<float> values_; ///< of the integrand: planes x rows x columns, one plane a channel that counts
+};
+
 /// The target of a lat-long probe of `rgb` (rows x columns x 3), negatives as 0 channel by channel, with measure
 /// dphi and dz = d cos(theta) (Lawrence et al. 2005, §3). Throws std::invalid_argument on non-finite input.
 Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,

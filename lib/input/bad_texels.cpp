@@ -1,5 +1,6 @@
 #include "input/bad_texels.h"
 
+#include "input/image.h"
 #include "input/threads.h"
 
 #include <tbb/blocked_range.h>
@@ -50,8 +51,8 @@ Found look_at(const float* rgb, std::size_t begin, std::size_t end, Found found)
     return found;
 }
 
-void replace(std::vector<float>& rgb, const Channels& for_infinity) {
-    for (std::size_t i = 0; i < rgb.size(); ++i) {
+void replace(float* rgb, std::size_t texels, const Channels& for_infinity) {
+    for (std::size_t i = 0; i < 3 * texels; ++i) {
         if (is_radiance(rgb[i])) continue;
         rgb[i] = std::isinf(rgb[i]) && rgb[i] > 0.0f ? for_infinity[i % 3] : 0.0f;
     }
@@ -65,26 +66,31 @@ std::string text(const BadTexels& bad) {
 
 } // namespace
 
-BadTexels repair_texels(const std::string& path, Image& image, BadPixels policy, int threads) {
-    const std::size_t texels = image.rgb.size() / 3, grain = 1 << 16;
+void repair_texels(float* rgb, int width, int first, int rows, BadPixels policy, int threads, BadTexels& bad) {
+    const std::size_t row = static_cast<std::size_t>(width), texels = row * static_cast<std::size_t>(rows);
     Found found;
     with_threads(threads, [&] {
         found = tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, texels, grain), Found{},
+            tbb::blocked_range<std::size_t>(0, texels, std::size_t{1} << 16), Found{},
             [&](const tbb::blocked_range<std::size_t>& range, const Found& sum) {
-                return look_at(image.rgb.data(), range.begin(), range.end(), sum);
+                return look_at(rgb, range.begin(), range.end(), sum);
             },
             [](Found a, const Found& b) { return a.join(b); });
     });
-    BadTexels bad{found.nan, found.infinite, found.negative};
-    if (bad.count() == 0) return bad;
-    const auto width = static_cast<std::size_t>(image.width);
-    bad.x = static_cast<int>(found.first % width);
-    bad.y = static_cast<int>(found.first / width);
-    if (policy == BadPixels::error)
+    if (found.first == SIZE_MAX) return;
+    if (bad.count() == 0) {
+        bad.x = static_cast<int>(found.first % row);
+        bad.y = first + static_cast<int>(found.first / row);
+    }
+    bad.nan += found.nan;
+    bad.infinite += found.infinite;
+    bad.negative += found.negative;
+    replace(rgb, texels, policy == BadPixels::clamp ? found.largest : Channels{0.0f, 0.0f, 0.0f});
+}
+
+void refuse_bad_texels(const std::string& path, const BadTexels& bad) {
+    if (bad.count() > 0)
         throw input_error(path, "it has " + text(bad) + "; mend it, or take --bad-pixels zero or clamp");
-    replace(image.rgb, policy == BadPixels::clamp ? found.largest : Channels{0.0f, 0.0f, 0.0f});
-    return bad;
 }
 
 } // namespace acdf::input

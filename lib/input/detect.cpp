@@ -179,6 +179,11 @@ Detected detect_layout(const std::string& path, const Image& image, Projection p
     return image.tag != EnvironmentTag::none ? by_tag(path, image) : by_shape(path, image);
 }
 
+bool is_latlong(const Image& image, Projection projection) {
+    if (projection != Projection::automatic) return projection == Projection::latlong;
+    return image.tag == EnvironmentTag::latlong || (image.tag == EnvironmentTag::none && has_ratio(image, 2, 1));
+}
+
 Projection projection_of(Layout layout) {
     switch (layout) {
     case Layout::latlong:

@@ -17,6 +17,9 @@ struct Detected {
 /// needs, or, for Projection::automatic, where nothing proves one layout. Never guesses from the file's name.
 Detected detect_layout(const std::string& path, const Image& image, Projection projection);
 
+/// Whether detect_layout will say lat-long, whatever the pixels are: it needs none then.
+bool is_latlong(const Image& image, Projection projection);
+
 /// The projection a layout belongs to.
 Projection projection_of(Layout layout);
 

@@ -119,16 +119,25 @@ public:
         input_->threads(threads);
     }
 
-    Image read() {
+    Image read(const std::function<TakeRows(const Image& image)>& stream) {
         check_spec();
         Image image;
         image.tag = environment_tag();
         const Window data = data_window(spec()), display = display_window(spec());
         image.width = display.width;
         image.height = display.height;
-        read_windows(data, display, image);
+        const TakeRows take = stream ? stream(image) : TakeRows{};
+        if (take && data == display) {
+            read_bands(take, image);
+        } else {
+            read_windows(data, display, image);
+            linearize(image, spec());
+        }
         add_warnings(image);
-        linearize(image, spec());
+        if (take && !image.rgb.empty()) {
+            take(0, image.height, image.rgb.data());
+            image.rgb = {};
+        }
         return image;
     }
 
@@ -204,23 +213,63 @@ private:
         return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
     }
 
+    // Rows that are read at once: a multiple of what any codec packs together.
+    static constexpr int band_rows = 256;
+
+    // Reads rows [y0, y1) of the data window, counted from its top, of channels [begin, end).
+    void read_rows(int y0, int y1, int begin, int end, float* at, OIIO::stride_t pixel, OIIO::stride_t row) {
+        const OIIO::ImageSpec& s = spec();
+        const bool read = s.tile_width > 0
+                              ? input_->read_tiles(0, 0, s.x, s.x + s.width, s.y + y0, s.y + y1, s.z, s.z + 1,
+                                                   begin, end, OIIO::TypeDesc::FLOAT, at, pixel, row)
+                              : input_->read_scanlines(0, 0, s.y + y0, s.y + y1, s.z, begin, end,
+                                                       OIIO::TypeDesc::FLOAT, at, pixel, row);
+        // Some readers report what is missing, but say they succeeded.
+        if (!read || input_->has_error())
+            fail("its pixels cannot be read (" + input_->geterror() + "); the file is cut short or damaged");
+    }
+
+    // The same of the channels that are wanted, as RGB texels with rows of `row_pixels`.
+    void read_channels(int y0, int y1, float* first, int row_pixels) {
+        const OIIO::stride_t pixel = 3 * sizeof(float), row = pixel * row_pixels;
+        if (channels_.in_order())
+            return read_rows(y0, y1, channels_.index[0], channels_.index[0] + 3, first, pixel, row);
+        const int count = channels_.grey() ? 1 : 3;
+        for (int c = 0; c < count; ++c)
+            read_rows(y0, y1, channels_.index[c], channels_.index[c] + 1, first + c, pixel, row);
+        if (!channels_.grey()) return;
+        for (int y = 0; y < y1 - y0; ++y) {
+            float* at = first + offset(0, y, row_pixels);
+            for (int x = 0; x < spec().width; ++x) at[3 * x + 1] = at[3 * x + 2] = at[3 * x];
+        }
+    }
+
+    // Calls read(y0, y1) for bands of the data window that end where tiles do.
+    template <class Read>
+    void for_each_band(const Read& read) {
+        const int tile = std::max(spec().tile_height, 1), height = spec().height;
+        const int rows = (std::max(band_rows, tile) + tile - 1) / tile * tile;
+        for (int y = 0; y < height; y += rows) read(y, std::min(y + rows, height));
+    }
+
+    void read_bands(const TakeRows& take, Image& image) {
+        Image band;
+        band.width = image.width;
+        for_each_band([&](int y0, int y1) {
+            band.height = y1 - y0;
+            band.rgb.assign(offset(0, band.height, band.width), 0.0f);
+            read_channels(y0, y1, band.rgb.data(), band.width);
+            band.warnings.clear();
+            linearize(band, spec());
+            if (y0 == 0) image.warnings = band.warnings;
+            take(y0, band.height, band.rgb.data());
+        });
+    }
+
     // Reads the data window into RGB pixels with rows of `row_pixels`, at `first`.
     void read_channels(float* first, int row_pixels) {
-        const OIIO::stride_t pixel = 3 * sizeof(float), row = pixel * row_pixels;
-        const auto read = [&](int begin, int end, float* at) {
-            // Some readers report what is missing, but say they succeeded.
-            if (!input_->read_image(0, 0, begin, end, OIIO::TypeDesc::FLOAT, at, pixel, row) || input_->has_error())
-                fail("its pixels cannot be read (" + input_->geterror() + "); the file is cut short or damaged");
-        };
-        if (channels_.in_order()) return read(channels_.index[0], channels_.index[0] + 3, first);
-        const int count = channels_.grey() ? 1 : 3;
-        for (int c = 0; c < count; ++c) read(channels_.index[c], channels_.index[c] + 1, first + c);
-        if (!channels_.grey()) return;
-        const Window data = data_window(spec());
-        for (int y = 0; y < data.height; ++y) {
-            float* at = first + offset(0, y, row_pixels);
-            for (int x = 0; x < data.width; ++x) at[3 * x + 1] = at[3 * x + 2] = at[3 * x];
-        }
+        for_each_band(
+            [&](int y0, int y1) { read_channels(y0, y1, first + offset(0, y0, row_pixels), row_pixels); });
     }
 
     void add_warnings(Image& image) {
@@ -247,9 +296,9 @@ Error input_error(const std::string& path, const std::string& what) {
     return Error(text);
 }
 
-Image read_image(const std::string& path, int threads) {
+Image read_image(const std::string& path, int threads, const std::function<TakeRows(const Image& image)>& stream) {
     try {
-        return Reader(path, threads).read();
+        return Reader(path, threads).read(stream);
     } catch (const std::bad_alloc&) {
         throw input_error(path, "there is not enough memory for its pixels; resize it");
     }

@@ -3,6 +3,7 @@
 
 #include "input/probe.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,15 @@ struct Image {
     std::vector<std::string> warnings;
 };
 
+/// Takes `count` rows of RGB texels, of which `first` is the number of the first, from the top to the bottom.
+using TakeRows = std::function<void(int first, int count, float* rgb)>;
+
 /// Reads the first part, at full resolution. `threads` as in ProbeOptions. Throws Error.
-Image read_image(const std::string& path, int threads);
+///
+/// `stream` is asked first, with an image that has no pixels yet: what it returns, if anything, takes the rows in
+/// bands, and the image stays without them. Memory is then that of a band.
+Image read_image(const std::string& path, int threads,
+                 const std::function<TakeRows(const Image& image)>& stream = {});
 
 /// SHA-256 of the file's bytes, 64 hex digits. Throws Error.
 std::string file_sha256(const std::string& path);

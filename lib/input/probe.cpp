@@ -13,22 +13,80 @@
 namespace acdf::input {
 namespace {
 
-void to_latlong(const Detected& detected, Image& image, int threads, Probe& probe) {
+/// Sees to it that rows are radiance before they are taken.
+class Repair {
+public:
+    Repair(const ProbeOptions& options, Probe& probe, ProbeRows& rows)
+        : options_(options), probe_(probe), rows_(rows) {}
+
+    void begin(const Detected& detected, const Image& image) {
+        probe_.projection = projection_of(detected.layout);
+        probe_.projection_reason = detected.reason;
+        probe_.source_width = probe_.width = image.width;
+        probe_.source_height = probe_.height = image.height;
+    }
+    /// Texels of the source: counted there.
+    void repair(int first, int count, float* rgb) {
+        repair_texels(rgb, probe_.source_width, first, count, options_.bad_pixels, options_.threads, probe_.bad);
+    }
+    void take(int first, int count, const float* rgb) {
+        if (black_) {
+            const std::size_t values =
+                std::size_t{3} * static_cast<std::size_t>(probe_.width) * static_cast<std::size_t>(count);
+            black_ = std::all_of(rgb, rgb + values, [](float v) { return v == 0.0f; });
+        }
+        rows_.take(first, count, rgb);
+    }
+    /// So that what is black has a density: the smallest normal number, 0 for all that light is used for.
+    void light_if_black() {
+        if (!black_ || !options_.uniform_if_black) return;
+        const std::vector<float> row(std::size_t{3} * static_cast<std::size_t>(probe_.width),
+                                     std::numeric_limits<float>::min());
+        for (int y = 0; y < probe_.height; ++y) rows_.take(y, 1, row.data());
+        probe_.warnings.push_back("the probe is black; all directions are equally likely");
+    }
+
+private:
+    const ProbeOptions& options_;
+    Probe& probe_;
+    ProbeRows& rows_;
+    bool black_ = true;
+};
+
+/// An image that was read as a whole.
+void take_whole(const std::string& path, const ProbeOptions& options, Image& image, Probe& probe, ProbeRows& rows,
+                Repair& repair) {
+    probe.source_width = image.width;
+    probe.source_height = image.height;
+    repair.repair(0, image.height, image.rgb.data());
+    const Detected detected = detect_layout(path, image, options.projection);
+    repair.begin(detected, image);
     const Map map{detected.layout, image.width, image.height};
     probe.width = latlong_width(map);
     probe.height = detected.layout == Layout::latlong ? image.height : probe.width / 2;
-    probe.rgb = detected.layout == Layout::latlong
-                    ? std::move(image.rgb)
-                    : resample_to_latlong(map, std::move(image.rgb), probe.width, threads);
+    const std::vector<float> rgb =
+        detected.layout == Layout::latlong
+            ? std::move(image.rgb)
+            : resample_to_latlong(map, std::move(image.rgb), probe.width, options.threads);
+    rows.begin(probe.width, probe.height);
+    repair.take(0, probe.height, rgb.data());
 }
 
-/// So that what is black has a density: the smallest normal number, 0 for all that light is used for.
-void light_if_black(Probe& probe) {
-    const bool black = std::all_of(probe.rgb.begin(), probe.rgb.end(), [](float v) { return v == 0.0f; });
-    if (!black) return;
-    std::fill(probe.rgb.begin(), probe.rgb.end(), std::numeric_limits<float>::min());
-    probe.warnings.push_back("the probe is black; all directions are equally likely");
-}
+class AllRows : public ProbeRows {
+public:
+    void begin(int width, int height) override {
+        row_ = std::size_t{3} * static_cast<std::size_t>(width);
+        rgb.resize(row_ * static_cast<std::size_t>(height));
+    }
+    void take(int first, int count, const float* values) override {
+        std::copy_n(values, row_ * static_cast<std::size_t>(count),
+                    rgb.data() + row_ * static_cast<std::size_t>(first));
+    }
+    std::vector<float> rgb;
+
+private:
+    std::size_t row_ = 0;
+};
 
 } // namespace
 
@@ -51,20 +109,31 @@ const char* to_string(Projection projection) {
 }
 
 Probe read_probe(const std::string& path, const ProbeOptions& options) {
+    AllRows all;
+    Probe probe = read_probe(path, options, all);
+    probe.rgb = std::move(all.rgb);
+    return probe;
+}
+
+Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows& rows) {
     Probe probe;
     probe.source_sha256 = file_sha256(path); // first: it tells missing files and folders apart
     probe.source_name = std::filesystem::path(path).filename().string();
+    Repair repair(options, probe, rows);
     try {
-        Image image = read_image(path, options.threads);
-        probe.source_width = image.width;
-        probe.source_height = image.height;
-        probe.bad = repair_texels(path, image, options.bad_pixels, options.threads);
-        const Detected detected = detect_layout(path, image, options.projection);
-        probe.projection = projection_of(detected.layout);
-        probe.projection_reason = detected.reason;
-        to_latlong(detected, image, options.threads, probe);
+        Image image = read_image(path, options.threads, [&](const Image& header) -> TakeRows {
+            if (options.bad_pixels == BadPixels::clamp || !is_latlong(header, options.projection)) return {};
+            repair.begin(detect_layout(path, header, options.projection), header);
+            rows.begin(header.width, header.height);
+            return [&](int first, int count, float* rgb) {
+                repair.repair(first, count, rgb);
+                repair.take(first, count, rgb);
+            };
+        });
         probe.warnings = std::move(image.warnings);
-        if (options.uniform_if_black) light_if_black(probe);
+        if (!image.rgb.empty()) take_whole(path, options, image, probe, rows, repair);
+        if (options.bad_pixels == BadPixels::error) refuse_bad_texels(path, probe.bad);
+        repair.light_if_black();
     } catch (const std::bad_alloc&) {
         throw input_error(path, "there is not enough memory for its pixels; resize it");
     }

@@ -47,7 +47,7 @@ struct BadTexels {
 /// at phi = +pi and phi falls along the columns (the image as seen from inside, unmirrored).
 struct Probe {
     int width = 0, height = 0;
-    std::vector<float> rgb;    ///< height x width x 3, finite, >= 0
+    std::vector<float> rgb;    ///< height x width x 3, finite, >= 0; empty where rows were taken as they came
     std::string source_name;   ///< file name without folders
     std::string source_sha256; ///< of the file's bytes, hex
     int source_width = 0, source_height = 0;
@@ -57,7 +57,20 @@ struct Probe {
     std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
 };
 
+/// Takes a lat-long probe in bands of rows.
+class ProbeRows {
+public:
+    virtual ~ProbeRows() = default;
+    virtual void begin(int width, int height) = 0;
+    /// `count` rows of RGB, finite and >= 0, from row `first` on. Rows that were there before are replaced.
+    virtual void take(int first, int count, const float* rgb) = 0;
+};
+
 /// Reads any image OpenImageIO reads. Throws Error.
 Probe read_probe(const std::string& path, const ProbeOptions& options = {});
+
+/// The same without keeping `rgb`: a lat-long image is read in bands of rows, and never in memory as a whole (but
+/// for BadPixels::clamp); one of another projection is, and is resampled.
+Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows& rows);
 
 } // namespace acdf::input
