@@ -7,14 +7,15 @@
 //
 //   u0 u1  x y z  pdf
 //
-// in hexadecimal floating point (C99 %a), of a local environment with the normal before it. None of the files is
-// symmetric, so that a mirrored, turned or transposed frame shows.
+// in hexadecimal floating point (C99 %a), of a local environment with the normal before it, of a BRDF with wo. None
+// of the files is symmetric, so that a mirrored, turned or transposed frame shows.
 #include "compress/fit.h"
 #include "compress/store.h"
 
 #include <acdf/reader.h>
 
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <fstream>
 #include <stdexcept>
@@ -193,6 +194,69 @@ Golden local_grid() {
     return {"local_grid", store(tree, d)};
 }
 
+/// A BRDF of `elevations` stored views by `azimuths`; `flags` and `diffuse_share` as in AcdfViews.
+Description brdf_axes(const std::vector<float>& elevations, std::uint32_t azimuths, std::uint32_t flags,
+                      float diffuse_share) {
+    constexpr double pi = 3.141592653589793;
+    const AcdfViews views = {static_cast<std::uint32_t>(elevations.size()), azimuths, flags, diffuse_share};
+    Description d;
+    d.kind = ACDF_KIND_BRDF;
+    d.parameterization = ACDF_PARAM_HALF_ANGLE;
+    d.total = 2.0;
+    d.axes = {{"phi_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 48, flags ? 0.0 : -pi, pi},
+              {"cos_theta_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, 1000, 1.0, 0.0},
+              {"theta_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, views.theta_count, 0.0, 0.5 * pi},
+              {"phi_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, azimuths, -pi, pi}};
+    d.shares.clear();
+    for (std::uint32_t bin = 0; bin < views.theta_count * azimuths; ++bin)
+        d.shares.push_back(float(1 + bin % 4) / 16.0f);
+    Chunk chunk{ACDF_CHUNK_VIEWS, std::vector<std::uint8_t>(sizeof views + 4 * elevations.size())};
+    std::memcpy(chunk.bytes.data(), &views, sizeof views);
+    std::memcpy(chunk.bytes.data() + sizeof views, elevations.data(), 4 * elevations.size());
+    d.chunks.push_back(std::move(chunk));
+    return d;
+}
+
+/// Bins that share seven cells; the first row gives nothing to the last of them.
+Golden brdf(const char* name, const std::vector<float>& elevations, std::uint32_t azimuths, std::uint32_t flags,
+            float diffuse_share) {
+    StoredRows rows;
+    rows.splits = {{kTheta | 40u << 3, {1, 3}},
+                   {kPhi | 20u << 3, {ACDF_TILE_FLAG, 2}},
+                   {kTheta | 7u << 3, {ACDF_TILE_FLAG | 1, ACDF_TILE_FLAG | 2}},
+                   {kTheta | 300u << 3, {4, 5}},
+                   {kPhi | 31u << 3, {ACDF_TILE_FLAG | 3, ACDF_TILE_FLAG | 4}},
+                   {kPhi | 11u << 3, {ACDF_TILE_FLAG | 5, ACDF_TILE_FLAG | 6}}};
+    for (std::uint32_t i = 0; i < 256; ++i) rows.codebook.push_back(static_cast<std::uint16_t>(257 * i));
+    rows.row_count = 5;
+    for (std::uint32_t r = 0; r < rows.row_count; ++r)
+        for (std::uint32_t split = 0; split < 6; ++split)
+            rows.codes.push_back(
+                static_cast<std::uint8_t>(r == 0 && split == 5 ? 255 : 200 - 30 * r + 17 * split * (r % 2)));
+    EncodedTree tree = encode_tree({{{kPhi, {}, {1.0}, {}, {}}}, {0}});
+    Description d = brdf_axes(elevations, azimuths, flags, diffuse_share);
+    tree.roots.clear();
+    for (std::uint32_t bin = 0; bin < d.shares.size(); ++bin) tree.roots.push_back(bin % 5);
+    for (Chunk& chunk : shared_chunks(rows)) d.chunks.push_back(std::move(chunk));
+    return {name, store(tree, d)};
+}
+
+/// A tree for each bin, with and without a linear density; the nearest bin serves.
+Golden brdf_separate() {
+    const Cascade cascade = {{{kTheta, {30, 200}, {0.625, 0.25, 0.125}, {1, -1, -1}, {}},
+                              {kPhi, {10, 25}, {0.25, 0.625, 0.125}, {}, {}},
+                              {kTheta, {90}, {0.75, 0.25}, {3, -1}, {-0.5, 0.25}},
+                              {kPhi, {40}, {0.875, 0.125}, {}, {0.75, 0.0}}},
+                             {0, 2}};
+    EncodedTree tree = encode_tree(cascade);
+    const std::vector<std::uint32_t> roots = tree.roots;
+    Description d = brdf_axes({0.125f, 0.625f}, 4, 0, 0.0f);
+    d.fit = ACDF_FIT_PDF;
+    tree.roots.clear();
+    for (std::uint32_t bin = 0; bin < 8; ++bin) tree.roots.push_back(roots[bin % 2]);
+    return {"brdf_separate", store(tree, d)};
+}
+
 // ---- samples --------------------------------------------------------------------------------------------
 
 /// The corners, then a sequence with full mantissas (a 64-bit linear congruential generator; Knuth 1997, §3.3.4).
@@ -228,11 +292,30 @@ std::string local_samples(const acdf::LocalEnvironmentView& view) {
     return text;
 }
 
+/// The same with wo: at normal incidence, between and at stored views, grazing.
+constexpr float kViews[][3] = {{0, 0, 1},        {0.6f, 0, 0.8f},         {-0.48f, 0.64f, 0.6f},
+                               {0, -0.8f, 0.6f}, {-0.96f, -0.28f, 1e-3f}, {0.28f, -0.96f, 0.01f}};
+
+std::string brdf_samples(const acdf::BrdfView& view) {
+    std::string text;
+    for (const auto& wo : kViews)
+        for (const auto& [u0, u1] : random_numbers()) {
+            const acdf::DirectionSample s = view.sample(wo, u0, u1);
+            char line[300];
+            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{wo[0]}, double{wo[1]},
+                          double{wo[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
+                          double{s.direction[2]}, double{s.pdf});
+            text += line;
+        }
+    return text;
+}
+
 std::string samples(const Golden& golden) {
     acdf::File file;
     const acdf::Status status = acdf::File::from_memory(golden.bytes.data(), golden.bytes.size(), file);
     if (!status.ok()) throw std::runtime_error(golden.name + ": " + status.message);
     if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
+    if (file.kind() == ACDF_KIND_BRDF) return brdf_samples(file.brdf());
     std::string text;
     for (const auto& [u0, u1] : random_numbers()) {
         const acdf::DirectionSample s = file.environment().sample(u0, u1);
@@ -262,7 +345,10 @@ int main(int argc, char** argv) try {
          {smallest(), one_texel(), fitted("untilted", ACDF_FIT_VARIANCE, Order::z, ACDF_CODEC_NONE),
           fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB), tilted(), deep(), shared_child(), wide(),
           many_segments("many_segments", ACDF_CODEC_NONE), many_segments("planes", ACDF_CODEC_ZLIB), local(),
-          local_grid()}) {
+          local_grid(), brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
+          brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
+          brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),
+          brdf("brdf_floor", {0.25f, 0.75f}, 1, ACDF_VIEWS_MIRRORED, 0.25f), brdf_separate()}) {
         const std::string text = samples(golden);
         write(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
         write(folder + golden.name + ".txt", text.data(), text.size());

@@ -29,3 +29,18 @@ acdf_add_test(test_reader_load SOURCES reader_load.cpp LIBRARIES acdf_reader ZLI
 acdf_add_test(test_reader_spec SOURCES reader_spec.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_memory SOURCES reader_memory.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 target_link_options(test_reader_memory PRIVATE -Wl,--wrap=malloc,--wrap=calloc,--wrap=aligned_alloc)
+
+# The reader's sources once more, so that their work can be counted: each basic block calls a function of the test.
+get_target_property(acdf_reader_sources acdf_reader SOURCES)
+list(TRANSFORM acdf_reader_sources PREPEND ${PROJECT_SOURCE_DIR}/lib/reader/)
+add_library(acdf_test_counted_reader OBJECT ${acdf_reader_sources})
+target_include_directories(acdf_test_counted_reader PRIVATE
+    ${PROJECT_SOURCE_DIR}/format ${PROJECT_SOURCE_DIR}/lib/reader)
+target_compile_options(acdf_test_counted_reader PRIVATE -fsanitize-coverage=trace-pc)
+target_link_libraries(acdf_test_counted_reader PRIVATE ZLIB::ZLIB acdf_options)
+acdf_add_test(test_reader_hostile
+    SOURCES reader_hostile.cpp $<TARGET_OBJECTS:acdf_test_counted_reader>
+    LIBRARIES ZLIB::ZLIB)
+target_include_directories(test_reader_hostile PRIVATE
+    ${PROJECT_SOURCE_DIR}/format ${PROJECT_SOURCE_DIR}/lib/reader)
+target_link_options(test_reader_hostile PRIVATE -Wl,--wrap=malloc,--wrap=calloc,--wrap=aligned_alloc)

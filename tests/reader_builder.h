@@ -271,6 +271,36 @@ struct FileSpec {
     }
 };
 
+/// The chunks of a file whose table and payloads lie inside it; empty where they do not.
+inline FileSpec taken_apart(const Bytes& file) {
+    FileSpec spec;
+    if (file.size() < header_size) return spec;
+    const std::uint64_t count = get(file, 36, 4);
+    if (count > 64 || chunk_at(static_cast<std::size_t>(count)) > file.size()) return spec;
+    spec.minor = static_cast<std::uint32_t>(get(file, 14, 2));
+    spec.kind = static_cast<std::uint32_t>(get(file, 24, 4));
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint64_t offset = get(file, chunk_at(i) + 16, 8), stored = get(file, chunk_at(i) + 24, 8);
+        const auto codec = get(file, chunk_at(i) + 8, 4);
+        if (offset > file.size() || stored > file.size() - offset) return FileSpec();
+        const auto* begin = file.data() + offset;
+        ChunkSpec chunk;
+        chunk.type.assign(reinterpret_cast<const char*>(file.data() + chunk_at(i)), 4);
+        chunk.flags = static_cast<std::uint32_t>(get(file, chunk_at(i) + 4, 4));
+        chunk.zlib = codec == 1 || codec == 2;
+        if (codec == 2) chunk.planes_of = get(file, chunk_at(i) + 32, 8);
+        chunk.raw.assign(begin, begin + stored);
+        if (chunk.zlib) {
+            static std::uint8_t room[1 << 16];
+            uLongf size = sizeof room;
+            if (uncompress(room, &size, begin, static_cast<uLong>(stored)) != Z_OK) return FileSpec();
+            chunk.raw.assign(room, room + size);
+        }
+        spec.chunks.push_back(chunk);
+    }
+    return spec;
+}
+
 /// An environment file with everything that SPEC.md asks of one.
 struct EnvironmentSpec {
     std::uint32_t columns = 1, rows = 1;

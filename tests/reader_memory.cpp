@@ -1,45 +1,14 @@
 // What the reader allocates: its calls are caught by the linker (--wrap), zlib's and the test's are not.
+#include "count_allocations.h"
 #include "reader_planes.h"
 
 #include <acdf/reader.h>
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
-namespace {
-bool counting = false;
-std::size_t calls = 0, bytes_taken = 0;
-
-void count(std::size_t bytes) {
-    if (!counting) return;
-    ++calls;
-    bytes_taken += bytes;
-}
-} // namespace
-
-extern "C" {
-void* __real_malloc(std::size_t size);
-void* __real_calloc(std::size_t n, std::size_t size);
-void* __real_aligned_alloc(std::size_t alignment, std::size_t size);
-void* __wrap_malloc(std::size_t size) { return count(size), __real_malloc(size); }
-void* __wrap_calloc(std::size_t n, std::size_t size) { return count(n * size), __real_calloc(n, size); }
-void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
-    return count(size), __real_aligned_alloc(alignment, size);
-}
-}
-
 using namespace acdf_test;
 
 namespace {
-
-struct Counted {
-    Counted() {
-        calls = bytes_taken = 0;
-        counting = true;
-    }
-    ~Counted() { counting = false; }
-};
 
 // 200000 curves of two segments and four bytes: as many as rule 6018 allows, the tree with the most scratch a byte.
 EnvironmentSpec large() {

@@ -13,6 +13,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -26,8 +27,9 @@ namespace {
 
 using namespace acdf;
 
-constexpr std::size_t kQueries = 1 << 12; // so many before views and random numbers repeat
-constexpr std::size_t kTurn = 256;        // calls before the other sampler has its turn
+// So many before views and random numbers repeat. With a few thousand the processor learns the branches of each.
+constexpr std::size_t kQueries = 1 << 16;
+constexpr std::size_t kTurn = 256; // calls before the other sampler has its turn
 constexpr double kPi = 3.14159265358979323846;
 
 const char* const kRglFile = "cc_ibiza_sunset_rgb.bsdf";
@@ -36,8 +38,12 @@ std::string path_of(const std::string& name) { return std::string(ACDF_TEST_DATA
 /// cos(theta_o) uniform in [0.1, 1]; wi reflected by the RGL sampler or, without its data, a GGX lobe: where light
 /// comes from is where densities are asked for.
 struct Query {
-    double wo[3], u[2], wi[3];
-    float wo_f[3], wi_f[3];
+    double u[2];
+    float wo[3], wi[3];
+};
+struct Pair {
+    explicit Pair(const Query& q) : wo{q.wo[0], q.wo[1], q.wo[2]}, wi{q.wi[0], q.wi[1], q.wi[2]} {}
+    double wo[3], wi[3]; // as the samplers that compute in double take them
 };
 
 void direction(double cosine, double phi, double out[3]) {
@@ -65,13 +71,13 @@ const std::vector<Query>& queries() {
         const measure::GgxSampler ggx(0.3);
         for (Query& q : out) {
             const double cosine = 0.1 + 0.9 * uniform(random), phi = 2.0 * kPi * uniform(random);
-            direction(cosine, phi, q.wo);
+            double wo[3];
+            direction(cosine, phi, wo);
             const double u[2] = {uniform(random), uniform(random)};
-            const measure::BrdfSample s = rgl_sampler() ? rgl_sampler()->sample(q.wo, u) : ggx.sample(q.wo, u);
+            const measure::BrdfSample s = rgl_sampler() ? rgl_sampler()->sample(wo, u) : ggx.sample(wo, u);
             for (int k = 0; k < 3; ++k) {
-                q.wi[k] = s.pdf > 0.0 ? s.wi[k] : q.wo[k];
-                q.wo_f[k] = static_cast<float>(q.wo[k]);
-                q.wi_f[k] = static_cast<float>(q.wi[k]);
+                q.wo[k] = static_cast<float>(wo[k]);
+                q.wi[k] = s.pdf > 0.0 ? static_cast<float>(s.wi[k]) : q.wo[k];
             }
             q.u[0] = uniform(random);
             q.u[1] = uniform(random);
@@ -82,39 +88,53 @@ const std::vector<Query>& queries() {
 }
 
 /// Seconds that `call` takes for the queries first .. first + kTurn - 1.
-template <class Call> double timed(std::size_t first, const Call& call) {
+template <class Call>
+double timed(std::size_t first, const Call& call) {
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t i = first; i < first + kTurn; ++i) call(queries()[i]);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// A call's, of the middle one of the turns: other programs interrupt some of them.
+double median_ns(std::vector<double> seconds) {
+    const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+    std::nth_element(seconds.begin(), middle, seconds.end());
+    return 1e9 * *middle / static_cast<double>(kTurn);
+}
+
 /// Runs `turn(first query)`, which returns its seconds, and `rgl` (may be null) in turns.
-template <class Turn, class Rgl> void run_turns(benchmark::State& state, const Turn& turn, const Rgl& rgl) {
-    double ours = 0.0, theirs = 0.0;
-    std::size_t first = 0, calls = 0;
+template <class Turn, class Rgl>
+void run_turns(benchmark::State& state, const Turn& turn, const Rgl& rgl) {
+    std::vector<double> ours, theirs; // seconds of each turn
+    std::size_t first = 0;
     for (auto _ : state) {
-        const double seconds = turn(first);
-        state.SetIterationTime(seconds);
-        ours += seconds;
-        if (rgl_sampler()) theirs += timed(first, rgl);
+        ours.push_back(turn(first));
+        state.SetIterationTime(ours.back());
+        if (rgl_sampler()) theirs.push_back(timed(first, rgl));
         first = (first + kTurn) % kQueries;
-        calls += kTurn;
     }
-    state.SetItemsProcessed(static_cast<std::int64_t>(calls));
-    state.counters["ns"] = 1e9 * ours / static_cast<double>(calls);
+    state.SetItemsProcessed(static_cast<std::int64_t>(ours.size() * kTurn));
+    state.counters["ns"] = median_ns(ours);
     if (!rgl_sampler()) return;
-    state.counters["rgl_ns"] = 1e9 * theirs / static_cast<double>(calls);
-    state.counters["of_rgl"] = ours / theirs;
+    state.counters["rgl_ns"] = median_ns(theirs);
+    state.counters["of_rgl"] = median_ns(ours) / median_ns(theirs);
 }
 
-const auto rgl_sample = [](const Query& q) { benchmark::DoNotOptimize(rgl_sampler()->sample(q.wo, q.u)); };
-const auto rgl_pdf = [](const Query& q) { benchmark::DoNotOptimize(rgl_sampler()->pdf(q.wo, q.wi)); };
+const auto rgl_sample = [](const Query& q) { benchmark::DoNotOptimize(rgl_sampler()->sample(Pair(q).wo, q.u)); };
+const auto rgl_pdf = [](const Query& q) {
+    const Pair d(q);
+    benchmark::DoNotOptimize(rgl_sampler()->pdf(d.wo, d.wi));
+};
 
-template <class Call> void run_sample(benchmark::State& state, const Call& call) {
-    run_turns(state, [&](std::size_t first) { return timed(first, call); }, rgl_sample);
+template <class Call>
+void run_sample(benchmark::State& state, const Call& call) {
+    run_turns(
+        state, [&](std::size_t first) { return timed(first, call); }, rgl_sample);
 }
-template <class Call> void run_pdf(benchmark::State& state, const Call& call) {
-    run_turns(state, [&](std::size_t first) { return timed(first, call); }, rgl_pdf);
+template <class Call>
+void run_pdf(benchmark::State& state, const Call& call) {
+    run_turns(
+        state, [&](std::size_t first) { return timed(first, call); }, rgl_pdf);
 }
 
 /// A source (a file of the test data, or a model) at a size.
@@ -143,11 +163,52 @@ const File& file_of(const Case& given) {
 
 void sample(benchmark::State& state, const Case& given) {
     const BrdfView view = file_of(given).brdf();
-    run_sample(state, [&](const Query& q) { benchmark::DoNotOptimize(view.sample(q.wo_f, q.u[0], q.u[1])); });
+    run_sample(state, [&](const Query& q) { benchmark::DoNotOptimize(view.sample(q.wo, q.u[0], q.u[1])); });
 }
 void pdf(benchmark::State& state, const Case& given) {
     const BrdfView view = file_of(given).brdf();
-    run_pdf(state, [&](const Query& q) { benchmark::DoNotOptimize(view.pdf(q.wo_f, q.wi_f)); });
+    run_pdf(state, [&](const Query& q) { benchmark::DoNotOptimize(view.pdf(q.wo, q.wi)); });
+}
+
+/// A wave's arrays, as sample_many and pdf_many take them.
+struct Wave {
+    float wo[kTurn][3], wi[kTurn][3];
+    double u[kTurn][2];
+    explicit Wave(std::size_t first) {
+        for (std::size_t i = 0; i < kTurn; ++i) {
+            const Query& q = queries()[first + i];
+            for (std::size_t k = 0; k < 3; ++k) wo[i][k] = q.wo[k], wi[i][k] = q.wi[k];
+            for (std::size_t k = 0; k < 2; ++k) u[i][k] = q.u[k];
+        }
+    }
+};
+template <class Call>
+double timed_wave(std::size_t first, const Call& call) {
+    const Wave wave(first);
+    const auto start = std::chrono::steady_clock::now();
+    call(wave);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void sample_many(benchmark::State& state, const Case& given) {
+    const BrdfView view = file_of(given).brdf();
+    const auto call = [&](const Wave& wave) {
+        DirectionSample out[kTurn];
+        view.sample_many(wave.wo, wave.u, kTurn, out);
+        benchmark::DoNotOptimize(out);
+    };
+    run_turns(
+        state, [&](std::size_t first) { return timed_wave(first, call); }, rgl_sample);
+}
+void pdf_many(benchmark::State& state, const Case& given) {
+    const BrdfView view = file_of(given).brdf();
+    const auto call = [&](const Wave& wave) {
+        float out[kTurn];
+        view.pdf_many(wave.wo, wave.wi, kTurn, out);
+        benchmark::DoNotOptimize(out);
+    };
+    run_turns(
+        state, [&](std::size_t first) { return timed_wave(first, call); }, rgl_pdf);
 }
 
 /// The full table of the first case's source.
@@ -171,22 +232,28 @@ void register_rivals(const Case& first) {
     std::vector<benchmark::internal::Benchmark*> all;
     all.push_back(RegisterBenchmark("sample/ggx", [](State& state) {
         const measure::GgxSampler ggx(0.3);
-        run_sample(state, [&](const Query& q) { DoNotOptimize(ggx.sample(q.wo, q.u)); });
+        run_sample(state, [&](const Query& q) { DoNotOptimize(ggx.sample(Pair(q).wo, q.u)); });
     }));
     all.push_back(RegisterBenchmark("pdf/ggx", [](State& state) {
         const measure::GgxSampler ggx(0.3);
-        run_pdf(state, [&](const Query& q) { DoNotOptimize(ggx.pdf(q.wo, q.wi)); });
+        run_pdf(state, [&](const Query& q) {
+            const Pair d(q);
+            DoNotOptimize(ggx.pdf(d.wo, d.wi));
+        });
     }));
     all.push_back(RegisterBenchmark("sample/cosine", [](State& state) {
-        run_sample(state, [](const Query& q) { DoNotOptimize(measure::CosineSampler::sample(q.wo, q.u)); });
+        run_sample(state, [](const Query& q) { DoNotOptimize(measure::CosineSampler::sample(Pair(q).wo, q.u)); });
     }));
     all.push_back(RegisterBenchmark("sample/full_table", [first](State& state) {
         const auto& full = table(first);
-        run_sample(state, [&](const Query& q) { DoNotOptimize(full.sample(q.wo, q.u)); });
+        run_sample(state, [&](const Query& q) { DoNotOptimize(full.sample(Pair(q).wo, q.u)); });
     }));
     all.push_back(RegisterBenchmark("pdf/full_table", [first](State& state) {
         const auto& full = table(first);
-        run_pdf(state, [&](const Query& q) { DoNotOptimize(full.pdf(q.wo, q.wi)); });
+        run_pdf(state, [&](const Query& q) {
+            const Pair d(q);
+            DoNotOptimize(full.pdf(d.wo, d.wi));
+        });
     }));
     for (auto* benchmark : all) benchmark->UseManualTime();
 }
@@ -197,7 +264,8 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     std::vector<Case> cases;
     for (const std::uint64_t bytes : {std::uint64_t{64} << 10, std::uint64_t{200} << 10})
-        for (const char* name : {kRglFile, "satin_rosaline_rgb.bsdf", "nickel.binary", "blue-metallic-paint.binary"})
+        for (const char* name :
+             {kRglFile, "satin_rosaline_rgb.bsdf", "nickel.binary", "blue-metallic-paint.binary"})
             if (std::filesystem::exists(path_of(name))) cases.push_back({name, bytes});
             else std::printf("%s is not there\n", path_of(name).c_str());
     if (cases.empty()) {
@@ -207,6 +275,8 @@ int main(int argc, char** argv) {
     for (const Case& c : cases) {
         benchmark::RegisterBenchmark(("sample/" + c.label()).c_str(), sample, c)->UseManualTime();
         benchmark::RegisterBenchmark(("pdf/" + c.label()).c_str(), pdf, c)->UseManualTime();
+        benchmark::RegisterBenchmark(("sample_many/" + c.label()).c_str(), sample_many, c)->UseManualTime();
+        benchmark::RegisterBenchmark(("pdf_many/" + c.label()).c_str(), pdf_many, c)->UseManualTime();
     }
     register_rivals(cases.front());
     benchmark::RunSpecifiedBenchmarks();

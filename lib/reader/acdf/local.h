@@ -55,7 +55,7 @@ ACDF_FN int acdf_octahedral_bins(uint32_t n, const float normal[3], AcdfNormalBi
     double a[3], f[3], rest;
     int32_t base[3], sign[3];
     int i, k, down;
-    if (!(sum > 0.0 && sum < 1e300)) return 0;
+    if (!acdf_are_finite(normal) || !(sum > 0.0)) return 0;
     a[0] = ax / sum * n;
     a[1] = ay / sum * n;
     a[2] = az / sum * n;
@@ -89,7 +89,7 @@ ACDF_FN int acdf_octahedral_bins(uint32_t n, const float normal[3], AcdfNormalBi
 ACDF_FN int acdf_latlong_bins(uint32_t columns, uint32_t rows, const float normal[3], AcdfNormalBins* out) {
     const double x = normal[0], y = normal[1], z = normal[2];
     uint32_t column, row;
-    if (!(fabs(x) + fabs(y) + fabs(z) > 0.0 && fabs(x) + fabs(y) + fabs(z) < 1e300)) return 0;
+    if (!acdf_are_finite(normal) || !(fabs(x) + fabs(y) + fabs(z) > 0.0)) return 0;
     column = (uint32_t)((double)columns * (0.5 - 0.5 * acdf_atan2pi(y, x)));
     row = (uint32_t)((double)rows * acdf_atan2pi(sqrt(x * x + y * y), z));
     if (column >= columns) column = 0;

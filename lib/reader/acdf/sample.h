@@ -15,6 +15,7 @@
 
 #include <acdf/layout.h>
 #include <math.h>
+#include <string.h>
 
 #ifndef ACDF_FN
 #define ACDF_FN static inline
@@ -338,8 +339,25 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
     range[0].tilt = range[1].tilt = 0.0;
 }
 
-/* A random number in [0, 1]; values outside are clamped, NaN counts as 0. */
-ACDF_FN double acdf_unit_interval(double u) { return u > 0.0 ? (u < 1.0 ? u : 1.0) : 0.0; }
+/* Whether numbers are neither NaN nor infinite, by their bits: compilers that are told that there are no such numbers
+ * (-ffast-math) leave out comparisons that tell. */
+ACDF_FN int acdf_is_finite(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (bits >> 52 & 0x7FFu) != 0x7FFu;
+}
+ACDF_FN int acdf_are_finite(const float v[3]) {
+    const uint32_t exponent = 0x7F800000u;
+    uint32_t bits[3];
+    memcpy(bits, v, sizeof bits);
+    return (bits[0] & exponent) != exponent && (bits[1] & exponent) != exponent && (bits[2] & exponent) != exponent;
+}
+
+/* A random number in [0, 1]; values outside are clamped, what is not finite counts as 0. */
+ACDF_FN double acdf_unit_interval(double u) {
+    if (!acdf_is_finite(u)) return 0.0;
+    return u > 0.0 ? (u < 1.0 ? u : 1.0) : 0.0;
+}
 
 /* The 24 lowest bits of k in reverse order. */
 ACDF_FN uint32_t acdf_reverse24(uint32_t k) {
@@ -404,7 +422,7 @@ ACDF_FN int acdf_sphere_square(uint32_t columns, uint32_t rows, const float dire
     const double x = direction[0], y = direction[1], z = direction[2];
     const double sin2 = x * x + y * y;
     const double length = sqrt(sin2 + z * z);
-    if (!(length > 0.9995 && length < 1.0005)) return 0;
+    if (!acdf_are_finite(direction) || !(length > 0.9995 && length < 1.0005)) return 0;
     *column = (double)columns * (0.5 - 0.5 * acdf_atan2pi(y, x));
     if (*column >= (double)columns) *column = 0.0; /* phi = -pi is phi = +pi */
     if (*column < 0.0) *column = 0.0;

@@ -110,10 +110,7 @@ ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, 
     double p;
     uint32_t axis;
     if (!bin) return 0.0;
-    for (axis = first; axis < table->axis_count; ++axis) {
-        const double v = u[axis - first];
-        left[axis] = v > 0.0 ? (v < 1.0 ? v : 1.0) : 0.0; /* also NaN */
-    }
+    for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
     acdf_table_whole(table, place.range);
     p = acdf_tree_sample(table->tree, bin->root, left, place.range);
     for (axis = first; axis < table->axis_count; ++axis) {
@@ -142,6 +139,7 @@ ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, co
     for (axis = first; axis < table->axis_count; ++axis) {
         const AcdfAxis* a = &table->axes[axis];
         const double position = acdf_table_position(a, x[axis - first]);
+        if (!acdf_is_finite(x[axis - first])) return 0.0;
         if (!(position >= 0.0 && position <= (double)a->resolution)) return 0.0;
         place->position[axis] = position;
         step[axis] = (uint32_t)position;

@@ -1,0 +1,116 @@
+// BRDFs at their ends: mirrors, nothing but diffuse, light at grazing angles alone, and views that graze.
+#include "brdf_files.h"
+#include "synthetic.h"
+
+#include "input/brdf.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+
+namespace {
+
+using namespace acdf_test;
+using acdf::input::Brdf;
+
+/// rho = value where cos(theta_i) is below `limit`, else 0.
+class GrazingBrdf : public Brdf {
+public:
+    explicit GrazingBrdf(double limit, double value) : limit_(limit), value_(value) { name = "grazing"; }
+    void evaluate(const double wo[3], const double wi[3], double rgb[3]) const override {
+        const bool lit = wo[2] > 0.0 && wi[2] > 0.0 && wi[2] < limit_;
+        rgb[0] = rgb[1] = rgb[2] = lit ? value_ : 0.0;
+    }
+
+private:
+    double limit_, value_;
+};
+
+struct ExtremeBrdf {
+    std::string name;
+    std::function<std::unique_ptr<Brdf>()> make;
+    double albedo; ///< exact, for views with cos(theta_o) >= `from`; 0: not known
+    double from = 0.0;
+};
+
+void PrintTo(const ExtremeBrdf& brdf, std::ostream* out) { *out << brdf.name; } // for GoogleTest
+
+std::vector<ExtremeBrdf> extreme_brdfs() {
+    const auto model = [](const char* text) { return [text] { return acdf::input::open_brdf(text); }; };
+    const auto grazing = [](double limit, double value) {
+        return [=]() -> std::unique_ptr<Brdf> { return std::make_unique<GrazingBrdf>(limit, value); };
+    };
+    return {
+        {"lambert", model("lambert"), 1.0},
+        {"mirror_like_ggx", model("ggx:alpha=1e-4"), 1.0, 0.1},
+        {"mirror_like_blinn", model("blinn:e=1e7"), 1.0, 0.9999},
+        {"brushed_mirror", model("ggx:alpha=1e-4,0.5"), 0.0},
+        {"hardly_anything", grazing(1.0, 1e-30), kPi * 1e-30},
+        {"very_much", grazing(1.0, 1e30), kPi * 1e30},
+        {"only_grazing", grazing(0.05, 1.0), kPi * 0.05 * 0.05},
+    };
+}
+
+class ExtremeBrdfs : public ::testing::TestWithParam<ExtremeBrdf> {
+protected:
+    void SetUp() override {
+        acdf::tools::BrdfFileOptions options = budget(16384);
+        options.codec = ACDF_CODEC_ZLIB;
+        brdf_ = make_brdf(GetParam().make(), options);
+    }
+    std::unique_ptr<MadeBrdf> brdf_;
+};
+
+TEST_P(ExtremeBrdfs, SamplesAreSoundForEveryView) {
+    std::mt19937_64 random(4);
+    for (const double cosine : {1.0, 0.5, 0.1, 1e-3, 1e-6, 1e-20, 1e-45})
+        for (const double phi : {0.0, 2.5, -kPi}) {
+            const Direction wo = at_angles(cosine, phi);
+            for (int i = 0; i < 500; ++i) {
+                const bool edge = i < 9;
+                const double u0 = edge ? 0.5 * (i % 3) : uniform(random),
+                             u1 = edge ? 0.5 * (i / 3) : uniform(random);
+                const acdf::DirectionSample s = brdf_->view().sample(wo.data(), u0, u1);
+                ASSERT_TRUE(std::isfinite(s.pdf) && s.pdf > 0.0f) << cosine << " " << u0 << " " << u1;
+                const float* d = s.direction;
+                ASSERT_NEAR(double{d[0]} * d[0] + double{d[1]} * d[1] + double{d[2]} * d[2], 1.0, 1e-5);
+                if (cosine > 1e-3) {
+                    ASSERT_EQ(s.pdf, brdf_->view().pdf(wo.data(), d)) << cosine;
+                }
+                const double o[3] = {wo[0], wo[1], wo[2]}, w[3] = {d[0], d[1], d[2]};
+                ASSERT_TRUE(std::isfinite(brdf_->reflected(o, w) / s.pdf)) << cosine;
+            }
+        }
+}
+
+TEST_P(ExtremeBrdfs, EstimatesHaveTheRightMean) {
+    if (GetParam().albedo == 0.0) GTEST_SKIP() << "no closed form of its albedo";
+    std::mt19937_64 random(5);
+    constexpr int kSamples = 40000;
+    for (const double cosine : {1.0, 0.7, 0.25}) {
+        if (cosine < GetParam().from) continue;
+        const Direction wo = at_angles(cosine, 0.3);
+        const double o[3] = {wo[0], wo[1], wo[2]};
+        double sum = 0.0, square = 0.0;
+        for (int i = 0; i < kSamples; ++i) {
+            const double u0 = uniform(random), u1 = uniform(random);
+            const acdf::DirectionSample s = brdf_->view().sample(wo.data(), u0, u1);
+            const double w[3] = {s.direction[0], s.direction[1], s.direction[2]};
+            const double x = brdf_->reflected(o, w) / s.pdf / GetParam().albedo;
+            sum += x;
+            square += x * x;
+        }
+        const double mean = sum / kSamples, error = std::sqrt((square / kSamples - mean * mean) / kSamples);
+        EXPECT_NEAR(mean, 1.0, 4.5 * error + 1e-5) << cosine;
+        EXPECT_LT(square / kSamples / (mean * mean) - 1.0, 1.0) << cosine; // relative variance
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ExtremeBrdfs, ::testing::ValuesIn(extreme_brdfs()),
+                         [](const auto& info) { return info.param.name; });
+
+} // namespace
