@@ -21,3 +21,17 @@ acdf_add_test(test_measure_local
 acdf_add_test(test_measure_brdf_rivals
     SOURCES measure_brdf_rivals.cpp
     LIBRARIES acdf_measure acdf_input)
+
+# Samplers of light behind one interface, and what is done with them.
+acdf_add_test(test_measure_samplers
+    SOURCES
+        measure_estimators.cpp
+        measure_light_samplers.cpp
+        measure_scanline.cpp
+    LIBRARIES acdf_measure)
+
+if(TARGET acdf_brdf)
+    acdf_add_test(test_measure_files
+        SOURCES measure_file_samplers.cpp
+        LIBRARIES acdf_measure acdf_input acdf_brdf)
+endif()
