@@ -1,0 +1,61 @@
+// What is compared, as short texts: "local:1MB", "ris:32", "mis(local:1MB,cosine)".
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// What is wrong with the text of a sampler: one line.
+struct SpecError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+enum class SamplerKind {
+    full_cdf,     ///< full-cdf: the probe's full-resolution CDF, directions below the horizon drawn in vain
+    cosine,       ///< cosine: of the hemisphere
+    tiles,        ///< tiles:32x16: of the probe, weighed at each point, the full CDF inside
+    env,          ///< env:64KiB: what `acdf env` makes
+    local,        ///< local:1MB: what `acdf local` makes
+    brdf,         ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
+    brdf_table,   ///< brdf-table[:centre]: the full table of the paper, repaired or as described
+    ggx,          ///< ggx:0.1: normals of a lobe visible to the viewer
+    alias,        ///< alias: table over texels
+    hierarchical, ///< hierarchical: warping through a quadtree
+    downsampled,  ///< downsampled:64x32: a full CDF of means
+    compensated,  ///< compensated: a CDF of what exceeds the mean radiance, in mis(...) alone
+    strata,       ///< strata[:radiance]: jittered in a stratified map, Agarwal et al. 2003
+    ris,          ///< ris:32: resampled candidates of the full CDF
+    mis,          ///< mis(A,B), mis-power(A,B): balance or power heuristic; mis-compensated is
+                  ///< mis(compensated,cosine)
+    file,         ///< file:my.acdf: any environment, local environment or BRDF file
+};
+
+struct SamplerSpec {
+    SamplerKind kind = SamplerKind::full_cdf;
+    std::string text;                    ///< as given: its name in tables
+    std::uint64_t bytes = 0;             ///< env, local, brdf: the budget
+    std::uint32_t columns = 0, rows = 0; ///< tiles, downsampled
+    std::uint32_t candidates = 0;        ///< ris
+    double alpha = 0.0;                  ///< ggx
+    bool by_radiance = false;            ///< strata: not by solid angle
+    bool centre = false;                 ///< brdf-table as described
+    bool power = false;                  ///< mis: power heuristic
+    std::string path;                    ///< file
+    std::vector<SamplerSpec> parts;      ///< mis: two or more
+    std::vector<double> shares;          ///< mis: of the samples; their sum is 1
+};
+
+/// `mis(4*local:1MB,cosine)` gives the first part four times as many samples as the second. Throws SpecError.
+SamplerSpec parse_sampler(const std::string& text);
+
+/// Letters, digits and hyphens: for file names. Distinct texts may have the same.
+std::string file_stem(const SamplerSpec& spec);
+
+/// How `samples` are divided: at least one each, by largest remainders. Throws SpecError where there are fewer
+/// samples than parts.
+std::vector<std::uint32_t> divided(std::uint32_t samples, const SamplerSpec& spec);
+
+} // namespace acdf::tools

@@ -1,0 +1,45 @@
+// Scenes as small JSON files: docs/scene.schema.json.
+#pragma once
+
+#include "input/probe.h"
+#include "measure/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// What is wrong with a scene: one line that begins with where, "objects[2].sphere.radius: ...".
+struct SceneError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A BRDF by the name that input::open_brdf takes, files relative to the data folder.
+struct SceneMaterial {
+    std::string brdf;
+    std::array<double, 3> tint{1.0, 1.0, 1.0};
+
+    bool operator==(const SceneMaterial& other) const { return brdf == other.brdf && tint == other.tint; }
+};
+
+/// A scene as written: nothing is loaded.
+struct SceneFile {
+    std::string description;
+    measure::Camera camera;
+    measure::Geometry geometry; ///< its materials are indices into `materials`
+    std::vector<SceneMaterial> materials;
+    std::string probe;    ///< a file, relative to the data folder, or
+    std::string built_in; ///< the name of one of demo_probes()
+    input::Projection projection = input::Projection::automatic;
+    std::uint32_t width = 96, height = 72;
+    std::uint32_t samples = 20; ///< of each estimate
+    std::vector<std::string> samplers;
+};
+
+/// Strict: unknown and repeated keys, wrong types and values out of range are errors. Throws SceneError.
+SceneFile parse_scene(const std::string& text);
+
+} // namespace acdf::tools
