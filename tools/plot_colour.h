@@ -18,8 +18,14 @@ constexpr Colour zero_colour = {0.25f, 0.25f, 0.25f};
 /// Outside of the disc, and around the picture.
 constexpr Colour background = {1.0f, 1.0f, 1.0f};
 
-/// RGB floats as displayed: the logarithm of the density from violet (range.low) over green to red (range.high),
-/// zero_colour where it is 0, background where nothing is shown.
-OIIO::ImageBuf false_colour(const DensityImage& image, const DensityRange& range);
+enum class ColourMap {
+    rainbow,  ///< violet (low) over green to red (high)
+    diverging ///< blue over a light grey, in the middle of the range, to red: for ratios
+};
+
+/// RGB floats as displayed: the logarithm of the density from range.low to range.high, zero_colour where it is 0,
+/// background where nothing is shown.
+OIIO::ImageBuf false_colour(const DensityImage& image, const DensityRange& range,
+                            ColourMap map = ColourMap::rainbow);
 
 } // namespace acdf::tools

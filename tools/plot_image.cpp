@@ -33,6 +33,12 @@ std::vector<std::uint8_t> encode_png(const OIIO::ImageBuf& picture, const ImageN
     return encode("picture.png", spec, static_cast<const float*>(picture.localpixels()), notes);
 }
 
+std::vector<std::uint8_t> encode_rgb_exr(const OIIO::ImageBuf& picture, const ImageNotes& notes) {
+    OIIO::ImageSpec spec(picture.spec().width, picture.spec().height, 3, OIIO::TypeFloat);
+    spec.attribute("compression", "zip");
+    return encode("picture.exr", spec, static_cast<const float*>(picture.localpixels()), notes);
+}
+
 std::vector<std::uint8_t> encode_exr(const DensityImage& image, const ImageNotes& notes) {
     OIIO::ImageSpec spec(image.map.width, image.map.height, 1, OIIO::TypeFloat);
     spec.channelnames = {"Y"};

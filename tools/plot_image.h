@@ -19,6 +19,9 @@ struct ImageNotes {
 /// RGB floats as displayed, rounded to 8 bits. Throws std::runtime_error.
 std::vector<std::uint8_t> encode_png(const OIIO::ImageBuf& picture, const ImageNotes& notes);
 
+/// The floats of an RGB image as they are. Throws std::runtime_error.
+std::vector<std::uint8_t> encode_rgb_exr(const OIIO::ImageBuf& picture, const ImageNotes& notes);
+
 /// One float channel Y: the density in sr^-1, and 0 where nothing is shown. Throws std::runtime_error.
 std::vector<std::uint8_t> encode_exr(const DensityImage& image, const ImageNotes& notes);
 

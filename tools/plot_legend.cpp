@@ -69,7 +69,7 @@ void draw_bar(OIIO::ImageBuf& image, const Legend& legend, const LegendLayout& l
         const double density = legend.range.low * std::pow(legend.range.high / legend.range.low, t);
         ramp.density.push_back(static_cast<float>(density));
     }
-    const OIIO::ImageBuf colours = false_colour(ramp, legend.range);
+    const OIIO::ImageBuf colours = false_colour(ramp, legend.range, legend.colours);
     for (int x = 0; x < bar.width; ++x) algo::paste(image, bar.x + x, bar.y, 0, 0, colours);
 }
 
@@ -152,7 +152,7 @@ OIIO::ImageBuf add_legend(const OIIO::ImageBuf& picture, const Legend& legend, c
     if (font.empty()) return image;
     const int baseline = 3 * layout.font_size / 2;
     pen.write(layout.picture.x, baseline, fitting_title(legend, layout, pen), layout.font_size);
-    pen.write_power(layout.bar.x, baseline, "sr", -1, layout.font_size);
+    if (legend.per_steradian) pen.write_power(layout.bar.x, baseline, "sr", -1, layout.font_size);
     if (legend.shows_zero)
         pen.write(layout.zero.x + layout.zero.width + layout.tick_length + layout.font_size / 4,
                   layout.zero.y + layout.font_size, "0", layout.font_size);

@@ -1,6 +1,7 @@
 // Title and colour bar around a plot.
 #pragma once
 
+#include "plot_colour.h"
 #include "plot_range.h"
 
 #include <OpenImageIO/imagebuf.h>
@@ -33,6 +34,8 @@ struct Legend {
     std::vector<std::string> title; ///< parts by importance; those that do not fit are left out
     DensityRange range;
     bool shows_zero = false; ///< explain the colour of density 0
+    bool per_steradian = true;
+    ColourMap colours = ColourMap::rainbow;
 };
 
 /// A font that OpenImageIO can draw with, by name; empty where the system has none.

@@ -1,0 +1,112 @@
+// The sweep of environment files.
+#include "environment.h"
+#include "measure/full_cdf.h"
+#include "measure/local_accuracy.h"
+#include "plot_density.h"
+#include "plot_knots.h"
+#include "sweep_build.h"
+#include "sweep_irradiance.h"
+#include "sweep_rivals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace acdf::tools {
+namespace {
+
+EnvironmentOptions options_of(const Step& step, const compress::Target& target, const SweepOptions& sweep) {
+    EnvironmentOptions out;
+    out.target = sweep.target;
+    const std::uint32_t cells = cells_in(step.budget);
+    if (step.fit == "variance") {
+        out.fit.goal.kind = compress::Goal::Kind::budget;
+        out.fit.goal.budget = step.budget;
+    } else if (step.fit == "cascade") {
+        out.fit.shape = compress::Shape::cascade;
+        out.fit.goal.cells = cells;
+    } else {
+        out.fit.fit = step.fit == "cdf" ? ACDF_FIT_CDF : step.fit == "pdf" ? ACDF_FIT_PDF : ACDF_FIT_UNIFORM;
+        const auto side = static_cast<std::uint32_t>(std::max(2.0, std::sqrt(cells)));
+        out.fit.column_segments = std::min(side, target.columns);
+        out.fit.row_segments = std::min(side, target.rows);
+    }
+    return out;
+}
+
+std::string text_of(const Step& step, const EnvironmentOptions& o) {
+    if (step.fit == "variance") return "--budget " + budget_text(step.budget);
+    if (step.fit == "cascade") return "--shape cascade --cells " + std::to_string(o.fit.goal.cells);
+    return "--fit " + step.fit + " " + knots_text(o.fit.column_segments, o.fit.row_segments);
+}
+
+const char* label_of(const std::string& fit) {
+    return fit == "variance"  ? "variance fit (default)"
+           : fit == "cascade" ? "variance fit, two levels"
+           : fit == "cdf"     ? "cdf fit (the paper's)"
+           : fit == "pdf"     ? "pdf fit"
+                              : "uniform knots";
+}
+
+Candidate make_file(const compress::Target& target, const Source& source, const SweepOptions& sweep,
+                    const Step& step) {
+    const EnvironmentOptions options = options_of(step, target, sweep);
+    Environment made = build_environment(target, source, options);
+    Candidate out = file_candidate(std::move(made.bytes));
+    out.row.label = label_of(step.fit);
+    out.row.options = text_of(step, options);
+    out.row.cells = made.accuracy.cells;
+    out.row.relative_variance = made.accuracy.support_violations > 0 ? HUGE_VAL : made.accuracy.relative_variance;
+    out.row.max_weight = made.accuracy.max_weight;
+    out.row.rms = made.accuracy.rms_pdf_error;
+    return out;
+}
+
+void add_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
+    const input::Map map = plot_map(input::Layout::latlong, kPictureWidth);
+    const DensityImage full = draw_density(map, density_of(target));
+    sweep.range = automatic_range(full);
+    add_colour_bar(sweep);
+    add_picture(sweep, full, {}, {}, "The probe itself, full resolution",
+                "The probe's own density in false colour, latitude and longitude.");
+    for (std::size_t i : pictured(candidates, sweep.visibility)) {
+        const EnvironmentView view = candidates[i].file->file.environment();
+        add_picture(sweep, draw_density(map, density_of(view)), knot_opacity(view, map), {},
+                    picture_title(candidates[i].row),
+                    "The density that this file stores, in the same colours, with the borders of its cells.");
+    }
+}
+
+} // namespace
+
+Sweep sweep_environment(const compress::Target& target, const Source& source, const SweepOptions& options,
+                        const Progress& progress) {
+    Sweep sweep;
+    sweep.kind = SweepKind::environment;
+    sweep.visibility = options.visibility;
+    const auto part = [&](double begin, double width) {
+        return [&progress, begin, width](double share, const char* what) {
+            if (progress) progress(begin + width * share, what);
+        };
+    };
+    std::vector<Candidate> candidates;
+    build_all(
+        sweep, candidates, steps_of(sweep.kind, options),
+        [&](const Step& step) { return make_file(target, source, options, step); }, part(0.0, 0.7));
+
+    sweep.baseline = candidates.size();
+    for (Candidate& rival : environment_rivals(target, options)) candidates.push_back(std::move(rival));
+    const std::vector<measure::Normal> normals = measure::random_normals(options.normals);
+    sweep.conditions = static_cast<std::uint32_t>(normals.size());
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        part(0.7, 0.2)(static_cast<double>(i) / static_cast<double>(candidates.size()), "measuring");
+        candidates[i].row.irradiance =
+            irradiance_variance(target, texel_densities(target, *candidates[i].sampler), 0.0, normals).mean;
+    }
+    if (options.pictures) add_pictures(sweep, target, candidates);
+    std::vector<measure::ShadingPoint> points;
+    for (const measure::Normal& n : measure::random_normals(4096)) points.push_back({{n[0], n[1], n[2]}, {}});
+    finish_rows(sweep, std::move(candidates), points, options, part(0.9, 0.1));
+    return sweep;
+}
+
+} // namespace acdf::tools
