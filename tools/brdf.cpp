@@ -1,5 +1,7 @@
 #include "brdf.h"
 
+#include "option_text.h"
+
 #include <acdf/reader.h>
 
 #include <algorithm>
@@ -11,55 +13,18 @@
 namespace acdf::tools {
 namespace {
 
-std::string number(double value, const char* format = "%.9g") {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
-const char* fit_option(AcdfFit fit) {
-    return fit == ACDF_FIT_UNIFORM ? "uniform"
-           : fit == ACDF_FIT_CDF   ? "cdf"
-           : fit == ACDF_FIT_PDF   ? "pdf"
-                                   : "variance";
-}
-
-std::string option_text(const BrdfFileOptions& options) {
-    const compress::BrdfOptions& fit = options.fit;
-    std::string text = std::string("--fit ") + fit_option(fit.fit);
-    if (fit.theta_views) {
-        text += " --views " + std::to_string(fit.theta_views);
-        if (fit.phi_views > 1) text += "x" + std::to_string(fit.phi_views);
-    }
-    if (fit.fit != ACDF_FIT_VARIANCE) {
-        text += fit.epsilon > 0.0
-                    ? " --eps " + number(fit.epsilon)
-                    : " --knots " + std::to_string(fit.phi_segments) + "x" + std::to_string(fit.theta_segments);
-    } else {
-        if (!fit.sharing) text += " --no-sharing";
-        const compress::Goal& goal = fit.goal;
-        if (goal.kind == compress::Goal::Kind::budget) text += " --budget " + std::to_string(goal.budget);
-        else if (goal.kind == compress::Goal::Kind::variance) text += " --target-variance " + number(goal.variance);
-        else text += " --cells " + std::to_string(goal.cells);
-    }
-    if (options.diffuse_share > 0.0f) text += " --diffuse-floor " + number(double{options.diffuse_share}, "%.6g");
-    return text;
-}
-
 compress::Metadata metadata(const input::Brdf& brdf, const BrdfFileOptions& options,
                             const measure::BrdfAccuracy& a) {
-    // A fixed width: what accuracy is reached must not change the size that a budget is compared with.
-    const auto fixed = [](double value) { return number(std::clamp(value, 0.0, 9.99e99), "%.8e"); };
     compress::Metadata out{
         {"tool", "acdf " ACDF_VERSION}, {"fit.options", option_text(options)}, {"source.name", brdf.name}};
     if (!brdf.sha256.empty()) out.push_back({"source.sha256", brdf.sha256});
-    out.push_back({"accuracy.relative_variance", fixed(a.relative_variance)});
-    out.push_back({"accuracy.relative_variance_median", fixed(a.median)});
-    out.push_back({"accuracy.relative_variance_worst", fixed(a.worst)});
-    out.push_back({"accuracy.rms_pdf_error", fixed(a.rms_pdf_error)});
-    out.push_back({"accuracy.kl_divergence", fixed(a.kl_divergence)});
-    out.push_back({"accuracy.max_weight", fixed(a.max_weight)});
-    out.push_back({"accuracy.share_above_horizon", fixed(a.share_above_horizon)});
+    out.push_back({"accuracy.relative_variance", accuracy_text(a.relative_variance)});
+    out.push_back({"accuracy.relative_variance_median", accuracy_text(a.median)});
+    out.push_back({"accuracy.relative_variance_worst", accuracy_text(a.worst)});
+    out.push_back({"accuracy.rms_pdf_error", accuracy_text(a.rms_pdf_error)});
+    out.push_back({"accuracy.kl_divergence", accuracy_text(a.kl_divergence)});
+    out.push_back({"accuracy.max_weight", accuracy_text(a.max_weight)});
+    out.push_back({"accuracy.share_above_horizon", accuracy_text(a.share_above_horizon)});
     return out;
 }
 
@@ -88,6 +53,20 @@ measure::BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, cons
 }
 
 } // namespace
+
+std::string option_text(const BrdfFileOptions& options) {
+    const compress::BrdfOptions& fit = options.fit;
+    std::string text = target_text({options.weights, options.channels, ACDF_FILTER_NEAREST}) +
+                       codec_text(options.codec) + fit_text(fit.fit);
+    if (fit.theta_views) {
+        text += "--views " + std::to_string(fit.theta_views);
+        text += (fit.phi_views > 1 ? "x" + std::to_string(fit.phi_views) : "") + " ";
+    }
+    if (options.diffuse_share > 0.0f) text += "--diffuse-floor " + option_number(options.diffuse_share) + " ";
+    if (fit.fit == ACDF_FIT_VARIANCE) return text + (fit.sharing ? "" : "--no-sharing ") + goal_text(fit.goal);
+    text += "--knots " + std::to_string(fit.phi_segments) + "x" + std::to_string(fit.theta_segments);
+    return fit.epsilon > 0.0 ? text + " --eps " + option_number(fit.epsilon) : text;
+}
 
 compress::Reflected reflected_light(const input::Brdf& brdf, AcdfChannels channels,
                                     const compress::ChannelWeights& weights) {
@@ -134,8 +113,10 @@ BrdfFile build_brdf(const input::Brdf& brdf, const BrdfFileOptions& given, const
     options.fit.symmetry = {isotropic, isotropic && brdf.mirror};
     const compress::Reflected reflected = reflected_light(brdf, options.channels, options.weights);
     const compress::Metadata unknown = metadata(brdf, options, {});
+    BrdfFileOptions plain = options; // rows that are not made yet cannot tell how well they compress
+    plain.codec = ACDF_CODEC_NONE;
     options.fit.file_size = [&](const compress::BrdfFit& fit) {
-        return std::uint64_t{brdf_bytes(fit, options, unknown).size()};
+        return std::uint64_t{brdf_bytes(fit, plain, unknown).size()};
     };
     options.fit.progress = [&](double share) {
         if (progress) progress(0.8 * share, "fitting");

@@ -23,6 +23,9 @@ struct BrdfFileOptions {
     AcdfCodec codec = ACDF_CODEC_NONE;
 };
 
+/// All options that shape the file, in one spelling: what its `fit.options` tells.
+std::string option_text(const BrdfFileOptions& options);
+
 struct BrdfFile {
     std::vector<std::uint8_t> bytes; ///< the whole file
     measure::BrdfAccuracy accuracy;  ///< of the stored densities, over random views

@@ -1,18 +1,17 @@
 // acdf env: an environment map to an .acdf file.
 #include "commands.h"
+#include "conversion.h"
 #include "environment.h"
-#include "file_input.h"
 #include "format_names.h"
 #include "goal_options.h"
 #include "help.h"
+#include "input/image_header.h"
 #include "options.h"
-#include "output.h"
 #include "probe_options.h"
 #include "sizes.h"
 #include "target_options.h"
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -21,16 +20,29 @@
 namespace acdf::tools {
 namespace {
 
-struct Options {
-    std::string probe, output;
-    input::ProbeOptions input;
-    EnvironmentOptions environment;
-    std::string knots, budget;
-    const CLI::App* command = nullptr;
-    int threads = 0;
-    bool json = false, quiet = false, force = false;
+// Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
+// one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
+constexpr std::uint64_t kBaseMemory = 16 << 20, kMemoryOfPixel = 24;
 
-    bool given(const char* option) const { return command->get_option(option)->count() > 0; }
+class EnvConversion : public Conversion {
+public:
+    void add_options(CLI::App& command) override;
+    void check() override;
+    std::string option_text() const override { return tools::option_text(reading_text(input_), environment_); }
+    std::uint64_t memory() const override;
+    Converted convert(const Listener& listener) override;
+
+private:
+    bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
+    void set_goal();
+    void set_knots();
+    void add_fit_options(CLI::App& command);
+    nlohmann::ordered_json report(const input::Probe& probe, const Environment& result) const;
+
+    input::ProbeOptions input_;
+    EnvironmentOptions environment_;
+    std::string knots_, budget_;
+    const CLI::App* command_ = nullptr;
 };
 
 /// Which fits an option belongs to: with another it is a mistake, not something to ignore.
@@ -65,43 +77,42 @@ bool allows(const OnlyFor& rule, AcdfFit fit) {
     }
 }
 
-void set_goal(const Options& options, compress::FitOptions& fit) {
-    const int goals = read_goal(*options.command, options.budget, fit.goal);
+void EnvConversion::set_goal() {
+    compress::FitOptions& fit = environment_.fit;
+    const int goals = read_goal(*command_, budget_, fit.goal);
     const bool only_cells = fit.shape == compress::Shape::cascade;
-    if (only_cells && goals > 0 && !options.given("--cells"))
+    if (only_cells && goals > 0 && !given("--cells"))
         throw CLI::ValidationError("--shape cascade", "is sized by --cells");
-    if (only_cells && options.given("--max-weight"))
-        throw CLI::ValidationError("--max-weight", "is for --shape tree");
+    if (only_cells && given("--max-weight")) throw CLI::ValidationError("--max-weight", "is for --shape tree");
 }
 
-void set_knots(const Options& options, compress::FitOptions& fit) {
-    if (options.given("--knots")) {
-        if (!parse_pair(options.knots, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
+void EnvConversion::set_knots() {
+    compress::FitOptions& fit = environment_.fit;
+    if (given("--knots")) {
+        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
             throw CLI::ValidationError("--knots", "needs two counts such as 64x64 (phi x theta)");
-    } else if (options.given("--eps")) {
+    } else if (given("--eps")) {
         fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
     }
 }
 
-void check_options(Options& options) {
-    compress::FitOptions& fit = options.environment.fit;
+void EnvConversion::check() {
+    const AcdfFit fit = environment_.fit.fit;
     for (const OnlyFor& rule : only_for)
-        if (options.given(rule.option) && !allows(rule, fit.fit))
-            throw CLI::ValidationError(rule.option, rule.message);
-    if (fit.fit == ACDF_FIT_VARIANCE) set_goal(options, fit);
-    else set_knots(options, fit);
+        if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
+    if (fit == ACDF_FIT_VARIANCE) set_goal();
+    else set_knots();
 }
 
-nlohmann::ordered_json report(const Options& options, const input::Probe& probe, const Environment& result) {
+nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const Environment& result) const {
     const measure::Accuracy& a = result.accuracy;
-    return {{"file", options.output},
-            {"source", options.probe},
+    return {{"source", source},
             {"projection", input::to_string(probe.projection)},
             {"projection_reason", probe.projection_reason},
             {"resolution", {probe.width, probe.height}},
             {"bad_texels",
              {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
-            {"fit", fit_name(options.environment.fit.fit)},
+            {"fit", fit_name(environment_.fit.fit)},
             {"order", result.order ? to_string(*result.order) : "free"},
             {"bytes", result.bytes.size()},
             {"cells", a.cells},
@@ -114,39 +125,30 @@ nlohmann::ordered_json report(const Options& options, const input::Probe& probe,
             {"support_violations", a.support_violations}};
 }
 
-void run(Options& options) {
-    check_options(options);
-    const auto limit = limit_threads(options.threads);
-    Output output(options.output, options.force, {options.probe}); // refuses early, before the work
-
-    input::Probe probe = load_probe(options.probe, options.input, options.quiet);
-    const compress::Target target = probe_target(options.probe, probe, options.environment.target);
-    probe.rgb = {}; // the target is all that is needed from here
-    Environment result;
-    {
-        ProgressBar bar(options.quiet);
-        const Source source{probe.source_name, probe.source_sha256, input::to_string(probe.projection)};
-        try {
-            result = build_environment(target, source, options.environment, bar.callback());
-        } catch (const std::runtime_error& error) { // the goal is out of reach
-            throw Failure(options.probe + ": " + error.what());
-        }
-    }
-    output.write(result.bytes.data(), result.bytes.size());
-    output.commit(check_reads_back);
-
-    std::FILE* out = options.output == "-" ? stderr : stdout;
-    if (options.json) std::fprintf(out, "%s\n", report(options, probe, result).dump(2).c_str());
-    else if (!options.quiet)
-        std::fprintf(out, "%s: %s, %llu cells, relative variance %.4g (%s fit%s)\n", options.output.c_str(),
-                     to_readable_size(result.bytes.size()).c_str(),
-                     static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
-                     fit_name(options.environment.fit.fit).c_str(),
-                     result.order ? (std::string(", ") + to_string(*result.order) + " first").c_str() : "");
+std::uint64_t EnvConversion::memory() const {
+    const std::uint64_t pixels = input::image_pixels(source);
+    return pixels > 0 ? kBaseMemory + pixels * kMemoryOfPixel : 0;
 }
 
-void add_fit_options(CLI::App& command, Options& options) {
-    compress::FitOptions& fit = options.environment.fit;
+Converted EnvConversion::convert(const Listener& listener) {
+    const auto [probe, target] = load_target(source, input_, environment_.target, listener.note);
+    Environment result;
+    try {
+        result = build_environment(target, source_of(probe, input_), environment_, listener.progress);
+    } catch (const std::runtime_error& error) { // the goal is out of reach
+        throw Failure(source + ": " + error.what());
+    }
+    char summary[160];
+    std::snprintf(summary, sizeof summary, "%llu cells, relative variance %.4g (%s fit%s)",
+                  static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
+                  fit_name(environment_.fit.fit).c_str(),
+                  result.order ? (std::string(", ") + to_string(*result.order) + " first").c_str() : "");
+    nlohmann::ordered_json told = report(probe, result);
+    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
+}
+
+void EnvConversion::add_fit_options(CLI::App& command) {
+    compress::FitOptions& fit = environment_.fit;
     const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
                                               {"cdf", ACDF_FIT_CDF},
                                               {"pdf", ACDF_FIT_PDF},
@@ -183,7 +185,7 @@ void add_fit_options(CLI::App& command, Options& options) {
         ->transform(CLI::CheckedTransformer(orders).description(""))
         ->option_text("NAME [auto]")
         ->group("Fit");
-    add_goal(command, fit.goal.cells, options.budget, fit.goal.variance,
+    add_goal(command, fit.goal.cells, budget_, fit.goal.variance,
              {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
               ": 0.01 is a tenth of the mean as standard deviation of one sample"});
     command
@@ -195,7 +197,7 @@ void add_fit_options(CLI::App& command, Options& options) {
         ->group("Size and accuracy");
     command
         .add_option(
-            "--knots", options.knots,
+            "--knots", knots_,
             "Segments of a curve over phi and over theta, for --fit uniform, cdf and pdf (at most this many "
             "with --eps)")
         ->option_text("AxB [64x64]")
@@ -226,37 +228,32 @@ void add_fit_options(CLI::App& command, Options& options) {
         ->group("Fit");
 }
 
+void EnvConversion::add_options(CLI::App& command) {
+    command_ = &command;
+    add_projection(command, input_.projection);
+    add_repairs(command, input_);
+    add_fit_options(command);
+    add_target_options(command, environment_.target);
+    add_codec(command, environment_.codec);
+}
+
 } // namespace
 
+std::unique_ptr<Conversion> env_conversion() { return std::make_unique<EnvConversion>(); }
+
 void add_env(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
     CLI::App& command = *program.add_subcommand("env", "Compress an environment map: directions by what they emit");
-    options->command = &command;
-    command.add_option("PROBE", options->probe, "The environment map: any image OpenImageIO reads")
-        ->required()
-        ->type_name("")
-        ->group("Input");
-    add_projection(command, options->input.projection);
-    add_repairs(command, options->input);
-    add_output(command, options->output, options->force, "The .acdf file to write")->required();
-    add_fit_options(command, *options);
-    add_target_options(command, options->environment.target);
-    add_codec(command, options->environment.codec);
-    add_threads(command, options->threads);
-    add_json(command, options->json);
-    add_quiet(command, options->quiet);
-    command.footer(
-        help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
-                    "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
-                    "acdf env probe.exr -o probe.acdf\n"
-                    "acdf env probe.hdr -o probe.acdf --budget 64KiB\n"
-                    "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
-                    "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
-                    "acdf env probe.exr -o paper.acdf --fit cdf --knots 64x64 --order z --gradient 16"));
-    command.callback([options, &exit_code] {
-        run(*options);
-        exit_code = exit_done;
-    });
+    add_conversion(
+        command, env_conversion(),
+        {"PROBE", "The environment map: any image OpenImageIO reads",
+         help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
+                     "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
+                     "acdf env probe.exr -o probe.acdf\n"
+                     "acdf env probe.hdr -o probe.acdf --budget 64KiB\n"
+                     "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
+                     "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
+                     "acdf env probe.exr -o paper.acdf --fit cdf --knots 64x64 --order z --gradient 16")},
+        exit_code);
 }
 
 } // namespace acdf::tools

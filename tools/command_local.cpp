@@ -1,19 +1,19 @@
 // acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
 #include "commands.h"
-#include "file_input.h"
+#include "conversion.h"
 #include "format_names.h"
 #include "goal_options.h"
 #include "help.h"
+#include "input/image.h"
+#include "input/image_header.h"
 #include "input/scene_normals.h"
 #include "local.h"
 #include "options.h"
-#include "output.h"
 #include "probe_options.h"
 #include "sizes.h"
 #include "target_options.h"
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <memory>
@@ -21,84 +21,131 @@
 namespace acdf::tools {
 namespace {
 
-struct Options {
-    std::string probe, output, normals, budget, knots, scene;
-    input::ProbeOptions input;
-    input::SceneOptions scene_input;
-    LocalOptions local;
-    const CLI::App* command = nullptr;
-    int threads = 0;
-    bool no_sharing = false, json = false, quiet = false, force = false;
+// Peaks beside the program itself, measured on probes of 2^19 to 2^23 pixels with budgets up to 1 MiB: 20 to 35
+// bytes a pixel.
+constexpr std::uint64_t kBaseMemory = 96 << 20, kMemoryOfPixel = 40;
 
-    bool given(const char* option) const { return command->get_option(option)->count() > 0; }
+class LocalConversion : public Conversion {
+public:
+    void add_options(CLI::App& command) override;
+    void check() override;
+    std::vector<std::string*> files() override;
+    std::string option_text() const override;
+    std::uint64_t memory() const override;
+    Converted convert(const Listener& listener) override;
+
+private:
+    bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
+    void set_normals();
+    void set_separate();
+    std::string scene_text() const;
+    LocalOptions read_scene(const Note& note) const;
+    void add_bins(CLI::App& command);
+    void add_size(CLI::App& command);
+    void add_separate(CLI::App& command);
+    nlohmann::ordered_json report(const input::Probe& probe, const Local& result) const;
+
+    std::string normals_, budget_, knots_, scene_;
+    input::ProbeOptions input_;
+    input::SceneOptions scene_input_;
+    LocalOptions local_;
+    const CLI::App* command_ = nullptr;
+    bool no_sharing_ = false;
 };
 
 constexpr double kWorthwhile = 1.5; ///< gain below which a file without normals would do as well
 
-void set_normals(Options& options) {
-    if (!options.given("--normals")) return;
-    LocalOptions& local = options.local;
+void LocalConversion::set_normals() {
+    if (!given("--normals")) return;
+    LocalOptions& local = local_;
     unsigned n = 0;
     int end = 0;
-    if (std::sscanf(options.normals.c_str(), "%4u%n", &n, &end) == 1 &&
-        static_cast<std::size_t>(end) == options.normals.size() && n >= 1 && n <= 256) {
+    if (std::sscanf(normals_.c_str(), "%4u%n", &n, &end) == 1 && static_cast<std::size_t>(end) == normals_.size() &&
+        n >= 1 && n <= 256) {
         local.subdivisions = n;
         return;
     }
-    if (!parse_pair(options.normals, 1024, local.columns, local.rows))
+    if (!parse_pair(normals_, 1024, local.columns, local.rows))
         throw CLI::ValidationError("--normals", "needs a number from 1 to 256, or two such as 25x10 (phi x theta)");
 }
 
-void set_separate(Options& options) {
-    LocalOptions& local = options.local;
+void LocalConversion::set_separate() {
+    LocalOptions& local = local_;
     compress::FitOptions& fit = local.fit;
-    local.sharing = !options.no_sharing;
+    local.sharing = !no_sharing_;
     if (local.sharing) {
         if (local.columns > 0)
             throw CLI::ValidationError("--normals",
                                        "AxB is for --no-sharing: bins that share tiles are interpolated");
         for (const char* option : {"--fit", "--knots", "--eps", "--order", "--bin-target"})
-            if (options.given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
+            if (given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
         return;
     }
-    if (options.given("--tiles")) throw CLI::ValidationError("--tiles", "is for files whose bins share tiles");
-    if (options.given("--target-variance"))
+    if (given("--tiles")) throw CLI::ValidationError("--tiles", "is for files whose bins share tiles");
+    if (given("--target-variance"))
         throw CLI::ValidationError("--target-variance",
                                    "is for files whose bins share tiles; use --budget or --cells");
     const bool variance = fit.fit == ACDF_FIT_VARIANCE;
     for (const char* option : {"--knots", "--eps"})
-        if (variance && options.given(option))
-            throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf");
+        if (variance && given(option)) throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf");
     for (const char* option : {"--cells", "--budget"})
-        if (!variance && options.given(option)) throw CLI::ValidationError(option, "is for --fit variance");
+        if (!variance && given(option)) throw CLI::ValidationError(option, "is for --fit variance");
     if (!variance && !fit.order) fit.order = compress::Order::z;
-    if (options.given("--knots")) {
-        if (!parse_pair(options.knots, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
+    if (given("--knots")) {
+        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
             throw CLI::ValidationError("--knots", "needs two counts such as 30x30 (phi x theta)");
-    } else if (options.given("--eps")) {
+    } else if (given("--eps")) {
         fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
     }
 }
 
-void read_scene(Options& options) {
-    if (options.scene.empty()) return;
-    const input::SceneNormals scene = input::read_scene_normals(options.scene, options.scene_input);
+void LocalConversion::check() {
+    set_normals();
+    read_goal(*command_, budget_, local_.goal);
+    set_separate();
+}
+
+std::vector<std::string*> LocalConversion::files() {
+    if (scene_.empty()) return {&source};
+    return {&source, &scene_};
+}
+
+std::string LocalConversion::scene_text() const {
+    return "--scene " + input::file_sha256(scene_) + (scene_input_.up == input::UpAxis::y ? " --scene-up y" : "") +
+           (scene_input_.rgb_is_normal ? " --scene-rgb" : "");
+}
+
+std::string LocalConversion::option_text() const {
+    LocalOptions told = local_;
+    if (!scene_.empty()) {
+        told.scene = {{}}; // any: only the text tells which
+        told.scene_text = scene_text();
+    }
+    return tools::option_text(reading_text(input_), told);
+}
+
+/// The options with the normals of the scene.
+LocalOptions LocalConversion::read_scene(const Note& note) const {
+    LocalOptions local = local_;
+    if (scene_.empty()) return local;
+    const input::SceneNormals scene = input::read_scene_normals(scene_, scene_input_);
     for (const input::WeightedNormal& n : scene.normals)
-        options.local.scene.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
-    if (!options.quiet)
-        std::fprintf(stderr, "%s: a %s with %zu different normals, %llu skipped\n", options.scene.c_str(),
-                     scene.kind.c_str(), scene.normals.size(), static_cast<unsigned long long>(scene.skipped));
+        local.scene.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
+    local.scene_text = scene_text();
+    note(scene_ + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
+         std::to_string(scene.skipped) + " skipped");
+    return local;
 }
 
 double gain(const Local& result) {
     return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
 }
 
-nlohmann::ordered_json report(const Options& options, const input::Probe& probe, const Local& result,
-                              const File& file) {
+nlohmann::ordered_json LocalConversion::report(const input::Probe& probe, const Local& result) const {
     const measure::LocalAccuracy& a = result.accuracy;
-    return {{"file", options.output},
-            {"source", options.probe},
+    File file;
+    File::from_memory(result.bytes.data(), result.bytes.size(), file);
+    return {{"source", source},
             {"resolution", {probe.width, probe.height}},
             {"bytes", result.bytes.size()},
             {"bins", file.description().bin_count},
@@ -112,56 +159,49 @@ nlohmann::ordered_json report(const Options& options, const input::Probe& probe,
             {"support_violations", a.support_violations}};
 }
 
-void print_text(const Options& options, const Local& result, std::FILE* out) {
+std::string summary_of(const Local& result) {
     const measure::LocalAccuracy& a = result.accuracy;
-    std::fprintf(out,
-                 "%s: %s, relative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
-                 "%.1f %% of samples above the horizon\n",
-                 options.output.c_str(), to_readable_size(result.bytes.size()).c_str(), a.relative_variance,
-                 a.lit_normals, gain(result), a.relative_variance_full_cdf, 100.0 * a.share_above_horizon);
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "relative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
+                  "%.1f %% of samples above the horizon",
+                  a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf,
+                  100.0 * a.share_above_horizon);
+    return text;
 }
 
-void run(Options& options) {
-    set_normals(options);
-    read_goal(*options.command, options.budget, options.local.goal);
-    set_separate(options);
-    const auto limit = limit_threads(options.threads);
-    Output output(options.output, options.force, {options.probe, options.scene}); // refuses early, before the work
-    read_scene(options);
-    input::Probe probe = load_probe(options.probe, options.input, options.quiet);
-    const compress::Target target = probe_target(options.probe, probe, options.local.target);
-    probe.rgb = {};
+std::uint64_t LocalConversion::memory() const {
+    const std::uint64_t pixels = input::image_pixels(source);
+    return pixels > 0 ? kBaseMemory + pixels * kMemoryOfPixel : 0;
+}
+
+Converted LocalConversion::convert(const Listener& listener) {
+    const LocalOptions local = read_scene(listener.note);
+    const auto [probe, target] = load_target(source, input_, local.target, listener.note);
     Local result;
-    {
-        ProgressBar bar(options.quiet);
-        const Source source{probe.source_name, probe.source_sha256, input::to_string(probe.projection)};
-        try {
-            result = build_local(target, source, options.local, bar.callback());
-        } catch (const std::runtime_error& error) { // the goal is out of reach
-            throw Failure(options.probe + ": " + error.what());
-        }
+    try {
+        result = build_local(target, source_of(probe, input_), local, listener.progress);
+    } catch (const std::runtime_error& error) { // the goal is out of reach
+        throw Failure(source + ": " + error.what());
     }
-    output.write(result.bytes.data(), result.bytes.size());
-    output.commit(check_reads_back);
-
-    std::FILE* out = options.output == "-" ? stderr : stdout;
-    File file;
-    File::from_memory(result.bytes.data(), result.bytes.size(), file);
-    if (options.json) std::fprintf(out, "%s\n", report(options, probe, result, file).dump(2).c_str());
-    else if (!options.quiet) print_text(options, result, out);
-    if (gain(result) < kWorthwhile && !options.quiet)
-        std::fprintf(
-            stderr,
-            "%s: knowing the normal lowers the variance by a factor of %.2f only; `acdf env` would do about as "
-            "well, in a smaller file\n",
-            options.output.c_str(), gain(result));
+    if (gain(result) < kWorthwhile) {
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "knowing the normal lowers the variance by a factor of %.2f only; `acdf env` would do about "
+                      "as well, in a smaller file",
+                      gain(result));
+        listener.note(text);
+    }
+    nlohmann::ordered_json told = report(probe, result);
+    const std::string summary = summary_of(result);
+    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
 
-void add_bins(CLI::App& command, Options& options) {
-    LocalOptions& local = options.local;
+void LocalConversion::add_bins(CLI::App& command) {
+    LocalOptions& local = local_;
     command
         .add_option(
-            "--normals", options.normals,
+            "--normals", normals_,
             "Bins of normals: N divides each edge of an octahedron, 4 N^2 + 2 bins that are interpolated; AxB is "
             "a lat-long grid (phi x theta) whose nearest bin serves, as in the paper, for --no-sharing, with "
             "--no-sharing")
@@ -169,7 +209,7 @@ void add_bins(CLI::App& command, Options& options) {
         ->group("Normals");
     command
         .add_option(
-            "--scene", options.scene,
+            "--scene", scene_,
             "Only what a scene requires: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals (.txt, "
             "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
             "whole environment, unbiased but noisier")
@@ -178,13 +218,13 @@ void add_bins(CLI::App& command, Options& options) {
     const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
     command
         .add_option(
-            "--scene-up", options.scene_input.up,
+            "--scene-up", scene_input_.up,
             "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
         ->transform(CLI::CheckedTransformer(axes).description(""))
         ->option_text("y|z [z]")
         ->group("Normals");
     command
-        .add_flag("--scene-rgb", options.scene_input.rgb_is_normal,
+        .add_flag("--scene-rgb", scene_input_.rgb_is_normal,
                   "Take R, G and B of the scene's image as a normal where no channel is named as one")
         ->group("Normals");
     command
@@ -197,9 +237,9 @@ void add_bins(CLI::App& command, Options& options) {
         ->group("Normals");
 }
 
-void add_size(CLI::App& command, Options& options) {
-    LocalOptions& local = options.local;
-    add_goal(command, local.goal.cells, options.budget, local.goal.variance,
+void LocalConversion::add_size(CLI::App& command) {
+    LocalOptions& local = local_;
+    add_goal(command, local.goal.cells, budget_, local.goal.variance,
              {"Cells of the curves that bins share, about; with --no-sharing: of a bin, in the mean", "N",
               "SIZE [1MiB]", ", in the mean over normals", 16});
     command
@@ -212,11 +252,11 @@ void add_size(CLI::App& command, Options& options) {
         ->group("Size and accuracy");
 }
 
-void add_separate(CLI::App& command, Options& options) {
-    compress::FitOptions& fit = options.local.fit;
+void LocalConversion::add_separate(CLI::App& command) {
+    compress::FitOptions& fit = local_.fit;
     const char* group = "Trees of their own";
     command
-        .add_flag("--no-sharing", options.no_sharing,
+        .add_flag("--no-sharing", no_sharing_,
                   "A tree of its own for each bin, as in the paper, to compare with: larger and noisier")
         ->group(group);
     const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
@@ -227,7 +267,7 @@ void add_separate(CLI::App& command, Options& options) {
         ->transform(CLI::CheckedTransformer(fits).description(""))
         ->option_text("NAME [variance]")
         ->group(group);
-    command.add_option("--knots", options.knots, "Segments of a curve over phi and over theta: as in acdf env")
+    command.add_option("--knots", knots_, "Segments of a curve over phi and over theta: as in acdf env")
         ->option_text("AxB [64x64]")
         ->group(group);
     command.add_option("--eps", fit.epsilon, "Deviation at which a curve has knots enough: as in acdf env")
@@ -245,7 +285,7 @@ void add_separate(CLI::App& command, Options& options) {
                                                              {"centre", compress::BinTarget::centre}};
     command
         .add_option(
-            "--bin-target", options.local.bin_target,
+            "--bin-target", local_.bin_target,
             "What a bin's tree is fitted to: mean (right for all of its normals) or centre (the paper's: biased "
             "for the others)")
         ->transform(CLI::CheckedTransformer(targets).description(""))
@@ -253,40 +293,36 @@ void add_separate(CLI::App& command, Options& options) {
         ->group(group);
 }
 
+void LocalConversion::add_options(CLI::App& command) {
+    command_ = &command;
+    add_projection(command, input_.projection);
+    add_repairs(command, input_);
+    add_bins(command);
+    add_size(command);
+    add_separate(command);
+    add_target_options(command, local_.target);
+    add_codec(command, local_.codec);
+}
+
 } // namespace
 
+std::unique_ptr<Conversion> local_conversion() { return std::make_unique<LocalConversion>(); }
+
 void add_local(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
     CLI::App& command = *program.add_subcommand(
         "local", "Compress an environment map for every normal: clipped at its horizon, times "
                  "the cosine");
-    options->command = &command;
-    command.add_option("PROBE", options->probe, "The environment map: any image OpenImageIO reads")
-        ->required()
-        ->type_name("")
-        ->group("Input");
-    add_projection(command, options->input.projection);
-    add_repairs(command, options->input);
-    add_output(command, options->output, options->force, "The .acdf file to write")->required();
-    add_bins(command, *options);
-    add_size(command, *options);
-    add_separate(command, *options);
-    add_target_options(command, options->local.target);
-    add_codec(command, options->local.codec);
-    add_threads(command, options->threads);
-    add_json(command, options->json);
-    add_quiet(command, options->quiet);
-    command.footer(help_footer(
-        "Prints the exact relative variance of irradiance estimates, mean over 256 random normals (or those of the "
-        "scene), beside that of the probe's full-resolution CDF.",
-        "acdf local probe.exr -o probe.local.acdf\n"
-        "acdf local probe.exr -o small.acdf --budget 128KiB\n"
-        "acdf local probe.exr -o car.acdf --scene car.obj --scene-up y --cosine-share 0.2\n"
-        "acdf local probe.exr -o paper.acdf --no-sharing --normals 25x10 --fit cdf --knots 64x64"));
-    command.callback([options, &exit_code] {
-        run(*options);
-        exit_code = exit_done;
-    });
+    add_conversion(
+        command, local_conversion(),
+        {"PROBE", "The environment map: any image OpenImageIO reads",
+         help_footer("Prints the exact relative variance of irradiance estimates, mean over 256 random normals (or "
+                     "those of the "
+                     "scene), beside that of the probe's full-resolution CDF.",
+                     "acdf local probe.exr -o probe.local.acdf\n"
+                     "acdf local probe.exr -o small.acdf --budget 128KiB\n"
+                     "acdf local probe.exr -o car.acdf --scene car.obj --scene-up y --cosine-share 0.2\n"
+                     "acdf local probe.exr -o paper.acdf --no-sharing --normals 25x10 --fit cdf --knots 64x64")},
+        exit_code);
 }
 
 } // namespace acdf::tools

@@ -30,7 +30,17 @@ struct Environment {
 /// Where a probe came from, for the metadata.
 struct Source {
     std::string name, sha256, projection;
+    std::string reading = {}; ///< how it was read: see reading_text
 };
+
+/// What was made of a probe, for the metadata.
+Source source_of(const input::Probe& probe, const input::ProbeOptions& options);
+
+/// Options of reading in one spelling (option_text.h): "--projection angular ", or empty.
+std::string reading_text(const input::ProbeOptions& options);
+
+/// All options that shape the file, in one spelling: what its `fit.options` tells.
+std::string option_text(const std::string& reading, const EnvironmentOptions& options);
 
 /// Throws std::invalid_argument where the target has no energy, std::runtime_error where the goal is out of reach.
 Environment build_environment(const compress::Target& target, const Source& source,
@@ -40,7 +50,22 @@ Environment build_environment(const compress::Target& target, const Source& sour
 compress::Target probe_target(const std::string& path, const input::Probe& probe,
                               const compress::TargetOptions& options = {});
 
-/// Reads a probe and tells on stderr, unless `quiet`, what was assumed and what was mended. Throws Failure.
+/// Called with what a user should know of a source: one line without a file's name.
+using Note = std::function<void(const std::string&)>;
+
+/// A probe without its pixels, and what is fitted of it.
+struct ProbeTarget {
+    input::Probe probe;
+    compress::Target target;
+};
+
+/// Reads a probe in bands of rows and tells what was assumed and what was mended: memory holds the target, four
+/// bytes a texel for one channel with nearest lookup, but for probes that are no lat-long maps. Throws
+/// input::Error, and Failure where it has no energy.
+ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
+                        const compress::TargetOptions& target_options, const Note& note);
+
+/// Reads a probe, and tells the same on stderr unless `quiet`. Throws input::Error.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
 
 /// The target that a file was fitted to, from its source: what it says of channels and filter. Tells on stderr,

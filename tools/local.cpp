@@ -1,6 +1,7 @@
 #include "local.h"
 
 #include "compress/fit_local.h"
+#include "option_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,28 +16,6 @@ using compress::Goal;
 using compress::NormalBins;
 
 constexpr std::uint32_t kTestNormals = 256;
-
-std::string number(double value, const char* format = "%.9g") {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
-std::string option_text(const LocalOptions& o, const NormalBins& bins) {
-    std::string text =
-        "--normals " + (bins.subdivisions > 0 ? std::to_string(bins.subdivisions)
-                                              : std::to_string(bins.columns) + "x" + std::to_string(bins.rows));
-    if (!o.scene.empty()) text += " --scene";
-    if (!o.sharing) text += " --no-sharing";
-    if (!o.sharing && o.bin_target == compress::BinTarget::centre) text += " --bin-target centre";
-    if (o.cosine_share > 0.0) text += " --cosine-share " + number(o.cosine_share);
-    if (!o.sharing && o.fit.fit != ACDF_FIT_VARIANCE)
-        return text + " --knots " + std::to_string(o.fit.column_segments) + "x" +
-               std::to_string(o.fit.row_segments);
-    if (o.goal.kind == Goal::Kind::budget) return text + " --budget " + std::to_string(o.goal.budget);
-    if (o.goal.kind == Goal::Kind::variance) return text + " --target-variance " + number(o.goal.variance);
-    return text + " --cells " + std::to_string(o.goal.cells);
-}
 
 compress::Description description_of(const compress::Target& target, const Source& source, const LocalOptions& o,
                                      const NormalBins& bins, const measure::LocalAccuracy& accuracy) {
@@ -55,15 +34,14 @@ compress::Description description_of(const compress::Target& target, const Sourc
         d.axes.push_back({"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.rows, 0.0, ACDF_PI});
         d.axes.push_back({"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.columns, ACDF_PI, -ACDF_PI});
     }
-    const auto fixed = [](double value) { return number(std::clamp(value, 0.0, 9.99e99), "%.8e"); };
     d.metadata = {{"tool", "acdf " ACDF_VERSION},
-                  {"fit.options", option_text(o, bins)},
+                  {"fit.options", option_text(source.reading, o)},
                   {"source.name", source.name},
                   {"source.sha256", source.sha256},
                   {"source.projection", source.projection},
-                  {"accuracy.relative_variance", fixed(accuracy.relative_variance)},
-                  {"accuracy.relative_variance_full_cdf", fixed(accuracy.relative_variance_full_cdf)},
-                  {"accuracy.share_above_horizon", fixed(accuracy.share_above_horizon)}};
+                  {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)},
+                  {"accuracy.relative_variance_full_cdf", accuracy_text(accuracy.relative_variance_full_cdf)},
+                  {"accuracy.share_above_horizon", accuracy_text(accuracy.share_above_horizon)}};
     return d;
 }
 
@@ -182,8 +160,9 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
     Local best = at(high);
     while (best.accuracy.relative_variance > options.goal.variance) {
         if (high >= largest)
-            throw std::runtime_error("a relative variance of " + number(options.goal.variance) +
-                                     " is out of reach; 64 MiB have " + number(best.accuracy.relative_variance));
+            throw std::runtime_error("a relative variance of " + option_number(options.goal.variance) +
+                                     " is out of reach; 64 MiB have " +
+                                     option_number(best.accuracy.relative_variance));
         low = high;
         high = std::min(4.0 * high, largest);
         best = at(high);
@@ -223,6 +202,24 @@ Local build_separate(const compress::Target& target, const Source& source, const
 }
 
 } // namespace
+
+std::string option_text(const std::string& reading, const LocalOptions& o) {
+    std::string text = reading + target_text(o.target) + codec_text(o.codec);
+    if (o.subdivisions > 0) text += "--normals " + std::to_string(o.subdivisions) + " ";
+    if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
+    if (!o.scene.empty()) text += o.scene_text.empty() ? "--scene " : o.scene_text + " ";
+    if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
+    if (o.sharing) {
+        if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";
+        return text + goal_text(o.goal);
+    }
+    text += "--no-sharing " + fit_text(o.fit.fit);
+    if (o.bin_target == compress::BinTarget::centre) text += "--bin-target centre ";
+    if (o.fit.order) text += "--order " + std::string(to_string(*o.fit.order)) + " ";
+    if (o.fit.fit == ACDF_FIT_VARIANCE) return text + goal_text(o.goal);
+    text += "--knots " + std::to_string(o.fit.column_segments) + "x" + std::to_string(o.fit.row_segments);
+    return o.fit.epsilon > 0.0 ? text + " --eps " + option_number(o.fit.epsilon) : text;
+}
 
 std::vector<measure::Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count) {
     if (scene.empty()) return measure::random_normals(count);

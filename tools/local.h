@@ -27,8 +27,12 @@ struct LocalOptions {
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
+    std::string scene_text; ///< what `scene` was read from and how, as options in one spelling
     AcdfCodec codec = ACDF_CODEC_NONE;
 };
+
+/// All options that shape the file, in one spelling: what its `fit.options` tells.
+std::string option_text(const std::string& reading, const LocalOptions& options);
 
 struct Local {
     std::vector<std::uint8_t> bytes;

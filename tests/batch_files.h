@@ -1,0 +1,36 @@
+// Libraries of small probes for the tests of acdf batch.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace acdf::test {
+
+/// A lat-long probe of 2 rows x rows texels as a portable float map: noise of `seed` and one bright texel.
+inline void write_small_probe(const std::string& path, std::uint32_t seed, std::uint32_t rows = 8) {
+    std::mt19937 random(seed);
+    std::vector<float> rgb(std::size_t{6} * rows * rows);
+    for (float& v : rgb) v = 0.1f + static_cast<float>(random() % 1024) / 1024.0f;
+    const std::size_t bright = random() % (rgb.size() / 3);
+    for (std::size_t c = 0; c < 3; ++c) rgb[3 * bright + c] = 100.0f;
+    std::ofstream file(path, std::ios::binary);
+    file << "PF\n" << 2 * rows << " " << rows << "\n-1.0\n"; // little-endian
+    file.write(reinterpret_cast<const char*>(rgb.data()), static_cast<std::streamsize>(rgb.size() * sizeof(float)));
+}
+
+/// probe000.pfm to probe<count - 1>.pfm in `folder`, which is made.
+inline void write_small_probes(const std::string& folder, std::uint32_t count, std::uint32_t rows = 8) {
+    std::filesystem::create_directories(folder);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        char name[32];
+        std::snprintf(name, sizeof name, "/probe%03u.pfm", i);
+        write_small_probe(folder + name, i, rows);
+    }
+}
+
+} // namespace acdf::test
