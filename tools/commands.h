@@ -29,12 +29,16 @@ void add_env(CLI::App& program, int& exit_code);
 void add_brdf(CLI::App& program, int& exit_code);
 void add_local(CLI::App& program, int& exit_code);
 void add_table(CLI::App& program, int& exit_code);
+void add_batch(CLI::App& program, int& exit_code);
 void add_measure(CLI::App& program, int& exit_code);
 void add_info(CLI::App& program, int& exit_code);
 void add_validate(CLI::App& program, int& exit_code);
 void add_sample(CLI::App& program, int& exit_code);
 void add_pdf(CLI::App& program, int& exit_code);
 void add_plot(CLI::App& program, int& exit_code);
+void add_scanline(CLI::App& program, int& exit_code);
+void add_sweep(CLI::App& program, int& exit_code);
+void add_render(CLI::App& program, int& exit_code);
 
 /// The whole program, as main calls it and `demo` calls it in turn.
 int run_program(int argc, char** argv);

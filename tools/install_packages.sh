@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs the packages of tools/packages.txt that are missing (Debian 12 and its kin). Asks for nothing, changes
-# nothing where all are there. Used by tools/demo.sh and tests/run.sh.
+# Installs the packages of tools/packages.txt, or of the list given, that are missing (Debian 12 and its kin). Asks for
+# nothing, changes nothing where all are there. Used by tools/demo.sh, tests/run.sh and tests/farm.sh.
 set -euo pipefail
 
-list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
+list=${1:-"$(dirname "${BASH_SOURCE[0]}")/packages.txt"}
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "This script installs packages with apt-get, which this system does not have." >&2

@@ -22,9 +22,10 @@ struct Command {
 };
 
 constexpr Command commands[] = {
-    {"Start here", add_demo}, {"Make", add_env},     {"Make", add_local},       {"Make", add_brdf},
-    {"Make", add_table},      {"Inspect", add_info}, {"Inspect", add_validate}, {"Inspect", add_measure},
-    {"Inspect", add_plot},    {"Use", add_sample},   {"Use", add_pdf},
+    {"Start here", add_demo}, {"Make", add_env},         {"Make", add_local},       {"Make", add_brdf},
+    {"Make", add_table},      {"Inspect", add_info},     {"Inspect", add_validate}, {"Inspect", add_measure},
+    {"Inspect", add_plot},    {"Inspect", add_scanline}, {"Inspect", add_render},   {"Inspect", add_sweep},
+    {"Use", add_sample},      {"Use", add_pdf},          {"Make", add_batch},
 };
 
 constexpr const char* description =

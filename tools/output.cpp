@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include "commands.h"
+#include "temporary.h"
 
 #include <atomic>
 #include <cerrno>
@@ -8,6 +9,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <set>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -18,7 +21,7 @@ namespace {
 
 // ---- removal of temporary files when a signal ends the program -----------------------------------------
 
-std::atomic<const char*> doomed[8]; // paths to unlink; lock-free, as a signal handler needs
+std::atomic<const char*> doomed[256]; // paths to unlink; lock-free, as a signal handler needs
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 void remove_and_die(int signal) {
@@ -30,6 +33,7 @@ void remove_and_die(int signal) {
 
 void handle_signals() {
     static const bool once = [] {
+        std::signal(SIGXFSZ, SIG_IGN); // a limit on file sizes is an error of write, told like a full disk
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
             struct sigaction action = {};
             sigaction(signal, nullptr, &action);
@@ -65,7 +69,7 @@ void keep_on_signal(const std::string& path) {
 }
 
 [[noreturn]] void fail_errno(const std::string& path, const std::string& what, int error) {
-    const char* help = error == ENOSPC || error == EDQUOT ? "; free some space or write elsewhere"
+    const char* help = error == ENOSPC || error == EDQUOT || error == EFBIG ? "; free some space or write elsewhere"
                        : error == EACCES || error == EPERM || error == EROFS
                            ? "; choose a folder that you may write to"
                            : "";
@@ -80,6 +84,18 @@ bool same_file(const struct stat& a, const std::string& path) {
 std::string folder_of(const std::string& path) {
     const std::string folder = std::filesystem::path(path).parent_path().string();
     return folder.empty() ? "." : folder;
+}
+
+// Where a path leads, also through links to what does not exist yet: the link stays, and its target is made.
+std::string follow_links(const std::string& path) {
+    std::filesystem::path at = path;
+    std::error_code error;
+    for (int links = 0; std::filesystem::is_symlink(at, error); ++links) {
+        if (links == 40) fail(path, "is a symbolic link in a circle; choose another output");
+        at = at.parent_path() / std::filesystem::read_symlink(at, error); // an absolute one stands alone
+        if (error) fail(path, "cannot read the symbolic link: " + error.message());
+    }
+    return at.string();
 }
 
 unsigned default_mode() {
@@ -107,6 +123,14 @@ bool rename_file(const std::string& from, const std::string& to, bool force) {
         return false;
     }
     return std::rename(from.c_str(), to.c_str()) == 0;
+}
+
+// Once a folder: programs that write many files to one do not list it for each.
+void sweep(const std::string& folder) {
+    static std::mutex mutex;
+    static std::set<std::string> swept;
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (swept.insert(folder).second) remove_stale_temporaries(folder);
 }
 
 std::vector<std::uint8_t> read_descriptor(int fd, const std::string& path) {
@@ -144,20 +168,17 @@ Output::Output(std::string path, bool force, const std::vector<std::string>& inp
         }
         if (!force_) fail(path_, "exists already; use --force to replace it");
     }
-    std::error_code ignored;
-    if (const auto resolved = std::filesystem::canonical(path_, ignored); !ignored) target_ = resolved.string();
+    target_ = follow_links(path_);
     const std::string folder = folder_of(target_);
     if (access(folder.c_str(), F_OK) != 0) fail(path_, "the folder " + folder + " does not exist; create it first");
 
     mode_ = exists ? status.st_mode & 07777u : default_mode();
     const std::string extension = std::filesystem::path(target_).extension().string();
-    temporary_ = folder + "/.acdf-XXXXXX" + extension;
-    const int fd = mkstemps(temporary_.data(), static_cast<int>(extension.size()));
-    if (fd < 0) {
-        temporary_.clear();
-        fail_errno(path_, "cannot create a file in " + folder, errno);
-    }
+    sweep(folder);
+    const int fd = create_temporary(folder, extension, temporary_);
+    if (fd < 0) fail_errno(path_, "cannot create a file in " + folder, errno);
     remove_on_signal(temporary_);
+    lock_ = fcntl(fd, F_DUPFD_CLOEXEC, 0); // the lock outlives the stream
     stream_ = fdopen(fd, "wb");
 }
 
@@ -166,6 +187,12 @@ Output::~Output() {
     if (temporary_.empty()) return;
     unlink(temporary_.c_str());
     keep_on_signal(temporary_);
+    unlock();
+}
+
+void Output::unlock() {
+    if (lock_ >= 0) ::close(lock_);
+    lock_ = -1;
 }
 
 void Output::write(const void* data, std::size_t size) {
@@ -206,6 +233,7 @@ void Output::commit(const Verify& verify) {
     }
     keep_on_signal(temporary_);
     temporary_.clear();
+    unlock();
     sync_folder(folder_of(target_));
 }
 

@@ -1,7 +1,7 @@
 // Options of every subcommand that fits a probe: whose noise counts, and how the renderer looks the probe up.
 #pragma once
 
-#include "compress/target.h"
+#include "option_text.h"
 
 #include <CLI/CLI.hpp>
 
@@ -10,18 +10,6 @@
 #include <vector>
 
 namespace acdf::tools {
-
-/// A name on the command line for what a renderer is noisy in.
-struct ChannelName {
-    const char* name;
-    AcdfChannels channels;
-    compress::ChannelWeights weights;
-};
-constexpr ChannelName channel_names[] = {
-    {"luminance", ACDF_CHANNELS_WEIGHTED, {}},          {"rgb", ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}},
-    {"max", ACDF_CHANNELS_LARGEST, {1.0, 1.0, 1.0}},    {"red", ACDF_CHANNELS_WEIGHTED, {1.0, 0.0, 0.0}},
-    {"green", ACDF_CHANNELS_WEIGHTED, {0.0, 1.0, 0.0}}, {"blue", ACDF_CHANNELS_WEIGHTED, {0.0, 0.0, 1.0}},
-};
 
 inline void add_target_options(CLI::App& command, compress::TargetOptions& target) {
     std::vector<std::string> names;

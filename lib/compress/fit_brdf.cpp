@@ -226,7 +226,7 @@ BrdfFit hollow(std::uint32_t thetas, std::uint32_t azimuths, std::uint32_t cells
     out.rows.codebook.resize(256);
     out.rows.codes.resize(std::size_t{out.bins()} * (cells - 1));
     out.shares.resize(out.bins());
-    out.tree.bytes.resize(2);
+    out.tree.bytes = {0, 1 << (ACDF_CURVE_SEGMENTS_SHIFT - 8)}; // a curve of one segment, which `store` may decode
     out.tree.roots.resize(out.bins());
     return out;
 }

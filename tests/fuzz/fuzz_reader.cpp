@@ -12,35 +12,6 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace {
 
-// The chunks of a file whose table and payloads lie inside it; empty where they do not.
-FileSpec taken_apart(const Bytes& file) {
-    FileSpec spec;
-    if (file.size() < header_size) return spec;
-    const std::uint64_t count = get(file, 36, 4);
-    if (count > 64 || chunk_at(static_cast<std::size_t>(count)) > file.size()) return spec;
-    spec.kind = static_cast<std::uint32_t>(get(file, 24, 4));
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint64_t offset = get(file, chunk_at(i) + 16, 8), stored = get(file, chunk_at(i) + 24, 8);
-        const auto codec = get(file, chunk_at(i) + 8, 4);
-        if (offset > file.size() || stored > file.size() - offset) return FileSpec();
-        const auto* begin = file.data() + offset;
-        ChunkSpec chunk;
-        chunk.type.assign(reinterpret_cast<const char*>(file.data() + chunk_at(i)), 4);
-        chunk.flags = static_cast<std::uint32_t>(get(file, chunk_at(i) + 4, 4));
-        chunk.zlib = codec == 1 || codec == 2;
-        if (codec == 2) chunk.planes_of = get(file, chunk_at(i) + 32, 8);
-        chunk.raw.assign(begin, begin + stored);
-        if (chunk.zlib) {
-            uLongf size = 1 << 16;
-            chunk.raw.resize(size);
-            if (uncompress(chunk.raw.data(), &size, begin, static_cast<uLong>(stored)) != Z_OK) return FileSpec();
-            chunk.raw.resize(size);
-        }
-        spec.chunks.push_back(chunk);
-    }
-    return spec;
-}
-
 // Mutates one payload, with its length, and writes the file anew.
 Bytes mutated_payload(FileSpec spec, std::size_t max_size, FuzzRandom& rng) {
     ChunkSpec& chunk = spec.chunks[rng.next() % spec.chunks.size()];

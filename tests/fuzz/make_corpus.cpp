@@ -1,4 +1,5 @@
-// Writes the seeds of fuzz_reader: small valid files that use everything. make_corpus FOLDER
+// Writes the seeds of fuzz_reader, small valid files that use everything, to FOLDER/fuzz_reader: make_corpus FOLDER
+// (Those of the other fuzzers are in seeds/.)
 #include "brdf_builder.h"
 #include "local_random.h"
 #include "reader_planes.h"
@@ -21,7 +22,7 @@ void write(const std::filesystem::path& path, const Bytes& bytes) {
 
 int main(int argc, char** argv) {
     if (argc != 2) return std::fprintf(stderr, "usage: make_corpus FOLDER\n"), 2;
-    const std::filesystem::path folder = argv[1];
+    const std::filesystem::path folder = std::filesystem::path(argv[1]) / "fuzz_reader";
     std::filesystem::create_directories(folder);
     EnvironmentSpec complete = complete_environment();
     write(folder / "smallest", EnvironmentSpec().encode());
