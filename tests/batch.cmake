@@ -1,7 +1,7 @@
 # acdf batch: its parts, and the program as a user runs it.
 if(TARGET acdf_batch)
     acdf_add_test(test_batch
-        SOURCES batch_command.cpp batch_parts.cpp
+        SOURCES batch_command.cpp batch_parts.cpp batch_run.cpp
         LIBRARIES acdf_batch acdf_compress nlohmann_json::nlohmann_json)
     target_compile_definitions(test_batch PRIVATE ACDF_PROGRAM="$<TARGET_FILE:acdf>")
     add_dependencies(test_batch acdf)

@@ -178,6 +178,7 @@ TEST_F(BatchCommand, FilesAreTheSameForAnyThreadsAndJobs) {
         std::vector<std::string> arguments = run;
         arguments.insert(arguments.end(), {"--threads", threads, "--jobs", jobs});
         EXPECT_EQ(report(arguments)["done"], 10);
+        EXPECT_EQ(messages, "");
         if (expected.empty()) expected = files_in(out);
         else EXPECT_EQ(files_in(out), expected) << threads << " threads, " << jobs << " jobs";
     }

@@ -73,7 +73,6 @@ TEST(Kill, atAnyMomentTheFileIsWhole) {
     std::printf("left over after %zu of 200\n", litters);
     EXPECT_GT(litters, 10u) << "else no moment within a write was met";
     EXPECT_LE(most, 1u) << "they must not pile up";
-        << "they must not pile up"; // one of the last, and one that was ended before it had removed that
     EXPECT_EQ(in_child([&] {
                   acdf::tools::Output output(out, true);
                   output.write("the end");

@@ -133,7 +133,7 @@ TEST(RenderSamplers, OvertakingsAreThoseBeyondTheNoise) {
     Comparison hidden, open;
     open.samplers = {made("a", false, 1.0, 1.0), made("b", false, 0.1, 1.0), made("c", true, 0.1005, 1.0)};
     hidden.samplers = {made("a", false, 1.0, 1.0), made("b", false, 2.0, 1.0), made("c", true, 0.0995, 1.0)};
-    const std::vector<Overtaking> found = overtakings(hidden, open);
+    const std::vector<Overtaking> found = overtakings(hidden, open, gain_at_equal_samples);
     ASSERT_EQ(found.size(), 1u); // that of b and c was within the noise in the open
     EXPECT_EQ(found[0].winner->spec.text, "a");
     EXPECT_EQ(found[0].loser->spec.text, "b");

@@ -3,7 +3,8 @@
 #   0. checks the formatting,
 #   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, and runs the tests on synthetic data,
 #   2. fuzzes the reader and every parser of our own for a minute each,
-#   3. builds optimised with warnings as errors and runs all tests, those on real data too where it is present.
+#   3. builds optimised with warnings as errors, and compares the files that both builds make byte for byte,
+#   4. runs all tests of the optimised build, those on real data too where it is present.
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -30,9 +31,13 @@ run_fuzzers() {
     ctest --preset asan --parallel 2 --label-regex fuzz
 }
 
-run_all_tests() {
+run_all_builds_alike() {
     cmake --preset release
     cmake --build --preset release --parallel "$jobs"
+    tests/same_bytes.sh build/release/tools/acdf build/asan/tools/acdf
+}
+
+run_all_tests() {
     # ctest lists skipped tests after its summary; the summary is to be the last line.
     local status=0
     ctest --preset release --parallel "$jobs" 2>&1 | tee "$log" || status=$?
@@ -48,5 +53,7 @@ step "1. Tests with sanitizers, in build/asan"
 run_sanitized_tests
 step "2. A minute of each fuzzer, in build/asan"
 run_fuzzers
-step "3. All tests, optimised, in build/release"
+step "3. The same bytes from both builds, with any number of threads"
+run_all_builds_alike
+step "4. All tests, optimised, in build/release"
 run_all_tests

@@ -94,15 +94,16 @@ void expect_valid(const nlohmann::json& schema, const nlohmann::json& value, con
         else any = is(schema["type"]);
         EXPECT_TRUE(any) << at << ": " << value.dump() << " is not " << schema["type"].dump();
     }
-    if (schema.contains("enum"))
+    if (schema.contains("enum")) {
         EXPECT_NE(std::find(schema["enum"].begin(), schema["enum"].end(), value), schema["enum"].end()) << at;
+    }
     if (value.is_object() && schema.contains("properties")) {
         for (const auto& [key, each] : value.items()) {
             ASSERT_TRUE(schema["properties"].contains(key)) << at << "." << key << " is not in the schema";
             expect_valid(schema["properties"][key], each, at + "." + key);
         }
-        if (schema.contains("required"))
-            for (const auto& key : schema["required"]) EXPECT_TRUE(value.contains(key)) << at << " lacks " << key;
+        for (const auto& key : schema.value("required", nlohmann::json::array()))
+            EXPECT_TRUE(value.contains(key)) << at << " lacks " << key;
     }
     if (value.is_array() && schema.contains("items"))
         for (const auto& each : value) expect_valid(schema["items"], each, at + "[]");

@@ -66,9 +66,9 @@ public:
 
     Conversion& of(const BatchJob& job) {
         if (!last_ || job.kind != job_.kind || job.options != job_.options || job.base != job_.base) {
-            last_.reset();
-            last_ = std::make_unique<JobConversion>(job, make_);
-            text_ = (*last_)->option_text(); // reads a scene
+            auto next = std::make_unique<JobConversion>(job, make_);
+            text_ = (*next)->option_text(); // reads a scene
+            last_ = std::move(next);
             job_ = job;
         }
         (*last_)->source = job.source;

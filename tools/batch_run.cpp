@@ -151,7 +151,7 @@ private:
     }
 
     void work() {
-        tbb::task_arena arena(std::max(1, limits_.threads));
+        tbb::task_arena arena; // of all cores: set_running() says how many serve it
         std::unique_lock lock(mutex_);
         bool running = false;
         const auto set = [&](bool now) {

@@ -13,9 +13,9 @@ namespace acdf::tools {
 using Verify = std::function<void(const std::uint8_t* data, std::size_t size)>;
 
 /// One output file. The bytes go to a temporary file beside it, which is fsynced and renamed by commit(). Where
-/// commit() is not reached, also because of SIGINT, SIGTERM or SIGHUP, the temporary file is removed. What SIGKILL or
-/// a power cut leaves, the next program that writes to that folder removes: temporary files that no running program
-/// has locked (temporary.h).
+/// commit() is not reached, also because of SIGINT, SIGTERM or SIGHUP, the temporary file is removed. What SIGKILL
+/// or a power cut leaves, the next program that writes to that folder removes: temporary files that no running
+/// program has locked (temporary.h).
 /// "-" is stdout, and what exists but is no regular file (a pipe, a device) is written to directly.
 class Output {
 public:

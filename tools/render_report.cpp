@@ -54,7 +54,7 @@ std::string format(const char* text, ...) {
     return line;
 }
 
-std::string gain(const measure::Interval& interval) {
+std::string gain_text(const measure::Interval& interval) {
     return format("%.3g [%.3g, %.3g]", interval.value, interval.low, interval.high);
 }
 
@@ -72,12 +72,13 @@ std::string table(const Comparison& comparison, bool timed) {
     out += format(" %8s\n", "bias/se");
     for (const Compared& one : comparison.samplers) {
         const measure::Interval& v = one.relative_variance;
-        out += format("%-*s %10s %5.1f%% %6.1f %22s %22s", width, one.spec.text.c_str(),
-                      to_readable_size(one.bytes).c_str(), 100.0 * one.share_above, one.shadow_rays,
-                      format("%.4g +- %.2g", v.value, v.high - v.value).c_str(), gain(one.equal_samples).c_str());
+        out +=
+            format("%-*s %10s %5.1f%% %6.1f %22s %22s", width, one.spec.text.c_str(),
+                   to_readable_size(one.bytes).c_str(), 100.0 * one.share_above, one.shadow_rays,
+                   format("%.4g +- %.2g", v.value, v.high - v.value).c_str(), gain_text(one.equal_samples).c_str());
         if (timed)
             out += format(" %10.3g %22s", 1e-3 * measure::mean_interval(one.nanoseconds).value,
-                          gain(one.equal_time).c_str());
+                          gain_text(one.equal_time).c_str());
         out += format(" %+8.1f\n", one.bias_standard_errors);
     }
     for (const std::string& sentence : verdict(comparison, timed)) out += sentence + "\n";
@@ -101,12 +102,21 @@ std::string joined(const std::vector<std::string>& parts) {
     return out;
 }
 
-std::string change_text(const RenderRun& run) {
+std::string change_text(const RenderRun& run, Gain gain, const char* equal) {
     std::vector<std::string> pairs;
-    for (const Overtaking& pair : overtakings(run.comparison, *run.in_the_open))
+    for (const Overtaking& pair : overtakings(run.comparison, *run.in_the_open, gain))
         pairs.push_back("'" + pair.winner->spec.text + "' overtakes '" + pair.loser->spec.text + "'");
-    if (pairs.empty()) return "What hides light changes no order that is beyond the noise of this run.";
-    return "What hides light changes the ranking: " + joined(pairs) + ".";
+    const std::string where = std::string("At equal ") + equal + " what hides light changes ";
+    if (pairs.empty()) return where + "no order beyond the noise of this run.";
+    return where + "the ranking: " + joined(pairs) + ".";
+}
+
+/// Pairs [winner, loser] where light is hidden.
+ordered_json overtakings_json(const RenderRun& run, Gain gain) {
+    ordered_json out = ordered_json::array();
+    for (const Overtaking& pair : overtakings(run.comparison, *run.in_the_open, gain))
+        out.push_back({pair.winner->spec.text, pair.loser->spec.text});
+    return out;
 }
 
 } // namespace
@@ -130,9 +140,8 @@ ordered_json render_json(const LoadedScene& scene, const RenderRun& run) {
     if (run.in_the_open) {
         out["nothing_hidden"] = comparison_json(*run.in_the_open, o.timing);
         out["nothing_hidden"]["ranking"] = ranking(*run.in_the_open);
-        out["overtakings"] = ordered_json::array(); // [winner, loser] where light is hidden
-        for (const Overtaking& pair : overtakings(run.comparison, *run.in_the_open))
-            out["overtakings"].push_back({pair.winner->spec.text, pair.loser->spec.text});
+        out["overtakings_equal_samples"] = overtakings_json(run, gain_at_equal_samples);
+        if (o.timing) out["overtakings_equal_time"] = overtakings_json(run, gain_at_equal_time);
     }
     return out;
 }
@@ -150,7 +159,8 @@ std::string render_table(const LoadedScene& scene, const RenderRun& run) {
     const auto hidden = ranking(run.comparison), open = ranking(*run.in_the_open);
     out += "\nRanking by variance, with what hides light: " + joined(hidden) + "\n";
     out += "and with nothing in the way:                " + joined(open) + "\n";
-    out += change_text(run) + "\n";
+    out += change_text(run, gain_at_equal_samples, "samples") + "\n";
+    if (o.timing) out += change_text(run, gain_at_equal_time, "time") + "\n";
     return out;
 }
 

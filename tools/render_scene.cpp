@@ -101,8 +101,6 @@ std::string gain_text(const measure::Interval& gain) {
     return text;
 }
 
-using Gain = measure::Interval (*)(const Compared& a, const Compared& b);
-
 const Compared* best_of(const std::vector<Compared>& samplers, bool ours, Gain gain) {
     const Compared* best = nullptr;
     for (const Compared& one : samplers)
@@ -203,12 +201,12 @@ std::vector<std::string> verdict(const Comparison& comparison, bool timed) {
     return out;
 }
 
-std::vector<Overtaking> overtakings(const Comparison& hidden, const Comparison& open) {
+std::vector<Overtaking> overtakings(const Comparison& hidden, const Comparison& open, Gain gain) {
     std::vector<Overtaking> out;
     for (std::size_t a = 0; a < hidden.samplers.size(); ++a)
         for (std::size_t b = 0; b < hidden.samplers.size(); ++b)
-            if (a != b && gain_at_equal_samples(hidden.samplers[a], hidden.samplers[b]).low > 1.0 &&
-                gain_at_equal_samples(open.samplers[b], open.samplers[a]).low > 1.0)
+            if (a != b && gain(hidden.samplers[a], hidden.samplers[b]).low > 1.0 &&
+                gain(open.samplers[b], open.samplers[a]).low > 1.0)
                 out.push_back({&hidden.samplers[a], &hidden.samplers[b]});
     return out;
 }

@@ -82,12 +82,13 @@ Comparison compare(const measure::Scene& scene, const std::vector<measure::Scene
 /// One sentence each: who is best by equal samples and by equal time, and whether that is sure.
 std::vector<std::string> verdict(const Comparison& comparison, bool timed);
 
-/// Two samplers whose order by variance is another where light is hidden, beyond the noise of both runs.
+/// Two samplers whose order is another where light is hidden, beyond the noise of both runs.
 struct Overtaking {
     const Compared* winner = nullptr; ///< where light is hidden
     const Compared* loser = nullptr;
 };
-/// `hidden` and `open` have the same samplers.
-std::vector<Overtaking> overtakings(const Comparison& hidden, const Comparison& open);
+/// By `gain`, one of the two above; `hidden` and `open` have the same samplers.
+using Gain = measure::Interval (*)(const Compared& a, const Compared& b);
+std::vector<Overtaking> overtakings(const Comparison& hidden, const Comparison& open, Gain gain);
 
 } // namespace acdf::tools
