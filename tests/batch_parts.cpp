@@ -148,7 +148,7 @@ TEST(BatchShards, AreAllJobsOnceAndBalanced) {
 
 TEST(BatchShards, DoNotDependOnTheOrderOfJobs) {
     std::vector<BatchJob> jobs;
-    for (int i = 0; i < 60; ++i) jobs.push_back(job("j" + std::to_string(i), 1000 * (i / 7)));
+    for (std::uint64_t i = 0; i < 60; ++i) jobs.push_back(job("j" + std::to_string(i), 1000 * (i / 7)));
     std::vector<BatchJob> other(jobs.rbegin(), jobs.rend());
     std::set<std::string> a, b;
     for (const BatchJob& mine : jobs_of_shard(jobs, {2, 5})) a.insert(mine.output);

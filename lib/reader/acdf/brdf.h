@@ -229,7 +229,7 @@ ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float
 /* Share of light from wo that is reflected: of the stored views, interpolated. 0 for wo below the surface. */
 ACDF_FN double acdf_brdf_albedo(const AcdfBrdf* brdf, const float wo[3]) {
     AcdfBrdfView view;
-    return acdf_brdf_view(brdf, wo, &view) ? view.albedo : 0.0;
+    return acdf_brdf_view(brdf, wo, &view) ? acdf_clamp(view.albedo, 0.0, 0x1.fffffffffffffp1023) : 0.0;
 }
 
 /* Reflects wo at the half-vector of a position. `reach`: rounding wi to float moves its position by less. A float

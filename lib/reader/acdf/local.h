@@ -344,10 +344,12 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     AcdfNormalBins bins;
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
-    if (point.what == ACDF_LOCAL_BLEND) return local->environment.total * point.sum / point.length;
+    if (point.what == ACDF_LOCAL_BLEND)
+        return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
     if (point.root == local->environment.root) return local->environment.total;
-    return local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share;
+    return acdf_clamp(local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share, 0.0,
+                      0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
 }
 
 /* Whether the bins of a normal are stored. */
