@@ -87,7 +87,7 @@ ACDF_FN int acdf_brdf_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView
     const uint32_t columns = brdf->views->phi_count;
     uint32_t node[2], column[2];
     double t, s = 0.0, largest = 0.0;
-    if (!(length2 > 0.999 && length2 < 1.001 && z > 0.0)) return 0;
+    if (!acdf_are_finite(wo) || !(length2 > 0.999 && length2 < 1.001 && z > 0.0)) return 0;
     view->wo[0] = x;
     view->wo[1] = y;
     view->wo[2] = z;
@@ -134,7 +134,7 @@ ACDF_FN int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double h
     half[2] = view->wo[2] + z;
     place->length = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
     place->dot = fabs(view->wo[0] * half[0] + view->wo[1] * half[1] + view->wo[2] * half[2]);
-    return length2 > 0.999 && length2 < 1.001 && place->length > 1e-30;
+    return acdf_are_finite(wi) && length2 > 0.999 && length2 < 1.001 && place->length > 1e-30;
 }
 
 /* atan2(y, x) / pi for y >= 0 as acdf_atan2pi has it, but for rounding and without branches: the octant of a

@@ -339,7 +339,8 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
     range[0].tilt = range[1].tilt = 0.0;
 }
 
-/* Whether numbers are neither NaN nor infinite, by their bits: compilers that are told that there are no such numbers
+/* Whether numbers are neither NaN nor infinite, by their bits: compilers that are told that there are no such
+ * numbers
  * (-ffast-math) leave out comparisons that tell. */
 ACDF_FN int acdf_is_finite(double x) {
     uint64_t bits;
