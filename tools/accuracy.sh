@@ -14,7 +14,7 @@ sections=(e1 e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_grace e4_stpeters e4
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
-jq_lib='def sig: if . == null then "–" elif . == 0 then "0" else (. as $x | ((fabs|log10|floor) - 2) as $e | ($x / pow(10; $e) | round) * pow(10; $e) | tostring | if test("e") or (length > 7) then ($x * 1e6 | round / 1e6 | tostring) else . end) end;
+jq_lib='def sig: if . == null then "–" elif . == 0 then "0" else . as $x | ((fabs|log10|floor) - 2) as $e | (if $e < 0 then (($x * pow(10; -$e) | round) / pow(10; -$e)) else (($x / pow(10; $e) | round) * pow(10; $e)) end) | tostring end;
 def interval: "\(.value|sig) (\(.low|sig)–\(.high|sig))";
 def percent: "\(. * 1000 | round / 10) %";
 def size: if . == 0 then "–" elif . >= 1048576 then "\(. / 104857.6 | round / 10) MiB" else "\(. / 102.4 | round / 10) KiB" end;'

@@ -301,8 +301,7 @@ void add_render(CLI::App& program, int& exit_code) {
         "see, all is done again without anything in the way of light.",
         "acdf render --scene tools/scenes/demo.json -o out\n"
         "acdf render --scene tools/scenes/e4-grace.json --data ~/probes -o out --size 160x120\n"
-        "acdf render --scene my.json -o out --sampler full-cdf --sampler local:1MB --sampler "
-        "'mis(local:1MB,cosine)'\n"
+        "acdf render --scene my.json -o out --sampler full-cdf --sampler 'mis(local:1MB,cosine)'\n"
         "acdf render --scene my.json -o out --shadow-ray-ns 500 --json"));
     command.callback([options, &exit_code] {
         run(*options);

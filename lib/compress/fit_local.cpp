@@ -111,7 +111,8 @@ class TileLight {
 public:
     TileLight(const Target& target, const TileTree& tiles, const TileCascade& cascade,
               const std::vector<AcdfLight>& lights)
-        : target_(target), tiles_(tiles), points_(tiles.tiles.size()), least_(tiles.tiles.size(), 0.0) {
+        : target_(target), tiles_(tiles), points_(tiles.tiles.size()), lit_(tiles.tiles.size()),
+          least_(tiles.tiles.size(), 0.0) {
         std::vector<bool> is_light(points_.size(), false);
         for (const AcdfLight& light : lights) is_light[light.tile] = true;
         tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t t) {
@@ -123,6 +124,7 @@ public:
                 // mu / P times the integral of g^2 cos^2: cost of tile . cost of cell . cos^2.
                 const double amount = cost * part.moments.cost();
                 if (!(amount > 0.0)) return;
+                lit_[t].push_back(part.box);
                 for_each_block(target, part.box, kPointStep, [&](const Box& block, double share) {
                     points_[t].push_back({centre(target, block), amount * share});
                 });
@@ -140,16 +142,24 @@ public:
                 sum += p.amount * cosine * cosine;
             }
             out[t] = std::sqrt(sum);
-            if (out[t] < least_[t] && largest_cosine(target_, tiles_.tiles[t], normal) > -kHorizonMargin)
-                out[t] = least_[t];
+            if (out[t] < least_[t] && seen(t, normal)) out[t] = least_[t];
         }
         return out;
     }
 
 private:
+    /// Whether any cell with light in it reaches above the horizon.
+    bool seen(std::size_t t, const Direction& normal) const {
+        if (!(largest_cosine(target_, tiles_.tiles[t], normal) > -kHorizonMargin)) return false;
+        return std::any_of(lit_[t].begin(), lit_[t].end(), [&](const Box& cell) {
+            return largest_cosine(target_, cell, normal) > -kHorizonMargin;
+        });
+    }
+
     const Target& target_;
     const TileTree& tiles_;
     std::vector<std::vector<LightPoint>> points_;
+    std::vector<std::vector<Box>> lit_; ///< cells of each tile that have light
     std::vector<double> least_;
 };
 
