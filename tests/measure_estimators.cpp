@@ -168,7 +168,7 @@ TEST(EstimatorVariance, MisOfASamplerWithItselfIsThatSampler) {
                 Tally tally_a, tally_b;
                 const Rgb x = single->estimate(facing(n), lit, a, tally_a);
                 const Rgb y = mis->estimate(facing(n), lit, b, tally_b);
-                for (int k = 0; k < 3; ++k) ASSERT_NEAR(x[k], y[k], 1e-6 * x[k]);
+                for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(x[k], y[k], 1e-6 * x[k]);
                 ASSERT_EQ(tally_a.samples, tally_b.samples);
                 ASSERT_EQ(tally_a.shadow_rays, tally_b.shadow_rays);
             }

@@ -58,7 +58,8 @@ TEST_F(ScanlineCommand, ReportsTheRowAskedFor) {
 }
 
 TEST_F(ScanlineCommand, FactorsAreThoseOfTheirPoints) {
-    for (const Json& point : report({probe})["points"])
+    const Json told = report({probe});
+    for (const Json& point : told["points"])
         for (const char* fit : {"cdf", "pdf", "variance"}) {
             const Json& gain = point[fit];
             EXPECT_LE(gain["segments"], point["segments"]);
