@@ -291,7 +291,10 @@ TEST_P(FineMaps, IrradianceIsAboutRight) {
     for (int i = 0; i < 40; ++i) {
         const Normal n = random_direction(random);
         const double told = view.irradiance(n.data()), exact = exact_irradiance(map_->target, n.data());
-        if (!view.stored(n.data())) {
+        if (told == 0.0) {
+            EXPECT_EQ(exact, 0.0) << "light that a normal sees is never forgotten";
+            EXPECT_EQ(view.sample(n.data(), uniform(random), uniform(random)).pdf, 0.0f);
+        } else if (!view.stored(n.data())) {
             EXPECT_EQ(told, view.environment().total());
         } else if (GetParam().options.sharing) {
             // Weights are root mean squares, which are no less than means, and so is what is interpolated.
