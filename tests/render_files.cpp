@@ -101,7 +101,9 @@ TEST(RenderSceneFile, MistakesAreNamedWithTheirPlace) {
         EXPECT_EQ(scene_error(json.dump()), std::string("the scene: lacks '") + key + "'");
     }
     Json unseen = small();
-    unseen["objects"] = {unseen["objects"][2]};
+    const Json last = unseen["objects"][2];
+    unseen["objects"] = Json::array();
+    unseen["objects"].push_back(last);
     EXPECT_EQ(scene_error(unseen.dump()), "objects: has nothing that is seen");
 }
 
