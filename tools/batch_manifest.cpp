@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 
@@ -40,13 +41,14 @@ Json parse_line(std::string_view text) {
     }
 }
 
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
 std::string text_of(const Json& value, const char* key) {
     if (!value.is_string()) fail(std::string("'") + key + "' is to be a text, not " + value.type_name());
     std::string text = value.get<std::string>();
     if (text.empty()) fail(std::string("'") + key + "' is empty");
-    for (const char c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            fail(std::string("'") + key + "' has a control character");
+    if (std::any_of(text.begin(), text.end(), is_control))
+        fail(std::string("'") + key + "' has a control character");
     return text;
 }
 
@@ -54,6 +56,8 @@ std::string text_of(const Json& value, const char* key) {
 std::vector<std::string> options_of_object(const Json& object) {
     std::vector<std::string> options;
     for (const auto& [name, value] : object.items()) {
+        if (std::any_of(name.begin(), name.end(), is_control))
+            fail("the name of an option has a control character");
         if (name.empty() || name[0] == '-' || name.find_first_of("= \t") != std::string::npos)
             fail("'" + name + "' is no name of an option; write it without dashes");
         if (value.is_string()) options.push_back("--" + name + "=" + text_of(value, name.c_str()));
