@@ -1,4 +1,5 @@
 // The frozen files of every version: format/make_golden.cpp makes those of the present one.
+#include "golden_numbers.h"
 #include <acdf/reader.h>
 
 #include <gtest/gtest.h>
@@ -38,20 +39,12 @@ protected:
         const fs::path path = kGolden / (std::string(GetParam()) + ".acdf");
         const acdf::Status status = acdf::File::open(path.c_str(), file_);
         ASSERT_TRUE(status.ok()) << status.message;
-        std::ifstream in(kGolden / (std::string(GetParam()) + ".txt"));
-        for (std::string text; std::getline(in, text);) lines_.push_back(parse(text));
+        for (const auto& v : acdf_test::golden_numbers<6>(kGolden / (std::string(GetParam()) + ".txt")))
+            lines_.push_back(parse(v));
         ASSERT_EQ(lines_.size(), 16u);
     }
 
-    static Line parse(const std::string& text) {
-        double v[6];
-        const char* at = text.c_str();
-        for (double& value : v) {
-            char* end = nullptr;
-            value = std::strtod(at, &end);
-            EXPECT_NE(end, at) << text;
-            at = end;
-        }
+    static Line parse(const std::array<double, 6>& v) {
         return {{v[0], v[1]}, {float(v[2]), float(v[3]), float(v[4])}, float(v[5])};
     }
 

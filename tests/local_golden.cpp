@@ -1,11 +1,11 @@
 // The frozen local environments of every version: format/make_golden.cpp makes those of the present one.
+#include "golden_numbers.h"
+
 #include <acdf/reader.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -25,20 +25,12 @@ protected:
     void SetUp() override {
         const acdf::Status status = acdf::File::open((kGolden + GetParam() + ".acdf").c_str(), file_);
         ASSERT_TRUE(status.ok()) << status.message;
-        std::ifstream in(kGolden + GetParam() + ".txt");
-        for (std::string text; std::getline(in, text);) lines_.push_back(parse(text));
+        for (const auto& v : acdf_test::golden_numbers<9>(kGolden + GetParam() + ".txt"))
+            lines_.push_back(parse(v));
         ASSERT_EQ(lines_.size(), 96u);
     }
 
-    static Line parse(const std::string& text) {
-        double v[9];
-        const char* at = text.c_str();
-        for (double& value : v) {
-            char* end = nullptr;
-            value = std::strtod(at, &end);
-            EXPECT_NE(end, at) << text;
-            at = end;
-        }
+    static Line parse(const std::array<double, 9>& v) {
         return {{float(v[0]), float(v[1]), float(v[2])},
                 {v[3], v[4]},
                 {float(v[5]), float(v[6]), float(v[7])},
