@@ -158,11 +158,7 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const Pro
     Sweep sweep;
     sweep.kind = SweepKind::brdf;
     sweep.visibility = options.visibility;
-    const auto part = [&](double begin, double width) {
-        return [&progress, begin, width](double share, const char* what) {
-            if (progress) progress(begin + width * share, what);
-        };
-    };
+    const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     const compress::Reflected reflected = reflected_light(brdf, options.target.channels, options.target.weights);
     sweep.conditions = kMeasuredViews;
     std::vector<Candidate> candidates;

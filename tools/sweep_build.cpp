@@ -2,6 +2,7 @@
 
 #include "commands.h"
 #include "measure/light_samplers.h"
+#include "measure/local_accuracy.h"
 #include "plot_image.h"
 #include "plot_knots.h"
 #include "plot_local.h"
@@ -176,6 +177,18 @@ std::string picture_title(const SweepRow& row) {
     char text[96];
     std::snprintf(text, sizeof text, ", relative variance %.3g", row.relative_variance);
     return row.label + ", " + to_readable_size(row.bytes) + text;
+}
+
+Progress part_of(const Progress& progress, double begin, double width) {
+    return [&progress, begin, width](double share, const char* what) {
+        if (progress) progress(begin + width * share, what);
+    };
+}
+
+std::vector<measure::ShadingPoint> timed_points() {
+    std::vector<measure::ShadingPoint> points;
+    for (const measure::Normal& n : measure::random_normals(4096)) points.push_back({{n[0], n[1], n[2]}, {}});
+    return points;
 }
 
 } // namespace acdf::tools

@@ -81,4 +81,10 @@ void add_colour_bar(Sweep& sweep);
 /// What is under a picture of a file.
 std::string picture_title(const SweepRow& row);
 
+/// The part [begin, begin + width] of a progress; valid as long as that is.
+Progress part_of(const Progress& progress, double begin, double width);
+
+/// Shading points with random normals, on which samplers of light are timed.
+std::vector<measure::ShadingPoint> timed_points();
+
 } // namespace acdf::tools

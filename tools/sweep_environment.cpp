@@ -83,11 +83,7 @@ Sweep sweep_environment(const compress::Target& target, const Source& source, co
     Sweep sweep;
     sweep.kind = SweepKind::environment;
     sweep.visibility = options.visibility;
-    const auto part = [&](double begin, double width) {
-        return [&progress, begin, width](double share, const char* what) {
-            if (progress) progress(begin + width * share, what);
-        };
-    };
+    const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     std::vector<Candidate> candidates;
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
@@ -103,9 +99,7 @@ Sweep sweep_environment(const compress::Target& target, const Source& source, co
             irradiance_variance(target, texel_densities(target, *candidates[i].sampler), 0.0, normals).mean;
     }
     if (options.pictures) add_pictures(sweep, target, candidates);
-    std::vector<measure::ShadingPoint> points;
-    for (const measure::Normal& n : measure::random_normals(4096)) points.push_back({{n[0], n[1], n[2]}, {}});
-    finish_rows(sweep, std::move(candidates), points, options, part(0.9, 0.1));
+    finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));
     return sweep;
 }
 

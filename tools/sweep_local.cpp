@@ -105,11 +105,7 @@ Sweep sweep_local(const compress::Target& target, const Source& source, const Sw
     Sweep sweep;
     sweep.kind = SweepKind::local;
     sweep.visibility = options.visibility;
-    const auto part = [&](double begin, double width) {
-        return [&progress, begin, width](double share, const char* what) {
-            if (progress) progress(begin + width * share, what);
-        };
-    };
+    const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     const std::vector<measure::Normal> normals = measure::random_normals(options.normals);
     sweep.conditions = static_cast<std::uint32_t>(normals.size());
     std::vector<Candidate> candidates;
@@ -120,9 +116,7 @@ Sweep sweep_local(const compress::Target& target, const Source& source, const Sw
     sweep.baseline = candidates.size();
     for (Candidate& rival : local_rivals(target, normals)) candidates.push_back(std::move(rival));
     if (options.pictures) add_pictures(sweep, target, candidates);
-    std::vector<measure::ShadingPoint> points;
-    for (const measure::Normal& n : measure::random_normals(4096)) points.push_back({{n[0], n[1], n[2]}, {}});
-    finish_rows(sweep, std::move(candidates), points, options, part(0.9, 0.1));
+    finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));
     return sweep;
 }
 
