@@ -1,5 +1,5 @@
 # BRDFs: the reader's part against the specification, what bins share, fits of them, and the subcommand.
-acdf_add_test(test_brdf_reader SOURCES brdf_reader.cpp brdf_golden.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
+acdf_add_test(test_brdf_reader SOURCES brdf_reader.cpp brdf_golden.cpp wavefront.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 
 if(TARGET acdf_brdf)
     acdf_add_test(test_brdf

@@ -1,6 +1,6 @@
 // acdf/brdf.h against a decoder written from the specification (SPEC.md §6.8), on files of which no fit would
 // think.
-#include "brdf_builder.h"
+#include "brdf_loaded.h"
 
 #include <acdf/acdf.h>
 #include <acdf/reader.h>
@@ -23,16 +23,6 @@ Direction at_angles(double cosine, double phi) {
 }
 
 /// An open file and its view.
-struct Loaded {
-    explicit Loaded(const Bytes& bytes_) : bytes(bytes_) {
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
-        EXPECT_TRUE(status.ok()) << status.message;
-    }
-    acdf::BrdfView view() const { return file.brdf(); }
-    Bytes bytes;
-    acdf::File file;
-};
-
 /// Probability that a row gives to the cell of a square, and the cell.
 struct Cell {
     double probability = 1.0;

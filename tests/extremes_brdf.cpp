@@ -1,6 +1,7 @@
 // BRDFs at their ends: mirrors, nothing but diffuse, light at grazing angles alone, and views that graze.
 #include "brdf_files.h"
 #include "synthetic.h"
+#include "wavefront.h"
 
 #include "input/brdf.h"
 
@@ -94,6 +95,8 @@ TEST_P(ExtremeBrdfs, SamplesAreSoundForEveryView) {
             }
         }
 }
+
+TEST_P(ExtremeBrdfs, WavefrontsAreTheSameBitForBit) { expect_wavefront_is_the_view(brdf_->view(), 20000); }
 
 TEST_P(ExtremeBrdfs, EstimatesHaveTheRightMean) {
     if (GetParam().albedo == 0.0) GTEST_SKIP() << "no closed form of its albedo";

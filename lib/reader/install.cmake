@@ -16,6 +16,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/wavefront.h
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
 
 install(EXPORT acdfTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT reader)

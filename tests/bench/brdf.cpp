@@ -9,7 +9,7 @@
 #include "measure/brdf_table.h"
 #include "measure/rgl_sampler.h"
 
-#include <acdf/reader.h>
+#include <acdf/wavefront.h>
 
 #include <benchmark/benchmark.h>
 
@@ -29,7 +29,7 @@ using namespace acdf;
 
 // So many before views and random numbers repeat. With a few thousand the processor learns the branches of each.
 constexpr std::size_t kQueries = 1 << 16;
-constexpr std::size_t kTurn = 256; // calls before the other sampler has its turn
+constexpr std::size_t kTurn = 4096; // calls before the other sampler has its turn: a small wave
 constexpr double kPi = 3.14159265358979323846;
 
 const char* const kRglFile = "cc_ibiza_sunset_rgb.bsdf";
@@ -170,7 +170,7 @@ void pdf(benchmark::State& state, const Case& given) {
     run_pdf(state, [&](const Query& q) { benchmark::DoNotOptimize(view.pdf(q.wo, q.wi)); });
 }
 
-/// A wave's arrays, as sample_many and pdf_many take them.
+/// A wave's arrays, as BrdfWavefront takes them.
 struct Wave {
     float wo[kTurn][3], wi[kTurn][3];
     double u[kTurn][2];
@@ -182,6 +182,14 @@ struct Wave {
         }
     }
 };
+const std::pair<const char*, Instructions> kInstructions[] = {{"avx2", Instructions::avx2},
+                                                              {"avx512", Instructions::avx512}};
+BrdfWavefront wavefront_of(const Case& given, Instructions most) {
+    BrdfWavefront out;
+    BrdfWavefront::prepare(file_of(given).brdf(), out, most);
+    return out;
+}
+
 template <class Call>
 double timed_wave(std::size_t first, const Call& call) {
     const Wave wave(first);
@@ -190,21 +198,21 @@ double timed_wave(std::size_t first, const Call& call) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void sample_many(benchmark::State& state, const Case& given) {
-    const BrdfView view = file_of(given).brdf();
+void wavefront_sample(benchmark::State& state, const Case& given, Instructions most) {
+    const BrdfWavefront wavefront = wavefront_of(given, most);
     const auto call = [&](const Wave& wave) {
         DirectionSample out[kTurn];
-        view.sample_many(wave.wo, wave.u, kTurn, out);
+        wavefront.sample(wave.wo, wave.u, kTurn, out);
         benchmark::DoNotOptimize(out);
     };
     run_turns(
         state, [&](std::size_t first) { return timed_wave(first, call); }, rgl_sample);
 }
-void pdf_many(benchmark::State& state, const Case& given) {
-    const BrdfView view = file_of(given).brdf();
+void wavefront_pdf(benchmark::State& state, const Case& given, Instructions most) {
+    const BrdfWavefront wavefront = wavefront_of(given, most);
     const auto call = [&](const Wave& wave) {
         float out[kTurn];
-        view.pdf_many(wave.wo, wave.wi, kTurn, out);
+        wavefront.pdf(wave.wo, wave.wi, kTurn, out);
         benchmark::DoNotOptimize(out);
     };
     run_turns(
@@ -275,8 +283,12 @@ int main(int argc, char** argv) {
     for (const Case& c : cases) {
         benchmark::RegisterBenchmark(("sample/" + c.label()).c_str(), sample, c)->UseManualTime();
         benchmark::RegisterBenchmark(("pdf/" + c.label()).c_str(), pdf, c)->UseManualTime();
-        benchmark::RegisterBenchmark(("sample_many/" + c.label()).c_str(), sample_many, c)->UseManualTime();
-        benchmark::RegisterBenchmark(("pdf_many/" + c.label()).c_str(), pdf_many, c)->UseManualTime();
+        for (const auto& [name, most] : kInstructions)
+            benchmark::RegisterBenchmark(("sample/" + c.label() + "/" + name).c_str(), wavefront_sample, c, most)
+                ->UseManualTime();
+        for (const auto& [name, most] : kInstructions)
+            benchmark::RegisterBenchmark(("pdf/" + c.label() + "/" + name).c_str(), wavefront_pdf, c, most)
+                ->UseManualTime();
     }
     register_rivals(cases.front());
     benchmark::RunSpecifiedBenchmarks();

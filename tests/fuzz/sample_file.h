@@ -4,10 +4,11 @@
 #pragma once
 
 #include <acdf/acdf.h>
-#include <acdf/reader.h>
+#include <acdf/wavefront.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 namespace acdf_test {
 
@@ -104,6 +105,29 @@ inline void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom
     sample_everything(view.environment(), random);
 }
 
+/// Many views at once, by whatever instructions this processor has.
+inline void wavefront_is_the_view(const acdf::BrdfView& view, FuzzRandom& random) {
+    acdf::BrdfWavefront wavefront;
+    require(acdf::BrdfWavefront::prepare(view, wavefront).ok());
+    float wo[samples_a_file][3], wi[samples_a_file][3], pdfs[samples_a_file];
+    double u[samples_a_file][2];
+    acdf::DirectionSample samples[samples_a_file];
+    for (int n = 0; n < samples_a_file; ++n) {
+        if (n % 4 == 3) random.any_vector(wo[n]);
+        else random.unit_vector(wo[n], true);
+        if (n % 2 == 0) random.any_vector(wi[n]);
+        else random.unit_vector(wi[n], false);
+        for (double& v : u[n]) v = random.any_u();
+    }
+    wavefront.sample(wo, u, samples_a_file, samples);
+    wavefront.pdf(wo, wi, samples_a_file, pdfs);
+    for (int n = 0; n < samples_a_file; ++n) {
+        const acdf::DirectionSample s = view.sample(wo[n], u[n][0], u[n][1]);
+        require(std::memcmp(&s, &samples[n], sizeof s) == 0);
+        require(view.pdf(wo[n], wi[n]) == pdfs[n]);
+    }
+}
+
 inline void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
     for (int n = 0; n < samples_a_file; ++n) {
         float wo[3], any[3];
@@ -119,6 +143,7 @@ inline void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
         if (view.invert(wo, s.direction, u)) require(in_unit_square(u));
         if (view.invert(wo, any, u)) require(in_unit_square(u));
     }
+    wavefront_is_the_view(view, random);
 }
 
 inline void sample_everything(const acdf::TableView& view, FuzzRandom& random) {

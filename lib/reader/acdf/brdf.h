@@ -31,8 +31,8 @@ typedef struct AcdfBrdf {
 /* What serves a view: which rows or which tree, and the turn that brings wo into the plane of x and z. */
 typedef struct AcdfBrdfView {
     double wo[3];
-    double cosine, sine; /* of that turn: azimuth of wo where the file is isotropic, else 1 and 0 */
-    uint32_t root;       /* of the tree, where there are no rows */
+    double turn[2]; /* x and y of a vector to which that turn brings x: wo's own where the file is isotropic */
+    uint32_t root;  /* of the tree, where there are no rows */
     AcdfMixture mix;
     double albedo;
 } AcdfBrdfView;
@@ -91,17 +91,16 @@ ACDF_FN int acdf_brdf_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView
     view->wo[0] = x;
     view->wo[1] = y;
     view->wo[2] = z;
-    view->cosine = 1.0;
-    view->sine = 0.0;
+    view->turn[0] = 1.0;
+    view->turn[1] = 0.0;
     view->mix.count = 0;
     view->albedo = 0.0;
     view->root = 0;
     t = acdf_view_nodes(brdf->nodes, brdf->views->theta_count, acdf_view_coordinate(z), node);
     if (columns == 1) {
         if (sin2 > 0.0) {
-            const double r = 1.0 / sqrt(sin2);
-            view->cosine = x * r;
-            view->sine = y * r;
+            view->turn[0] = x;
+            view->turn[1] = y;
         }
         acdf_brdf_add(brdf, view, node[0], 1.0 - t, &largest);
         acdf_brdf_add(brdf, view, node[1], t, &largest);
@@ -159,8 +158,8 @@ ACDF_FN int acdf_brdf_place(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
     double half[3], hx, hy, phi, below;
     if (!acdf_brdf_half(view, wi, half, place)) return 0;
     below = 1.0 - 2.0 * (double)(half[2] < 0.0); /* a half-vector below the surface reflects as its opposite does */
-    hx = below * (view->cosine * half[0] + view->sine * half[1]);
-    hy = below * (view->cosine * half[1] - view->sine * half[0]);
+    hx = below * (view->turn[0] * half[0] + view->turn[1] * half[1]);
+    hy = below * (view->turn[0] * half[1] - view->turn[1] * half[0]);
     phi = acdf_brdf_azimuth(fabs(hy), hx);
     *sign = 1.0 - 2.0 * (double)(hy < 0.0);
     place->position[0] = (double)brdf->columns * (acdf_brdf_mirrored(brdf) ? phi : 0.5 + 0.5 * *sign * phi);
@@ -239,10 +238,11 @@ ACDF_FN void acdf_brdf_reflect(const AcdfBrdf* brdf, const AcdfBrdfView* view, c
                                double sign, float wi[3], double reach[2]) {
     const double cap = position[1] / (double)brdf->rows; /* 1 - cos(theta_h) */
     const double hz = 1.0 - cap, radius = sqrt(cap * (2.0 - cap)), x = position[0] / (double)brdf->columns;
+    const double scale = radius / sqrt(view->turn[0] * view->turn[0] + view->turn[1] * view->turn[1]);
     double sine, cosine, hx, hy, dot, turn, angle;
     acdf_sincospi(acdf_brdf_mirrored(brdf) ? sign * x : 2.0 * x - 1.0, &sine, &cosine);
-    hx = radius * (view->cosine * cosine - view->sine * sine);
-    hy = radius * (view->sine * cosine + view->cosine * sine);
+    hx = scale * (view->turn[0] * cosine - view->turn[1] * sine);
+    hy = scale * (view->turn[1] * cosine + view->turn[0] * sine);
     dot = 2.0 * (view->wo[0] * hx + view->wo[1] * hy + view->wo[2] * hz);
     wi[0] = (float)(dot * hx - view->wo[0]);
     wi[1] = (float)(dot * hy - view->wo[1]);
@@ -351,65 +351,6 @@ ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float w
     const AcdfDirectionSample nothing = {{0.0f, 0.0f, 0.0f}, 0.0f};
     AcdfBrdfView view;
     return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_sample(brdf, &view, u0, u1) : nothing;
-}
-
-/* Whether walks of several views can take turns: what they share are cells. */
-ACDF_FN int acdf_brdf_lanes(const AcdfBrdf* brdf) { return brdf->blend.tiles && !brdf->blend.roots; }
-
-/* acdf_brdf_sample of `count` views and random numbers: the same results, in less time. */
-ACDF_FN void acdf_brdf_sample_many(const AcdfBrdf* brdf, const float (*wo)[3], const double (*u)[2], size_t count,
-                                   AcdfDirectionSample* out) {
-    AcdfBrdfView view[ACDF_LANES];
-    const AcdfMixture* mix[ACDF_LANES];
-    AcdfRange range[ACDF_LANES][2];
-    double left[ACDF_LANES][2], sign[ACDF_LANES], p[ACDF_LANES];
-    size_t index[ACDF_LANES], i = 0;
-    int k, n;
-    while (i < count) {
-        for (n = 0; n < ACDF_LANES && i < count; ++i) {
-            out[i].direction[0] = out[i].direction[1] = out[i].direction[2] = out[i].pdf = 0.0f;
-            if (!acdf_brdf_view(brdf, wo[i], &view[n])) continue;
-            if (!acdf_brdf_lanes(brdf)) {
-                out[i] = acdf_brdf_view_sample(brdf, &view[n], u[i][0], u[i][1]);
-            } else if (acdf_brdf_begin(brdf, &view[n], u[i][0], u[i][1], left[n], &sign[n], &out[i])) {
-                acdf_brdf_whole(brdf, range[n]);
-                mix[n] = &view[n].mix;
-                index[n++] = i;
-            }
-        }
-        acdf_blend_sample_lanes(&brdf->blend, mix, n, left, range, p);
-        for (k = 0; k < n; ++k) out[index[k]] = acdf_brdf_end(brdf, &view[k], range[k], left[k], sign[k], p[k]);
-    }
-}
-
-/* acdf_brdf_pdf of `count` pairs of wo and wi: the same results, in less time. */
-ACDF_FN void acdf_brdf_pdf_many(const AcdfBrdf* brdf, const float (*wo)[3], const float (*wi)[3], size_t count,
-                                float* out) {
-    AcdfBrdfView view[ACDF_LANES];
-    AcdfBrdfPlace place[ACDF_LANES];
-    const AcdfMixture* mix[ACDF_LANES];
-    AcdfRange range[ACDF_LANES][2];
-    uint32_t square[ACDF_LANES][2];
-    double p[ACDF_LANES], sign;
-    size_t index[ACDF_LANES], i = 0;
-    int k, n;
-    while (i < count) {
-        for (n = 0; n < ACDF_LANES && i < count; ++i) {
-            out[i] = 0.0f;
-            if (!acdf_brdf_view(brdf, wo[i], &view[n])) continue;
-            if (!acdf_brdf_lanes(brdf) || view[n].mix.count == 0) {
-                out[i] = acdf_brdf_view_pdf(brdf, &view[n], wi[i]);
-            } else if (acdf_brdf_place(brdf, &view[n], wi[i], &place[n], &sign)) {
-                acdf_brdf_whole(brdf, range[n]);
-                square[n][0] = acdf_brdf_step(place[n].position[0], brdf->columns);
-                square[n][1] = acdf_brdf_step(place[n].position[1], brdf->rows);
-                mix[n] = &view[n].mix;
-                index[n++] = i;
-            }
-        }
-        acdf_blend_find_lanes(&brdf->blend, mix, n, (const uint32_t(*)[2])square, range, p);
-        for (k = 0; k < n; ++k) out[index[k]] = acdf_brdf_density(brdf, p[k], range[k], &place[k], wi[index[k]]);
-    }
 }
 
 /* The random numbers u[2] for which acdf_brdf_sample returns wi for wo, through the half-vector. Returns 1, or 0

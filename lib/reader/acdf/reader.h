@@ -135,15 +135,6 @@ public:
     /// Density in sr^-1 of wi for wo; exactly that of `sample` for what it returned, but where wo and wi are so
     /// nearly opposite that their half-vector is lost in rounding.
     float pdf(const float wo[3], const float wi[3]) const noexcept { return acdf_brdf_pdf(&data_, wo, wi); }
-    /// `sample` and `pdf` of `count` views at once, out[count]: the same results in less time, for renderers that
-    /// work in waves.
-    void sample_many(const float (*wo)[3], const double (*u)[2], std::size_t count,
-                     DirectionSample* out) const noexcept {
-        acdf_brdf_sample_many(&data_, wo, u, count, out);
-    }
-    void pdf_many(const float (*wo)[3], const float (*wi)[3], std::size_t count, float* out) const noexcept {
-        acdf_brdf_pdf_many(&data_, wo, wi, count, out);
-    }
     /// The random numbers that draw wi for wo; false where the table's density is 0.
     bool invert(const float wo[3], const float wi[3], double u[2]) const noexcept {
         return acdf_brdf_invert(&data_, wo, wi, u) != 0;

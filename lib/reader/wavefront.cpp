@@ -1,0 +1,203 @@
+// The tables of BrdfWavefront, and which loops serve.
+#include "wavefront.h"
+
+#include <acdf/wavefront.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <utility>
+
+namespace acdf {
+
+namespace {
+
+using u32 = std::uint32_t;
+
+constexpr std::size_t kAlignment = 64;
+
+std::size_t aligned(std::size_t size) { return (size + kAlignment - 1) & ~(kAlignment - 1); }
+
+/// Takes arrays one after the other out of a block; with none it only counts.
+struct Arena {
+    char* block;
+    std::size_t used = 0;
+
+    template <class T>
+    T* take(std::size_t count) {
+        T* out = block ? reinterpret_cast<T*>(block + used) : nullptr;
+        used += aligned(count * sizeof(T));
+        return out;
+    }
+};
+
+struct Arrays {
+    WavefrontTable* table;
+    AcdfSplit* splits;
+    u32 *codes, *boxes;
+    double* nodes;
+    std::uint16_t* guide;
+    u32* split_boxes; // while the tables are made: as `boxes`, of the splits
+};
+
+std::size_t pairs_of(const AcdfBrdf& brdf) { return brdf.views->theta_count > 1 ? brdf.views->theta_count - 1 : 1; }
+
+/// The arrays in `block`, whose size becomes `bytes`.
+Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes) {
+    const std::size_t cells = brdf.blend.tiles->tile_count, views = brdf.views->theta_count;
+    Arena arena{block};
+    Arrays out;
+    // Vectors load the bytes behind an element, too: eight in all.
+    out.table = arena.take<WavefrontTable>(1);
+    out.splits = arena.take<AcdfSplit>(cells);
+    out.codes = arena.take<u32>(pairs_of(brdf) * cells + 1);
+    out.boxes = arena.take<u32>(4 * cells);
+    out.guide = arena.take<std::uint16_t>(kGuideSteps + 4);
+    out.nodes = arena.take<double>(2 * (views + 1));
+    bytes = arena.used;
+    out.split_boxes = arena.take<u32>(4 * cells);
+    return out;
+}
+
+void copy_splits(const AcdfBrdf& brdf, AcdfSplit* out) {
+    const u32 count = brdf.blend.tiles->tile_count - 1;
+    std::memcpy(out, brdf.blend.splits, count * sizeof *out);
+    out[count] = {0xFFFFFFFFu, {0, 0}}; // above every key: its lower part is chosen
+}
+
+void pair_codes(const AcdfBrdf& brdf, u32* out) {
+    const std::size_t cells = brdf.blend.tiles->tile_count, last = brdf.views->theta_count - 1;
+    const std::uint16_t* codebook = brdf.blend.tiles->codebook;
+    for (std::size_t pair = 0; pair < pairs_of(brdf); ++pair) {
+        const std::uint8_t* low = brdf.blend.rows + brdf.bins[pair].root * (cells - 1);
+        const std::uint8_t* high = brdf.blend.rows + brdf.bins[pair < last ? pair + 1 : last].root * (cells - 1);
+        for (std::size_t i = 0; i + 1 < cells; ++i) *out++ = codebook[low[i]] | u32{codebook[high[i]]} << 16;
+        *out++ = 0xFFFFFFFFu;
+    }
+    *out = 0;
+}
+
+/// Parents stand before their children: one pass.
+void place_boxes(const AcdfBrdf& brdf, u32* of_splits, u32* of_cells) {
+    const u32 splits = brdf.blend.tiles->tile_count - 1;
+    const u32 whole[4] = {0, brdf.columns, 0, brdf.rows};
+    std::memcpy(splits > 0 ? of_splits : of_cells, whole, sizeof whole);
+    for (u32 i = 0; i < splits; ++i) {
+        const AcdfSplit& split = brdf.blend.splits[i];
+        for (u32 upper = 0; upper < 2; ++upper) {
+            const u32 child = split.child[upper], number = child & (ACDF_TILE_FLAG - 1);
+            u32* box = (child & ACDF_TILE_FLAG ? of_cells : of_splits) + 4 * std::size_t{number};
+            std::memcpy(box, of_splits + 4 * std::size_t{i}, sizeof whole);
+            box[2 * (split.place & 7u) + 1 - upper] = split.place >> 3;
+        }
+    }
+}
+
+u32 last_lower(const AcdfBrdf& brdf) { return brdf.views->theta_count > 1 ? brdf.views->theta_count - 2 : 0; }
+
+void place_views(const AcdfBrdf& brdf, const Arrays& out) {
+    const u32 count = brdf.views->theta_count;
+    for (u32 i = 0; i < count; ++i) {
+        out.nodes[2 * i] = static_cast<double>(brdf.nodes[i]);
+        out.nodes[2 * i + 1] = static_cast<double>(brdf.bins[i].share);
+    }
+    out.nodes[2 * count] = std::numeric_limits<double>::infinity();
+    out.nodes[2 * count + 1] = 0.0;
+    u32 node = 1;
+    for (u32 step = 0; step <= kGuideSteps; ++step) {
+        while (node <= last_lower(brdf) && static_cast<u32>(out.nodes[2 * node] * kGuideSteps) < step) ++node;
+        out.guide[step] = static_cast<std::uint16_t>(std::min(node - 1, 0xFFFFu)); // it may start too low
+    }
+}
+
+Instructions of_this_processor() {
+#if ACDF_WAVEFRONT_X86
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return Instructions::avx512;
+    if (__builtin_cpu_supports("avx2")) return Instructions::avx2;
+#endif
+    return Instructions::none;
+}
+
+bool fits(const AcdfBrdf& brdf) {
+    return brdf.blend.tiles && !brdf.blend.roots && brdf.views->phi_count == 1 &&
+           !(brdf.views->diffuse_share > 0.0f);
+}
+
+WavefrontTable* filled(Arrays arrays, const AcdfBrdf& brdf) {
+    copy_splits(brdf, arrays.splits);
+    pair_codes(brdf, arrays.codes);
+    place_boxes(brdf, arrays.split_boxes, arrays.boxes);
+    place_views(brdf, arrays);
+    WavefrontTable* out = new (arrays.table) WavefrontTable{};
+    out->brdf = brdf;
+    out->columns = brdf.columns;
+    out->rows = brdf.rows;
+    out->mirrored = acdf_brdf_mirrored(&brdf) != 0;
+    out->entries = brdf.blend.tiles->tile_count;
+    out->last = last_lower(brdf);
+    out->splits = arrays.splits;
+    out->codes = arrays.codes;
+    out->boxes = arrays.boxes;
+    out->nodes = arrays.nodes;
+    out->guide = arrays.guide;
+    return out;
+}
+
+Status out_of_memory(std::size_t bytes) {
+    Status status;
+    status.code = ErrorCode::out_of_memory;
+    std::snprintf(status.message, sizeof status.message, "no memory for a wavefront's %zu bytes", bytes);
+    return status;
+}
+
+} // namespace
+
+BrdfWavefront::BrdfWavefront(BrdfWavefront&& other) noexcept { *this = std::move(other); }
+
+BrdfWavefront& BrdfWavefront::operator=(BrdfWavefront&& other) noexcept {
+    std::swap(brdf_, other.brdf_);
+    std::swap(table_, other.table_);
+    std::swap(bytes_, other.bytes_);
+    std::swap(instructions_, other.instructions_);
+    return *this;
+}
+
+BrdfWavefront::~BrdfWavefront() { std::free(table_); }
+
+Status BrdfWavefront::prepare(const BrdfView& view, BrdfWavefront& out, Instructions most) noexcept {
+    const AcdfBrdf& brdf = view.data();
+    BrdfWavefront made;
+    made.brdf_ = brdf;
+    if (fits(brdf)) made.instructions_ = std::min(most, of_this_processor());
+    if (made.instructions_ != Instructions::none) {
+        const std::size_t scratch = aligned(4 * sizeof(u32) * std::size_t{brdf.blend.tiles->tile_count});
+        arrays_in(nullptr, brdf, made.bytes_);
+        char* block = static_cast<char*>(std::aligned_alloc(kAlignment, made.bytes_ + scratch));
+        if (!block) return out_of_memory(made.bytes_ + scratch);
+        made.table_ = filled(arrays_in(block, brdf, made.bytes_), brdf);
+    }
+    out = std::move(made);
+    return {};
+}
+
+void BrdfWavefront::sample(const float (*wo)[3], const double (*u)[2], std::size_t count,
+                           DirectionSample* out) const noexcept {
+#if ACDF_WAVEFRONT_X86
+    if (instructions_ == Instructions::avx512) return sample_avx512(*table_, wo, u, count, out);
+    if (instructions_ == Instructions::avx2) return sample_avx2(*table_, wo, u, count, out);
+#endif
+    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_brdf_sample(&brdf_, wo[i], u[i][0], u[i][1]);
+}
+
+void BrdfWavefront::pdf(const float (*wo)[3], const float (*wi)[3], std::size_t count, float* out) const noexcept {
+#if ACDF_WAVEFRONT_X86
+    if (instructions_ == Instructions::avx512) return pdf_avx512(*table_, wo, wi, count, out);
+    if (instructions_ == Instructions::avx2) return pdf_avx2(*table_, wo, wi, count, out);
+#endif
+    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_brdf_pdf(&brdf_, wo[i], wi[i]);
+}
+
+} // namespace acdf

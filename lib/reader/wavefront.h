@@ -1,0 +1,38 @@
+// What BrdfWavefront keeps beside the file, and the loops over it that are compiled for several processors.
+#pragma once
+
+#include <acdf/brdf.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace acdf {
+
+constexpr int kGuideSteps = 4096; // of the coordinate of views in [0, 1]
+
+/// Tables of an isotropic file whose tiles are cells. T: stored views, N: cells, S: starts.
+struct WavefrontTable {
+    AcdfBrdf brdf;
+    double columns, rows;
+    bool mirrored;
+    long long entries; // N: splits, and an entry for lanes that are in a cell
+    long long last;    // the last view that can be the lower one of two
+
+    const AcdfSplit* splits; // N
+    /// N a pair of neighbouring views, T - 1 of them but at least one: code of the lower view, << 16 of the upper
+    /// one.
+    const std::uint32_t* codes;
+    const std::uint32_t* boxes; // 4 a cell: low and high on axis 0, on axis 1
+    const double* nodes;        // 2 (T + 1): coordinate of each view and share of its bin; then infinity and 0
+    const std::uint16_t* guide; // kGuideSteps + 1: views from 1 on that lie in steps before this one
+};
+
+#if ACDF_WAVEFRONT_X86
+void sample_avx2(const WavefrontTable&, const float (*)[3], const double (*)[2], std::size_t, AcdfDirectionSample*);
+void sample_avx512(const WavefrontTable&, const float (*)[3], const double (*)[2], std::size_t,
+                   AcdfDirectionSample*);
+void pdf_avx2(const WavefrontTable&, const float (*)[3], const float (*)[3], std::size_t, float*);
+void pdf_avx512(const WavefrontTable&, const float (*)[3], const float (*)[3], std::size_t, float*);
+#endif
+
+} // namespace acdf

@@ -1,0 +1,496 @@
+// The loops of BrdfWavefront over vectors of ACDF_WIDTH doubles, by the extensions of GCC and Clang. Included by
+// one source a set of instructions, compiled for it; nothing here may be inline with external linkage, lest the
+// linker picks code that the processor does not have.
+//
+// Each function is that of the same name in acdf/brdf.h and acdf/blend.h, a lane an element, operation by
+// operation: results agree bit for bit (tests/wavefront.cpp). Lanes that need a branch are left to those functions.
+#pragma once
+
+#include "wavefront.h"
+
+#include <immintrin.h>
+
+#include <cstring>
+
+namespace {
+
+using acdf::WavefrontTable;
+
+constexpr int kWidth = ACDF_WIDTH;
+constexpr int kGroups = 3; // vectors that take turns: while one waits for its loads the others compute
+
+typedef double Vector __attribute__((vector_size(8 * ACDF_WIDTH)));
+typedef long long Integer __attribute__((vector_size(8 * ACDF_WIDTH))); // also masks: all ones or 0
+
+#define ACDF_LANE static inline __attribute__((always_inline))
+
+// ---- what the instructions are called --------------------------------------------------------------------------
+
+/* Eight bytes at base + Scale * index, one lane after the other: the instructions that gather take longer on
+ * several processors. */
+template <int Scale>
+ACDF_LANE __m128i gathered2(const char* base, __m128i index) {
+    const char* first = base + Scale * _mm_cvtsi128_si64(index);
+    const char* second = base + Scale * _mm_extract_epi64(index, 1);
+    const __m128d low = _mm_castsi128_pd(_mm_loadl_epi64((const __m128i*)first));
+    return _mm_castpd_si128(_mm_loadh_pd(low, (const double*)second));
+}
+template <int Scale>
+ACDF_LANE __m256i gathered4(const char* base, __m256i index) {
+    const __m128i low = gathered2<Scale>(base, _mm256_castsi256_si128(index));
+    const __m128i high = gathered2<Scale>(base, _mm256_extracti128_si256(index, 1));
+    return _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
+}
+
+#if ACDF_WIDTH == 8
+ACDF_LANE Vector root(Vector x) { return (Vector)_mm512_sqrt_pd((__m512d)x); }
+ACDF_LANE Vector rounded_to_float(Vector x) { return (Vector)_mm512_cvtps_pd(_mm512_cvtpd_ps((__m512d)x)); }
+ACDF_LANE Integer truncated(Vector x) { return (Integer)_mm512_cvttpd_epi64((__m512d)x); }
+ACDF_LANE Vector converted(Integer i) { return (Vector)_mm512_cvtepi64_pd((__m512i)i); }
+ACDF_LANE bool any(Integer mask) { return _mm512_movepi64_mask((__m512i)mask) != 0; }
+ACDF_LANE unsigned bits(Integer mask) { return _mm512_movepi64_mask((__m512i)mask); }
+template <int Scale>
+ACDF_LANE Integer gathered(const void* base, Integer index) {
+    const char* bytes = (const char*)base;
+    const __m256i low = gathered4<Scale>(bytes, _mm512_castsi512_si256((__m512i)index));
+    const __m256i high = gathered4<Scale>(bytes, _mm512_extracti64x4_epi64((__m512i)index, 1));
+    return (Integer)_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
+ACDF_LANE void load_transposed(const float (*v)[3], Vector out[3]) {
+    const __m512 first = _mm512_loadu_ps(v[0]), last = _mm512_castps256_ps512(_mm256_loadu_ps(v[0] + 16));
+    const __m512i third = _mm512_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21, 0, 0, 0, 0, 0, 0, 0, 0);
+    for (int i = 0; i < 3; ++i) {
+        const __m512 axis = _mm512_permutex2var_ps(first, _mm512_add_epi32(third, _mm512_set1_epi32(i)), last);
+        out[i] = (Vector)_mm512_cvtps_pd(_mm512_castps512_ps256(axis));
+    }
+}
+ACDF_LANE void gather_transposed(const double* base, Integer index, Vector out[4]) {
+    alignas(64) long long at[8];
+    *(Integer*)at = index * 2;
+    __m512d row[4]; // of lanes k and k + 4
+    for (int k = 0; k < 4; ++k)
+        row[k] = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(base + at[k])),
+                                    _mm256_loadu_pd(base + at[k + 4]), 1);
+    const __m512i even = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
+                  odd = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    const __m512d low[2] = {_mm512_unpacklo_pd(row[0], row[1]), _mm512_unpacklo_pd(row[2], row[3])};
+    const __m512d high[2] = {_mm512_unpackhi_pd(row[0], row[1]), _mm512_unpackhi_pd(row[2], row[3])};
+    out[0] = (Vector)_mm512_permutex2var_pd(low[0], even, low[1]);
+    out[1] = (Vector)_mm512_permutex2var_pd(high[0], even, high[1]);
+    out[2] = (Vector)_mm512_permutex2var_pd(low[0], odd, low[1]);
+    out[3] = (Vector)_mm512_permutex2var_pd(high[0], odd, high[1]);
+}
+ACDF_LANE Vector every_second(const double* v) {
+    return (Vector)_mm512_setr_pd(v[0], v[2], v[4], v[6], v[8], v[10], v[12], v[14]);
+}
+ACDF_LANE void store(float* out, Vector x) { _mm256_storeu_ps(out, _mm512_cvtpd_ps((__m512d)x)); }
+ACDF_LANE void store(AcdfDirectionSample* out, Vector x, Vector y, Vector z, Vector w) {
+    const __m256 a = _mm512_cvtpd_ps((__m512d)x), b = _mm512_cvtpd_ps((__m512d)y);
+    const __m256 c = _mm512_cvtpd_ps((__m512d)z), d = _mm512_cvtpd_ps((__m512d)w);
+    const __m256 ab[2] = {_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b)}; // lanes 0 1 4 5 and 2 3 6 7
+    const __m256 cd[2] = {_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d)};
+    for (int i = 0; i < 2; ++i) {
+        const __m256 even = _mm256_shuffle_ps(ab[i], cd[i], 0x44), odd = _mm256_shuffle_ps(ab[i], cd[i], 0xEE);
+        _mm_storeu_ps((float*)&out[2 * i], _mm256_castps256_ps128(even));
+        _mm_storeu_ps((float*)&out[2 * i + 1], _mm256_castps256_ps128(odd));
+        _mm_storeu_ps((float*)&out[2 * i + 4], _mm256_extractf128_ps(even, 1));
+        _mm_storeu_ps((float*)&out[2 * i + 5], _mm256_extractf128_ps(odd, 1));
+    }
+}
+#else
+ACDF_LANE Vector root(Vector x) { return (Vector)_mm256_sqrt_pd((__m256d)x); }
+ACDF_LANE Vector rounded_to_float(Vector x) { return (Vector)_mm256_cvtps_pd(_mm256_cvtpd_ps((__m256d)x)); }
+ACDF_LANE Integer truncated(Vector x) { return (Integer)_mm256_cvtepi32_epi64(_mm256_cvttpd_epi32((__m256d)x)); }
+// Of integers in [0, 2^52).
+ACDF_LANE Vector converted(Integer i) { return (Vector)(i | 0x4330000000000000) - 0x1p52; }
+ACDF_LANE bool any(Integer mask) { return _mm256_movemask_pd((__m256d)mask) != 0; }
+ACDF_LANE unsigned bits(Integer mask) { return (unsigned)_mm256_movemask_pd((__m256d)mask); }
+template <int Scale>
+ACDF_LANE Integer gathered(const void* base, Integer index) {
+    return (Integer)gathered4<Scale>((const char*)base, (__m256i)index);
+}
+ACDF_LANE void load_transposed(const float (*v)[3], Vector out[3]) {
+    for (int i = 0; i < 3; ++i) out[i] = (Vector)_mm256_cvtps_pd(_mm_setr_ps(v[0][i], v[1][i], v[2][i], v[3][i]));
+}
+ACDF_LANE void gather_transposed(const double* base, Integer index, Vector out[4]) {
+    alignas(32) long long at[4];
+    *(Integer*)at = index * 2;
+    const __m256d row[4] = {_mm256_loadu_pd(base + at[0]), _mm256_loadu_pd(base + at[1]),
+                            _mm256_loadu_pd(base + at[2]), _mm256_loadu_pd(base + at[3])};
+    const __m256d low[2] = {_mm256_unpacklo_pd(row[0], row[1]), _mm256_unpacklo_pd(row[2], row[3])};
+    const __m256d high[2] = {_mm256_unpackhi_pd(row[0], row[1]), _mm256_unpackhi_pd(row[2], row[3])};
+    out[0] = (Vector)_mm256_permute2f128_pd(low[0], low[1], 0x20);
+    out[1] = (Vector)_mm256_permute2f128_pd(high[0], high[1], 0x20);
+    out[2] = (Vector)_mm256_permute2f128_pd(low[0], low[1], 0x31);
+    out[3] = (Vector)_mm256_permute2f128_pd(high[0], high[1], 0x31);
+}
+ACDF_LANE Vector every_second(const double* v) { return (Vector)_mm256_setr_pd(v[0], v[2], v[4], v[6]); }
+ACDF_LANE void store(float* out, Vector x) { _mm_storeu_ps(out, _mm256_cvtpd_ps((__m256d)x)); }
+ACDF_LANE void store(AcdfDirectionSample* out, Vector x, Vector y, Vector z, Vector w) {
+    __m128 a = _mm256_cvtpd_ps((__m256d)x), b = _mm256_cvtpd_ps((__m256d)y);
+    __m128 c = _mm256_cvtpd_ps((__m256d)z), d = _mm256_cvtpd_ps((__m256d)w);
+    _MM_TRANSPOSE4_PS(a, b, c, d);
+    _mm_storeu_ps((float*)&out[0], a);
+    _mm_storeu_ps((float*)&out[1], b);
+    _mm_storeu_ps((float*)&out[2], c);
+    _mm_storeu_ps((float*)&out[3], d);
+}
+#endif
+
+#if ACDF_WIDTH == 8
+ACDF_LANE Integer least(Integer a, Integer b) { return (Integer)_mm512_min_epi64((__m512i)a, (__m512i)b); }
+ACDF_LANE Integer most(Integer a, Integer b) { return (Integer)_mm512_max_epi64((__m512i)a, (__m512i)b); }
+#else
+ACDF_LANE Integer least(Integer a, Integer b) { return a < b ? a : b; }
+ACDF_LANE Integer most(Integer a, Integer b) { return a > b ? a : b; }
+#endif
+ACDF_LANE Vector select(Integer mask, Vector yes, Vector no) { return mask ? yes : no; }
+ACDF_LANE Integer select(Integer mask, Integer yes, Integer no) { return mask ? yes : no; }
+ACDF_LANE Vector all(double x) { return Vector{} + x; }
+ACDF_LANE Vector absolute(Vector x) { return (Vector)((Integer)x & 0x7FFFFFFFFFFFFFFF); }
+ACDF_LANE Vector one_if(Integer mask) { return (Vector)(mask & 0x3FF0000000000000); }
+/* Loads the four bytes behind each, too. */
+ACDF_LANE Integer gathered_words(const std::uint32_t* base, Integer index) {
+    return gathered<4>(base, index) & 0xFFFFFFFF;
+}
+
+// ---- elementary functions of acdf/sample.h ---------------------------------------------------------------------
+
+ACDF_LANE Vector polynomial4(Vector q, double c0, double c1, double c2, double c3) {
+    return (c0 + q * c1) + q * q * (c2 + q * c3);
+}
+ACDF_LANE Vector polynomial8(Vector q, double c0, double c1, double c2, double c3, double c4, double c5, double c6,
+                             double c7) {
+    const Vector q2 = q * q;
+    return polynomial4(q, c0, c1, c2, c3) + q2 * q2 * polynomial4(q, c4, c5, c6, c7);
+}
+
+ACDF_LANE void sincospi(Vector x, Vector* sine, Vector* cosine) {
+    const Integer quadrant = truncated(2.0 * x + 4.5) - 4;
+    // converted() takes what is not negative: the multiple of 1/2 that x is measured from is exact.
+    const Vector y = (x - 0.5 * (converted(quadrant + 4) - 4.0)) * ACDF_PI, q = y * y;
+    const Vector s = y * polynomial8(q, 1.0, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
+                                     1.0 / 6227020800.0, -1.0 / 1307674368000.0);
+    const Vector c = 1.0 + q * polynomial8(q, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800,
+                                           1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0);
+    const Integer odd = (quadrant & 1) != 0;
+    *sine = (Vector)((Integer)select(odd, c, s) ^ (quadrant & 2) << 62);
+    *cosine = (Vector)((Integer)select(odd, s, c) ^ ((quadrant + 1) & 2) << 62);
+}
+
+ACDF_LANE Vector azimuth(Vector y, Vector x) {
+    const Vector ax = absolute(x), high = select(ax > y, ax, y), low = select(ax > y, y, ax);
+    const Vector wide = one_if(low > 0.41421356237309503 * high), steep = one_if(y > ax), left = one_if(x < 0.0);
+    const Vector w = select(high > 0.0, (low - wide * high) / (high + wide * low), all(0.0));
+    const Vector q = w * w, q4 = (q * q) * (q * q);
+    const Vector series =
+        polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
+                    0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
+        q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
+    return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + w * series));
+}
+
+// ---- views -----------------------------------------------------------------------------------------------------
+
+struct Directions {
+    Vector x, y, z;
+};
+
+ACDF_LANE Directions load(const float (*v)[3]) {
+    Vector axis[3];
+    load_transposed(v, axis);
+    return {axis[0], axis[1], axis[2]};
+}
+
+ACDF_LANE Integer of_unit_length(Vector length2) { return length2 > 0.999 && length2 < 1.001; }
+
+/* acdf_brdf_view of isotropic files. Lanes of no view have the weights 0 and a place inside the tables. */
+struct View {
+    Directions wo;
+    Vector turn[2], weight[2];
+    Integer lower; // the lower one of the two stored views
+};
+
+ACDF_LANE View view_of(const WavefrontTable& t, const Directions& wo) {
+    View out;
+    const Vector sin2 = wo.x * wo.x + wo.y * wo.y, length2 = sin2 + wo.z * wo.z;
+    const Integer valid = of_unit_length(length2) & (wo.z > 0.0);
+    const Vector z = select(valid, wo.z, all(1.0));
+    const Vector x = select(z < 1.0, root(1.0 - z), all(0.0));
+    Integer low = gathered<2>(t.guide, truncated(x * (double)acdf::kGuideSteps)) & 0xFFFF;
+    Vector node[4]; // coordinate and share of the lower view, and of the upper one
+    gather_transposed(t.nodes, low, node);
+    for (;;) {
+        const Integer more = (node[2] <= x) & (low < t.last);
+        if (!any(more)) break;
+        low -= more;
+        gather_transposed(t.nodes, low, node);
+    }
+    Vector s = (x - node[0]) / (node[2] - node[0]);
+    s = select(s > 0.0, select(s < 1.0, s, all(1.0)), all(0.0));
+    out.wo = wo;
+    out.weight[0] = select(valid, (1.0 - s) * node[1], all(0.0));
+    out.weight[1] = select(valid, s * node[3], all(0.0));
+    out.lower = low;
+    out.turn[0] = select(sin2 > 0.0, wo.x, all(1.0));
+    out.turn[1] = select(sin2 > 0.0, wo.y, all(0.0));
+    return out;
+}
+
+// ---- walks -----------------------------------------------------------------------------------------------------
+
+struct Walk {
+    Vector x[2], weight[2], chosen;
+    Integer key[2], base, node;
+};
+
+/* The split of a lane, or the entry behind the last one for lanes that are in a tile: all of their weight goes to
+ * its lower part, which changes nothing. */
+ACDF_LANE Integer split_of(const WavefrontTable& t, const Walk& s) {
+    return least(s.node, Integer{} + (t.entries - 1));
+}
+
+/* Children have higher numbers than their parents, tiles higher ones than splits; that entry's are 0. */
+ACDF_LANE void take(Walk* s, Integer upper, Integer split) {
+    s->node = most(s->node, select(upper, split >> 48, split >> 32) & 0xFFFF);
+}
+
+ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
+    const Integer at = split_of(t, *s), split = gathered<8>(t.splits, at),
+                  codes = gathered_words(t.codes, s->base + at);
+    const Vector code0 = converted(codes & 0xFFFF), code1 = converted(codes >> 16);
+    const Vector lower0 = s->weight[0] * (code0 * (1.0 / 65535.0));
+    const Vector lower1 = s->weight[1] * (code1 * (1.0 / 65535.0));
+    const Vector higher0 = s->weight[0] * ((65535.0 - code0) * (1.0 / 65535.0));
+    const Vector higher1 = s->weight[1] * ((65535.0 - code1) * (1.0 / 65535.0));
+    const Vector low = lower0 + lower1, high = higher0 + higher1;
+    const Integer axis = (split & 1) != 0;
+    const Vector x = select(axis, s->x[1], s->x[0]);
+    const Integer upper = (x >= low) & (high > 0.0);
+    const Vector sum = select(upper, high, low), scale = sum / s->chosen, cut = select(upper, x - low, x);
+    s->x[0] = select(axis, s->x[0] * scale, cut);
+    s->x[1] = select(axis, cut, s->x[1] * scale);
+    s->chosen = sum;
+    s->weight[0] = select(upper, higher0, lower0);
+    s->weight[1] = select(upper, higher1, lower1);
+    take(s, upper, split);
+}
+
+ACDF_LANE void find_step(const WavefrontTable& t, Walk* s) {
+    const Integer at = split_of(t, *s), split = gathered<8>(t.splits, at),
+                  codes = gathered_words(t.codes, s->base + at);
+    const Integer place = split & 0xFFFFFFFF, axis = (split & 1) != 0;
+    const Integer upper = select(axis, s->key[1], s->key[0]) >= place;
+    const Integer part = codes ^ (upper & 0xFFFFFFFF); // 65535 - code is code ^ 65535
+    s->weight[0] *= converted(part & 0xFFFF) * (1.0 / 65535.0);
+    s->weight[1] *= converted(part >> 16) * (1.0 / 65535.0);
+    take(s, upper, split);
+}
+
+template <void (*Step)(const WavefrontTable&, Walk*)>
+ACDF_LANE void walk(const WavefrontTable& t, Walk* s) {
+    for (;;) {
+        Integer open{};
+        for (int g = 0; g < kGroups; ++g) open |= s[g].node < ACDF_TILE_FLAG;
+        if (!any(open)) return;
+        for (int g = 0; g < kGroups; ++g) Step(t, &s[g]);
+    }
+}
+
+// ---- cells -----------------------------------------------------------------------------------------------------
+
+struct Cell {
+    Vector low[2], high[2], probability;
+};
+
+ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1000)); }
+
+ACDF_LANE Cell cell_of(const WavefrontTable& t, const Walk& s, Vector probability) {
+    Cell out;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Integer box = gathered<8>(t.boxes, 2 * (s.node & 0x7FFF) + axis);
+        out.low[axis] = converted(box & 0xFFFFFFFF);
+        out.high[axis] = converted(box >> 32 & 0xFFFFFFFF);
+    }
+    out.probability = probability;
+    return out;
+}
+
+struct Place {
+    Vector position[2], dot, length;
+};
+
+ACDF_LANE Integer half_of(const View& view, const Directions& wi, Directions* half, Place* place) {
+    const Vector length2 = wi.x * wi.x + wi.y * wi.y + wi.z * wi.z;
+    half->x = view.wo.x + wi.x;
+    half->y = view.wo.y + wi.y;
+    half->z = view.wo.z + wi.z;
+    place->length = root(half->x * half->x + half->y * half->y + half->z * half->z);
+    place->dot = absolute(view.wo.x * half->x + view.wo.y * half->y + view.wo.z * half->z);
+    return of_unit_length(length2) & (place->length > 1e-30);
+}
+
+ACDF_LANE Integer place_of(const WavefrontTable& t, const View& view, const Directions& wi, Place* place) {
+    Directions half;
+    const Integer valid = half_of(view, wi, &half, place);
+    const Vector below = 1.0 - 2.0 * one_if(half.z < 0.0);
+    const Vector hx = below * (view.turn[0] * half.x + view.turn[1] * half.y);
+    const Vector hy = below * (view.turn[0] * half.y - view.turn[1] * half.x);
+    const Vector phi = azimuth(absolute(hy), hx);
+    const Vector sign = 1.0 - 2.0 * one_if(hy < 0.0);
+    place->position[0] = t.columns * (t.mirrored ? phi : 0.5 + 0.5 * sign * phi);
+    place->position[1] =
+        t.rows * ((half.x * half.x + half.y * half.y) / (place->length * (place->length + absolute(half.z))));
+    return valid;
+}
+
+ACDF_LANE Integer step_of(Vector position, double resolution) {
+    return truncated(select(position < resolution, position, all(resolution - 1.0)));
+}
+
+ACDF_LANE Vector density(const WavefrontTable& t, const Cell& cell, const Place& place) {
+    const Vector pdf = cell.probability * t.columns * t.rows * place.length /
+                       (8.0 * ACDF_PI * place.dot * (cell.high[0] - cell.low[0]) * (cell.high[1] - cell.low[1]));
+    const Vector most = select(pdf >= 3.402823466e38, all(3.402823466e38f), pdf);
+    const Vector least = select(pdf > 1.17549435e-38, most, all(1.17549435e-38f));
+    return select(cell.probability > 0.0, rounded_to_float(least), all(0.0));
+}
+
+struct Reflection {
+    Directions wi;
+    Vector reach[2];
+};
+
+ACDF_LANE Reflection reflect(const WavefrontTable& t, const View& view, const Vector position[2], Vector sign) {
+    Reflection out;
+    const Vector cap = position[1] / t.rows, hz = 1.0 - cap, radius = root(cap * (2.0 - cap));
+    const Vector x = position[0] / t.columns;
+    const Vector scale = radius / root(view.turn[0] * view.turn[0] + view.turn[1] * view.turn[1]);
+    Vector sine, cosine;
+    sincospi(t.mirrored ? sign * x : 2.0 * x - 1.0, &sine, &cosine);
+    const Vector hx = scale * (view.turn[0] * cosine - view.turn[1] * sine);
+    const Vector hy = scale * (view.turn[1] * cosine + view.turn[0] * sine);
+    const Vector dot = 2.0 * (view.wo.x * hx + view.wo.y * hy + view.wo.z * hz);
+    out.wi.x = rounded_to_float(dot * hx - view.wo.x);
+    out.wi.y = rounded_to_float(dot * hy - view.wo.y);
+    out.wi.z = rounded_to_float(dot * hz - view.wo.z);
+    const Vector turn = 0x1p-23 / (absolute(dot) * radius), angle = turn * radius;
+    out.reach[0] = t.columns * turn;
+    out.reach[1] = t.rows * (angle * (radius + angle));
+    return out;
+}
+
+ACDF_LANE Integer inside(const Cell& cell, const Vector position[2], const Vector reach[2]) {
+    return (position[0] >= cell.low[0] + reach[0]) & (position[0] < cell.high[0] - reach[0]) &
+           (position[1] >= cell.low[1] + reach[1]) & (position[1] < cell.high[1] - reach[1]);
+}
+
+// ---- the two loops ---------------------------------------------------------------------------------------------
+
+ACDF_LANE Vector unit_interval(Vector u) {
+    return select((u > 0.0) & (u <= 0x1.fffffffffffffp1023), select(u < 1.0, u, all(1.0)), all(0.0));
+}
+ACDF_LANE Vector clamp(Vector x, double low, double high) {
+    return select(x < low, all(low), select(x > high, all(high), x));
+}
+
+ACDF_LANE void begin_sample(const WavefrontTable& t, const View& view, Vector u0, Vector u1, Walk* s,
+                            Vector* sign) {
+    Vector u[2] = {unit_interval(u0), unit_interval(u1)};
+    *sign = all(1.0);
+    if (t.mirrored) {
+        const Vector v = 2.0 * u[0] - 1.0;
+        *sign = select(v < 0.0, all(-1.0), all(1.0));
+        u[0] = absolute(v);
+    }
+    s->chosen = view.weight[0] + view.weight[1];
+    for (int axis = 0; axis < 2; ++axis) s->x[axis] = u[axis] * s->chosen;
+}
+
+ACDF_LANE void begin_walk(const WavefrontTable& t, const View& view, Walk* s) {
+    for (int i = 0; i < 2; ++i) s->weight[i] = view.weight[i];
+    s->base = view.lower * t.entries;
+    s->node = Integer{} + (t.entries > 1 ? 0 : (long long)ACDF_TILE_FLAG);
+}
+
+/* Writes the samples of a vector of lanes. Returns the lanes that are left to acdf_brdf_sample. */
+ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const Walk& s, Vector sign,
+                              AcdfDirectionSample* out) {
+    const Vector whole = view.weight[0] + view.weight[1];
+    const Integer valid = whole > 0.0;
+    const Cell cell = cell_of(t, s, positive(s.chosen / whole));
+    Vector position[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        const Vector u = select(s.x[axis] < s.chosen, s.x[axis] / s.chosen, all(1.0));
+        position[axis] = cell.low[axis] + clamp(u, 0x1p-30, 1.0 - 0x1p-30) * (cell.high[axis] - cell.low[axis]);
+    }
+    const Reflection to = reflect(t, view, position, sign);
+    Directions half;
+    Place place;
+    const Integer good =
+        half_of(view, to.wi, &half, &place) & inside(cell, position, to.reach) & (cell.probability > 0.0);
+    const Vector none = all(0.0);
+    store(out, select(valid, to.wi.x, none), select(valid, to.wi.y, none), select(valid, to.wi.z, none),
+          select(valid, density(t, cell, place), none));
+    return bits(valid & ~good);
+}
+
+constexpr std::size_t kBlock = kGroups * kWidth;
+
+ACDF_LANE void sample_block(const WavefrontTable& t, const float (*wo)[3], const double (*u)[2],
+                            AcdfDirectionSample* out) {
+    View view[kGroups];
+    Walk s[kGroups];
+    Vector sign[kGroups];
+    for (int g = 0; g < kGroups; ++g) {
+        const int lane = g * kWidth;
+        view[g] = view_of(t, load(&wo[lane]));
+        begin_walk(t, view[g], &s[g]);
+        begin_sample(t, view[g], every_second(u[lane]), every_second(u[lane] + 1), &s[g], &sign[g]);
+    }
+    walk<sample_step>(t, s);
+    for (int g = 0; g < kGroups; ++g) {
+        unsigned left = end_sample(t, view[g], s[g], sign[g], &out[g * kWidth]);
+        for (int lane = g * kWidth; left != 0; ++lane, left >>= 1)
+            if (left & 1) out[lane] = acdf_brdf_sample(&t.brdf, wo[lane], u[lane][0], u[lane][1]);
+    }
+}
+
+ACDF_LANE void pdf_block(const WavefrontTable& t, const float (*wo)[3], const float (*wi)[3], float* out) {
+    View view[kGroups];
+    Walk s[kGroups];
+    Place place[kGroups];
+    Integer valid[kGroups];
+    for (int g = 0; g < kGroups; ++g) {
+        view[g] = view_of(t, load(&wo[g * kWidth]));
+        valid[g] = place_of(t, view[g], load(&wi[g * kWidth]), &place[g]);
+        for (Vector& position : place[g].position) position = select(valid[g], position, all(0.0));
+        begin_walk(t, view[g], &s[g]);
+        s[g].key[0] = step_of(place[g].position[0], t.columns) << 3 | 7;
+        s[g].key[1] = step_of(place[g].position[1], t.rows) << 3 | 7;
+    }
+    walk<find_step>(t, s);
+    for (int g = 0; g < kGroups; ++g) {
+        const Vector chosen = s[g].weight[0] + s[g].weight[1], whole = view[g].weight[0] + view[g].weight[1];
+        const Integer some = valid[g] & (whole > 0.0) & (chosen > 0.0);
+        const Cell cell = cell_of(t, s[g], select(some, positive(chosen / whole), all(0.0)));
+        store(&out[g * kWidth], density(t, cell, place[g]));
+    }
+}
+
+/* `Block` for all of two arrays; what does not fill a block is copied to the front of one. */
+template <auto Block, class A, class B, class Out>
+ACDF_LANE void for_blocks(const WavefrontTable& t, const A* a, const B* b, std::size_t count, Out* out) {
+    std::size_t i = 0;
+    for (; i + kBlock <= count; i += kBlock) Block(t, a + i, b + i, out + i);
+    if (i == count) return;
+    A last_a[kBlock] = {};
+    B last_b[kBlock] = {};
+    Out last_out[kBlock];
+    std::memcpy(last_a, a + i, (count - i) * sizeof(A));
+    std::memcpy(last_b, b + i, (count - i) * sizeof(B));
+    Block(t, last_a, last_b, last_out);
+    std::memcpy(out + i, last_out, (count - i) * sizeof(Out));
+}
+
+} // namespace
