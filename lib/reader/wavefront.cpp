@@ -36,7 +36,7 @@ struct Arena {
 
 struct Arrays {
     WavefrontTable* table;
-    AcdfSplit* splits;
+    WavefrontSplit* splits;
     u32 *codes, *boxes;
     double* nodes;
     std::uint16_t* guide;
@@ -52,7 +52,7 @@ Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes) {
     Arrays out;
     // Vectors load the bytes behind an element, too: eight in all.
     out.table = arena.take<WavefrontTable>(1);
-    out.splits = arena.take<AcdfSplit>(cells);
+    out.splits = arena.take<WavefrontSplit>(cells);
     out.codes = arena.take<u32>(pairs_of(brdf) * cells + 1);
     out.boxes = arena.take<u32>(4 * cells);
     out.guide = arena.take<std::uint16_t>(kGuideSteps + 4);
@@ -62,10 +62,13 @@ Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes) {
     return out;
 }
 
-void copy_splits(const AcdfBrdf& brdf, AcdfSplit* out) {
+void copy_splits(const AcdfBrdf& brdf, WavefrontSplit* out) {
     const u32 count = brdf.blend.tiles->tile_count - 1;
-    std::memcpy(out, brdf.blend.splits, count * sizeof *out);
-    out[count] = {0xFFFFFFFFu, {0, 0}}; // above every key: its lower part is chosen
+    for (u32 i = 0; i < count; ++i) {
+        const AcdfSplit& split = brdf.blend.splits[i];
+        out[i] = {{split.child[0], split.child[1]}, split.place};
+    }
+    out[count] = {{0, 0}, 0x7FFFFFFFu}; // above every key: its lower part is chosen
 }
 
 void pair_codes(const AcdfBrdf& brdf, u32* out) {

@@ -10,6 +10,12 @@ namespace acdf {
 
 constexpr int kGuideSteps = 4096; // of the coordinate of views in [0, 1]
 
+/// An AcdfSplit with the place in the upper half of eight bytes.
+struct WavefrontSplit {
+    std::uint16_t child[2];
+    std::uint32_t place;
+};
+
 /// Tables of an isotropic file whose tiles are cells. T: stored views, N: cells, S: starts.
 struct WavefrontTable {
     AcdfBrdf brdf;
@@ -18,7 +24,7 @@ struct WavefrontTable {
     long long entries; // N: splits, and an entry for lanes that are in a cell
     long long last;    // the last view that can be the lower one of two
 
-    const AcdfSplit* splits; // N
+    const WavefrontSplit* splits; // N
     /// N a pair of neighbouring views, T - 1 of them but at least one: code of the lower view, << 16 of the upper
     /// one.
     const std::uint32_t* codes;

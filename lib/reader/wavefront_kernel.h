@@ -250,9 +250,14 @@ ACDF_LANE Integer split_of(const WavefrontTable& t, const Walk& s) {
     return least(s.node, Integer{} + (t.entries - 1));
 }
 
+ACDF_LANE Integer axis_of(Integer split) { return (split & 1LL << 32) != 0; }
+
+/* Above every split of its axis and a position up to the square's. */
+ACDF_LANE Integer key_of(Integer square) { return square << 35 | 0x7FFFFFFFFLL; }
+
 /* Children have higher numbers than their parents, tiles higher ones than splits; that entry's are 0. */
 ACDF_LANE void take(Walk* s, Integer upper, Integer split) {
-    s->node = most(s->node, select(upper, split >> 48, split >> 32) & 0xFFFF);
+    s->node = most(s->node, select(upper, split >> 16, split) & 0xFFFF);
 }
 
 ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
@@ -264,7 +269,7 @@ ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
     const Vector higher0 = s->weight[0] * ((65535.0 - code0) * (1.0 / 65535.0));
     const Vector higher1 = s->weight[1] * ((65535.0 - code1) * (1.0 / 65535.0));
     const Vector low = lower0 + lower1, high = higher0 + higher1;
-    const Integer axis = (split & 1) != 0;
+    const Integer axis = axis_of(split);
     const Vector x = select(axis, s->x[1], s->x[0]);
     const Integer upper = (x >= low) & (high > 0.0);
     const Vector sum = select(upper, high, low), scale = sum / s->chosen, cut = select(upper, x - low, x);
@@ -279,8 +284,7 @@ ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
 ACDF_LANE void find_step(const WavefrontTable& t, Walk* s) {
     const Integer at = split_of(t, *s), split = gathered<8>(t.splits, at),
                   codes = gathered_words(t.codes, s->base + at);
-    const Integer place = split & 0xFFFFFFFF, axis = (split & 1) != 0;
-    const Integer upper = select(axis, s->key[1], s->key[0]) >= place;
+    const Integer upper = select(axis_of(split), s->key[1], s->key[0]) >= split;
     const Integer part = codes ^ (upper & 0xFFFFFFFF); // 65535 - code is code ^ 65535
     s->weight[0] *= converted(part & 0xFFFF) * (1.0 / 65535.0);
     s->weight[1] *= converted(part >> 16) * (1.0 / 65535.0);
@@ -466,8 +470,8 @@ ACDF_LANE void pdf_block(const WavefrontTable& t, const float (*wo)[3], const fl
         valid[g] = place_of(t, view[g], load(&wi[g * kWidth]), &place[g]);
         for (Vector& position : place[g].position) position = select(valid[g], position, all(0.0));
         begin_walk(t, view[g], &s[g]);
-        s[g].key[0] = step_of(place[g].position[0], t.columns) << 3 | 7;
-        s[g].key[1] = step_of(place[g].position[1], t.rows) << 3 | 7;
+        s[g].key[0] = key_of(step_of(place[g].position[0], t.columns));
+        s[g].key[1] = key_of(step_of(place[g].position[1], t.rows));
     }
     walk<find_step>(t, s);
     for (int g = 0; g < kGroups; ++g) {
