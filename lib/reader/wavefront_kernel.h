@@ -57,7 +57,8 @@ ACDF_LANE Integer gathered(const void* base, Integer index) {
     return (Integer)_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 ACDF_LANE void load_transposed(const float (*v)[3], Vector out[3]) {
-    const __m512 first = _mm512_loadu_ps(v[0]), last = _mm512_castps256_ps512(_mm256_loadu_ps(v[0] + 16));
+    const float* floats = (const float*)v;
+    const __m512 first = _mm512_loadu_ps(floats), last = _mm512_castps256_ps512(_mm256_loadu_ps(floats + 16));
     const __m512i third = _mm512_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21, 0, 0, 0, 0, 0, 0, 0, 0);
     for (int i = 0; i < 3; ++i) {
         const __m512 axis = _mm512_permutex2var_ps(first, _mm512_add_epi32(third, _mm512_set1_epi32(i)), last);
