@@ -38,64 +38,102 @@ struct Arrays {
     WavefrontTable* table;
     WavefrontSplit* splits;
     u32 *codes, *boxes;
-    double* nodes;
+    double *areas, *nodes;
     std::uint16_t* guide;
-    u32* split_boxes; // while the tables are made: as `boxes`, of the splits
+    // While the tables are made, of each split of the file:
+    u32* number; // in the tables
+    u32* split_boxes;
 };
 
+u32 splits_of(const AcdfBrdf& brdf) { return brdf.blend.tiles->tile_count - 1; }
+u32 entries_of(const AcdfBrdf& brdf) { return (brdf.blend.tiles->tile_count + 7) & ~7u; }
 std::size_t pairs_of(const AcdfBrdf& brdf) { return brdf.views->theta_count > 1 ? brdf.views->theta_count - 1 : 1; }
 
-/// The arrays in `block`, whose size becomes `bytes`.
-Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes) {
+/// The arrays in `block`. `bytes` becomes the size of those that stay, `all_bytes` that of all. Vectors load the
+/// bytes behind an element, too: eight in all.
+Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes, std::size_t& all_bytes) {
     const std::size_t cells = brdf.blend.tiles->tile_count, views = brdf.views->theta_count;
     Arena arena{block};
     Arrays out;
-    // Vectors load the bytes behind an element, too: eight in all.
     out.table = arena.take<WavefrontTable>(1);
-    out.splits = arena.take<WavefrontSplit>(cells);
-    out.codes = arena.take<u32>(pairs_of(brdf) * cells + 1);
+    out.splits = arena.take<WavefrontSplit>(entries_of(brdf));
+    out.codes = arena.take<u32>(pairs_of(brdf) * entries_of(brdf) + 1);
     out.boxes = arena.take<u32>(4 * cells);
-    out.guide = arena.take<std::uint16_t>(kGuideSteps + 4);
+    out.areas = arena.take<double>(cells);
     out.nodes = arena.take<double>(2 * (views + 1));
+    out.guide = arena.take<std::uint16_t>(kGuideSteps + 4);
     bytes = arena.used;
+    out.number = arena.take<u32>(cells);
     out.split_boxes = arena.take<u32>(4 * cells);
+    all_bytes = arena.used;
     return out;
 }
 
-void copy_splits(const AcdfBrdf& brdf, WavefrontSplit* out) {
-    const u32 count = brdf.blend.tiles->tile_count - 1;
-    for (u32 i = 0; i < count; ++i) {
-        const AcdfSplit& split = brdf.blend.splits[i];
-        out[i] = {{split.child[0], split.child[1]}, split.place};
+bool is_split(u32 child) { return !(child & ACDF_TILE_FLAG); }
+
+/// Numbers of the splits: those of the first levels from 0 on, then the others in their order.
+void number_splits(const AcdfBrdf& brdf, u32* number) {
+    const u32 none = splits_of(brdf);
+    u32 level[8] = {0}, width = none > 0 ? 1 : 0, count = 0;
+    std::fill(number, number + none, none);
+    for (u32 depth = 0; depth < kTopLevels; ++depth) {
+        u32 next[8], next_width = 0;
+        for (u32 i = 0; i < width; ++i) {
+            number[level[i]] = count++;
+            for (const u32 child : brdf.blend.splits[level[i]].child)
+                if (is_split(child)) next[next_width++] = child;
+        }
+        std::copy(next, next + next_width, level);
+        width = next_width;
     }
-    out[count] = {{0, 0}, 0x7FFFFFFFu}; // above every key: its lower part is chosen
+    for (u32 i = 0; i < none; ++i)
+        if (number[i] == none) number[i] = count++;
 }
 
-void pair_codes(const AcdfBrdf& brdf, u32* out) {
-    const std::size_t cells = brdf.blend.tiles->tile_count, last = brdf.views->theta_count - 1;
+constexpr WavefrontSplit kAllBelow = {{0, 0}, 0x7FFFFFFFu}; // above every key: its lower part is chosen
+
+void place_splits(const AcdfBrdf& brdf, const u32* number, WavefrontSplit* out) {
+    std::fill(out, out + entries_of(brdf), kAllBelow);
+    for (u32 i = 0; i < splits_of(brdf); ++i) {
+        const AcdfSplit& split = brdf.blend.splits[i];
+        WavefrontSplit& placed = out[number[i]];
+        placed.place = split.place;
+        for (u32 part = 0; part < 2; ++part) {
+            const u32 child = split.child[part];
+            placed.child[part] = static_cast<std::uint16_t>(is_split(child) ? number[child] : child);
+        }
+    }
+}
+
+void pair_codes(const AcdfBrdf& brdf, const u32* number, u32* out) {
+    const std::size_t last = brdf.views->theta_count - 1;
     const std::uint16_t* codebook = brdf.blend.tiles->codebook;
-    for (std::size_t pair = 0; pair < pairs_of(brdf); ++pair) {
-        const std::uint8_t* low = brdf.blend.rows + brdf.bins[pair].root * (cells - 1);
-        const std::uint8_t* high = brdf.blend.rows + brdf.bins[pair < last ? pair + 1 : last].root * (cells - 1);
-        for (std::size_t i = 0; i + 1 < cells; ++i) *out++ = codebook[low[i]] | u32{codebook[high[i]]} << 16;
-        *out++ = 0xFFFFFFFFu;
+    for (std::size_t pair = 0; pair < pairs_of(brdf); ++pair, out += entries_of(brdf)) {
+        const std::uint8_t* low = brdf.blend.rows + std::size_t{brdf.bins[pair].root} * splits_of(brdf);
+        const std::uint8_t* high =
+            brdf.blend.rows + std::size_t{brdf.bins[std::min(pair + 1, last)].root} * splits_of(brdf);
+        std::fill(out, out + entries_of(brdf), 0xFFFFFFFFu);
+        for (u32 i = 0; i < splits_of(brdf); ++i) out[number[i]] = codebook[low[i]] | u32{codebook[high[i]]} << 16;
     }
     *out = 0;
 }
 
 /// Parents stand before their children: one pass.
-void place_boxes(const AcdfBrdf& brdf, u32* of_splits, u32* of_cells) {
-    const u32 splits = brdf.blend.tiles->tile_count - 1;
+void place_boxes(const AcdfBrdf& brdf, u32* of_splits, u32* of_cells, double* areas) {
     const u32 whole[4] = {0, brdf.columns, 0, brdf.rows};
-    std::memcpy(splits > 0 ? of_splits : of_cells, whole, sizeof whole);
-    for (u32 i = 0; i < splits; ++i) {
+    std::memcpy(splits_of(brdf) > 0 ? of_splits : of_cells, whole, sizeof whole);
+    for (u32 i = 0; i < splits_of(brdf); ++i) {
         const AcdfSplit& split = brdf.blend.splits[i];
         for (u32 upper = 0; upper < 2; ++upper) {
             const u32 child = split.child[upper], number = child & (ACDF_TILE_FLAG - 1);
-            u32* box = (child & ACDF_TILE_FLAG ? of_cells : of_splits) + 4 * std::size_t{number};
+            u32* box = (is_split(child) ? of_splits : of_cells) + 4 * std::size_t{number};
             std::memcpy(box, of_splits + 4 * std::size_t{i}, sizeof whole);
             box[2 * (split.place & 7u) + 1 - upper] = split.place >> 3;
         }
+    }
+    for (std::size_t i = 0; i < brdf.blend.tiles->tile_count; ++i) {
+        const u32* box = of_cells + 4 * i;
+        areas[i] = static_cast<double>(box[1] - box[0]) * static_cast<double>(box[3] - box[2]);
     }
 }
 
@@ -130,20 +168,24 @@ bool fits(const AcdfBrdf& brdf) {
 }
 
 WavefrontTable* filled(Arrays arrays, const AcdfBrdf& brdf) {
-    copy_splits(brdf, arrays.splits);
-    pair_codes(brdf, arrays.codes);
-    place_boxes(brdf, arrays.split_boxes, arrays.boxes);
+    number_splits(brdf, arrays.number);
+    place_splits(brdf, arrays.number, arrays.splits);
+    pair_codes(brdf, arrays.number, arrays.codes);
+    place_boxes(brdf, arrays.split_boxes, arrays.boxes, arrays.areas);
     place_views(brdf, arrays);
     WavefrontTable* out = new (arrays.table) WavefrontTable{};
     out->brdf = brdf;
     out->columns = brdf.columns;
     out->rows = brdf.rows;
     out->mirrored = acdf_brdf_mirrored(&brdf) != 0;
-    out->entries = brdf.blend.tiles->tile_count;
+    out->entries = entries_of(brdf);
+    std::copy(arrays.splits, arrays.splits + 7, out->top);
+    out->top[7] = kAllBelow;
     out->last = last_lower(brdf);
     out->splits = arrays.splits;
     out->codes = arrays.codes;
     out->boxes = arrays.boxes;
+    out->areas = arrays.areas;
     out->nodes = arrays.nodes;
     out->guide = arrays.guide;
     return out;
@@ -176,11 +218,11 @@ Status BrdfWavefront::prepare(const BrdfView& view, BrdfWavefront& out, Instruct
     made.brdf_ = brdf;
     if (fits(brdf)) made.instructions_ = std::min(most, of_this_processor());
     if (made.instructions_ != Instructions::none) {
-        const std::size_t scratch = aligned(4 * sizeof(u32) * std::size_t{brdf.blend.tiles->tile_count});
-        arrays_in(nullptr, brdf, made.bytes_);
-        char* block = static_cast<char*>(std::aligned_alloc(kAlignment, made.bytes_ + scratch));
-        if (!block) return out_of_memory(made.bytes_ + scratch);
-        made.table_ = filled(arrays_in(block, brdf, made.bytes_), brdf);
+        std::size_t all_bytes;
+        arrays_in(nullptr, brdf, made.bytes_, all_bytes);
+        char* block = static_cast<char*>(std::aligned_alloc(kAlignment, all_bytes));
+        if (!block) return out_of_memory(all_bytes);
+        made.table_ = filled(arrays_in(block, brdf, made.bytes_, all_bytes), brdf);
     }
     out = std::move(made);
     return {};

@@ -16,19 +16,27 @@ struct WavefrontSplit {
     std::uint32_t place;
 };
 
-/// Tables of an isotropic file whose tiles are cells. T: stored views, N: cells, S: starts.
+/// Splits of the first three levels, which vectors of eight keep in a register: numbers 0 to 6.
+constexpr std::uint32_t kTopLevels = 3;
+
+/// Tables of an isotropic file whose tiles are cells. T: stored views, N: cells, E: N rounded up to a multiple
+/// of 8.
 struct WavefrontTable {
     AcdfBrdf brdf;
     double columns, rows;
     bool mirrored;
-    long long entries; // N: splits, and an entry for lanes that are in a cell
+    long long entries; // E
     long long last;    // the last view that can be the lower one of two
 
-    const WavefrontSplit* splits; // N
-    /// N a pair of neighbouring views, T - 1 of them but at least one: code of the lower view, << 16 of the upper
+    /// E, those of the first levels first, else in their order: children have higher numbers than their parents.
+    /// What is left over, the last one at least, leaves all to its lower part and has the children 0.
+    const WavefrontSplit* splits;
+    WavefrontSplit top[8]; // the first seven, and the last one
+    /// E a pair of neighbouring views, T - 1 of them but at least one: code of the lower view, << 16 of the upper
     /// one.
     const std::uint32_t* codes;
     const std::uint32_t* boxes; // 4 a cell: low and high on axis 0, on axis 1
+    const double* areas;        // one a cell, in grid squares
     const double* nodes;        // 2 (T + 1): coordinate of each view and share of its bin; then infinity and 0
     const std::uint16_t* guide; // kGuideSteps + 1: views from 1 on that lie in steps before this one
 };

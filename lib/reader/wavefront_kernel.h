@@ -251,6 +251,14 @@ ACDF_LANE Integer split_of(const WavefrontTable& t, const Walk& s) {
     return least(s.node, Integer{} + (t.entries - 1));
 }
 
+template <bool Top>
+ACDF_LANE Integer split_at(const WavefrontTable& t, Integer number) {
+#if ACDF_WIDTH == 8
+    if (Top) return (Integer)_mm512_permutexvar_epi64((__m512i)number, _mm512_loadu_si512(t.top));
+#endif
+    return gathered<8>(t.splits, number);
+}
+
 ACDF_LANE Integer axis_of(Integer split) { return (split & 1LL << 32) != 0; }
 
 /* Above every split of its axis and a position up to the square's. */
@@ -261,9 +269,9 @@ ACDF_LANE void take(Walk* s, Integer upper, Integer split) {
     s->node = most(s->node, select(upper, split >> 16, split) & 0xFFFF);
 }
 
+template <bool Top>
 ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
-    const Integer at = split_of(t, *s), split = gathered<8>(t.splits, at),
-                  codes = gathered_words(t.codes, s->base + at);
+    const Integer at = split_of(t, *s), split = split_at<Top>(t, at), codes = gathered_words(t.codes, s->base + at);
     const Vector code0 = converted(codes & 0xFFFF), code1 = converted(codes >> 16);
     const Vector lower0 = s->weight[0] * (code0 * (1.0 / 65535.0));
     const Vector lower1 = s->weight[1] * (code1 * (1.0 / 65535.0));
@@ -282,9 +290,9 @@ ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
     take(s, upper, split);
 }
 
+template <bool Top>
 ACDF_LANE void find_step(const WavefrontTable& t, Walk* s) {
-    const Integer at = split_of(t, *s), split = gathered<8>(t.splits, at),
-                  codes = gathered_words(t.codes, s->base + at);
+    const Integer at = split_of(t, *s), split = split_at<Top>(t, at), codes = gathered_words(t.codes, s->base + at);
     const Integer upper = select(axis_of(split), s->key[1], s->key[0]) >= split;
     const Integer part = codes ^ (upper & 0xFFFFFFFF); // 65535 - code is code ^ 65535
     s->weight[0] *= converted(part & 0xFFFF) * (1.0 / 65535.0);
@@ -292,32 +300,35 @@ ACDF_LANE void find_step(const WavefrontTable& t, Walk* s) {
     take(s, upper, split);
 }
 
-template <void (*Step)(const WavefrontTable&, Walk*)>
+using Step = void (*)(const WavefrontTable&, Walk*);
+
+template <Step Top, Step Below>
 ACDF_LANE void walk(const WavefrontTable& t, Walk* s) {
+    for (std::uint32_t level = 0; level < acdf::kTopLevels; ++level)
+        for (int g = 0; g < kGroups; ++g) Top(t, &s[g]);
     for (;;) {
         Integer open{};
         for (int g = 0; g < kGroups; ++g) open |= s[g].node < ACDF_TILE_FLAG;
         if (!any(open)) return;
-        for (int g = 0; g < kGroups; ++g) Step(t, &s[g]);
+        for (int g = 0; g < kGroups; ++g) Below(t, &s[g]);
     }
 }
 
 // ---- cells -----------------------------------------------------------------------------------------------------
 
 struct Cell {
-    Vector low[2], high[2], probability;
+    Vector low[2], high[2];
 };
 
 ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1000)); }
 
-ACDF_LANE Cell cell_of(const WavefrontTable& t, const Walk& s, Vector probability) {
+ACDF_LANE Cell cell_of(const WavefrontTable& t, const Walk& s) {
     Cell out;
     for (int axis = 0; axis < 2; ++axis) {
         const Integer box = gathered<8>(t.boxes, 2 * (s.node & 0x7FFF) + axis);
         out.low[axis] = converted(box & 0xFFFFFFFF);
         out.high[axis] = converted(box >> 32 & 0xFFFFFFFF);
     }
-    out.probability = probability;
     return out;
 }
 
@@ -353,12 +364,12 @@ ACDF_LANE Integer step_of(Vector position, double resolution) {
     return truncated(select(position < resolution, position, all(resolution - 1.0)));
 }
 
-ACDF_LANE Vector density(const WavefrontTable& t, const Cell& cell, const Place& place) {
-    const Vector pdf = cell.probability * t.columns * t.rows * place.length /
-                       (8.0 * ACDF_PI * place.dot * (cell.high[0] - cell.low[0]) * (cell.high[1] - cell.low[1]));
-    const Vector most = select(pdf >= 3.402823466e38, all(3.402823466e38f), pdf);
-    const Vector least = select(pdf > 1.17549435e-38, most, all(1.17549435e-38f));
-    return select(cell.probability > 0.0, rounded_to_float(least), all(0.0));
+ACDF_LANE Vector density(const WavefrontTable& t, const Walk& s, Vector probability, const Place& place) {
+    const Vector area = (Vector)gathered<8>(t.areas, s.node & 0x7FFF);
+    const Vector pdf = probability * t.columns * t.rows * place.length / (8.0 * ACDF_PI * place.dot * area);
+    const Vector bounded = select(pdf >= 3.402823466e38, all(3.402823466e38f), pdf);
+    const Vector positive = select(pdf > 1.17549435e-38, bounded, all(1.17549435e-38f));
+    return select(probability > 0.0, rounded_to_float(positive), all(0.0));
 }
 
 struct Reflection {
@@ -415,7 +426,7 @@ ACDF_LANE void begin_sample(const WavefrontTable& t, const View& view, Vector u0
 ACDF_LANE void begin_walk(const WavefrontTable& t, const View& view, Walk* s) {
     for (int i = 0; i < 2; ++i) s->weight[i] = view.weight[i];
     s->base = view.lower * t.entries;
-    s->node = Integer{} + (t.entries > 1 ? 0 : (long long)ACDF_TILE_FLAG);
+    s->node = Integer{} + (t.brdf.blend.tiles->tile_count > 1 ? 0 : (long long)ACDF_TILE_FLAG);
 }
 
 /* Writes the samples of a vector of lanes. Returns the lanes that are left to acdf_brdf_sample. */
@@ -423,7 +434,7 @@ ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const W
                               AcdfDirectionSample* out) {
     const Vector whole = view.weight[0] + view.weight[1];
     const Integer valid = whole > 0.0;
-    const Cell cell = cell_of(t, s, positive(s.chosen / whole));
+    const Cell cell = cell_of(t, s);
     Vector position[2];
     for (int axis = 0; axis < 2; ++axis) {
         const Vector u = select(s.x[axis] < s.chosen, s.x[axis] / s.chosen, all(1.0));
@@ -432,11 +443,10 @@ ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const W
     const Reflection to = reflect(t, view, position, sign);
     Directions half;
     Place place;
-    const Integer good =
-        half_of(view, to.wi, &half, &place) & inside(cell, position, to.reach) & (cell.probability > 0.0);
+    const Integer good = half_of(view, to.wi, &half, &place) & inside(cell, position, to.reach);
     const Vector none = all(0.0);
     store(out, select(valid, to.wi.x, none), select(valid, to.wi.y, none), select(valid, to.wi.z, none),
-          select(valid, density(t, cell, place), none));
+          select(valid, density(t, s, positive(s.chosen / whole), place), none));
     return bits(valid & ~good);
 }
 
@@ -453,7 +463,7 @@ ACDF_LANE void sample_block(const WavefrontTable& t, const float (*wo)[3], const
         begin_walk(t, view[g], &s[g]);
         begin_sample(t, view[g], every_second(u[lane]), every_second(u[lane] + 1), &s[g], &sign[g]);
     }
-    walk<sample_step>(t, s);
+    walk<sample_step<true>, sample_step<false>>(t, s);
     for (int g = 0; g < kGroups; ++g) {
         unsigned left = end_sample(t, view[g], s[g], sign[g], &out[g * kWidth]);
         for (int lane = g * kWidth; left != 0; ++lane, left >>= 1)
@@ -474,12 +484,12 @@ ACDF_LANE void pdf_block(const WavefrontTable& t, const float (*wo)[3], const fl
         s[g].key[0] = key_of(step_of(place[g].position[0], t.columns));
         s[g].key[1] = key_of(step_of(place[g].position[1], t.rows));
     }
-    walk<find_step>(t, s);
+    walk<find_step<true>, find_step<false>>(t, s);
     for (int g = 0; g < kGroups; ++g) {
         const Vector chosen = s[g].weight[0] + s[g].weight[1], whole = view[g].weight[0] + view[g].weight[1];
         const Integer some = valid[g] & (whole > 0.0) & (chosen > 0.0);
-        const Cell cell = cell_of(t, s[g], select(some, positive(chosen / whole), all(0.0)));
-        store(&out[g * kWidth], density(t, cell, place[g]));
+        const Vector probability = select(some, positive(chosen / whole), all(0.0));
+        store(&out[g * kWidth], density(t, s[g], probability, place[g]));
     }
 }
 

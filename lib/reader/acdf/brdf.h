@@ -195,9 +195,8 @@ ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange 
     double pdf = 0.0;
     int axis;
     if (p > 0.0) {
-        pdf = p * (double)brdf->columns * (double)brdf->rows * place->length /
-              (8.0 * ACDF_PI * place->dot * (double)(range[0].high - range[0].low) *
-               (double)(range[1].high - range[1].low));
+        const double area = (double)(range[0].high - range[0].low) * (double)(range[1].high - range[1].low);
+        pdf = p * (double)brdf->columns * (double)brdf->rows * place->length / (8.0 * ACDF_PI * place->dot * area);
         for (axis = 0; axis < 2; ++axis)
             if (range[axis].tilt != 0.0)
                 pdf *= acdf_tilt_density(range[axis].tilt, acdf_brdf_fraction(&range[axis], place->position[axis]));
