@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -66,12 +67,16 @@ std::vector<ExtremeBrdf> extreme_brdfs() {
 
 class ExtremeBrdfs : public ::testing::TestWithParam<ExtremeBrdf> {
 protected:
+    /// Each file is made once a process.
     void SetUp() override {
+        static std::map<std::string, std::unique_ptr<MadeBrdf>> made;
+        std::unique_ptr<MadeBrdf>& brdf = made[GetParam().name];
         acdf::tools::BrdfFileOptions options = budget(16384);
         options.codec = ACDF_CODEC_ZLIB;
-        brdf_ = make_brdf(GetParam().make(), options);
+        if (!brdf) brdf = make_brdf(GetParam().make(), options);
+        brdf_ = brdf.get();
     }
-    std::unique_ptr<MadeBrdf> brdf_;
+    const MadeBrdf* brdf_ = nullptr;
 };
 
 TEST_P(ExtremeBrdfs, SamplesAreSoundForEveryView) {
