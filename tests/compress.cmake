@@ -3,7 +3,7 @@ if(NOT TARGET acdf_compress)
 endif()
 find_package(rapidcheck REQUIRED)
 
-acdf_add_test(test_compress
+acdf_add_test(test_compress SHARDS 4
     SOURCES
         compress_curve.cpp
         compress_join.cpp
@@ -28,3 +28,4 @@ acdf_add_test(test_compress_golden
     LIBRARIES acdf_compress)
 target_compile_definitions(test_compress_golden PRIVATE ACDF_MAKE_GOLDEN="$<TARGET_FILE:make_golden>")
 add_dependencies(test_compress_golden make_golden)
+set_source_files_properties(compress_variance.cpp local_golden.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

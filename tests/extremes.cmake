@@ -10,7 +10,7 @@ endif()
 acdf_add_test(test_extremes
     SOURCES compress_checks.cpp extremes_fits.cpp extremes_reach.cpp extremes_sums.cpp
     LIBRARIES acdf_measure)
-acdf_add_test(test_extremes_brdf
+acdf_add_test(test_extremes_brdf COST 40
     SOURCES extremes_brdf.cpp
     LIBRARIES acdf_brdf)
 acdf_add_test(test_extremes_local

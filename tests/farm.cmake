@@ -6,6 +6,6 @@ if(TARGET acdf AND TARGET make_batch_probes AND NOT ACDF_SANITIZE)
             COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/farm.sh ${engine}
                 $<TARGET_FILE:acdf> $<TARGET_FILE:make_batch_probes>)
         set_tests_properties(farm.${engine} PROPERTIES
-            LABELS farm TIMEOUT 600 SKIP_RETURN_CODE 77 RESOURCE_LOCK farm_packages)
+            LABELS farm COST 25 TIMEOUT 600 SKIP_RETURN_CODE 77 RESOURCE_LOCK farm_packages)
     endforeach()
 endif()

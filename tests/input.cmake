@@ -1,7 +1,7 @@
 # Reading environment maps. OpenEXR's own mapping functions (ImfEnvmap.h) are an oracle for its layouts.
 if(TARGET acdf_input)
     find_package(OpenEXR REQUIRED)
-    acdf_add_test(test_input
+    acdf_add_test(test_input SHARDS 6
         SOURCES
             input_conventions.cpp
             input_detect.cpp
@@ -13,6 +13,7 @@ if(TARGET acdf_input)
             input_scene.cpp
             input_scene_hostile.cpp
         LIBRARIES acdf_input OpenImageIO::OpenImageIO OpenEXR::OpenEXR OpenEXR::OpenEXRUtil)
+    set_source_files_properties(input_resample.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endif()
 
 # BRDFs: measured ones, models, tables.
