@@ -44,6 +44,7 @@ std::vector<std::pair<std::string, BrdfSpec>> forms() {
                 s.codes[row].push_back(static_cast<std::uint8_t>(2 + 5 * row + i % 7));
         }
     });
+    add("as many rows as may be", [](BrdfSpec& s) { s.columns = 65536, s.rows = 1u << 28; });
     add("a floor", [](BrdfSpec& s) { s.diffuse_share = 0.25f; });
     out.emplace_back("trees of their own", separate_brdf());
     return out;

@@ -42,6 +42,11 @@ public:
             else direction(&wi_[3 * i], 2.0 * uniform(random) - 1.0, 7.0 * uniform(random));
             if (i % 17 == 8)
                 for (std::size_t k = 0; k < 3; ++k) wi_[3 * i + k] = -wo_[3 * i + k];
+            if (i % 19 == 3) { // a half-vector in the surface: the last row
+                wi_[3 * i] = wo_[3 * i + 1];
+                wi_[3 * i + 1] = -wo_[3 * i];
+                wi_[3 * i + 2] = -wo_[3 * i + 2];
+            }
             if (i % 29 == 9) wi_[3 * i + i % 3] = not_a_direction(random());
         }
     }

@@ -261,8 +261,9 @@ ACDF_LANE Integer split_at(const WavefrontTable& t, Integer number) {
 
 ACDF_LANE Integer axis_of(Integer split) { return (split & 1LL << 32) != 0; }
 
-/* Above every split of its axis and a position up to the square's. */
-ACDF_LANE Integer key_of(Integer square) { return square << 35 | 0x7FFFFFFFFLL; }
+/* Above every split of its axis and a position up to the square's, and below the entry that leaves all to its lower
+ * part, even in the last of 2^28 rows. */
+ACDF_LANE Integer key_of(Integer square) { return square << 35 | 0x1FFFFFFFFLL; }
 
 /* Children have higher numbers than their parents, tiles higher ones than splits; that entry's are 0. */
 ACDF_LANE void take(Walk* s, Integer upper, Integer split) {
