@@ -22,7 +22,6 @@ Direction at_angles(double cosine, double phi) {
     return {float(s * std::cos(phi)), float(s * std::sin(phi)), float(cosine)};
 }
 
-/// An open file and its view.
 /// Probability that a row gives to the cell of a square, and the cell.
 struct Cell {
     double probability = 1.0;

@@ -43,11 +43,12 @@ ACDF_LANE __m256i gathered4(const char* base, __m256i index) {
 }
 
 #if ACDF_WIDTH == 8
+ACDF_LANE Integer least(Integer a, Integer b) { return (Integer)_mm512_min_epi64((__m512i)a, (__m512i)b); }
+ACDF_LANE Integer most(Integer a, Integer b) { return (Integer)_mm512_max_epi64((__m512i)a, (__m512i)b); }
 ACDF_LANE Vector root(Vector x) { return (Vector)_mm512_sqrt_pd((__m512d)x); }
 ACDF_LANE Vector rounded_to_float(Vector x) { return (Vector)_mm512_cvtps_pd(_mm512_cvtpd_ps((__m512d)x)); }
 ACDF_LANE Integer truncated(Vector x) { return (Integer)_mm512_cvttpd_epi64((__m512d)x); }
 ACDF_LANE Vector converted(Integer i) { return (Vector)_mm512_cvtepi64_pd((__m512i)i); }
-ACDF_LANE bool any(Integer mask) { return _mm512_movepi64_mask((__m512i)mask) != 0; }
 ACDF_LANE unsigned bits(Integer mask) { return _mm512_movepi64_mask((__m512i)mask); }
 template <int Scale>
 ACDF_LANE Integer gathered(const void* base, Integer index) {
@@ -104,7 +105,6 @@ ACDF_LANE Vector rounded_to_float(Vector x) { return (Vector)_mm256_cvtps_pd(_mm
 ACDF_LANE Integer truncated(Vector x) { return (Integer)_mm256_cvtepi32_epi64(_mm256_cvttpd_epi32((__m256d)x)); }
 // Of integers in [0, 2^52).
 ACDF_LANE Vector converted(Integer i) { return (Vector)(i | 0x4330000000000000) - 0x1p52; }
-ACDF_LANE bool any(Integer mask) { return _mm256_movemask_pd((__m256d)mask) != 0; }
 ACDF_LANE unsigned bits(Integer mask) { return (unsigned)_mm256_movemask_pd((__m256d)mask); }
 template <int Scale>
 ACDF_LANE Integer gathered(const void* base, Integer index) {
@@ -136,15 +136,11 @@ ACDF_LANE void store(AcdfDirectionSample* out, Vector x, Vector y, Vector z, Vec
     _mm_storeu_ps((float*)&out[2], c);
     _mm_storeu_ps((float*)&out[3], d);
 }
-#endif
-
-#if ACDF_WIDTH == 8
-ACDF_LANE Integer least(Integer a, Integer b) { return (Integer)_mm512_min_epi64((__m512i)a, (__m512i)b); }
-ACDF_LANE Integer most(Integer a, Integer b) { return (Integer)_mm512_max_epi64((__m512i)a, (__m512i)b); }
-#else
 ACDF_LANE Integer least(Integer a, Integer b) { return a < b ? a : b; }
 ACDF_LANE Integer most(Integer a, Integer b) { return a > b ? a : b; }
 #endif
+
+ACDF_LANE bool any(Integer mask) { return bits(mask) != 0; }
 ACDF_LANE Vector select(Integer mask, Vector yes, Vector no) { return mask ? yes : no; }
 ACDF_LANE Integer select(Integer mask, Integer yes, Integer no) { return mask ? yes : no; }
 ACDF_LANE Vector all(double x) { return Vector{} + x; }

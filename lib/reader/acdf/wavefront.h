@@ -2,7 +2,7 @@
 // in waves.
 //
 //   acdf::BrdfWavefront wavefront;
-//   if (acdf::Status status = acdf::BrdfWavefront::prepare(file, wavefront); !status.ok()) { ... }
+//   if (acdf::Status status = acdf::BrdfWavefront::prepare(file.brdf(), wavefront); !status.ok()) { ... }
 //   wavefront.sample(wo, u, count, out);
 #pragma once
 
