@@ -102,6 +102,26 @@ TEST(MeasureBrdfRivals, RglSamplesAsItsDensity) {
     }
 }
 
+TEST(MeasureBrdfRivals, RglInSinglePrecisionIsRounded) {
+    acdf::test::RglParts parts;
+    parts.fill(5);
+    const acdf::test::Bytes file = parts.bytes();
+    const auto brdf = acdf::input::parse_rgl("t", file.data(), file.size());
+    const RglSampler precise(*brdf);
+    const acdf::measure::RglSamplerOf<float> single(*brdf);
+    std::mt19937_64 random(4);
+    int other_cells = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const auto wo = acdf::test::random_direction(random), wi = acdf::test::random_direction(random);
+        const double p = precise.pdf(wo.data(), wi.data());
+        EXPECT_NEAR(single.pdf(wo.data(), wi.data()), p, 1e-3 * p);
+        const double u[2] = {acdf_test::uniform(random), acdf_test::uniform(random)};
+        const auto a = precise.sample(wo.data(), u), b = single.sample(wo.data(), u);
+        other_cells += !(std::abs(a.pdf - b.pdf) <= 1e-2 * a.pdf) || std::abs(a.wi[0] - b.wi[0]) > 1e-3;
+    }
+    EXPECT_LE(other_cells, 10);
+}
+
 TEST(MeasureBrdfRivals, RglOfRealMaterials) {
     const std::string folder = std::string(ACDF_TEST_DATA) + "/brdfs/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real BRDFs: set ACDF_TEST_DATA";

@@ -25,22 +25,26 @@ struct RglTables {
 };
 
 /// A view folded into the range of the nodes, and the slices around it.
+template <class Real>
 struct RglView {
-    double wo[3] = {0.0, 0.0, 1.0};
-    double sign_x = 1.0, sign_y = 1.0; ///< by which x and y of all directions are multiplied
-    double theta = 0.0, phi = 0.0;
-    RglMix mix;
+    Real wo[3] = {0, 0, 1};
+    Real sign_x = 1, sign_y = 1; ///< by which x and y of all directions are multiplied
+    Real theta = 0, phi = 0;
+    RglMix<Real> mix;
 
-    void fold(double w[3]) const { w[0] *= sign_x, w[1] *= sign_y; }
+    void fold(Real w[3]) const { w[0] *= sign_x, w[1] *= sign_y; }
 };
-RglView rgl_view(const RglTables& tables, const double wo[3]);
+template <class Real>
+RglView<Real> rgl_view(const RglTables& tables, const Real wo[3]);
 
 /// A half-vector as a place in the tables.
+template <class Real>
 struct RglHalf {
-    double x = 0.0, y = 0.0;
-    double jacobian = 1.0; ///< steradians of wi per unit of (x, y)
+    Real x = 0, y = 0;
+    Real jacobian = 1; ///< steradians of wi per unit of (x, y)
 };
-RglHalf rgl_half(const RglTables& tables, const RglView& view, const double wi[3]);
+template <class Real>
+RglHalf<Real> rgl_half(const RglTables& tables, const RglView<Real>& view, const Real wi[3]);
 
 class RglBrdf : public Brdf {
 public:

@@ -7,29 +7,32 @@ namespace acdf::input {
 namespace {
 
 /// Where between two neighbours `value` lies.
+template <class Real>
 struct Interval {
     std::size_t low = 0;
-    double t = 0.0;
+    Real t = 0;
 };
 
-Interval find_node(const std::vector<float>& nodes, double value) {
+template <class Real>
+Interval<Real> find_node(const std::vector<float>& nodes, Real value) {
     if (nodes.size() < 2) return {};
     const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, value,
-                                        [](double v, float node) { return v < static_cast<double>(node); });
-    const double low = static_cast<double>(above[-1]), high = static_cast<double>(above[0]);
+                                        [](Real v, float node) { return v < static_cast<Real>(node); });
+    const Real low = static_cast<Real>(above[-1]), high = static_cast<Real>(above[0]);
     return {static_cast<std::size_t>(above - nodes.begin()) - 1,
-            std::clamp((value - low) / (high - low), 0.0, 1.0)};
+            std::clamp((value - low) / (high - low), Real(0), Real(1))};
 }
 
-Interval find_cell(double position, std::size_t corners) {
-    const double scaled = std::clamp(position, 0.0, 1.0) * static_cast<double>(corners - 1);
+template <class Real>
+Interval<Real> find_cell(Real position, std::size_t corners) {
+    const Real scaled = std::clamp(position, Real(0), Real(1)) * static_cast<Real>(corners - 1);
     const std::size_t low = std::min(static_cast<std::size_t>(scaled), corners - 2);
-    return {low, scaled - static_cast<double>(low)};
+    return {low, scaled - static_cast<Real>(low)};
 }
 
 /// The last of 0 .. corners - 2 at which the increasing function `cdf` is below u.
-template <class Cdf>
-std::size_t search(std::size_t corners, double u, const Cdf& cdf) {
+template <class Real, class Cdf>
+std::size_t search(std::size_t corners, Real u, const Cdf& cdf) {
     std::size_t low = 0, high = corners - 1;
     while (high - low > 1) {
         const std::size_t middle = (low + high) / 2;
@@ -39,41 +42,49 @@ std::size_t search(std::size_t corners, double u, const Cdf& cdf) {
 }
 
 /// t in [0, 1] with integral s from 0 to t of the line from a to b, without cancellation.
-double invert_line(double a, double b, double s) {
-    const double root = a + std::sqrt(std::max(0.0, a * a + 2.0 * s * (b - a)));
-    return root > 0.0 ? std::clamp(2.0 * s / root, 0.0, 1.0) : 0.5;
+template <class Real>
+Real invert_line(Real a, Real b, Real s) {
+    const Real root = a + std::sqrt(std::max(Real(0), a * a + 2 * s * (b - a)));
+    return root > 0 ? std::clamp(2 * s / root, Real(0), Real(1)) : Real(0.5);
 }
 
-double mix_of(const std::vector<float>& values, const RglMix& mix, std::size_t stride, std::size_t index) {
-    double sum = 0.0;
+template <class Real>
+Real mix_of(const std::vector<float>& values, const RglMix<Real>& mix, std::size_t stride, std::size_t index) {
+    Real sum = 0;
     for (std::size_t k = 0; k < mix.count; ++k)
-        sum += mix.weight[k] * static_cast<double>(values[mix.slice[k] * stride + index]);
+        sum += mix.weight[k] * static_cast<Real>(values[mix.slice[k] * stride + index]);
     return sum;
 }
 
-double lerp(double a, double b, double t) { return (1.0 - t) * a + t * b; }
+template <class Real>
+Real lerp(Real a, Real b, Real t) {
+    return (1 - t) * a + t * b;
+}
 
 } // namespace
 
-RglMix RglNodes::mix(double view_phi, double view_theta) const {
-    const Interval p = find_node(phi, view_phi), t = find_node(theta, view_theta);
-    RglMix out;
+template <class Real>
+RglMix<Real> RglNodes::mix(Real view_phi, Real view_theta) const {
+    const Interval<Real> p = find_node(phi, view_phi), t = find_node(theta, view_theta);
+    RglMix<Real> out;
     for (std::size_t i = 0; i < 2; ++i)
         for (std::size_t j = 0; j < 2; ++j) {
-            const double weight = (i ? p.t : 1.0 - p.t) * (j ? t.t : 1.0 - t.t);
-            if (!(weight > 0.0)) continue;
+            const Real weight = (i ? p.t : 1 - p.t) * (j ? t.t : 1 - t.t);
+            if (!(weight > 0)) continue;
             out.slice[out.count] = (p.low + i) * theta.size() + t.low + j;
             out.weight[out.count++] = weight;
         }
     return out;
 }
 
-double RglTable::at(const RglMix& mix, std::size_t index, std::size_t channel) const {
+template <class Real>
+Real RglTable::at(const RglMix<Real>& mix, std::size_t index, std::size_t channel) const {
     return mix_of(values, mix, channels * slice_size(), channel * slice_size() + index);
 }
 
-double RglTable::bilinear(const RglMix& mix, double x, double y, std::size_t channel) const {
-    const Interval column = find_cell(x, columns), row = find_cell(y, rows);
+template <class Real>
+Real RglTable::bilinear(const RglMix<Real>& mix, Real x, Real y, std::size_t channel) const {
+    const Interval<Real> column = find_cell(x, columns), row = find_cell(y, rows);
     const std::size_t corner = row.low * columns + column.low;
     return lerp(lerp(at(mix, corner, channel), at(mix, corner + 1, channel), column.t),
                 lerp(at(mix, corner + columns, channel), at(mix, corner + columns + 1, channel), column.t), row.t);
@@ -103,54 +114,74 @@ RglWarp::RglWarp(RglTable table) : density_(std::move(table)) {
     }
 }
 
-double RglWarp::marginal(const RglMix& mix, std::size_t row) const {
+template <class Real>
+Real RglWarp::marginal(const RglMix<Real>& mix, std::size_t row) const {
     return mix_of(marginal_, mix, density_.rows, row);
 }
 
-double RglWarp::conditional(const RglMix& mix, std::size_t row, std::size_t column, double t) const {
+template <class Real>
+Real RglWarp::conditional(const RglMix<Real>& mix, std::size_t row, std::size_t column, Real t) const {
     const std::size_t i = row * density_.columns + column, size = density_.slice_size();
     return lerp(mix_of(conditional_, mix, size, i), mix_of(conditional_, mix, size, i + density_.columns), t);
 }
 
-double RglWarp::row_mass(const RglMix& mix, std::size_t row) const {
+template <class Real>
+Real RglWarp::row_mass(const RglMix<Real>& mix, std::size_t row) const {
     return mix_of(conditional_, mix, density_.slice_size(), (row + 1) * density_.columns - 1);
 }
 
-double RglWarp::pdf(const RglMix& mix, double x, double y) const { return density_.bilinear(mix, x, y) * cells(); }
+template <class Real>
+Real RglWarp::pdf(const RglMix<Real>& mix, Real x, Real y) const {
+    return density_.bilinear(mix, x, y) * cells<Real>();
+}
 
-RglWarp::Point RglWarp::sample(const RglMix& mix, double u, double v) const {
-    constexpr double tiny = 0x1p-24; // steps over leading cells without mass, as published
-    u = std::clamp(u, tiny, 1.0 - tiny);
-    v = std::clamp(v, tiny, 1.0 - tiny);
+template <class Real>
+RglWarp::Point<Real> RglWarp::sample(const RglMix<Real>& mix, Real u, Real v) const {
+    constexpr Real tiny = Real(0x1p-24); // steps over leading cells without mass, as published
+    u = std::clamp(u, tiny, 1 - tiny);
+    v = std::clamp(v, tiny, 1 - tiny);
     const std::size_t row = search(density_.rows, v, [&](std::size_t i) { return marginal(mix, i); });
-    const double t = invert_line(row_mass(mix, row), row_mass(mix, row + 1), v - marginal(mix, row));
+    const Real t = invert_line(row_mass(mix, row), row_mass(mix, row + 1), v - marginal(mix, row));
 
     u *= conditional(mix, row, density_.columns - 1, t);
     const auto cdf = [&](std::size_t i) { return conditional(mix, row, i, t); };
     const std::size_t column = search(density_.columns, u, cdf);
     const std::size_t corner = row * density_.columns + column;
-    const double a = lerp(density_.at(mix, corner), density_.at(mix, corner + density_.columns), t);
-    const double b = lerp(density_.at(mix, corner + 1), density_.at(mix, corner + density_.columns + 1), t);
-    const double s = invert_line(a, b, u - cdf(column));
-    return {(static_cast<double>(column) + s) / static_cast<double>(density_.columns - 1),
-            (static_cast<double>(row) + t) / static_cast<double>(density_.rows - 1), lerp(a, b, s) * cells()};
+    const Real a = lerp(density_.at(mix, corner), density_.at(mix, corner + density_.columns), t);
+    const Real b = lerp(density_.at(mix, corner + 1), density_.at(mix, corner + density_.columns + 1), t);
+    const Real s = invert_line(a, b, u - cdf(column));
+    return {(static_cast<Real>(column) + s) / static_cast<Real>(density_.columns - 1),
+            (static_cast<Real>(row) + t) / static_cast<Real>(density_.rows - 1), lerp(a, b, s) * cells<Real>()};
 }
 
-RglWarp::Point RglWarp::invert(const RglMix& mix, double x, double y) const {
-    const Interval column = find_cell(x, density_.columns), row = find_cell(y, density_.rows);
+template <class Real>
+RglWarp::Point<Real> RglWarp::invert(const RglMix<Real>& mix, Real x, Real y) const {
+    const Interval<Real> column = find_cell(x, density_.columns), row = find_cell(y, density_.rows);
     const std::size_t corner = row.low * density_.columns + column.low;
-    const double a = lerp(density_.at(mix, corner), density_.at(mix, corner + density_.columns), row.t);
-    const double b = lerp(density_.at(mix, corner + 1), density_.at(mix, corner + density_.columns + 1), row.t);
-    const double left = conditional(mix, row.low, column.low, row.t) + column.t * (a + 0.5 * column.t * (b - a));
-    const double whole = conditional(mix, row.low, density_.columns - 1, row.t);
-    const double r0 = row_mass(mix, row.low), r1 = row_mass(mix, row.low + 1);
-    const double below = marginal(mix, row.low) + row.t * (r0 + 0.5 * row.t * (r1 - r0));
-    return {whole > 0.0 ? std::clamp(left / whole, 0.0, 1.0) : 0.5, std::clamp(below, 0.0, 1.0),
-            lerp(a, b, column.t) * cells()};
+    const Real a = lerp(density_.at(mix, corner), density_.at(mix, corner + density_.columns), row.t);
+    const Real b = lerp(density_.at(mix, corner + 1), density_.at(mix, corner + density_.columns + 1), row.t);
+    const Real left =
+        conditional(mix, row.low, column.low, row.t) + column.t * (a + Real(0.5) * column.t * (b - a));
+    const Real whole = conditional(mix, row.low, density_.columns - 1, row.t);
+    const Real r0 = row_mass(mix, row.low), r1 = row_mass(mix, row.low + 1);
+    const Real below = marginal(mix, row.low) + row.t * (r0 + Real(0.5) * row.t * (r1 - r0));
+    return {whole > 0 ? std::clamp(left / whole, Real(0), Real(1)) : Real(0.5), std::clamp(below, Real(0), Real(1)),
+            lerp(a, b, column.t) * cells<Real>()};
 }
 
 std::size_t RglWarp::bytes() const {
     return sizeof(float) * (density_.values.size() + marginal_.size() + conditional_.size());
 }
+
+#define INSTANTIATE(Real)                                                                                          \
+    template RglMix<Real> RglNodes::mix(Real, Real) const;                                                         \
+    template Real RglTable::at(const RglMix<Real>&, std::size_t, std::size_t) const;                               \
+    template Real RglTable::bilinear(const RglMix<Real>&, Real, Real, std::size_t) const;                          \
+    template Real RglWarp::pdf(const RglMix<Real>&, Real, Real) const;                                             \
+    template RglWarp::Point<Real> RglWarp::sample(const RglMix<Real>&, Real, Real) const;                          \
+    template RglWarp::Point<Real> RglWarp::invert(const RglMix<Real>&, Real, Real) const;
+INSTANTIATE(float)
+INSTANTIATE(double)
+#undef INSTANTIATE
 
 } // namespace acdf::input

@@ -9,10 +9,13 @@
 
 namespace acdf::input {
 
+// Real: float as its authors' program computes, double to evaluate what was measured. Values are floats in both.
+
 /// The slices of a table around a view and their weights (sum 1): linear in phi and in theta, constant outside.
+template <class Real>
 struct RglMix {
     std::array<std::size_t, 4> slice;
-    std::array<double, 4> weight;
+    std::array<Real, 4> weight;
     std::size_t count = 0;
 };
 
@@ -21,7 +24,8 @@ struct RglNodes {
     std::vector<float> phi, theta;
 
     std::size_t slices() const { return phi.size() * theta.size(); }
-    RglMix mix(double view_phi, double view_theta) const;
+    template <class Real>
+    RglMix<Real> mix(Real view_phi, Real view_theta) const;
 };
 
 /// slices x channels x rows x columns values at the corners of a grid over the unit square, bilinear between them;
@@ -31,8 +35,10 @@ struct RglTable {
     std::vector<float> values;
 
     std::size_t slice_size() const { return columns * rows; }
-    double at(const RglMix& mix, std::size_t index, std::size_t channel = 0) const;
-    double bilinear(const RglMix& mix, double x, double y, std::size_t channel = 0) const;
+    template <class Real>
+    Real at(const RglMix<Real>& mix, std::size_t index, std::size_t channel = 0) const;
+    template <class Real>
+    Real bilinear(const RglMix<Real>& mix, Real x, Real y, std::size_t channel = 0) const;
 };
 
 /// A density over the unit square for each view, and the map from uniform numbers to it, rows (y) first. Between
@@ -43,21 +49,32 @@ public:
     /// `table`: one channel, values >= 0 with some > 0 in each slice; scaled here so that each integrates to 1.
     explicit RglWarp(RglTable table);
 
+    template <class Real>
     struct Point {
-        double x = 0.0, y = 0.0;
-        double pdf = 0.0; ///< of the density at the point within the square (for invert: at the one given)
+        Real x = 0, y = 0;
+        Real pdf = 0; ///< of the density at the point within the square (for invert: at the one given)
     };
-    double pdf(const RglMix& mix, double x, double y) const;
-    Point sample(const RglMix& mix, double u, double v) const; ///< u, v in [0, 1]: for columns and rows
-    Point invert(const RglMix& mix, double x, double y) const; ///< the u, v that sample() maps to (x, y)
+    template <class Real>
+    Real pdf(const RglMix<Real>& mix, Real x, Real y) const;
+    template <class Real>
+    Point<Real> sample(const RglMix<Real>& mix, Real u, Real v) const; ///< u, v in [0, 1]: for columns and rows
+    template <class Real>
+    Point<Real> invert(const RglMix<Real>& mix, Real x, Real y) const; ///< the u, v that sample() maps to (x, y)
     std::size_t bytes() const;
     const RglTable& table() const { return density_; }
 
 private:
-    double row_mass(const RglMix& mix, std::size_t row) const; ///< integral of the density along a row's corners
-    double cells() const { return static_cast<double>((density_.columns - 1) * (density_.rows - 1)); }
-    double marginal(const RglMix& mix, std::size_t row) const;
-    double conditional(const RglMix& mix, std::size_t row, std::size_t column, double t) const;
+    /// Integral of the density along a row's corners.
+    template <class Real>
+    Real row_mass(const RglMix<Real>& mix, std::size_t row) const;
+    template <class Real>
+    Real cells() const {
+        return static_cast<Real>((density_.columns - 1) * (density_.rows - 1));
+    }
+    template <class Real>
+    Real marginal(const RglMix<Real>& mix, std::size_t row) const;
+    template <class Real>
+    Real conditional(const RglMix<Real>& mix, std::size_t row, std::size_t column, Real t) const;
 
     RglTable density_;               ///< scaled so that the sum over cells of their mean is 1
     std::vector<float> marginal_;    ///< slices x rows: mass below a row

@@ -6,35 +6,50 @@
 namespace acdf::measure {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+template <class Real>
+constexpr Real pi = Real(3.14159265358979323846);
+
+template <class Real>
+struct Vector {
+    explicit Vector(const double v[3])
+        : x{static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])} {}
+    Real x[3];
+};
 
 } // namespace
 
-BrdfSample RglSampler::sample(const double wo[3], const double u[2]) const {
+template <class Real>
+BrdfSample RglSamplerOf<Real>::sample(const double wo[3], const double u[2]) const {
     BrdfSample out;
     if (!(wo[2] > 0.0)) return out;
-    const input::RglView view = input::rgl_view(tables_, wo);
-    const auto bright = tables_.luminance.sample(view.mix, u[0], u[1]);
+    const auto view = input::rgl_view(tables_, Vector<Real>(wo).x);
+    const auto bright = tables_.luminance.sample(view.mix, static_cast<Real>(u[0]), static_cast<Real>(u[1]));
     const auto normal = tables_.vndf.sample(view.mix, bright.x, bright.y);
 
-    const double theta = normal.x * normal.x * (0.5 * pi);
-    const double phi = (2.0 * normal.y - 1.0) * pi + (tables_.isotropic ? view.phi : 0.0);
-    const double m[3] = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-    const double dot = view.wo[0] * m[0] + view.wo[1] * m[1] + view.wo[2] * m[2];
-    for (int k = 0; k < 3; ++k) out.wi[k] = 2.0 * dot * m[k] - view.wo[k];
-    view.fold(out.wi);
-    if (!(out.wi[2] > 0.0)) return out;
-    const double jacobian = std::max(2.0 * pi * pi * normal.x * std::sin(theta), 1e-6) * 4.0 * dot;
-    out.pdf = bright.pdf * normal.pdf / jacobian;
+    const Real theta = normal.x * normal.x * (pi<Real> / 2), sine = std::sin(theta);
+    const Real phi = (2 * normal.y - 1) * pi<Real> + (tables_.isotropic ? view.phi : Real(0));
+    const Real m[3] = {sine * std::cos(phi), sine * std::sin(phi), std::cos(theta)};
+    const Real dot = view.wo[0] * m[0] + view.wo[1] * m[1] + view.wo[2] * m[2];
+    Real wi[3];
+    for (int k = 0; k < 3; ++k) wi[k] = 2 * dot * m[k] - view.wo[k];
+    view.fold(wi);
+    std::copy(wi, wi + 3, out.wi);
+    if (!(wi[2] > 0)) return out;
+    const Real jacobian = std::max(2 * pi<Real> * pi<Real> * normal.x * sine, Real(1e-6)) * 4 * dot;
+    out.pdf = static_cast<double>(bright.pdf * normal.pdf / jacobian);
     return out;
 }
 
-double RglSampler::pdf(const double wo[3], const double wi[3]) const {
+template <class Real>
+double RglSamplerOf<Real>::pdf(const double wo[3], const double wi[3]) const {
     if (!(wo[2] > 0.0 && wi[2] > 0.0)) return 0.0;
-    const input::RglView view = input::rgl_view(tables_, wo);
-    const input::RglHalf half = input::rgl_half(tables_, view, wi);
+    const auto view = input::rgl_view(tables_, Vector<Real>(wo).x);
+    const auto half = input::rgl_half(tables_, view, Vector<Real>(wi).x);
     const auto point = tables_.vndf.invert(view.mix, half.x, half.y);
-    return tables_.luminance.pdf(view.mix, point.x, point.y) * point.pdf / half.jacobian;
+    return static_cast<double>(tables_.luminance.pdf(view.mix, point.x, point.y) * point.pdf / half.jacobian);
 }
+
+template class RglSamplerOf<float>;
+template class RglSamplerOf<double>;
 
 } // namespace acdf::measure
