@@ -41,7 +41,7 @@ class RglFile : public testing::TestWithParam<const char*> {};
 
 TEST_P(RglFile, beatsItsAuthorsSampler) {
     NEEDS(GetParam());
-    const auto brdf = make_brdf(acdf::input::open_brdf(path_of(GetParam())), budget(200 << 10));
+    const auto brdf = make_brdf(acdf::input::open_brdf(path_of(GetParam())), budget(128 << 10));
     const auto& rgl = dynamic_cast<const acdf::input::RglBrdf&>(*brdf->source);
     const acdf::measure::RglSampler sampler(rgl);
     const auto views = acdf::measure::random_views(16, true, std::cos(75.0 * 3.14159265358979 / 180.0), 0.996);

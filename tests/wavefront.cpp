@@ -8,6 +8,40 @@ using namespace acdf_test;
 
 namespace {
 
+struct Box {
+    std::uint32_t low[2], high[2];
+};
+
+/// Splits a box `levels` times over, on both axes in turns, nearly each time at a position of its own. Returns what
+/// number it has as a child.
+std::uint16_t halve(BrdfSpec& spec, const Box& box, std::uint32_t levels, std::uint32_t& tiles) {
+    if (levels == 0) return static_cast<std::uint16_t>(tile_flag | tiles++);
+    const std::size_t number = spec.splits.size();
+    const std::uint32_t axis = levels % 2, half = (box.high[axis] - box.low[axis]) / 2;
+    const std::uint32_t position = box.low[axis] + half + static_cast<std::uint32_t>(number) % half;
+    spec.splits.push_back({axis, position, {0, 0}});
+    for (const std::size_t part : {0u, 1u}) {
+        Box inside = box;
+        (part == 0 ? inside.high : inside.low)[axis] = position;
+        const std::uint16_t child = halve(spec, inside, levels - 1, tiles);
+        spec.splits[number].child[part] = child;
+    }
+    return static_cast<std::uint16_t>(number);
+}
+
+/// 2048 cells whose borders lie at hundreds of thousands of pairs of positions.
+BrdfSpec many_borders() {
+    BrdfSpec spec = shared_brdf();
+    spec.columns = 65536, spec.rows = 1u << 28, spec.splits.clear();
+    std::uint32_t tiles = 0;
+    halve(spec, {{0, 0}, {spec.columns, spec.rows}}, 11, tiles);
+    spec.codes.assign(3, {});
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t i = 0; i < spec.splits.size(); ++i)
+            spec.codes[row].push_back(static_cast<std::uint8_t>(2 + (5 * row + i) % 250));
+    return spec;
+}
+
 /// What the vectors have tables for, at its smallest and with a chain of splits, and what they leave to the loop.
 std::vector<std::pair<std::string, BrdfSpec>> forms() {
     std::vector<std::pair<std::string, BrdfSpec>> out;
@@ -46,6 +80,7 @@ std::vector<std::pair<std::string, BrdfSpec>> forms() {
     });
     add("as many rows as may be", [](BrdfSpec& s) { s.columns = 65536, s.rows = 1u << 28; });
     add("a floor", [](BrdfSpec& s) { s.diffuse_share = 0.25f; });
+    out.emplace_back("many borders", many_borders());
     out.emplace_back("trees of their own", separate_brdf());
     return out;
 }
@@ -88,6 +123,13 @@ TEST(Wavefront, ServesByVectorsWhatIsIsotropicAndShared) {
 #if defined(__x86_64__)
     EXPECT_EQ(served(shared_brdf()), __builtin_cpu_supports("avx2") != 0);
 #endif
+}
+
+TEST(Wavefront, HasNoTableOfManyBorders) {
+    const Loaded loaded(many_borders().encode());
+    acdf::BrdfWavefront wavefront;
+    ASSERT_TRUE(acdf::BrdfWavefront::prepare(loaded.view(), wavefront).ok());
+    EXPECT_LT(wavefront.bytes(), std::size_t{256} * 2048); // which all the pairs of positions are more than
 }
 
 TEST(Wavefront, MovesAndIsMadeAnew) {

@@ -4,10 +4,12 @@
 #include <acdf/wavefront.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -40,18 +42,53 @@ struct Arrays {
     u32 *codes, *boxes;
     double *areas, *nodes;
     std::uint16_t* guide;
+    std::int32_t* borders[2];
+    std::uint16_t *border_guide[2], *cells;
+    double* probabilities;
     // While the tables are made, of each split of the file:
     u32* number; // in the tables
     u32* split_boxes;
+    double* parts; // of a row that reach it
+};
+
+/// The different positions of the splits of each axis, increasing.
+struct Borders {
+    std::unique_ptr<std::int32_t[]> position[2];
+    std::size_t count[2] = {0, 0};
+
+    std::size_t between() const { return (count[0] + 1) * (count[1] + 1); }
 };
 
 u32 splits_of(const AcdfBrdf& brdf) { return brdf.blend.tiles->tile_count - 1; }
 u32 entries_of(const AcdfBrdf& brdf) { return (brdf.blend.tiles->tile_count + 7) & ~7u; }
 std::size_t pairs_of(const AcdfBrdf& brdf) { return brdf.views->theta_count > 1 ? brdf.views->theta_count - 1 : 1; }
 
+/// False where memory fails.
+bool find_borders(const AcdfBrdf& brdf, Borders& out) {
+    const u32 splits = splits_of(brdf);
+    for (int axis = 0; axis < 2; ++axis) {
+        std::int32_t* const first = new (std::nothrow) std::int32_t[splits + 1];
+        if (!first) return false;
+        out.position[axis].reset(first);
+        std::int32_t* last = first;
+        for (u32 i = 0; i < splits; ++i)
+            if ((brdf.blend.splits[i].place & 7u) == static_cast<u32>(axis))
+                *last++ = static_cast<std::int32_t>(brdf.blend.splits[i].place >> 3);
+        std::sort(first, last);
+        out.count[axis] = static_cast<std::size_t>(std::unique(first, last) - first);
+    }
+    return true;
+}
+
+/// Whether a table of the cells between all borders is worth its memory. Usual files have some twenty a cell.
+bool have_table(const Borders& borders, const AcdfBrdf& brdf) {
+    return borders.between() <= 256 * std::size_t{brdf.blend.tiles->tile_count};
+}
+
 /// The arrays in `block`. `bytes` becomes the size of those that stay, `all_bytes` that of all. Vectors load the
 /// bytes behind an element, too: eight in all.
-Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes, std::size_t& all_bytes) {
+Arrays arrays_in(char* block, const AcdfBrdf& brdf, const Borders& borders, std::size_t& bytes,
+                 std::size_t& all_bytes) {
     const std::size_t cells = brdf.blend.tiles->tile_count, views = brdf.views->theta_count;
     Arena arena{block};
     Arrays out;
@@ -62,9 +99,17 @@ Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes, std::siz
     out.areas = arena.take<double>(cells);
     out.nodes = arena.take<double>(2 * (views + 1));
     out.guide = arena.take<std::uint16_t>(kGuideSteps + 4);
+    for (int axis = 0; axis < 2; ++axis) {
+        out.borders[axis] = arena.take<std::int32_t>(borders.count[axis] + kBordersAtOnce);
+        out.border_guide[axis] = arena.take<std::uint16_t>(kBorderSteps);
+    }
+    const bool table = have_table(borders, brdf);
+    out.cells = arena.take<std::uint16_t>(table ? borders.between() : 0);
+    out.probabilities = arena.take<double>((views + 1) * entries_of(brdf));
     bytes = arena.used;
     out.number = arena.take<u32>(cells);
     out.split_boxes = arena.take<u32>(4 * cells);
+    out.parts = arena.take<double>(cells);
     all_bytes = arena.used;
     return out;
 }
@@ -90,14 +135,14 @@ void number_splits(const AcdfBrdf& brdf, u32* number) {
         if (number[i] == none) number[i] = count++;
 }
 
-constexpr WavefrontSplit kAllBelow = {{0, 0}, 0x7FFFFFFFu}; // above every key: its lower part is chosen
+constexpr WavefrontSplit kAllBelow = {{0, 0}, 0};
 
 void place_splits(const AcdfBrdf& brdf, const u32* number, WavefrontSplit* out) {
     std::fill(out, out + entries_of(brdf), kAllBelow);
     for (u32 i = 0; i < splits_of(brdf); ++i) {
         const AcdfSplit& split = brdf.blend.splits[i];
         WavefrontSplit& placed = out[number[i]];
-        placed.place = split.place;
+        placed.axis = split.place & 7u;
         for (u32 part = 0; part < 2; ++part) {
             const u32 child = split.child[part];
             placed.child[part] = static_cast<std::uint16_t>(is_split(child) ? number[child] : child);
@@ -137,6 +182,58 @@ void place_boxes(const AcdfBrdf& brdf, u32* of_splits, u32* of_cells, double* ar
     }
 }
 
+void place_borders(const Borders& borders, const Arrays& out) {
+    for (int axis = 0; axis < 2; ++axis) {
+        std::int32_t* const first = out.borders[axis];
+        std::int32_t* const last = std::copy_n(borders.position[axis].get(), borders.count[axis], first);
+        std::fill_n(last, kBordersAtOnce, std::numeric_limits<std::int32_t>::max());
+        for (int step = 0; step < kBorderSteps; ++step) { // the first one begins at 0
+            const double begin =
+                step > 0 ? std::ldexp(1.0 + std::ldexp(step % (1 << kStepBits), -kStepBits), step >> kStepBits)
+                         : 0.0;
+            out.border_guide[axis][step] =
+                static_cast<std::uint16_t>(std::upper_bound(first, last, static_cast<std::int32_t>(begin)) - first);
+        }
+    }
+}
+
+void place_cells(const AcdfBrdf& brdf, const Borders& borders, const Arrays& out) {
+    const auto rank_of = [&](int axis, u32 square) {
+        const std::int32_t* const first = out.borders[axis];
+        return static_cast<std::size_t>(
+            std::upper_bound(first, first + borders.count[axis], static_cast<std::int32_t>(square)) - first);
+    };
+    for (std::size_t i = 0; i < brdf.blend.tiles->tile_count; ++i) {
+        const u32* box = out.boxes + 4 * i;
+        const std::size_t left = rank_of(0, box[0]), right = rank_of(0, box[1] - 1) + 1;
+        const std::size_t last = rank_of(1, box[3] - 1);
+        for (std::size_t row = rank_of(1, box[2]); row <= last; ++row) {
+            std::uint16_t* const cells = out.cells + row * (borders.count[0] + 1);
+            std::fill(cells + left, cells + right, static_cast<std::uint16_t>(i));
+        }
+    }
+}
+
+/// The products of the codes above each cell, as acdf_blend_find multiplies them.
+void place_probabilities(const AcdfBrdf& brdf, const Arrays& out) {
+    const std::uint16_t* codebook = brdf.blend.tiles->codebook;
+    const std::size_t views = brdf.views->theta_count;
+    for (std::size_t view = 0; view <= views; ++view) {
+        const u32 root = brdf.bins[std::min(view, views - 1)].root;
+        const std::uint8_t* row = brdf.blend.rows + std::size_t{root} * splits_of(brdf);
+        double* const cells = out.probabilities + view * entries_of(brdf);
+        std::fill(cells, cells + entries_of(brdf), 1.0);
+        out.parts[0] = 1.0;
+        for (u32 i = 0; i < splits_of(brdf); ++i)
+            for (u32 upper = 0; upper < 2; ++upper) {
+                const u32 child = brdf.blend.splits[i].child[upper];
+                const double code = upper ? 65535 - codebook[row[i]] : codebook[row[i]];
+                (is_split(child) ? out.parts[child] : cells[child & (ACDF_TILE_FLAG - 1)]) =
+                    out.parts[i] * (code * (1.0 / 65535.0));
+            }
+    }
+}
+
 u32 last_lower(const AcdfBrdf& brdf) { return brdf.views->theta_count > 1 ? brdf.views->theta_count - 2 : 0; }
 
 void place_views(const AcdfBrdf& brdf, const Arrays& out) {
@@ -167,12 +264,16 @@ bool fits(const AcdfBrdf& brdf) {
            !(brdf.views->diffuse_share > 0.0f);
 }
 
-WavefrontTable* filled(Arrays arrays, const AcdfBrdf& brdf) {
+WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const Borders& borders) {
     number_splits(brdf, arrays.number);
     place_splits(brdf, arrays.number, arrays.splits);
     pair_codes(brdf, arrays.number, arrays.codes);
     place_boxes(brdf, arrays.split_boxes, arrays.boxes, arrays.areas);
     place_views(brdf, arrays);
+    place_borders(borders, arrays);
+    const bool table = have_table(borders, brdf);
+    if (table) place_cells(brdf, borders, arrays);
+    place_probabilities(brdf, arrays);
     WavefrontTable* out = new (arrays.table) WavefrontTable{};
     out->brdf = brdf;
     out->columns = brdf.columns;
@@ -186,6 +287,10 @@ WavefrontTable* filled(Arrays arrays, const AcdfBrdf& brdf) {
     out->codes = arrays.codes;
     out->boxes = arrays.boxes;
     out->areas = arrays.areas;
+    for (int axis = 0; axis < 2; ++axis) out->borders[axis] = {arrays.borders[axis], arrays.border_guide[axis]};
+    out->columns_between = static_cast<long long>(borders.count[0]) + 1;
+    out->cells = table ? arrays.cells : nullptr;
+    out->probabilities = arrays.probabilities;
     out->nodes = arrays.nodes;
     out->guide = arrays.guide;
     return out;
@@ -218,11 +323,13 @@ Status BrdfWavefront::prepare(const BrdfView& view, BrdfWavefront& out, Instruct
     made.brdf_ = brdf;
     if (fits(brdf)) made.instructions_ = std::min(most, of_this_processor());
     if (made.instructions_ != Instructions::none) {
+        Borders borders;
+        if (!find_borders(brdf, borders)) return out_of_memory(sizeof(std::int32_t) * splits_of(brdf));
         std::size_t all_bytes;
-        arrays_in(nullptr, brdf, made.bytes_, all_bytes);
+        arrays_in(nullptr, brdf, borders, made.bytes_, all_bytes);
         char* block = static_cast<char*>(std::aligned_alloc(kAlignment, all_bytes));
         if (!block) return out_of_memory(all_bytes);
-        made.table_ = filled(arrays_in(block, brdf, made.bytes_, all_bytes), brdf);
+        made.table_ = filled(arrays_in(block, brdf, borders, made.bytes_, all_bytes), brdf, borders);
     }
     out = std::move(made);
     return {};
@@ -239,8 +346,9 @@ void BrdfWavefront::sample(const float (*wo)[3], const double (*u)[2], std::size
 
 void BrdfWavefront::pdf(const float (*wo)[3], const float (*wi)[3], std::size_t count, float* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ == Instructions::avx512) return pdf_avx512(*table_, wo, wi, count, out);
-    if (instructions_ == Instructions::avx2) return pdf_avx2(*table_, wo, wi, count, out);
+    const Instructions by = table_ && table_->cells ? instructions_ : Instructions::none;
+    if (by == Instructions::avx512) return pdf_avx512(*table_, wo, wi, count, out);
+    if (by == Instructions::avx2) return pdf_avx2(*table_, wo, wi, count, out);
 #endif
     for (std::size_t i = 0; i < count; ++i) out[i] = acdf_brdf_pdf(&brdf_, wo[i], wi[i]);
 }

@@ -4,10 +4,10 @@
 
 void acdf::sample_avx2(const WavefrontTable& table, const float (*wo)[3], const double (*u)[2], std::size_t count,
                        AcdfDirectionSample* out) {
-    for_blocks<sample_block>(table, wo, u, count, out);
+    for_blocks<Samples>(table, wo, u, count, out);
 }
 void acdf::pdf_avx2(const WavefrontTable& table, const float (*wo)[3], const float (*wi)[3], std::size_t count,
                     float* out) {
-    for_blocks<pdf_block>(table, wo, wi, count, out);
+    for_blocks<Densities>(table, wo, wi, count, out);
 }
 #endif

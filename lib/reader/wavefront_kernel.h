@@ -21,25 +21,30 @@ constexpr int kGroups = 3; // vectors that take turns: while one waits for its l
 
 typedef double Vector __attribute__((vector_size(8 * ACDF_WIDTH)));
 typedef long long Integer __attribute__((vector_size(8 * ACDF_WIDTH))); // also masks: all ones or 0
+typedef unsigned long long Unsigned __attribute__((vector_size(8 * ACDF_WIDTH)));
 
 #define ACDF_LANE static inline __attribute__((always_inline))
 
 // ---- what the instructions are called --------------------------------------------------------------------------
 
 /* Eight bytes at base + Scale * index, one lane after the other: the instructions that gather take longer on
- * several processors. */
+ * several processors, and so does to take an index out of a register. */
 template <int Scale>
-ACDF_LANE __m128i gathered2(const char* base, __m128i index) {
-    const char* first = base + Scale * _mm_cvtsi128_si64(index);
-    const char* second = base + Scale * _mm_extract_epi64(index, 1);
-    const __m128d low = _mm_castsi128_pd(_mm_loadl_epi64((const __m128i*)first));
-    return _mm_castpd_si128(_mm_loadh_pd(low, (const double*)second));
-}
-template <int Scale>
-ACDF_LANE __m256i gathered4(const char* base, __m256i index) {
-    const __m128i low = gathered2<Scale>(base, _mm256_castsi256_si128(index));
-    const __m128i high = gathered2<Scale>(base, _mm256_extracti128_si256(index, 1));
-    return _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
+ACDF_LANE Integer gathered(const void* base, Integer index) {
+    alignas(8 * ACDF_WIDTH) long long at[ACDF_WIDTH];
+    *(Integer*)at = index;
+    const char* const bytes = (const char*)base;
+    __m128d pair[ACDF_WIDTH / 2];
+    for (int i = 0; i < ACDF_WIDTH / 2; ++i) {
+        const __m128d low = _mm_load_sd((const double*)(bytes + Scale * at[2 * i]));
+        pair[i] = _mm_loadh_pd(low, (const double*)(bytes + Scale * at[2 * i + 1]));
+    }
+#if ACDF_WIDTH == 8
+    const __m256d low = _mm256_set_m128d(pair[1], pair[0]), high = _mm256_set_m128d(pair[3], pair[2]);
+    return (Integer)_mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
+#else
+    return (Integer)_mm256_set_m128d(pair[1], pair[0]);
+#endif
 }
 
 #if ACDF_WIDTH == 8
@@ -50,13 +55,6 @@ ACDF_LANE Vector rounded_to_float(Vector x) { return (Vector)_mm512_cvtps_pd(_mm
 ACDF_LANE Integer truncated(Vector x) { return (Integer)_mm512_cvttpd_epi64((__m512d)x); }
 ACDF_LANE Vector converted(Integer i) { return (Vector)_mm512_cvtepi64_pd((__m512i)i); }
 ACDF_LANE unsigned bits(Integer mask) { return _mm512_movepi64_mask((__m512i)mask); }
-template <int Scale>
-ACDF_LANE Integer gathered(const void* base, Integer index) {
-    const char* bytes = (const char*)base;
-    const __m256i low = gathered4<Scale>(bytes, _mm512_castsi512_si256((__m512i)index));
-    const __m256i high = gathered4<Scale>(bytes, _mm512_extracti64x4_epi64((__m512i)index, 1));
-    return (Integer)_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
-}
 ACDF_LANE void load_transposed(const float (*v)[3], Vector out[3]) {
     const float* floats = (const float*)v;
     const __m512 first = _mm512_loadu_ps(floats), last = _mm512_castps256_ps512(_mm256_loadu_ps(floats + 16));
@@ -106,10 +104,6 @@ ACDF_LANE Integer truncated(Vector x) { return (Integer)_mm256_cvtepi32_epi64(_m
 // Of integers in [0, 2^52).
 ACDF_LANE Vector converted(Integer i) { return (Vector)(i | 0x4330000000000000) - 0x1p52; }
 ACDF_LANE unsigned bits(Integer mask) { return (unsigned)_mm256_movemask_pd((__m256d)mask); }
-template <int Scale>
-ACDF_LANE Integer gathered(const void* base, Integer index) {
-    return (Integer)gathered4<Scale>((const char*)base, (__m256i)index);
-}
 ACDF_LANE void load_transposed(const float (*v)[3], Vector out[3]) {
     for (int i = 0; i < 3; ++i) out[i] = (Vector)_mm256_cvtps_pd(_mm_setr_ps(v[0][i], v[1][i], v[2][i], v[3][i]));
 }
@@ -238,7 +232,7 @@ ACDF_LANE View view_of(const WavefrontTable& t, const Directions& wo) {
 
 struct Walk {
     Vector x[2], weight[2], chosen;
-    Integer key[2], base, node;
+    Integer base, node;
 };
 
 /* The split of a lane, or the entry behind the last one for lanes that are in a tile: all of their weight goes to
@@ -255,11 +249,7 @@ ACDF_LANE Integer split_at(const WavefrontTable& t, Integer number) {
     return gathered<8>(t.splits, number);
 }
 
-ACDF_LANE Integer axis_of(Integer split) { return (split & 1LL << 32) != 0; }
-
-/* Above every split of its axis and a position up to the square's, and below the entry that leaves all to its lower
- * part, even in the last of 2^28 rows. */
-ACDF_LANE Integer key_of(Integer square) { return square << 35 | 0x1FFFFFFFFLL; }
+ACDF_LANE Integer axis_of(Integer split) { return (split >> 32) != 0; }
 
 /* Children have higher numbers than their parents, tiles higher ones than splits; that entry's are 0. */
 ACDF_LANE void take(Walk* s, Integer upper, Integer split) {
@@ -272,8 +262,7 @@ ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
     const Vector code0 = converted(codes & 0xFFFF), code1 = converted(codes >> 16);
     const Vector lower0 = s->weight[0] * (code0 * (1.0 / 65535.0));
     const Vector lower1 = s->weight[1] * (code1 * (1.0 / 65535.0));
-    const Vector higher0 = s->weight[0] * ((65535.0 - code0) * (1.0 / 65535.0));
-    const Vector higher1 = s->weight[1] * ((65535.0 - code1) * (1.0 / 65535.0));
+    const Vector higher0 = s->weight[0] - lower0, higher1 = s->weight[1] - lower1;
     const Vector low = lower0 + lower1, high = higher0 + higher1;
     const Integer axis = axis_of(split);
     const Vector x = select(axis, s->x[1], s->x[0]);
@@ -287,27 +276,14 @@ ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
     take(s, upper, split);
 }
 
-template <bool Top>
-ACDF_LANE void find_step(const WavefrontTable& t, Walk* s) {
-    const Integer at = split_of(t, *s), split = split_at<Top>(t, at), codes = gathered_words(t.codes, s->base + at);
-    const Integer upper = select(axis_of(split), s->key[1], s->key[0]) >= split;
-    const Integer part = codes ^ (upper & 0xFFFFFFFF); // 65535 - code is code ^ 65535
-    s->weight[0] *= converted(part & 0xFFFF) * (1.0 / 65535.0);
-    s->weight[1] *= converted(part >> 16) * (1.0 / 65535.0);
-    take(s, upper, split);
-}
-
-using Step = void (*)(const WavefrontTable&, Walk*);
-
-template <Step Top, Step Below>
 ACDF_LANE void walk(const WavefrontTable& t, Walk* s) {
     for (std::uint32_t level = 0; level < acdf::kTopLevels; ++level)
-        for (int g = 0; g < kGroups; ++g) Top(t, &s[g]);
+        for (int g = 0; g < kGroups; ++g) sample_step<true>(t, &s[g]);
     for (;;) {
         Integer open{};
         for (int g = 0; g < kGroups; ++g) open |= s[g].node < ACDF_TILE_FLAG;
         if (!any(open)) return;
-        for (int g = 0; g < kGroups; ++g) Below(t, &s[g]);
+        for (int g = 0; g < kGroups; ++g) sample_step<false>(t, &s[g]);
     }
 }
 
@@ -316,6 +292,11 @@ ACDF_LANE void walk(const WavefrontTable& t, Walk* s) {
 struct Cell {
     Vector low[2], high[2];
 };
+
+/* What views give of themselves to a cell to which their rows give those parts. */
+ACDF_LANE Vector share_of(const View& view, const Vector part[2]) {
+    return (view.weight[0] * part[0] + view.weight[1] * part[1]) / (view.weight[0] + view.weight[1]);
+}
 
 ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1000)); }
 
@@ -357,12 +338,7 @@ ACDF_LANE Integer place_of(const WavefrontTable& t, const View& view, const Dire
     return valid;
 }
 
-ACDF_LANE Integer step_of(Vector position, double resolution) {
-    return truncated(select(position < resolution, position, all(resolution - 1.0)));
-}
-
-ACDF_LANE Vector density(const WavefrontTable& t, const Walk& s, Vector probability, const Place& place) {
-    const Vector area = (Vector)gathered<8>(t.areas, s.node & 0x7FFF);
+ACDF_LANE Vector density(const WavefrontTable& t, Vector probability, Vector area, const Place& place) {
     const Vector pdf = probability * t.columns * t.rows * place.length / (8.0 * ACDF_PI * place.dot * area);
     const Vector bounded = select(pdf >= 3.402823466e38, all(3.402823466e38f), pdf);
     const Vector positive = select(pdf > 1.17549435e-38, bounded, all(1.17549435e-38f));
@@ -398,7 +374,7 @@ ACDF_LANE Integer inside(const Cell& cell, const Vector position[2], const Vecto
            (position[1] >= cell.low[1] + reach[1]) & (position[1] < cell.high[1] - reach[1]);
 }
 
-// ---- the two loops ---------------------------------------------------------------------------------------------
+// ---- samples ---------------------------------------------------------------------------------------------------
 
 ACDF_LANE Vector unit_interval(Vector u) {
     return select((u > 0.0) & (u <= 0x1.fffffffffffffp1023), select(u < 1.0, u, all(1.0)), all(0.0));
@@ -407,8 +383,7 @@ ACDF_LANE Vector clamp(Vector x, double low, double high) {
     return select(x < low, all(low), select(x > high, all(high), x));
 }
 
-ACDF_LANE void begin_sample(const WavefrontTable& t, const View& view, Vector u0, Vector u1, Walk* s,
-                            Vector* sign) {
+ACDF_LANE void begin_walk(const WavefrontTable& t, const View& view, Vector u0, Vector u1, Walk* s, Vector* sign) {
     Vector u[2] = {unit_interval(u0), unit_interval(u1)};
     *sign = all(1.0);
     if (t.mirrored) {
@@ -418,20 +393,43 @@ ACDF_LANE void begin_sample(const WavefrontTable& t, const View& view, Vector u0
     }
     s->chosen = view.weight[0] + view.weight[1];
     for (int axis = 0; axis < 2; ++axis) s->x[axis] = u[axis] * s->chosen;
-}
-
-ACDF_LANE void begin_walk(const WavefrontTable& t, const View& view, Walk* s) {
     for (int i = 0; i < 2; ++i) s->weight[i] = view.weight[i];
     s->base = view.lower * t.entries;
     s->node = Integer{} + (t.brdf.blend.tiles->tile_count > 1 ? 0 : (long long)ACDF_TILE_FLAG);
 }
 
+constexpr std::size_t kBlock = kGroups * kWidth;
+
+/* A block of lanes whose cells are drawn. */
+struct Samples {
+    static constexpr bool kWaits = false; // walks wait for memory at every step
+    View view[kGroups];
+    Walk walked[kGroups];
+    Vector sign[kGroups];
+    const float (*wo)[3];
+    const double (*u)[2];
+};
+
+ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const double (*u)[2], Samples* s) {
+    s->wo = wo;
+    s->u = u;
+    for (int g = 0; g < kGroups; ++g) {
+        const int lane = g * kWidth;
+        s->view[g] = view_of(t, load(&wo[lane]));
+        begin_walk(t, s->view[g], every_second(u[lane]), every_second(u[lane] + 1), &s->walked[g], &s->sign[g]);
+    }
+    walk(t, s->walked);
+}
+
 /* Writes the samples of a vector of lanes. Returns the lanes that are left to acdf_brdf_sample. */
 ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const Walk& s, Vector sign,
                               AcdfDirectionSample* out) {
-    const Vector whole = view.weight[0] + view.weight[1];
-    const Integer valid = whole > 0.0;
+    const Integer valid = view.weight[0] + view.weight[1] > 0.0;
     const Cell cell = cell_of(t, s);
+    const Integer number = s.node & 0x7FFF, row = s.base + number;
+    const Vector area = (Vector)gathered<8>(t.areas, number);
+    const Vector part[2] = {(Vector)gathered<8>(t.probabilities, row),
+                            (Vector)gathered<8>(t.probabilities + t.entries, row)};
     Vector position[2];
     for (int axis = 0; axis < 2; ++axis) {
         const Vector u = select(s.x[axis] < s.chosen, s.x[axis] / s.chosen, all(1.0));
@@ -443,66 +441,125 @@ ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const W
     const Integer good = half_of(view, to.wi, &half, &place) & inside(cell, position, to.reach);
     const Vector none = all(0.0);
     store(out, select(valid, to.wi.x, none), select(valid, to.wi.y, none), select(valid, to.wi.z, none),
-          select(valid, density(t, s, positive(s.chosen / whole), place), none));
+          select(valid, density(t, positive(share_of(view, part)), area, place), none));
     return bits(valid & ~good);
 }
 
-constexpr std::size_t kBlock = kGroups * kWidth;
-
-ACDF_LANE void sample_block(const WavefrontTable& t, const float (*wo)[3], const double (*u)[2],
-                            AcdfDirectionSample* out) {
-    View view[kGroups];
-    Walk s[kGroups];
-    Vector sign[kGroups];
+ACDF_LANE void end(const WavefrontTable& t, const Samples& s, AcdfDirectionSample* out) {
     for (int g = 0; g < kGroups; ++g) {
-        const int lane = g * kWidth;
-        view[g] = view_of(t, load(&wo[lane]));
-        begin_walk(t, view[g], &s[g]);
-        begin_sample(t, view[g], every_second(u[lane]), every_second(u[lane] + 1), &s[g], &sign[g]);
-    }
-    walk<sample_step<true>, sample_step<false>>(t, s);
-    for (int g = 0; g < kGroups; ++g) {
-        unsigned left = end_sample(t, view[g], s[g], sign[g], &out[g * kWidth]);
+        unsigned left = end_sample(t, s.view[g], s.walked[g], s.sign[g], &out[g * kWidth]);
         for (int lane = g * kWidth; left != 0; ++lane, left >>= 1)
-            if (left & 1) out[lane] = acdf_brdf_sample(&t.brdf, wo[lane], u[lane][0], u[lane][1]);
+            if (left & 1) out[lane] = acdf_brdf_sample(&t.brdf, s.wo[lane], s.u[lane][0], s.u[lane][1]);
     }
 }
 
-ACDF_LANE void pdf_block(const WavefrontTable& t, const float (*wo)[3], const float (*wi)[3], float* out) {
+// ---- densities: a table tells the cell, whatever the view, and another one what each view gives to it
+// ------------
+
+/* How many borders lie at or below a square. */
+ACDF_LANE int borders_below(const acdf::WavefrontBorders& borders, long long step, long long square) {
+    int below = borders.guide[step];
+    const __m256i squares = _mm256_set1_epi32((int)square);
+    for (;;) {
+        const __m256i some = _mm256_loadu_si256((const __m256i*)(borders.position + below));
+        const int above = _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(some, squares)));
+        const int more = __builtin_ctz((unsigned)above | 1u << acdf::kBordersAtOnce);
+        below += more;
+        if (more < acdf::kBordersAtOnce) return below;
+    }
+}
+
+/* The step of the guide and the square. */
+ACDF_LANE void find_square(Vector position, double resolution, long long* step, long long* square) {
+    const Vector bounded = select(position < resolution, position, all(resolution - 1.0));
+    const Integer binades = (Integer)((Unsigned)bounded >> (52 - acdf::kStepBits)) - (0x3FFLL << acdf::kStepBits);
+    *(Integer*)step = most(binades, Integer{});
+    *(Integer*)square = truncated(bounded);
+}
+
+/* A block of lanes whose cells are found and asked for from memory. */
+struct Densities {
+    static constexpr bool kWaits = true;
     View view[kGroups];
-    Walk s[kGroups];
     Place place[kGroups];
     Integer valid[kGroups];
+    int cell[kBlock];
+    const double* part[kBlock];
+};
+
+ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const float (*wi)[3], Densities* d) {
+    alignas(64) long long step[2][kBlock], square[2][kBlock], row[kBlock];
     for (int g = 0; g < kGroups; ++g) {
-        view[g] = view_of(t, load(&wo[g * kWidth]));
-        valid[g] = place_of(t, view[g], load(&wi[g * kWidth]), &place[g]);
-        for (Vector& position : place[g].position) position = select(valid[g], position, all(0.0));
-        begin_walk(t, view[g], &s[g]);
-        s[g].key[0] = key_of(step_of(place[g].position[0], t.columns));
-        s[g].key[1] = key_of(step_of(place[g].position[1], t.rows));
+        const int lane = g * kWidth;
+        d->view[g] = view_of(t, load(&wo[lane]));
+        d->valid[g] = place_of(t, d->view[g], load(&wi[lane]), &d->place[g]);
+        for (int axis = 0; axis < 2; ++axis)
+            find_square(select(d->valid[g], d->place[g].position[axis], all(0.0)), axis ? t.rows : t.columns,
+                        &step[axis][lane], &square[axis][lane]);
+        *(Integer*)&row[lane] = d->view[g].lower * t.entries;
     }
-    walk<find_step<true>, find_step<false>>(t, s);
-    for (int g = 0; g < kGroups; ++g) {
-        const Vector chosen = s[g].weight[0] + s[g].weight[1], whole = view[g].weight[0] + view[g].weight[1];
-        const Integer some = valid[g] & (whole > 0.0) & (chosen > 0.0);
-        const Vector probability = select(some, positive(chosen / whole), all(0.0));
-        store(&out[g * kWidth], density(t, s[g], probability, place[g]));
+    for (std::size_t i = 0; i < kBlock; ++i) {
+        const int column = borders_below(t.borders[0], step[0][i], square[0][i]);
+        const int line = borders_below(t.borders[1], step[1][i], square[1][i]);
+        d->cell[i] = t.cells[line * t.columns_between + column];
+        d->part[i] = t.probabilities + row[i] + d->cell[i];
+        __builtin_prefetch(d->part[i]);
+        __builtin_prefetch(d->part[i] + t.entries);
+        __builtin_prefetch(t.areas + d->cell[i]);
     }
 }
 
-/* `Block` for all of two arrays; what does not fill a block is copied to the front of one. */
-template <auto Block, class A, class B, class Out>
+ACDF_LANE void end(const WavefrontTable& t, const Densities& d, float* out) {
+    alignas(64) double parts[2][kBlock], areas[kBlock];
+    for (std::size_t i = 0; i < kBlock; ++i) {
+        parts[0][i] = d.part[i][0];
+        parts[1][i] = d.part[i][t.entries];
+        areas[i] = t.areas[d.cell[i]];
+    }
+    for (int g = 0; g < kGroups; ++g) {
+        const int lane = g * kWidth;
+        const Vector part[2] = {*(const Vector*)&parts[0][lane], *(const Vector*)&parts[1][lane]};
+        const Vector share = share_of(d.view[g], part); // NaN where no view weighs anything
+        const Vector probability = select(d.valid[g] & (share > 0.0), positive(share), all(0.0));
+        store(&out[lane], density(t, probability, *(const Vector*)&areas[lane], d.place[g]));
+    }
+}
+
+// ---- all of two arrays -----------------------------------------------------------------------------------------
+
+constexpr std::size_t kBlocksAhead = 4;
+
+/* Past the end of arrays this asks for what is not there, which does nothing. */
+template <class T>
+ACDF_LANE void prefetch_block(const T* all, std::size_t first) {
+    for (std::size_t i = 0; i < sizeof(T) * kBlock; i += 64)
+        __builtin_prefetch((const void*)((std::uintptr_t)all + sizeof(T) * first + i));
+}
+
+/* Blocks that wait for memory end after the next one began. What does not fill a block is copied to the front of
+ * one. */
+template <class Block, class A, class B, class Out>
 ACDF_LANE void for_blocks(const WavefrontTable& t, const A* a, const B* b, std::size_t count, Out* out) {
-    std::size_t i = 0;
-    for (; i + kBlock <= count; i += kBlock) Block(t, a + i, b + i, out + i);
-    if (i == count) return;
+    constexpr std::size_t behind = Block::kWaits ? 1 : 0;
+    Block blocks[behind + 1];
+    const std::size_t whole = count / kBlock, done = whole * kBlock, left = count - done;
+    for (std::size_t i = 0; i < whole + behind; ++i) {
+        const std::size_t ahead = (i + kBlocksAhead) * kBlock;
+        prefetch_block(a, ahead);
+        prefetch_block(b, ahead);
+        prefetch_block(out, ahead);
+        if (i < whole) begin(t, a + i * kBlock, b + i * kBlock, &blocks[i % (behind + 1)]);
+        if (i >= behind) end(t, blocks[(i - behind) % (behind + 1)], out + (i - behind) * kBlock);
+    }
+    if (left == 0) return;
     A last_a[kBlock] = {};
     B last_b[kBlock] = {};
     Out last_out[kBlock];
-    std::memcpy(last_a, a + i, (count - i) * sizeof(A));
-    std::memcpy(last_b, b + i, (count - i) * sizeof(B));
-    Block(t, last_a, last_b, last_out);
-    std::memcpy(out + i, last_out, (count - i) * sizeof(Out));
+    std::memcpy(last_a, a + done, left * sizeof(A));
+    std::memcpy(last_b, b + done, left * sizeof(B));
+    begin(t, last_a, last_b, &blocks[0]);
+    end(t, blocks[0], last_out);
+    std::memcpy(out + done, last_out, left * sizeof(Out));
 }
 
 } // namespace

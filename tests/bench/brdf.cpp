@@ -1,7 +1,7 @@
 // Time of a sample and of a pdf of measured BRDFs: files of ours beside the sampler that the authors of the RGL
 // database publish, the full table, a GGX lobe and the cosine. Each call has another view, another direction and
-// other random numbers. The time of the RGL sampler on the same random numbers is taken in turns with that of what
-// is timed, a few microseconds apart: `of_rgl` is the ratio of the two.
+// other random numbers. The time of the RGL sampler is taken in turns with that of what is timed, a millisecond or
+// two each: `of_rgl` is the ratio of the two.
 #include "brdf.h"
 
 #include "input/rgl_brdf.h"
@@ -29,7 +29,9 @@ using namespace acdf;
 
 // So many before views and random numbers repeat. With a few thousand the processor learns the branches of each.
 constexpr std::size_t kQueries = 1 << 16;
-constexpr std::size_t kTurn = 4096; // calls before the other sampler has its turn: a small wave
+constexpr std::size_t kTurn = 4096; // calls before the other sampler has its turn: a millisecond or two
+// Wavefronts have as long a turn, so that both samplers find the cache as the other one left it equally often.
+constexpr std::size_t kWave = 4096, kWavesInTurn = kQueries / kWave;
 constexpr double kPi = 3.14159265358979323846;
 
 const char* const kRglFile = "cc_ibiza_sunset_rgb.bsdf";
@@ -53,12 +55,13 @@ void direction(double cosine, double phi, double out[3]) {
     out[2] = cosine;
 }
 
-const measure::RglSampler* rgl_sampler() {
+using Rgl = measure::RglSamplerOf<float>; // as published
+const Rgl* rgl_sampler() {
     static std::unique_ptr<input::Brdf> brdf;
-    static std::unique_ptr<measure::RglSampler> sampler;
+    static std::unique_ptr<Rgl> sampler;
     if (!sampler && std::filesystem::exists(path_of(kRglFile))) {
         brdf = input::open_brdf(path_of(kRglFile));
-        sampler = std::make_unique<measure::RglSampler>(dynamic_cast<const input::RglBrdf&>(*brdf));
+        sampler = std::make_unique<Rgl>(dynamic_cast<const input::RglBrdf&>(*brdf));
     }
     return sampler.get();
 }
@@ -87,37 +90,41 @@ const std::vector<Query>& queries() {
     return made;
 }
 
-/// Seconds that `call` takes for the queries first .. first + kTurn - 1.
+/// Queries that are timed in one go.
+struct Turn {
+    std::size_t first, count;
+};
+
 template <class Call>
-double timed(std::size_t first, const Call& call) {
+double timed(const Turn& turn, const Call& call) {
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t i = first; i < first + kTurn; ++i) call(queries()[i]);
+    for (std::size_t i = turn.first; i < turn.first + turn.count; ++i) call(queries()[i]);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// A call's, of the middle one of the turns: other programs interrupt some of them.
-double median_ns(std::vector<double> seconds) {
+double median_ns(std::vector<double> seconds, std::size_t calls) {
     const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
     std::nth_element(seconds.begin(), middle, seconds.end());
-    return 1e9 * *middle / static_cast<double>(kTurn);
+    return 1e9 * *middle / static_cast<double>(calls);
 }
 
-/// Runs `turn(first query)`, which returns its seconds, and `rgl` (may be null) in turns.
-template <class Turn, class Rgl>
-void run_turns(benchmark::State& state, const Turn& turn, const Rgl& rgl) {
+/// Runs `time(turn)`, which returns seconds, on turns of `calls`, and `rgl` on turns of kTurn in between.
+template <class Time, class Rgl>
+void run_turns(benchmark::State& state, std::size_t calls, const Time& time, const Rgl& rgl) {
     std::vector<double> ours, theirs; // seconds of each turn
-    std::size_t first = 0;
+    Turn turn{0, calls}, rgl_turn{0, kTurn};
     for (auto _ : state) {
-        ours.push_back(turn(first));
+        ours.push_back(time(turn));
         state.SetIterationTime(ours.back());
-        if (rgl_sampler()) theirs.push_back(timed(first, rgl));
-        first = (first + kTurn) % kQueries;
+        if (rgl_sampler()) theirs.push_back(timed(rgl_turn, rgl));
+        for (Turn* t : {&turn, &rgl_turn}) t->first = (t->first + t->count) % kQueries;
     }
-    state.SetItemsProcessed(static_cast<std::int64_t>(ours.size() * kTurn));
-    state.counters["ns"] = median_ns(ours);
+    state.SetItemsProcessed(static_cast<std::int64_t>(ours.size() * calls));
+    state.counters["ns"] = median_ns(ours, calls);
     if (!rgl_sampler()) return;
-    state.counters["rgl_ns"] = median_ns(theirs);
-    state.counters["of_rgl"] = median_ns(ours) / median_ns(theirs);
+    state.counters["rgl_ns"] = median_ns(theirs, kTurn);
+    state.counters["of_rgl"] = median_ns(ours, calls) / median_ns(theirs, kTurn);
 }
 
 const auto rgl_sample = [](const Query& q) { benchmark::DoNotOptimize(rgl_sampler()->sample(Pair(q).wo, q.u)); };
@@ -129,12 +136,12 @@ const auto rgl_pdf = [](const Query& q) {
 template <class Call>
 void run_sample(benchmark::State& state, const Call& call) {
     run_turns(
-        state, [&](std::size_t first) { return timed(first, call); }, rgl_sample);
+        state, kTurn, [&](const Turn& turn) { return timed(turn, call); }, rgl_sample);
 }
 template <class Call>
 void run_pdf(benchmark::State& state, const Call& call) {
     run_turns(
-        state, [&](std::size_t first) { return timed(first, call); }, rgl_pdf);
+        state, kTurn, [&](const Turn& turn) { return timed(turn, call); }, rgl_pdf);
 }
 
 /// A source (a file of the test data, or a model) at a size.
@@ -170,18 +177,32 @@ void pdf(benchmark::State& state, const Case& given) {
     run_pdf(state, [&](const Query& q) { benchmark::DoNotOptimize(view.pdf(q.wo, q.wi)); });
 }
 
-/// A wave's arrays, as BrdfWavefront takes them.
+/// All queries, in arrays as BrdfWavefront takes them.
 struct Wave {
-    float wo[kTurn][3], wi[kTurn][3];
-    double u[kTurn][2];
-    explicit Wave(std::size_t first) {
-        for (std::size_t i = 0; i < kTurn; ++i) {
-            const Query& q = queries()[first + i];
-            for (std::size_t k = 0; k < 3; ++k) wo[i][k] = q.wo[k], wi[i][k] = q.wi[k];
-            for (std::size_t k = 0; k < 2; ++k) u[i][k] = q.u[k];
+    std::vector<float> wo, wi;
+    std::vector<double> u;
+    Wave() {
+        for (const Query& q : queries()) {
+            wo.insert(wo.end(), q.wo, q.wo + 3);
+            wi.insert(wi.end(), q.wi, q.wi + 3);
+            u.insert(u.end(), q.u, q.u + 2);
         }
     }
+    const float (*wo_of(const Turn& turn) const)[3] {
+        return reinterpret_cast<const float(*)[3]>(&wo[3 * turn.first]);
+    }
+    const float (*wi_of(const Turn& turn) const)[3] {
+        return reinterpret_cast<const float(*)[3]>(&wi[3 * turn.first]);
+    }
+    const double (*u_of(const Turn& turn) const)[2] {
+        return reinterpret_cast<const double(*)[2]>(&u[2 * turn.first]);
+    }
 };
+const Wave& wave() {
+    static const Wave made;
+    return made;
+}
+
 const std::pair<const char*, Instructions> kInstructions[] = {{"avx2", Instructions::avx2},
                                                               {"avx512", Instructions::avx512}};
 BrdfWavefront wavefront_of(const Case& given, Instructions most) {
@@ -190,33 +211,41 @@ BrdfWavefront wavefront_of(const Case& given, Instructions most) {
     return out;
 }
 
-template <class Call>
-double timed_wave(std::size_t first, const Call& call) {
-    const Wave wave(first);
-    const auto start = std::chrono::steady_clock::now();
-    call(wave);
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+/// `call` writes the results of a wave.
+template <class Out, class Call, class Rgl>
+void run_wavefront(benchmark::State& state, const Call& call, const Rgl& rgl) {
+    std::vector<Out> out(kWave);
+    const auto time = [&](const Turn& turn) {
+        const auto start = std::chrono::steady_clock::now();
+        for (std::size_t i = 0; i < turn.count; i += kWave) {
+            call(Turn{turn.first + i, kWave}, out.data());
+            benchmark::DoNotOptimize(out.data());
+            benchmark::ClobberMemory();
+        }
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    run_turns(state, kWave * kWavesInTurn, time, rgl);
 }
-
 void wavefront_sample(benchmark::State& state, const Case& given, Instructions most) {
     const BrdfWavefront wavefront = wavefront_of(given, most);
-    const auto call = [&](const Wave& wave) {
-        DirectionSample out[kTurn];
-        wavefront.sample(wave.wo, wave.u, kTurn, out);
-        benchmark::DoNotOptimize(out);
+    const auto call = [&](const Turn& turn, DirectionSample* out) {
+        wavefront.sample(wave().wo_of(turn), wave().u_of(turn), turn.count, out);
     };
-    run_turns(
-        state, [&](std::size_t first) { return timed_wave(first, call); }, rgl_sample);
+    run_wavefront<DirectionSample>(state, call, rgl_sample);
 }
 void wavefront_pdf(benchmark::State& state, const Case& given, Instructions most) {
     const BrdfWavefront wavefront = wavefront_of(given, most);
-    const auto call = [&](const Wave& wave) {
-        float out[kTurn];
-        wavefront.pdf(wave.wo, wave.wi, kTurn, out);
-        benchmark::DoNotOptimize(out);
+    const auto call = [&](const Turn& turn, float* out) {
+        wavefront.pdf(wave().wo_of(turn), wave().wi_of(turn), turn.count, out);
     };
-    run_turns(
-        state, [&](std::size_t first) { return timed_wave(first, call); }, rgl_pdf);
+    run_wavefront<float>(state, call, rgl_pdf);
+}
+void register_wavefronts(const Case& file) {
+    for (const auto& [name, most] : kInstructions) {
+        const std::string label = file.label() + "/" + name;
+        benchmark::RegisterBenchmark(("sample/" + label).c_str(), wavefront_sample, file, most)->UseManualTime();
+        benchmark::RegisterBenchmark(("pdf/" + label).c_str(), wavefront_pdf, file, most)->UseManualTime();
+    }
 }
 
 /// The full table of the first case's source.
@@ -271,7 +300,7 @@ void register_rivals(const Case& first) {
 int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     std::vector<Case> cases;
-    for (const std::uint64_t bytes : {std::uint64_t{64} << 10, std::uint64_t{200} << 10})
+    for (const std::uint64_t bytes : {std::uint64_t{64} << 10, std::uint64_t{128} << 10, std::uint64_t{200} << 10})
         for (const char* name :
              {kRglFile, "satin_rosaline_rgb.bsdf", "nickel.binary", "blue-metallic-paint.binary"})
             if (std::filesystem::exists(path_of(name))) cases.push_back({name, bytes});
@@ -283,12 +312,7 @@ int main(int argc, char** argv) {
     for (const Case& c : cases) {
         benchmark::RegisterBenchmark(("sample/" + c.label()).c_str(), sample, c)->UseManualTime();
         benchmark::RegisterBenchmark(("pdf/" + c.label()).c_str(), pdf, c)->UseManualTime();
-        for (const auto& [name, most] : kInstructions)
-            benchmark::RegisterBenchmark(("sample/" + c.label() + "/" + name).c_str(), wavefront_sample, c, most)
-                ->UseManualTime();
-        for (const auto& [name, most] : kInstructions)
-            benchmark::RegisterBenchmark(("pdf/" + c.label() + "/" + name).c_str(), wavefront_pdf, c, most)
-                ->UseManualTime();
+        register_wavefronts(c);
     }
     register_rivals(cases.front());
     benchmark::RunSpecifiedBenchmarks();

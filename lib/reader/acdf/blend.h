@@ -74,6 +74,15 @@ ACDF_FN void acdf_range_cut(AcdfRange* range, uint32_t position, int upper) {
 #endif
 #endif
 
+/* What a mixture gives to a tile to which each row gives that part of itself: in this order, so that tables of
+ * parts tell the same density. */
+ACDF_INLINE double acdf_mixture_of(const AcdfMixture* mix, const int rows, const double* part) {
+    double sum = 0.0;
+    int i;
+    for (i = 0; i < rows; ++i) sum += mix->weight[i] * part[i];
+    return sum;
+}
+
 /* Random numbers are kept as what they are of the weight of the box so far, x = u * weight: a split only subtracts
  * from that of its axis, and the division that rescales the other one is not waited for. Which part comes next is
  * left to a branch: where it is guessed, the loads of the next split do not wait for this one's. */
@@ -81,43 +90,46 @@ ACDF_INLINE uint32_t acdf_blend_sample_rows(const AcdfBlend* blend, const AcdfMi
                                             double* u, AcdfRange* range, double* probability) {
     const uint16_t* codebook = blend->tiles->codebook;
     const double whole = acdf_mixture_sum(mix);
-    double weight[ACDF_MAX_ROWS_MIXED], chosen = whole, x[2];
+    double weight[ACDF_MAX_ROWS_MIXED], part[ACDF_MAX_ROWS_MIXED], chosen = whole, x[2];
     uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
     int i;
     x[0] = u[0] * whole;
     x[1] = u[1] * whole;
     for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
+    for (i = 0; i < rows; ++i) part[i] = 1.0;
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &blend->splits[node];
         const uint32_t axis = split->place & 7u, position = split->place >> 3;
-        double lower[ACDF_MAX_ROWS_MIXED], higher[ACDF_MAX_ROWS_MIXED], low = 0.0, high = 0.0;
+        double code[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], low = 0.0, high = 0.0;
         for (i = 0; i < rows; ++i) {
-            const double code = (double)codebook[mix->row[i][node]];
-            low += lower[i] = weight[i] * (code * (1.0 / 65535.0));
-            high += higher[i] = weight[i] * ((65535.0 - code) * (1.0 / 65535.0));
+            code[i] = (double)codebook[mix->row[i][node]];
+            low += lower[i] = weight[i] * (code[i] * (1.0 / 65535.0));
+            high += weight[i] - lower[i]; /* 65535.0 * (1.0 / 65535.0) is 1 */
         }
         if (!(x[axis] < low) && high > 0.0) {
             x[axis] -= low;
             x[axis ^ 1u] *= high / chosen;
             chosen = high;
-            for (i = 0; i < rows; ++i) weight[i] = higher[i];
+            for (i = 0; i < rows; ++i) weight[i] -= lower[i];
+            for (i = 0; i < rows; ++i) part[i] *= (65535.0 - code[i]) * (1.0 / 65535.0);
             range[axis].low = position;
             node = split->child[1];
         } else {
             x[axis ^ 1u] *= low / chosen;
             chosen = low;
             for (i = 0; i < rows; ++i) weight[i] = lower[i];
+            for (i = 0; i < rows; ++i) part[i] *= code[i] * (1.0 / 65535.0);
             range[axis].high = position;
             node = split->child[0];
         }
     }
     for (i = 0; i < 2; ++i) u[i] = x[i] < chosen ? x[i] / chosen : 1.0;
-    *probability = acdf_positive(chosen / whole);
+    *probability = acdf_positive(acdf_mixture_of(mix, rows, part) / whole);
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* Where a square lies does not depend on weights: the walk is free of branches on the data, and the products of the
- * weights follow it. */
+/* Where a square lies does not depend on weights: the walk is free of branches on the data, and the products
+ * follow it. */
 ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
                                           const uint32_t* square, AcdfRange* range, AcdfStratum* strata,
                                           double* probability) {
@@ -125,14 +137,14 @@ ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixt
     const double whole = acdf_mixture_sum(mix);
     /* At or above every `place` of its axis and a position up to the square's. */
     const uint32_t key0 = square[0] << 3 | 7u, key1 = square[1] << 3 | 7u;
-    double weight[ACDF_MAX_ROWS_MIXED], chosen = 0.0;
+    double part[ACDF_MAX_ROWS_MIXED], chosen;
     uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG, bound[2][2];
     int i;
     for (i = 0; i < 2; ++i) {
         bound[i][0] = range[i].high;
         bound[i][1] = range[i].low;
     }
-    for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
+    for (i = 0; i < rows; ++i) part[i] = 1.0;
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &blend->splits[node];
         const uint32_t place = split->place, axis = place & 7u;
@@ -142,15 +154,15 @@ ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixt
             double low = 0.0, high = 0.0, below;
             for (i = 0; i < rows; ++i) {
                 const double code = (double)codebook[mix->row[i][node]];
-                low += weight[i] * (code * (1.0 / 65535.0));
-                high += weight[i] * ((65535.0 - code) * (1.0 / 65535.0));
+                low += mix->weight[i] * (part[i] * (code * (1.0 / 65535.0)));
+                high += mix->weight[i] * (part[i] * ((65535.0 - code) * (1.0 / 65535.0)));
             }
             below = low / (low + high);
             if (upper) strata[axis].low += strata[axis].width * below;
             strata[axis].width *= upper ? high / (low + high) : below;
         }
         for (i = 0; i < rows; ++i)
-            weight[i] *= (double)(int32_t)(codebook[mix->row[i][node]] ^ other) * (1.0 / 65535.0);
+            part[i] *= (double)(int32_t)(codebook[mix->row[i][node]] ^ other) * (1.0 / 65535.0);
         bound[axis][upper] = place >> 3;
         node = split->child[upper];
     }
@@ -158,7 +170,7 @@ ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixt
         range[i].high = bound[i][0];
         range[i].low = bound[i][1];
     }
-    for (i = 0; i < rows; ++i) chosen += weight[i];
+    chosen = acdf_mixture_of(mix, rows, part);
     *probability = chosen > 0.0 ? acdf_positive(chosen / whole) : 0.0;
     return node & ~ACDF_TILE_FLAG;
 }

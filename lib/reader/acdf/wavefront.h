@@ -27,7 +27,7 @@ public:
     BrdfWavefront& operator=(BrdfWavefront&& other) noexcept;
     ~BrdfWavefront();
 
-    /// Makes the tables: 4 bytes a cell and pair of neighbouring views, which is about four times the file. Uses
+    /// Makes the tables: 12 bytes a cell and view, and some more a cell, which is about twelve times the file. Uses
     /// the best instructions that the processor has, up to `most`. Views of files that are not isotropic, have a
     /// diffuse floor or trees of their own for each bin are served by the loop, without tables. Fails where memory
     /// does; `out` then stays what it was.
