@@ -1,6 +1,7 @@
 #include "input/brdf_models.h"
 
 #include "input/image.h"
+#include "input/trigonometry.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,6 @@
 namespace acdf::input {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 using Rgb = std::array<double, 3>;
 
 /// "name:key=1,key=1,2": numbers by key.

@@ -1,6 +1,7 @@
 #include "input/merl.h"
 
 #include "input/image.h"
+#include "input/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 namespace acdf::input {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double channel_scale[3] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
 std::uint32_t step(double fraction, std::uint32_t steps) {
@@ -34,7 +34,7 @@ private:
         double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
         const double length = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
         for (double& x : h) x /= length;
-        const double sin_theta = std::hypot(h[0], h[1]);
+        const double sin_theta = norm(h[0], h[1]);
         const double cos_phi = sin_theta > 0.0 ? h[0] / sin_theta : 1.0;
         const double sin_phi = sin_theta > 0.0 ? h[1] / sin_theta : 0.0;
         const double turned = cos_phi * wi[0] + sin_phi * wi[1];

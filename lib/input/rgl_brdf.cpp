@@ -1,4 +1,5 @@
 #include "input/rgl_brdf.h"
+#include "input/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,16 +9,16 @@ namespace acdf::input {
 namespace {
 
 template <class Real>
-constexpr Real pi = Real(3.14159265358979323846);
+constexpr Real half_turn = static_cast<Real>(pi);
 
 template <class Real>
 Real angle_from_z(const Real w[3]) {
-    return std::atan2(std::hypot(w[0], w[1]), w[2]);
+    return std::atan2(norm(w[0], w[1]), w[2]);
 }
 
 template <class Real>
 Real theta_coordinate(Real theta) {
-    return std::sqrt(theta * (2 / pi<Real>));
+    return std::sqrt(theta * (2 / half_turn<Real>));
 }
 
 } // namespace
@@ -48,11 +49,12 @@ RglHalf<Real> rgl_half(const RglTables& tables, const RglView<Real>& view, const
     RglHalf<Real> half;
     half.x = theta_coordinate(angle_from_z(m));
     const Real phi = std::atan2(m[1], m[0]) - (tables.isotropic ? view.phi : Real(0));
-    half.y = (phi + pi<Real>) / (2 * pi<Real>);
+    half.y = (phi + half_turn<Real>) / (2 * half_turn<Real>);
     half.y -= std::floor(half.y);
     const Real dot = view.wo[0] * m[0] + view.wo[1] * m[1] + view.wo[2] * m[2];
     // The bound is the authors'; it only matters within 1e-5 of the pole.
-    half.jacobian = std::max(2 * pi<Real> * pi<Real> * half.x * std::hypot(m[0], m[1]), Real(1e-6)) * 4 * dot;
+    half.jacobian =
+        std::max(2 * half_turn<Real> * half_turn<Real> * half.x * norm(m[0], m[1]), Real(1e-6)) * 4 * dot;
     return half;
 }
 
@@ -79,12 +81,14 @@ void RglBrdf::evaluate(const double wo[3], const double wi[3], double rgb[3]) co
     double scale = 1.0 / wi[2]; // the tables hold rho cos(theta_i)
     if (tables_.jacobian) {
         const RglMix<double> only = {{0}, {1.0}, 1};
-        const double view_y = (view.phi + pi<double>) / (2.0 * pi<double>);
-        scale *= tables_.ndf.bilinear(only, half.x, half.y) /
-                 (4.0 * tables_.sigma.bilinear(only, theta_coordinate(view.theta), view_y));
+        const double view_y = (view.phi + pi) / (2.0 * pi);
+        const auto towards = tables_.sigma.place(theta_coordinate(view.theta), view_y);
+        scale *= tables_.ndf.bilinear(only, tables_.ndf.place(half.x, half.y)) /
+                 (4.0 * tables_.sigma.bilinear(only, towards));
     }
+    const auto place = tables_.colour.place(point.x, point.y);
     for (std::size_t c = 0; c < 3; ++c) {
-        const double value = tables_.colour.bilinear(view.mix, point.x, point.y, c) * scale;
+        const double value = tables_.colour.bilinear(view.mix, place, c) * scale;
         if (value > 0.0) rgb[c] = std::min(value, std::numeric_limits<double>::max());
     }
 }

@@ -83,11 +83,16 @@ Real RglTable::at(const RglMix<Real>& mix, std::size_t index, std::size_t channe
 }
 
 template <class Real>
-Real RglTable::bilinear(const RglMix<Real>& mix, Real x, Real y, std::size_t channel) const {
+RglTable::Place<Real> RglTable::place(Real x, Real y) const {
     const Interval<Real> column = find_cell(x, columns), row = find_cell(y, rows);
-    const std::size_t corner = row.low * columns + column.low;
-    return lerp(lerp(at(mix, corner, channel), at(mix, corner + 1, channel), column.t),
-                lerp(at(mix, corner + columns, channel), at(mix, corner + columns + 1, channel), column.t), row.t);
+    return {row.low * columns + column.low, column.t, row.t};
+}
+
+template <class Real>
+Real RglTable::bilinear(const RglMix<Real>& mix, const Place<Real>& p, std::size_t channel) const {
+    return lerp(lerp(at(mix, p.corner, channel), at(mix, p.corner + 1, channel), p.column),
+                lerp(at(mix, p.corner + columns, channel), at(mix, p.corner + columns + 1, channel), p.column),
+                p.row);
 }
 
 RglWarp::RglWarp(RglTable table) : density_(std::move(table)) {
@@ -132,7 +137,7 @@ Real RglWarp::row_mass(const RglMix<Real>& mix, std::size_t row) const {
 
 template <class Real>
 Real RglWarp::pdf(const RglMix<Real>& mix, Real x, Real y) const {
-    return density_.bilinear(mix, x, y) * cells<Real>();
+    return density_.bilinear(mix, density_.place(x, y)) * cells<Real>();
 }
 
 template <class Real>
@@ -176,7 +181,8 @@ std::size_t RglWarp::bytes() const {
 #define INSTANTIATE(Real)                                                                                          \
     template RglMix<Real> RglNodes::mix(Real, Real) const;                                                         \
     template Real RglTable::at(const RglMix<Real>&, std::size_t, std::size_t) const;                               \
-    template Real RglTable::bilinear(const RglMix<Real>&, Real, Real, std::size_t) const;                          \
+    template RglTable::Place<Real> RglTable::place(Real, Real) const;                                              \
+    template Real RglTable::bilinear(const RglMix<Real>&, const Place<Real>&, std::size_t) const;                  \
     template Real RglWarp::pdf(const RglMix<Real>&, Real, Real) const;                                             \
     template RglWarp::Point<Real> RglWarp::sample(const RglMix<Real>&, Real, Real) const;                          \
     template RglWarp::Point<Real> RglWarp::invert(const RglMix<Real>&, Real, Real) const;

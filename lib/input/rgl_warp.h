@@ -37,8 +37,16 @@ struct RglTable {
     std::size_t slice_size() const { return columns * rows; }
     template <class Real>
     Real at(const RglMix<Real>& mix, std::size_t index, std::size_t channel = 0) const;
+    /// A point as the corner below it and how far it is from there to the next one along columns and rows.
     template <class Real>
-    Real bilinear(const RglMix<Real>& mix, Real x, Real y, std::size_t channel = 0) const;
+    struct Place {
+        std::size_t corner;
+        Real column, row;
+    };
+    template <class Real>
+    Place<Real> place(Real x, Real y) const;
+    template <class Real>
+    Real bilinear(const RglMix<Real>& mix, const Place<Real>& place, std::size_t channel = 0) const;
 };
 
 /// A density over the unit square for each view, and the map from uniform numbers to it, rows (y) first. Between

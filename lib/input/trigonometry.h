@@ -25,6 +25,9 @@ inline SineCosine sine_cosine(double half_turns) {
 inline double half_turns(double y, double x) { return acdf_atan2pi(y, x); }
 
 /// Unlike std::hypot, rounded the same everywhere; for components of unit vectors.
-inline double norm(double x, double y) { return std::sqrt(x * x + y * y); }
+template <class Real>
+Real norm(Real x, Real y) {
+    return std::sqrt(x * x + y * y);
+}
 
 } // namespace acdf::input
