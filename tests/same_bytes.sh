@@ -48,18 +48,22 @@ write_table
 write_sky
 
 status=0
+number=0
 for acdf in "$@"; do
+    number=$((number + 1))
+    makers=()
     for threads in 1 2 7; do
-        out="$work/out"
-        rm -rf "$out"
-        make_files "$acdf" $threads "$out"
-        [ -d "$work/first" ] || cp -r "$out" "$work/first"
-        if ! diff -rq "$work/first" "$out" > "$work/differ"; then
+        make_files "$acdf" $threads "$work/$number.$threads" &
+        makers+=($!)
+    done
+    for maker in "${makers[@]}"; do wait "$maker"; done
+    for threads in 1 2 7; do
+        if ! diff -rq "$work/1.1" "$work/$number.$threads" > "$work/differ"; then
             echo "$acdf, $threads threads: not the bytes of $1 with 1 thread:" >&2
             sed 's/^/    /' "$work/differ" >&2
             status=1
         fi
     done
 done
-[ $status = 0 ] && echo "same_bytes: $(ls "$work/first" | wc -l) files, the same from $# programs with 1, 2 and 7 threads"
+[ $status = 0 ] && echo "same_bytes: $(ls "$work/1.1" | wc -l) files, the same from $# programs with 1, 2 and 7 threads"
 exit $status

@@ -90,7 +90,7 @@ TEST(SweepAdvice, TellsWhichRivalsWin) {
     const Sweep sweep = made_up();
     const Advice advice = advise(sweep);
     std::map<std::string, Verdict> verdicts;
-    for (const Comparison& c : advice.comparisons) verdicts[sweep.rows[c.row].system] = c.verdict;
+    for (const RivalComparison& c : advice.comparisons) verdicts[sweep.rows[c.row].system] = c.verdict;
     EXPECT_EQ(verdicts["full_cdf"], Verdict::ours);
     EXPECT_EQ(verdicts["fast"], Verdict::rival);
     EXPECT_EQ(verdicts["even"], Verdict::even);

@@ -20,11 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
-}
-
 std::string value_of(const File& file, const char* key) {
     const Text text = file.metadata(key);
     return {text.data, text.size};
@@ -127,6 +122,12 @@ void look_at(PlannedJob& planned, const std::string& folder, bool force, Convers
 }
 
 } // namespace
+
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (c == '\n' || c == '\r') c = ' ';
+    return text;
+}
 
 JobConversion::JobConversion(const BatchJob& job, const MakeConversion& make)
     : conversion_(make(job.kind->name)), command_("", job.kind->name) {

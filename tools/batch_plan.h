@@ -49,4 +49,7 @@ void check_options(BatchJobs& jobs, const MakeConversion& make);
 std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::string& folder, bool force,
                                   const MakeConversion& make, std::vector<std::string>& errors);
 
+/// For tables and logs of a line each.
+std::string one_line(std::string text);
+
 } // namespace acdf::tools

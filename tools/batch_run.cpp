@@ -32,12 +32,6 @@ struct Stopwatch {
     ~Stopwatch() { seconds = std::chrono::duration<double>(Clock::now() - start).count(); }
 };
 
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (c == '\n' || c == '\r') c = ' ';
-    return text;
-}
-
 JobResult result_of(const PlannedJob& planned) {
     JobResult result;
     result.input = planned.job.source;

@@ -34,7 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct BatchArguments {
     std::vector<std::string> inputs, kinds, set;
     std::string output, memory, shard, emit;
     int threads = 0, jobs = 0;
@@ -68,7 +68,7 @@ std::pair<std::string, std::string> parse_setting(const std::string& text) {
     return {text.substr(0, dot), "--" + text.substr(dot + 1)};
 }
 
-BatchDefaults defaults_of(const Options& options) {
+BatchDefaults defaults_of(const BatchArguments& options) {
     BatchDefaults defaults;
     if (!options.kinds.empty()) defaults.probe_kinds.clear();
     for (const std::string& name : options.kinds) {
@@ -93,7 +93,7 @@ BatchDefaults defaults_of(const Options& options) {
     return defaults;
 }
 
-BatchLimits limits_of(const Options& options) {
+BatchLimits limits_of(const BatchArguments& options) {
     BatchLimits limits;
     limits.threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     limits.workers = options.jobs > 0 ? options.jobs : limits.threads;
@@ -108,7 +108,7 @@ BatchLimits limits_of(const Options& options) {
     return limits;
 }
 
-Shard shard_of(const Options& options) {
+Shard shard_of(const BatchArguments& options) {
     if (options.shard.empty()) return {};
     try {
         return parse_shard(options.shard);
@@ -117,7 +117,7 @@ Shard shard_of(const Options& options) {
     }
 }
 
-void check_usage(const Options& options) {
+void check_usage(const BatchArguments& options) {
     if (options.inputs.empty())
         throw CLI::ValidationError("INPUT is missing: folders, globs, files or a manifest (*.jsonl)");
     if (options.merge) return;
@@ -130,7 +130,7 @@ void check_usage(const Options& options) {
 }
 
 /// All jobs, checked.
-BatchJobs all_jobs(const Options& options) {
+BatchJobs all_jobs(const BatchArguments& options) {
     BatchJobs jobs = collect_jobs(options.inputs, defaults_of(options));
     check_jobs(options.output, jobs);
     check_options(jobs, make_conversion);
@@ -140,7 +140,7 @@ BatchJobs all_jobs(const Options& options) {
 
 // ---- the ways to go on -----------------------------------------------------------------------------------
 
-void sweep(const Options& options, const std::vector<BatchJob>& jobs) {
+void sweep(const BatchArguments& options, const std::vector<BatchJob>& jobs) {
     std::set<std::string> folders;
     for (const BatchJob& job : jobs) folders.insert((fs::path(options.output) / job.output).parent_path().string());
     std::size_t removed = 0;
@@ -150,7 +150,7 @@ void sweep(const Options& options, const std::vector<BatchJob>& jobs) {
                      removed, removed == 1 ? "" : "s");
 }
 
-void show_plan(const Options& options, const std::vector<PlannedJob>& plan) {
+void show_plan(const BatchArguments& options, const std::vector<PlannedJob>& plan) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const PlannedJob& planned : plan) {
         const BatchJob& job = planned.job;
@@ -168,7 +168,7 @@ void show_plan(const Options& options, const std::vector<PlannedJob>& plan) {
     if (options.json) std::printf("%s\n", list.dump(2).c_str());
 }
 
-std::vector<JobResult> run_with_progress(const Options& options, const std::vector<PlannedJob>& plan,
+std::vector<JobResult> run_with_progress(const BatchArguments& options, const std::vector<PlannedJob>& plan,
                                          const BatchLimits& limits) {
     ProgressBar bar(options.quiet);
     const Progress show = bar.callback();
@@ -188,13 +188,13 @@ std::vector<JobResult> run_with_progress(const Options& options, const std::vect
     });
 }
 
-int tell(const Options& options, const BatchReport& report) {
+int tell(const BatchArguments& options, const BatchReport& report) {
     if (options.json) std::printf("%s\n", to_json(report).dump(2).c_str());
     else if (!options.quiet) std::fputs(summary_table(report).c_str(), stdout);
     return report.count(JobResult::Status::failed) > 0 ? exit_failed : exit_done;
 }
 
-std::vector<PlannedJob> checked_plan(const Options& options, const std::vector<BatchJob>& jobs, bool force,
+std::vector<PlannedJob> checked_plan(const BatchArguments& options, const std::vector<BatchJob>& jobs, bool force,
                                      const BatchLimits& limits) {
     const auto limit = limit_threads(limits.threads);
     std::vector<std::string> errors;
@@ -203,7 +203,7 @@ std::vector<PlannedJob> checked_plan(const Options& options, const std::vector<B
     return plan;
 }
 
-int run_batch(const Options& options, const BatchJobs& all, const BatchLimits& limits) {
+int run_batch(const BatchArguments& options, const BatchJobs& all, const BatchLimits& limits) {
     const Shard shard = shard_of(options);
     const std::vector<BatchJob> jobs = jobs_of_shard(all.jobs, shard);
     if (!options.dry_run) sweep(options, all.jobs);
@@ -217,7 +217,7 @@ int run_batch(const Options& options, const BatchJobs& all, const BatchLimits& l
 }
 
 /// The arguments that make the same build file once more.
-std::vector<std::string> same_command(const Options& options) {
+std::vector<std::string> same_command(const BatchArguments& options) {
     std::vector<std::string> words = {"batch", "--emit", "ninja", "--quiet", "--output=" + options.output};
     for (const std::string& kind : options.kinds) words.push_back("--kind=" + kind);
     for (const std::string& setting : options.set) words.push_back("--set=" + setting);
@@ -234,7 +234,7 @@ bool is_within(const fs::path& path, const fs::path& folder) {
     return !relative.empty() && *relative.begin() != "..";
 }
 
-int emit_ninja(const Options& options, const BatchJobs& all, const BatchLimits& limits) {
+int emit_ninja(const BatchArguments& options, const BatchJobs& all, const BatchLimits& limits) {
     if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 0)
         throw CLI::ValidationError("--emit", "needs a manifest that Ninja can read again, not stdin");
     std::vector<std::string> errors;
@@ -272,7 +272,7 @@ int emit_ninja(const Options& options, const BatchJobs& all, const BatchLimits& 
     return exit_done;
 }
 
-int merge(const Options& options) {
+int merge(const BatchArguments& options) {
     std::vector<BatchReport> reports;
     for (const std::string& path : options.inputs) {
         const std::vector<std::uint8_t> bytes = read_bytes(path);
@@ -295,7 +295,7 @@ int merge(const Options& options) {
     return merged.problems.empty() ? code : exit_failed;
 }
 
-int run(const Options& options) {
+int run(const BatchArguments& options) {
     check_usage(options);
     if (options.merge) return merge(options);
     const BatchLimits limits = limits_of(options);
@@ -306,7 +306,7 @@ int run(const Options& options) {
 
 // ---- options ---------------------------------------------------------------------------------------------
 
-void add_what(CLI::App& command, Options& options) {
+void add_what(CLI::App& command, BatchArguments& options) {
     command
         .add_option("INPUT", options.inputs,
                     "Folders (all probes and BRDFs in them and below), files, quoted globs, manifests of one JSON "
@@ -332,7 +332,7 @@ void add_what(CLI::App& command, Options& options) {
         ->group("Input");
 }
 
-void add_how(CLI::App& command, Options& options) {
+void add_how(CLI::App& command, BatchArguments& options) {
     command.add_option("-o,--output", options.output, "The folder to write to; made where it is missing")
         ->type_name("")
         ->option_text("DIR")
@@ -383,7 +383,7 @@ void add_how(CLI::App& command, Options& options) {
 } // namespace
 
 void add_batch(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<BatchArguments>();
     CLI::App& command = *program.add_subcommand("batch", "Compress a library of probes and BRDFs; resumes where it "
                                                          "was ended");
     add_what(command, *options);

@@ -20,7 +20,7 @@ namespace acdf::tools {
 namespace {
 
 // Peaks beside the program itself: 76 MiB for models, 80 MiB for files of RGL, 135 MiB for the 33 MiB of MERL.
-constexpr std::uint64_t kBaseMemory = 96 << 20, kMemoryOfByte = 2;
+constexpr std::uint64_t kBrdfMemory = 96 << 20, kMemoryOfByte = 2;
 
 class BrdfConversion : public Conversion {
 public:
@@ -103,10 +103,10 @@ nlohmann::ordered_json BrdfConversion::report(const BrdfFile& result) const {
 }
 
 std::uint64_t BrdfConversion::memory() const {
-    if (input::is_model(source)) return kBaseMemory;
+    if (input::is_model(source)) return kBrdfMemory;
     std::error_code error;
     const std::uintmax_t bytes = std::filesystem::file_size(source, error);
-    return error ? 0 : kBaseMemory + bytes * kMemoryOfByte;
+    return error ? 0 : kBrdfMemory + bytes * kMemoryOfByte;
 }
 
 Converted BrdfConversion::convert(const Listener& listener) {

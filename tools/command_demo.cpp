@@ -3,6 +3,7 @@
 #include "demo_probes.h"
 #include "help.h"
 #include "options.h"
+#include "output.h"
 
 #include <CLI/CLI.hpp>
 
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct DemoArguments {
     std::vector<std::string> probes;
     std::string folder;
     bool force = false;
@@ -42,7 +43,7 @@ void run_command(const std::vector<std::string>& words) {
 }
 
 /// Everything the program does with one probe.
-void show_probe(const Options& options, const std::string& probe, const std::string& name) {
+void show_probe(const DemoArguments& options, const std::string& probe, const std::string& name) {
     const std::string stem = (fs::path(options.folder) / name).string();
     const auto with_force = [&](std::vector<std::string> words) {
         if (options.force) words.push_back("--force");
@@ -64,7 +65,7 @@ void show_probe(const Options& options, const std::string& probe, const std::str
 }
 
 /// The same with a BRDF.
-void show_brdf(const Options& options, const std::string& brdf, const std::string& name) {
+void show_brdf(const DemoArguments& options, const std::string& brdf, const std::string& name) {
     const std::string stem = (fs::path(options.folder) / name).string();
     const auto with_force = [&](std::vector<std::string> words) {
         if (options.force) words.push_back("--force");
@@ -76,13 +77,7 @@ void show_brdf(const Options& options, const std::string& brdf, const std::strin
     with_force({"plot", stem + ".acdf", "-o", stem + ".png", "--view", "60"});
 }
 
-void make_folder(const std::string& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder)) throw Failure(folder + ": cannot make this folder: " + error.message());
-}
-
-void run(const Options& options) {
+void run(const DemoArguments& options) {
     make_folder(options.folder);
     if (options.probes.empty()) {
         for (const DemoProbe& probe : demo_probes()) {
@@ -109,7 +104,7 @@ void run(const Options& options) {
 } // namespace
 
 void add_demo(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<DemoArguments>();
     CLI::App& command = *program.add_subcommand("demo", "Run everything below on built-in probes, or on yours");
     command.add_option("PROBE", options->probes, "Environment maps to use in place of the built-in ones")
         ->type_name("")

@@ -22,7 +22,7 @@ namespace {
 
 // Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
 // one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
-constexpr std::uint64_t kBaseMemory = 16 << 20, kMemoryOfPixel = 24;
+constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kEnvironmentMemoryOfPixel = 24;
 
 class EnvConversion : public Conversion {
 public:
@@ -127,7 +127,7 @@ nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const En
 
 std::uint64_t EnvConversion::memory() const {
     const std::uint64_t pixels = input::image_pixels(source);
-    return pixels > 0 ? kBaseMemory + pixels * kMemoryOfPixel : 0;
+    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel : 0;
 }
 
 Converted EnvConversion::convert(const Listener& listener) {

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr char accuracy_prefix[] = "accuracy.";
 
-struct Options {
+struct InfoArguments {
     std::vector<std::string> files;
     bool json = false;
 };
@@ -240,7 +240,7 @@ void print(const Json& report) {
 }
 
 // One bad file does not hide what the others hold; it does decide the exit code.
-int run(const Options& options) {
+int run(const InfoArguments& options) {
     Json reports = Json::array();
     int exit_code = exit_done;
     for (const std::string& path : options.files) {
@@ -263,7 +263,7 @@ int run(const Options& options) {
 } // namespace
 
 void add_info(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<InfoArguments>();
     CLI::App* command = program.add_subcommand(
         "info", "Show what is inside: size, cells, axes, source, and the accuracy measured when it was built");
     command->add_option("FILE", options->files, "The .acdf files to describe (- is stdin)")

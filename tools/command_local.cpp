@@ -23,7 +23,7 @@ namespace {
 
 // Peaks beside the program itself, measured on probes of 2^19 to 2^23 pixels with budgets up to 1 MiB: 20 to 35
 // bytes a pixel.
-constexpr std::uint64_t kBaseMemory = 96 << 20, kMemoryOfPixel = 40;
+constexpr std::uint64_t kLocalMemory = 96 << 20, kLocalMemoryOfPixel = 40;
 
 class LocalConversion : public Conversion {
 public:
@@ -172,7 +172,7 @@ std::string summary_of(const Local& result) {
 
 std::uint64_t LocalConversion::memory() const {
     const std::uint64_t pixels = input::image_pixels(source);
-    return pixels > 0 ? kBaseMemory + pixels * kMemoryOfPixel : 0;
+    return pixels > 0 ? kLocalMemory + pixels * kLocalMemoryOfPixel : 0;
 }
 
 Converted LocalConversion::convert(const Listener& listener) {

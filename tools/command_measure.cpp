@@ -21,14 +21,14 @@
 namespace acdf::tools {
 namespace {
 
-struct Options {
+struct MeasureArguments {
     std::string file, source;
     input::ProbeOptions input;
     std::uint32_t normals = 256;
     bool rivals = false, json = false, quiet = false;
 };
 
-nlohmann::ordered_json report(const Options& options, const File& file, const measure::Accuracy& a,
+nlohmann::ordered_json report(const MeasureArguments& options, const File& file, const measure::Accuracy& a,
                               double full_cdf) {
     return {{"file", options.file},
             {"source", options.source},
@@ -45,7 +45,7 @@ nlohmann::ordered_json report(const Options& options, const File& file, const me
             {"total", a.total}};
 }
 
-void print_text(const Options& options, const File& file, const measure::Accuracy& a, double full_cdf) {
+void print_text(const MeasureArguments& options, const File& file, const measure::Accuracy& a, double full_cdf) {
     std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
     std::printf("    full-resolution CDF  %.6g\n", full_cdf);
@@ -59,7 +59,7 @@ void print_text(const Options& options, const File& file, const measure::Accurac
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
 }
 
-void run(const Options& options) {
+void run(const MeasureArguments& options) {
     const LoadedFile loaded = load_file(options.file);
     switch (loaded.file.kind()) {
     case ACDF_KIND_TABLE:
@@ -85,7 +85,7 @@ void run(const Options& options) {
 } // namespace
 
 void add_measure(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MeasureArguments>();
     CLI::App& command =
         *program.add_subcommand("measure", "How noisy a file's samples are, exactly, by summation over its source");
     command.add_option("FILE", options->file, "The .acdf file (- is stdin)")

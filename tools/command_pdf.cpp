@@ -19,7 +19,7 @@
 namespace acdf::tools {
 namespace {
 
-struct Options {
+struct PdfArguments {
     std::string file;
     std::string directions = "-";
     std::string output = "-";
@@ -31,7 +31,7 @@ struct Options {
 
 /// The line of a direction (and what stands behind it); `density` is a function of a unit vector of floats.
 template <class Density>
-std::string density_line(std::vector<double> v, const Options& options, const Density& density) {
+std::string density_line(std::vector<double> v, const PdfArguments& options, const Density& density) {
     if (options.normalize) {
         const double length = std::hypot(v[0], v[1], v[2]);
         for (std::size_t i = 0; i < 3; ++i) v[i] /= length; // 0/0 is NaN: density 0
@@ -49,7 +49,8 @@ std::string density_line(std::vector<double> v, const Options& options, const De
 
 /// Writes `answer(point)` for each point in `in`.
 template <class Answer>
-void evaluate(std::istream& in, PointParser parser, const Options& options, Output& output, const Answer& answer) {
+void evaluate(std::istream& in, PointParser parser, const PdfArguments& options, Output& output,
+              const Answer& answer) {
     const std::string name = options.directions == "-" ? "stdin" : options.directions;
     std::string line;
     for (std::uint64_t number = 1; std::getline(in, line); ++number) {
@@ -62,7 +63,7 @@ void evaluate(std::istream& in, PointParser parser, const Options& options, Outp
     if (in.bad()) throw Failure(name + ": cannot read: " + std::strerror(errno));
 }
 
-void evaluate_environment(const File& file, std::istream& in, const Options& options, Output& output) {
+void evaluate_environment(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
     const EnvironmentView view = file.environment();
     if (options.csv) output.write("x,y,z,pdf\n");
@@ -71,7 +72,7 @@ void evaluate_environment(const File& file, std::istream& in, const Options& opt
     });
 }
 
-void evaluate_local(const File& file, std::istream& in, const Options& options, Output& output) {
+void evaluate_local(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
     const LocalEnvironmentView view = file.local();
     if (!options.normal.empty()) {
@@ -90,7 +91,7 @@ void evaluate_local(const File& file, std::istream& in, const Options& options, 
              });
 }
 
-void evaluate_brdf(const File& file, std::istream& in, const Options& options, Output& output) {
+void evaluate_brdf(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a BRDF has no --at; give --view THETA[,PHI]");
     const BrdfView view = file.brdf();
     const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
@@ -100,7 +101,7 @@ void evaluate_brdf(const File& file, std::istream& in, const Options& options, O
     });
 }
 
-void evaluate_table(const File& file, std::istream& in, const Options& options, Output& output) {
+void evaluate_table(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
     if (options.normalize) throw Failure(options.file + ": a table has no directions; leave out --normalize");
     const TableView view = file.table();
     const std::vector<std::uint32_t> bin = chosen_bin(options.file, view, options.at);
@@ -112,7 +113,7 @@ void evaluate_table(const File& file, std::istream& in, const Options& options, 
              });
 }
 
-void run(const Options& options) {
+void run(const PdfArguments& options) {
     if (options.file == "-" && options.directions == "-")
         throw CLI::ValidationError("FILE", "the .acdf file and the directions cannot both come from stdin");
     Output output(options.output, options.force, {options.file, options.directions});
@@ -140,7 +141,7 @@ void run(const Options& options) {
 } // namespace
 
 void add_pdf(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PdfArguments>();
     CLI::App* command =
         program.add_subcommand("pdf", "Evaluate the density of directions, or points, given on stdin or in a file");
     command->add_option("FILE", options->file, "The .acdf file to evaluate (- is stdin)")

@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct PlotArguments {
     std::string file, output, range, view;
     std::vector<float> normal;
     input::ProbeOptions input;
@@ -44,7 +44,7 @@ struct Options {
 constexpr int smallest_width = 16, largest_width = 8192;
 
 /// What is plotted, and what its title says.
-struct Source {
+struct Plotted {
     LoadedFile stored;       // of an .acdf file, else empty
     compress::Target target; // of a probe, else empty
     Density density;
@@ -87,7 +87,7 @@ std::uint64_t count_cells(const std::uint8_t* tree, std::uint32_t at,
     return cells;
 }
 
-void load_brdf(const Options& options, Source& source) {
+void load_brdf(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
     const auto view = parse_view(options.view.empty() ? "45" : options.view);
     if (!view) throw CLI::ValidationError("--view", "needs angles in degrees such as 60 or 60,30; theta below 90");
@@ -110,7 +110,7 @@ void add_variance(const File& file, std::vector<std::string>& title) {
     }
 }
 
-void load_local(const Options& options, Source& source) {
+void load_local(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
     source.local.emplace(PlottedNormal{file.local(), chosen_normal(options.file, options.normal)});
     source.density = density_of(*source.local);
@@ -123,7 +123,7 @@ void load_local(const Options& options, Source& source) {
     add_variance(file, source.title);
 }
 
-void load_stored(const Options& options, Source& source) {
+void load_stored(const PlotArguments& options, Plotted& source) {
     source.stored = load_file(options.file);
     if (source.stored.file.kind() == ACDF_KIND_BRDF) return load_brdf(options, source);
     if (!options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
@@ -143,7 +143,7 @@ void load_stored(const Options& options, Source& source) {
     add_variance(file, source.title);
 }
 
-void load_image(const Options& options, Source& source) {
+void load_image(const PlotArguments& options, Plotted& source) {
     const input::Probe probe = load_probe(options.file, options.input, options.quiet);
     source.target = probe_target(options.file, probe);
     source.density = density_of(source.target);
@@ -153,7 +153,7 @@ void load_image(const Options& options, Source& source) {
                     std::to_string(source.columns) + " x " + std::to_string(source.rows)};
 }
 
-input::Map picture_map(const Options& options, const Source& source) {
+input::Map picture_map(const PlotArguments& options, const Plotted& source) {
     if (options.width > 0) return plot_map(options.layout, options.width);
     // A pixel a grid step where that is neither tiny nor huge.
     const bool latlong = options.layout == input::Layout::latlong;
@@ -161,7 +161,7 @@ input::Map picture_map(const Options& options, const Source& source) {
     return plot_map(options.layout, latlong ? std::clamp(steps, 512, 2048) : std::clamp(steps, 512, 1024));
 }
 
-DensityRange chosen_range(const Options& options, const DensityImage& image) {
+DensityRange chosen_range(const PlotArguments& options, const DensityImage& image) {
     if (!options.range.empty()) return *parse_range(options.range);
     const DensityRange range = automatic_range(image);
     if (!options.quiet)
@@ -183,7 +183,7 @@ struct Drawing {
     std::vector<float> horizon; // the same
 };
 
-Drawing draw(const Options& options, const Source& source, bool with_knots) {
+Drawing draw(const PlotArguments& options, const Plotted& source, bool with_knots) {
     ProgressBar bar(options.quiet);
     const double share = with_knots ? 0.2 : 1.0; // of the work: tracing takes about four times as long
     const auto part = [report = bar.callback()](double begin, double width) {
@@ -200,7 +200,7 @@ Drawing draw(const Options& options, const Source& source, bool with_knots) {
     return drawing;
 }
 
-std::string checked_font(const Options& options) {
+std::string checked_font(const PlotArguments& options) {
     const std::string font = find_font();
     if (font.empty() && !options.quiet)
         std::fprintf(stderr,
@@ -210,7 +210,7 @@ std::string checked_font(const Options& options) {
     return font;
 }
 
-std::vector<std::uint8_t> make_png(const Options& options, const Source& source) {
+std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& source) {
     const Drawing drawing = draw(options, source, options.knots && !source.stored.file.empty());
     const std::vector<float>& density = drawing.image.density;
     const DensityRange range = chosen_range(options, drawing.image);
@@ -225,7 +225,7 @@ std::vector<std::uint8_t> make_png(const Options& options, const Source& source)
                                                           to_string(range) + " sr^-1, logarithmic"});
 }
 
-std::vector<std::uint8_t> make_exr(const Options& options, const Source& source) {
+std::vector<std::uint8_t> make_exr(const PlotArguments& options, const Plotted& source) {
     return encode_exr(draw(options, source, false).image,
                       {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + ", sr^-1"});
 }
@@ -239,13 +239,13 @@ bool is_exr(const std::string& path) {
     return extension == ".exr";
 }
 
-void run(const Options& options) {
+void run(const PlotArguments& options) {
     const bool exr = is_exr(options.output);
     if (!options.range.empty() && !parse_range(options.range))
         throw CLI::ValidationError("--range", "needs two densities such as 1e-3:100, 0 < MIN < MAX");
     Output output(options.output, options.force, {options.file}); // refuses early, before the work
 
-    Source source;
+    Plotted source;
     if (is_stored(options.file)) load_stored(options, source);
     else load_image(options, source);
     const std::vector<std::uint8_t> bytes = exr ? make_exr(options, source) : make_png(options, source);
@@ -253,7 +253,7 @@ void run(const Options& options) {
     output.commit();
 }
 
-void add_picture_options(CLI::App& command, Options& options) {
+void add_picture_options(CLI::App& command, PlotArguments& options) {
     const std::map<std::string, input::Layout> layouts{{"latlong", input::Layout::latlong},
                                                        {"angular", input::Layout::angular}};
     command
@@ -295,7 +295,7 @@ void add_picture_options(CLI::App& command, Options& options) {
 } // namespace
 
 void add_plot(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PlotArguments>();
     CLI::App& command =
         *program.add_subcommand("plot", "Show a density in false colours, and the cells that hold it");
     command

@@ -22,7 +22,7 @@
 namespace acdf::tools {
 namespace {
 
-struct Options {
+struct RenderArguments {
     std::string scene, output, data = ".", size;
     std::vector<std::string> samplers;
     std::uint32_t samples = 0; ///< 0: the scene's
@@ -31,7 +31,7 @@ struct Options {
     bool no_reference = false, no_timing = false, json = false, quiet = false, force = false;
 };
 
-SceneFile read_scene(const Options& options) {
+SceneFile read_scene(const RenderArguments& options) {
     const std::vector<std::uint8_t> bytes = read_bytes(options.scene);
     try {
         return parse_scene({bytes.begin(), bytes.end()});
@@ -40,14 +40,14 @@ SceneFile read_scene(const Options& options) {
     }
 }
 
-void apply_options(const Options& options, SceneFile& scene) {
+void apply_options(const RenderArguments& options, SceneFile& scene) {
     if (!options.samplers.empty()) scene.samplers = options.samplers;
     if (options.samples > 0) scene.samples = options.samples;
     if (!options.size.empty() && !parse_pair(options.size, 4096, scene.width, scene.height))
         throw CLI::ValidationError("--size", "needs two counts such as 96x72");
 }
 
-std::vector<SamplerSpec> specs(const Options& options, const SceneFile& scene) {
+std::vector<SamplerSpec> specs(const RenderArguments& options, const SceneFile& scene) {
     std::vector<SamplerSpec> out;
     for (const std::string& text : scene.samplers) {
         try {
@@ -157,7 +157,7 @@ std::vector<const input::Brdf*> brdfs_of(const LoadedScene& scene) {
     return out;
 }
 
-compress::Target light_target(const Options& options, const input::Probe& probe) {
+compress::Target light_target(const RenderArguments& options, const input::Probe& probe) {
     compress::Target target =
         compress::environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
                                      static_cast<std::uint32_t>(probe.height), compress::TargetOptions());
@@ -165,7 +165,7 @@ compress::Target light_target(const Options& options, const input::Probe& probe)
     return target;
 }
 
-RenderRun render_all(const Options& options, const LoadedScene& scene, std::vector<SamplerSpec> samplers) {
+RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, std::vector<SamplerSpec> samplers) {
     RenderRun run;
     run.scene = std::filesystem::path(options.scene).filename().string();
     run.options = options.comparison;
@@ -187,7 +187,7 @@ RenderRun render_all(const Options& options, const LoadedScene& scene, std::vect
     return run;
 }
 
-void remark(const Options& options, const LoadedScene& scene) {
+void remark(const RenderArguments& options, const LoadedScene& scene) {
     if (options.quiet) return;
     for (const std::string& warning : scene.probe.warnings)
         std::fprintf(stderr, "%s: %s\n", scene.file.probe.c_str(), warning.c_str());
@@ -196,7 +196,7 @@ void remark(const Options& options, const LoadedScene& scene) {
             std::fprintf(stderr, "%s: %s\n", scene.file.materials[i].brdf.c_str(), note.c_str());
 }
 
-void run(const Options& options) {
+void run(const RenderArguments& options) {
     const auto limit = limit_threads(options.threads);
     SceneFile file = read_scene(options);
     apply_options(options, file);
@@ -222,7 +222,7 @@ void run(const Options& options) {
     else std::fputs(render_table(*scene, done).c_str(), stdout);
 }
 
-void add_measurement_options(CLI::App& command, Options& options) {
+void add_measurement_options(CLI::App& command, RenderArguments& options) {
     command
         .add_option("--seeds", options.comparison.render.seeds,
                     "Independent pictures of each sampler: what variances and their confidence come from")
@@ -250,7 +250,7 @@ void add_measurement_options(CLI::App& command, Options& options) {
         ->group("Measurement");
 }
 
-void add_scene_options(CLI::App& command, Options& options) {
+void add_scene_options(CLI::App& command, RenderArguments& options) {
     command.add_option("--scene", options.scene, "The scene, as JSON (docs/scene.schema.json)")
         ->required()
         ->type_name("FILE")
@@ -280,7 +280,7 @@ void add_scene_options(CLI::App& command, Options& options) {
 } // namespace
 
 void add_render(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RenderArguments>();
     CLI::App& command =
         *program.add_subcommand("render", "Light a simple scene with several samplers, and compare");
     add_scene_options(command, *options);

@@ -16,7 +16,7 @@
 namespace acdf::tools {
 namespace {
 
-struct Options {
+struct SampleArguments {
     std::string file;
     std::uint64_t count = 0;
     std::optional<std::uint64_t> seed;
@@ -41,7 +41,7 @@ std::string csv_line(const std::array<double, 2>& u, const DirectionSample& s) {
 
 /// Writes `draw()` as often as samples are asked for.
 template <class Draw>
-void write_samples(const Options& options, Output& output, const Draw& draw) {
+void write_samples(const SampleArguments& options, Output& output, const Draw& draw) {
     ProgressBar bar(options.quiet);
     const Progress progress = bar.callback();
     for (std::uint64_t i = 0; i < options.count; ++i) {
@@ -50,7 +50,7 @@ void write_samples(const Options& options, Output& output, const Draw& draw) {
     }
 }
 
-void sample_environment(const File& file, const Options& options, Output& output) {
+void sample_environment(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
     const EnvironmentView view = file.environment();
     Sequence sequence(options.sequence, options.count, options.seed);
@@ -61,7 +61,7 @@ void sample_environment(const File& file, const Options& options, Output& output
     });
 }
 
-void sample_local(const File& file, const Options& options, Output& output) {
+void sample_local(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
     const LocalEnvironmentView view = file.local();
     const AcdfLocalPoint point = view.at(chosen_normal(options.file, options.normal).data());
@@ -75,7 +75,7 @@ void sample_local(const File& file, const Options& options, Output& output) {
     });
 }
 
-void sample_brdf(const File& file, const Options& options, Output& output) {
+void sample_brdf(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a BRDF has no --at; give --view THETA[,PHI]");
     const BrdfView view = file.brdf();
     const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
@@ -89,7 +89,7 @@ void sample_brdf(const File& file, const Options& options, Output& output) {
     });
 }
 
-void sample_table(const File& file, const Options& options, Output& output) {
+void sample_table(const File& file, const SampleArguments& options, Output& output) {
     const TableView view = file.table();
     const std::uint32_t n = view.sampled_count();
     if (options.sequence != SequenceKind::random && n != 2)
@@ -108,7 +108,7 @@ void sample_table(const File& file, const Options& options, Output& output) {
     });
 }
 
-void run(const Options& options) {
+void run(const SampleArguments& options) {
     Output output(options.output, options.force, {options.file});
     const LoadedFile loaded = load_file(options.file);
     const AcdfKind kind = loaded.file.kind();
@@ -126,7 +126,7 @@ void run(const Options& options) {
 void add_sample(CLI::App& program, int& exit_code) {
     static const std::map<std::string, SequenceKind> sequences = {
         {"random", SequenceKind::random}, {"stratified", SequenceKind::stratified}, {"sobol", SequenceKind::sobol}};
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SampleArguments>();
     CLI::App* command = program.add_subcommand(
         "sample", "Draw directions, or points of a table: CSV of random numbers, direction and density");
     command->add_option("FILE", options->file, "The .acdf file to sample (- is stdin)")->required()->type_name("");

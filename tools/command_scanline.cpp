@@ -22,7 +22,7 @@ using measure::Scanline;
 
 constexpr AcdfFit kAdaptive[] = {ACDF_FIT_CDF, ACDF_FIT_PDF, ACDF_FIT_VARIANCE};
 
-struct Options {
+struct ScanlineArguments {
     std::string probe, row = "auto-peaky";
     input::ProbeOptions reading;
     bool json = false, csv = false, quiet = false;
@@ -141,7 +141,7 @@ Json to_json(const std::string& path, const Study& s) {
     return report;
 }
 
-void run(const Options& options) {
+void run(const ScanlineArguments& options) {
     const input::Probe probe = load_probe(options.probe, options.reading, options.quiet || options.json);
     const compress::Target target = probe_target(options.probe, probe);
     const Study made = study(target, chosen_row(options.row, target));
@@ -153,7 +153,7 @@ void run(const Options& options) {
 } // namespace
 
 void add_scanline(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ScanlineArguments>();
     CLI::App* command = program.add_subcommand(
         "scanline", "Show on one row of a probe how many knots each fit needs, adaptive against equally spaced");
     command->add_option("PROBE", options->probe, "The probe")->required()->type_name("");

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SweepArguments {
     std::string source, folder;
     std::optional<SweepKind> kind;
     std::vector<std::string> budgets;
@@ -56,7 +56,7 @@ SweepKind kind_of(const std::string& source) {
     return SweepKind::environment;
 }
 
-void check_options(Options& options, SweepKind kind) {
+void check_options(SweepArguments& options, SweepKind kind) {
     for (const std::string& text : options.budgets) {
         const auto bytes = parse_size(text);
         if (!bytes || *bytes == 0) throw CLI::ValidationError("--budgets", "needs sizes such as 16KiB,64KiB,1MB");
@@ -84,7 +84,7 @@ void check_options(Options& options, SweepKind kind) {
 }
 
 /// What has to be said again to the subcommand that makes a file.
-std::string command_of(const Options& options, SweepKind kind) {
+std::string command_of(const SweepArguments& options, SweepKind kind) {
     std::string text = std::string("acdf ") + to_string(kind) + " " + shell_word(options.source);
     const auto add = [&](const char* option, const std::string& value) {
         if (options.given(option)) text += std::string(" ") + option + " " + value;
@@ -108,7 +108,7 @@ std::string output_of(const std::string& source, SweepKind kind) {
     return stem + (kind == SweepKind::local ? ".local.acdf" : ".acdf");
 }
 
-Sweep sweep_probe(Options& options, SweepKind kind, const Progress& progress) {
+Sweep sweep_probe(SweepArguments& options, SweepKind kind, const Progress& progress) {
     input::Probe probe = load_probe(options.source, options.input, options.quiet);
     const compress::Target target = probe_target(options.source, probe, options.sweep.target);
     const Source source = source_of(probe, options.input);
@@ -122,7 +122,7 @@ Sweep sweep_probe(Options& options, SweepKind kind, const Progress& progress) {
     return sweep;
 }
 
-Sweep sweep_reflection(Options& options, const Progress& progress) {
+Sweep sweep_reflection(SweepArguments& options, const Progress& progress) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(options.source);
     Sweep sweep = sweep_brdf(*brdf, options.sweep, progress);
     sweep.description = brdf->isotropic ? "isotropic BRDF" : "anisotropic BRDF";
@@ -130,7 +130,7 @@ Sweep sweep_reflection(Options& options, const Progress& progress) {
     return sweep;
 }
 
-Sweep make_sweep(Options& options, SweepKind kind) {
+Sweep make_sweep(SweepArguments& options, SweepKind kind) {
     ProgressBar bar(options.quiet);
     try {
         Sweep sweep = kind == SweepKind::brdf ? sweep_reflection(options, bar.callback())
@@ -144,13 +144,7 @@ Sweep make_sweep(Options& options, SweepKind kind) {
     }
 }
 
-void make_folder(const std::string& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder)) throw Failure(folder + ": cannot make this folder: " + error.message());
-}
-
-void run(Options& options) {
+void run(SweepArguments& options) {
     const SweepKind kind = options.kind ? *options.kind : kind_of(options.source);
     check_options(options, kind);
     const auto limit = limit_threads(options.threads);
@@ -181,7 +175,7 @@ void run(Options& options) {
     }
 }
 
-void add_sweep_options(CLI::App& command, Options& options) {
+void add_sweep_options(CLI::App& command, SweepArguments& options) {
     const std::map<std::string, SweepKind> kinds{
         {"env", SweepKind::environment}, {"local", SweepKind::local}, {"brdf", SweepKind::brdf}};
     command
@@ -228,7 +222,7 @@ void add_sweep_options(CLI::App& command, Options& options) {
 } // namespace
 
 void add_sweep(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SweepArguments>();
     CLI::App& command = *program.add_subcommand(
         "sweep", "Which size and fit: noise, time and rivals on your probe or BRDF, as a table and a page");
     options->command = &command;

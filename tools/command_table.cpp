@@ -22,7 +22,7 @@
 namespace acdf::tools {
 namespace {
 
-struct Options {
+struct TableArguments {
     std::string array, output;
     std::vector<std::string> ranges;
     std::string budget;
@@ -54,7 +54,7 @@ std::uint32_t axis_of(const std::string& text, const std::vector<std::string>& n
 }
 
 /// "theta=0:3.14" or "1=0:3.14", for each axis that has one.
-void set_ranges(Options& options, const std::vector<std::uint32_t>& shape) {
+void set_ranges(TableArguments& options, const std::vector<std::uint32_t>& shape) {
     if (options.ranges.empty()) return;
     for (const std::uint32_t length : shape) options.table.ranges.emplace_back(0.0, length);
     for (const std::string& text : options.ranges) {
@@ -69,7 +69,7 @@ void set_ranges(Options& options, const std::vector<std::uint32_t>& shape) {
     }
 }
 
-void remark(const Options& options, const input::NpyArray& array) {
+void remark(const TableArguments& options, const input::NpyArray& array) {
     const input::BadValues& bad = array.bad;
     if (bad.count() > 0 && !options.quiet)
         std::fprintf(stderr,
@@ -79,7 +79,7 @@ void remark(const Options& options, const input::NpyArray& array) {
                      input::index_text(array.shape, bad.first).c_str());
 }
 
-nlohmann::ordered_json report(const Options& options, const input::NpyArray& array, std::size_t bins,
+nlohmann::ordered_json report(const TableArguments& options, const input::NpyArray& array, std::size_t bins,
                               const Table& result) {
     const measure::TableAccuracy& a = result.accuracy;
     const input::BadValues& bad = array.bad;
@@ -101,7 +101,7 @@ nlohmann::ordered_json report(const Options& options, const input::NpyArray& arr
             {"support_violations", a.support_violations}};
 }
 
-Table build(const Options& options, const input::NpyArray& array) {
+Table build(const TableArguments& options, const input::NpyArray& array) {
     const std::string name = std::filesystem::path(options.array).filename().string();
     const std::string sha256 = input::file_sha256(options.array);
     ProgressBar bar(options.quiet);
@@ -114,7 +114,7 @@ Table build(const Options& options, const input::NpyArray& array) {
     }
 }
 
-void run(Options& options) {
+void run(TableArguments& options) {
     read_goal(*options.command, options.budget, options.table.fit.goal);
     const auto limit = limit_threads(options.threads);
     Output output(options.output, options.force, {options.array}); // refuses early, before the work
@@ -139,7 +139,7 @@ void run(Options& options) {
                      a.relative_variance, a.worst);
 }
 
-void add_axis_options(CLI::App& command, Options& options) {
+void add_axis_options(CLI::App& command, TableArguments& options) {
     command
         .add_option(
             "--indexed", options.table.indexed,
@@ -172,7 +172,7 @@ void add_axis_options(CLI::App& command, Options& options) {
         ->group("Input");
 }
 
-void add_size_options(CLI::App& command, Options& options) {
+void add_size_options(CLI::App& command, TableArguments& options) {
     compress::FitOptions& fit = options.table.fit;
     add_goal(command, options.table.cells, options.budget, fit.goal.variance,
              {"Cells a bin, on average: a bin that is harder gets more of them",
@@ -188,7 +188,7 @@ void add_size_options(CLI::App& command, Options& options) {
 } // namespace
 
 void add_table(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TableArguments>();
     CLI::App& command = *program.add_subcommand(
         "table", "Compress a table of any number of axes: points by the numbers stored there");
     options->command = &command;

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct ValidateArguments {
     std::vector<std::string> files;
     bool json = false, quiet = false, strict = false;
 };
@@ -29,7 +29,7 @@ struct Fault {
 struct Report {
     std::string path;
     std::vector<Fault> faults;
-    Verdict verdict;
+    acdf::Verdict verdict;
 
     bool passes(bool strict) const { return verdict.valid() && !(strict && verdict.warnings > 0); }
 };
@@ -65,13 +65,13 @@ std::string counted(std::uint64_t n, const char* what) {
     return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-void print(const Report& report, const Options& options) {
+void print(const Report& report, const ValidateArguments& options) {
     for (const Fault& fault : report.faults)
         std::printf("%s: byte %llu: %s %d (%s): %s\n    rule: %s\n", report.path.c_str(),
                     static_cast<unsigned long long>(fault.offset), severity_name(fault.rule->severity),
                     fault.rule->number, fault.rule->id, fault.detail.c_str(), fault.rule->sentence);
     if (options.quiet) return;
-    const Verdict& verdict = report.verdict;
+    const acdf::Verdict& verdict = report.verdict;
     if (report.faults.empty()) std::printf("%s: valid\n", report.path.c_str());
     else
         std::printf("%s: %s (%s, %s)\n", report.path.c_str(), report.passes(options.strict) ? "valid" : "not valid",
@@ -79,7 +79,7 @@ void print(const Report& report, const Options& options) {
 }
 
 // A file that cannot be read outranks one that breaks rules: its rules were never checked.
-int run(const Options& options) {
+int run(const ValidateArguments& options) {
     Json reports = Json::array();
     bool unreadable = false, faulty = false;
     for (const std::string& path : options.files) {
@@ -101,7 +101,7 @@ int run(const Options& options) {
 } // namespace
 
 void add_validate(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ValidateArguments>();
     CLI::App* command = program.add_subcommand(
         "validate", "Check files against every rule of the format's specification, and report all faults");
     command->add_option("FILE", options->files, "The files to check (- is stdin)")->required()->type_name("");

@@ -21,7 +21,7 @@ step "Packages"
 tools/install_packages.sh
 
 step "Building the acdf program in build/release"
-cmake --preset release -DACDF_BUILD_TESTS=OFF
+cmake --preset release -DACDF_BUILD_TESTS=OFF -DACDF_BUILD_ONCE=ON
 cmake --build --preset release --target acdf --parallel "$(nproc)"
 
 step "Running the demo on ${#probes[@]} probes given (none: the built-in ones)"

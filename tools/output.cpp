@@ -246,4 +246,11 @@ void write_output(const std::string& path, const std::vector<std::uint8_t>& byte
     output.commit(readable ? verify : Verify{});
 }
 
+void make_folder(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder))
+        fail(folder, "cannot make this folder: " + error.message());
+}
+
 } // namespace acdf::tools

@@ -57,4 +57,7 @@ private:
 void write_output(const std::string& path, const std::vector<std::uint8_t>& bytes, bool force,
                   const std::vector<std::string>& inputs = {}, const Verify& verify = {});
 
+/// With those above it, unless it is there. Throws Failure.
+void make_folder(const std::string& folder);
+
 } // namespace acdf::tools

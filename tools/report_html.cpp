@@ -188,7 +188,7 @@ std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
         "<thead><tr><th>rival</th><th>memory</th><th>variance</th>";
     if (sweep.timed) out += "<th>time a sample</th><th>variance at equal time</th><th class=\"text\">better</th>";
     out += "</tr></thead>\n<tbody>\n";
-    for (const Comparison& c : advice.comparisons) {
+    for (const RivalComparison& c : advice.comparisons) {
         const SweepRow& row = sweep.rows[c.row];
         out += "<tr>" + element("td class=\"left\"", row.label) + element("td", short_number(c.bytes)) +
                element("td", short_number(c.variance));

@@ -54,8 +54,8 @@ std::string rule_of(const Visibility& v) {
     return text + ". In numbers: a relative variance of at most " + short_number(v.largest_variance()) + ".";
 }
 
-Comparison compare(const SweepRow& rival, std::size_t index, const SweepRow& best) {
-    Comparison out;
+RivalComparison compare(const SweepRow& rival, std::size_t index, const SweepRow& best) {
+    RivalComparison out;
     out.row = index;
     out.bytes = static_cast<double>(rival.bytes) / static_cast<double>(best.bytes);
     out.variance = rival.shaded() / best.shaded();
@@ -75,7 +75,7 @@ Comparison compare(const SweepRow& rival, std::size_t index, const SweepRow& bes
 /// Those with a verdict, each with its variance at equal time: "alias table 1.3 (1.2 to 1.4); ...".
 std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
     std::string names;
-    for (const Comparison& c : advice.comparisons) {
+    for (const RivalComparison& c : advice.comparisons) {
         if (c.verdict != verdict || !c.equal_time.known()) continue;
         names += (names.empty() ? "" : "; ") + sweep.rows[c.row].label + " " + interval_text(c.equal_time);
         if (verdict == Verdict::rival && c.bytes > 1.0)
@@ -94,7 +94,7 @@ void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best)
     else if (!even.empty() || !ours.empty()) advice.findings.push_back("At equal time no rival wins." + than);
     if (!even.empty()) advice.findings.push_back("Too close to call at equal time: " + even + ".");
     if (!ours.empty()) advice.findings.push_back("At equal time the file wins against: " + ours + ".");
-    for (const Comparison& c : advice.comparisons)
+    for (const RivalComparison& c : advice.comparisons)
         if (std::isinf(sweep.rows[c.row].shaded()))
             advice.findings.push_back(capital(sweep.rows[c.row].label) +
                                       " is biased here: it has no density where there is light.");
@@ -127,11 +127,11 @@ std::string surface_finding(const Sweep& sweep, const SweepRow& best) {
 /// Another file of acdf's that is not visibly noisy either, and better at equal time.
 void add_own_finding(const Sweep& sweep, Advice& advice) {
     const SweepRow& best = sweep.rows[advice.recommended.row];
-    Comparison fastest;
+    RivalComparison fastest;
     for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
         const SweepRow& row = sweep.rows[i];
         if (!row.ours() || !(row.relative_variance <= sweep.visibility.largest_variance())) continue;
-        const Comparison c = compare(row, i, best);
+        const RivalComparison c = compare(row, i, best);
         const bool better = !fastest.equal_time.known() || c.equal_time.value < fastest.equal_time.value;
         if (c.verdict == Verdict::rival && better) fastest = c;
     }

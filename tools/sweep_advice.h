@@ -20,7 +20,7 @@ Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility&
 enum class Verdict { ours, rival, even, unknown };
 
 /// A rival beside the recommended file. Ratios are the rival's over the file's.
-struct Comparison {
+struct RivalComparison {
     std::size_t row = 0; ///< the rival
     double bytes = kUnknown, variance = kUnknown;
     Interval time, equal_time;          ///< of a sample; of the variance after the same time of sampling
@@ -32,7 +32,7 @@ struct Advice {
     std::string sentence; ///< which size, and what it gives
     std::string rule;     ///< by which it was chosen
     std::string command;  ///< exactly what makes the file
-    std::vector<Comparison> comparisons;
+    std::vector<RivalComparison> comparisons;
     std::vector<std::string> findings; ///< where rivals win and where they do not; a sentence each
 };
 

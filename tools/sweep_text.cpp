@@ -76,7 +76,7 @@ nlohmann::ordered_json interval_json(const Interval& i) {
     return {rounded(i.value), rounded(i.low), rounded(i.high)};
 }
 
-nlohmann::ordered_json comparison_json(const Comparison& c, bool timed) {
+nlohmann::ordered_json comparison_json(const RivalComparison& c, bool timed) {
     constexpr const char* verdicts[] = {"acdf", "rival", "even", "unknown"};
     nlohmann::ordered_json out = {
         {"row", c.row}, {"bytes_ratio", json_value(c.bytes)}, {"variance_ratio", json_value(c.variance)}};
@@ -139,7 +139,8 @@ nlohmann::ordered_json sweep_json(const Sweep& sweep) {
                                   {"notes", sweep.notes},
                                   {"comparisons", nlohmann::ordered_json::array()},
                                   {"rows", nlohmann::ordered_json::array()}};
-    for (const Comparison& c : advice.comparisons) out["comparisons"].push_back(comparison_json(c, sweep.timed));
+    for (const RivalComparison& c : advice.comparisons)
+        out["comparisons"].push_back(comparison_json(c, sweep.timed));
     for (const SweepRow& row : sweep.rows) {
         nlohmann::ordered_json each;
         for (const SweepColumn& column : columns_of(sweep))
