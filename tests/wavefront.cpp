@@ -132,6 +132,21 @@ TEST(Wavefront, HasNoTableOfManyBorders) {
     EXPECT_LT(wavefront.bytes(), std::size_t{256} * 2048); // which all the pairs of positions are more than
 }
 
+TEST(Wavefront, HasTablesInProportionToTheFile) {
+    BrdfSpec spec = many_borders();
+    spec.nodes.clear(), spec.bins.clear();
+    for (std::uint32_t i = 0; i < 40000; ++i) {
+        spec.nodes.push_back(static_cast<float>(i) / 40000.0f);
+        spec.bins.push_back({i % 3, 0.01f});
+    }
+    const Loaded loaded(spec.encode());
+    ASSERT_FALSE(loaded.file.empty());
+    acdf::BrdfWavefront wavefront;
+    ASSERT_TRUE(acdf::BrdfWavefront::prepare(loaded.view(), wavefront).ok());
+    EXPECT_EQ(wavefront.bytes(), 0u); // a gigabyte for half a megabyte
+    expect_wavefront_is_the_view(loaded.view(), 100);
+}
+
 TEST(Wavefront, MovesAndIsMadeAnew) {
     BrdfSpec spec = shared_brdf();
     const Loaded loaded(spec.encode());

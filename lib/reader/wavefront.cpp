@@ -259,9 +259,15 @@ Instructions of_this_processor() {
     return Instructions::none;
 }
 
+/// Views may share rows, tables do not: a small file must not ask for gigabytes.
+bool are_in_proportion(const AcdfBrdf& brdf) {
+    const double tables = 12.0 * brdf.views->theta_count * entries_of(brdf);
+    return tables <= 32.0 * brdf.blend.tiles->row_count * splits_of(brdf) + 0x1p24;
+}
+
 bool fits(const AcdfBrdf& brdf) {
     return brdf.blend.tiles && !brdf.blend.roots && brdf.views->phi_count == 1 &&
-           !(brdf.views->diffuse_share > 0.0f);
+           !(brdf.views->diffuse_share > 0.0f) && are_in_proportion(brdf);
 }
 
 WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const Borders& borders) {

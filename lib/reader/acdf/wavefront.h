@@ -28,9 +28,10 @@ public:
     ~BrdfWavefront();
 
     /// Makes the tables: 12 bytes a cell and view, and some more a cell, which is about twelve times the file. Uses
-    /// the best instructions that the processor has, up to `most`. Views of files that are not isotropic, have a
-    /// diffuse floor or trees of their own for each bin are served by the loop, without tables. Fails where memory
-    /// does; `out` then stays what it was.
+    /// the best instructions that the processor has, up to `most`. Served by the loop, without tables, are files
+    /// that are not isotropic, have a diffuse floor or trees of their own for each bin, or whose views share so few
+    /// rows that tables would be out of proportion to the file. Fails where memory does; `out` then stays what it
+    /// was.
     static Status prepare(const BrdfView& view, BrdfWavefront& out,
                           Instructions most = Instructions::avx512) noexcept;
 
