@@ -95,7 +95,7 @@ TEST(SweepAdvice, TellsWhichRivalsWin) {
     EXPECT_EQ(verdicts["fast"], Verdict::rival);
     EXPECT_EQ(verdicts["even"], Verdict::even);
     EXPECT_EQ(verdicts["hole"], Verdict::ours); // biased, however fast
-    const Comparison& fast = advice.comparisons[1];
+    const RivalComparison& fast = advice.comparisons[1];
     EXPECT_NEAR(fast.variance, 2.0, 1e-12);
     EXPECT_NEAR(fast.time.value, 0.2, 1e-12); // in each round a fifth
     EXPECT_NEAR(fast.equal_time.value, 0.4, 1e-12);
