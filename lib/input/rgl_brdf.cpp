@@ -1,4 +1,5 @@
 #include "input/rgl_brdf.h"
+
 #include "input/trigonometry.h"
 
 #include <algorithm>

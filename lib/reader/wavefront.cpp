@@ -43,7 +43,7 @@ struct Arrays {
     double *areas, *nodes;
     std::uint16_t* guide;
     std::int32_t* borders[2];
-    std::uint16_t *border_guide[2], *cells;
+    std::uint16_t *border_guide[2], *cells; // cells: null where there are too many borders
     double* probabilities;
     // While the tables are made, of each split of the file:
     u32* number; // in the tables
@@ -57,6 +57,11 @@ struct Borders {
     std::size_t count[2] = {0, 0};
 
     std::size_t between() const { return (count[0] + 1) * (count[1] + 1); }
+    /// How many lie at or below a square.
+    std::size_t below(int axis, u32 square) const {
+        const std::int32_t *first = position[axis].get(), *last = first + count[axis];
+        return static_cast<std::size_t>(std::upper_bound(first, last, static_cast<std::int32_t>(square)) - first);
+    }
 };
 
 u32 splits_of(const AcdfBrdf& brdf) { return brdf.blend.tiles->tile_count - 1; }
@@ -103,8 +108,7 @@ Arrays arrays_in(char* block, const AcdfBrdf& brdf, const Borders& borders, std:
         out.borders[axis] = arena.take<std::int32_t>(borders.count[axis] + kBordersAtOnce);
         out.border_guide[axis] = arena.take<std::uint16_t>(kBorderSteps);
     }
-    const bool table = have_table(borders, brdf);
-    out.cells = arena.take<std::uint16_t>(table ? borders.between() : 0);
+    out.cells = have_table(borders, brdf) ? arena.take<std::uint16_t>(borders.between()) : nullptr;
     out.probabilities = arena.take<double>((views + 1) * entries_of(brdf));
     bytes = arena.used;
     out.number = arena.take<u32>(cells);
@@ -184,30 +188,24 @@ void place_boxes(const AcdfBrdf& brdf, u32* of_splits, u32* of_cells, double* ar
 
 void place_borders(const Borders& borders, const Arrays& out) {
     for (int axis = 0; axis < 2; ++axis) {
-        std::int32_t* const first = out.borders[axis];
-        std::int32_t* const last = std::copy_n(borders.position[axis].get(), borders.count[axis], first);
+        std::int32_t* const last =
+            std::copy_n(borders.position[axis].get(), borders.count[axis], out.borders[axis]);
         std::fill_n(last, kBordersAtOnce, std::numeric_limits<std::int32_t>::max());
-        for (int step = 0; step < kBorderSteps; ++step) { // the first one begins at 0
+        out.border_guide[axis][0] = 0; // the first step begins at 0
+        for (int step = 1; step < kBorderSteps; ++step) {
             const double begin =
-                step > 0 ? std::ldexp(1.0 + std::ldexp(step % (1 << kStepBits), -kStepBits), step >> kStepBits)
-                         : 0.0;
-            out.border_guide[axis][step] =
-                static_cast<std::uint16_t>(std::upper_bound(first, last, static_cast<std::int32_t>(begin)) - first);
+                std::ldexp(1.0 + std::ldexp(step % (1 << kStepBits), -kStepBits), step >> kStepBits);
+            out.border_guide[axis][step] = static_cast<std::uint16_t>(borders.below(axis, static_cast<u32>(begin)));
         }
     }
 }
 
 void place_cells(const AcdfBrdf& brdf, const Borders& borders, const Arrays& out) {
-    const auto rank_of = [&](int axis, u32 square) {
-        const std::int32_t* const first = out.borders[axis];
-        return static_cast<std::size_t>(
-            std::upper_bound(first, first + borders.count[axis], static_cast<std::int32_t>(square)) - first);
-    };
     for (std::size_t i = 0; i < brdf.blend.tiles->tile_count; ++i) {
         const u32* box = out.boxes + 4 * i;
-        const std::size_t left = rank_of(0, box[0]), right = rank_of(0, box[1] - 1) + 1;
-        const std::size_t last = rank_of(1, box[3] - 1);
-        for (std::size_t row = rank_of(1, box[2]); row <= last; ++row) {
+        const std::size_t left = borders.below(0, box[0]), right = borders.below(0, box[1] - 1) + 1;
+        const std::size_t last = borders.below(1, box[3] - 1);
+        for (std::size_t row = borders.below(1, box[2]); row <= last; ++row) {
             std::uint16_t* const cells = out.cells + row * (borders.count[0] + 1);
             std::fill(cells + left, cells + right, static_cast<std::uint16_t>(i));
         }
@@ -277,8 +275,7 @@ WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const Borders
     place_boxes(brdf, arrays.split_boxes, arrays.boxes, arrays.areas);
     place_views(brdf, arrays);
     place_borders(borders, arrays);
-    const bool table = have_table(borders, brdf);
-    if (table) place_cells(brdf, borders, arrays);
+    if (arrays.cells) place_cells(brdf, borders, arrays);
     place_probabilities(brdf, arrays);
     WavefrontTable* out = new (arrays.table) WavefrontTable{};
     out->brdf = brdf;
@@ -295,7 +292,7 @@ WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const Borders
     out->areas = arrays.areas;
     for (int axis = 0; axis < 2; ++axis) out->borders[axis] = {arrays.borders[axis], arrays.border_guide[axis]};
     out->columns_between = static_cast<long long>(borders.count[0]) + 1;
-    out->cells = table ? arrays.cells : nullptr;
+    out->cells = arrays.cells;
     out->probabilities = arrays.probabilities;
     out->nodes = arrays.nodes;
     out->guide = arrays.guide;

@@ -325,8 +325,7 @@ ACDF_LANE void end(const WavefrontTable& t, const Samples& s, AcdfDirectionSampl
     }
 }
 
-// ---- densities: a table tells the cell, whatever the view, and another one what each view gives to it
-// ------------
+// ---- densities: tables tell the cell, whatever the view, and what each view gives to it -----------------------
 
 /* How many borders lie at or below a square. */
 ACDF_LANE int borders_below(const acdf::WavefrontBorders& borders, long long step, long long square) {

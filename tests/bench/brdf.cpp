@@ -30,8 +30,9 @@ using namespace acdf;
 // So many before views and random numbers repeat. With a few thousand the processor learns the branches of each.
 constexpr std::size_t kQueries = 1 << 16;
 constexpr std::size_t kTurn = 4096; // calls before the other sampler has its turn: a millisecond or two
-// Wavefronts have as long a turn, so that both samplers find the cache as the other one left it equally often.
-constexpr std::size_t kWave = 4096, kWavesInTurn = kQueries / kWave;
+// Wavefronts take all queries in a turn, which is about as long: both samplers find the cache as the other one left
+// it equally often.
+constexpr std::size_t kWave = 4096;
 constexpr double kPi = 3.14159265358979323846;
 
 const char* const kRglFile = "cc_ibiza_sunset_rgb.bsdf";
@@ -55,13 +56,13 @@ void direction(double cosine, double phi, double out[3]) {
     out[2] = cosine;
 }
 
-using Rgl = measure::RglSamplerOf<float>; // as published
-const Rgl* rgl_sampler() {
+using PublishedRgl = measure::RglSamplerOf<float>;
+const PublishedRgl* rgl_sampler() {
     static std::unique_ptr<input::Brdf> brdf;
-    static std::unique_ptr<Rgl> sampler;
+    static std::unique_ptr<PublishedRgl> sampler;
     if (!sampler && std::filesystem::exists(path_of(kRglFile))) {
         brdf = input::open_brdf(path_of(kRglFile));
-        sampler = std::make_unique<Rgl>(dynamic_cast<const input::RglBrdf&>(*brdf));
+        sampler = std::make_unique<PublishedRgl>(dynamic_cast<const input::RglBrdf&>(*brdf));
     }
     return sampler.get();
 }
@@ -224,7 +225,7 @@ void run_wavefront(benchmark::State& state, const Call& call, const Rgl& rgl) {
         }
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    run_turns(state, kWave * kWavesInTurn, time, rgl);
+    run_turns(state, kQueries, time, rgl);
 }
 void wavefront_sample(benchmark::State& state, const Case& given, Instructions most) {
     const BrdfWavefront wavefront = wavefront_of(given, most);
