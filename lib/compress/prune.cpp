@@ -31,6 +31,22 @@ Pruned prune(const std::vector<Part>& parts, double price, double heaviest) {
     return out;
 }
 
+std::vector<bool> may_pay(const std::vector<Part>& parts, double price) {
+    constexpr double rounding = 1e-9; // of the cost: far more than sums of costs are off by
+    std::vector<bool> out(parts.size(), false);
+    std::vector<double> value(parts.size()); // at most what prune() makes of it at that price
+    for (std::size_t i = parts.size(); i-- > 0;) {
+        const Part& part = parts[i];
+        value[i] = part.moments.cost();
+        if (part.split == Part::whole) continue;
+        double divided = price * kKnotBytes * (part.children - 1);
+        for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k) divided += value[k];
+        out[i] = divided < value[i] * (1.0 + rounding);
+        value[i] = std::min(value[i], divided);
+    }
+    return out;
+}
+
 namespace {
 
 class Flattener {
