@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -31,7 +30,7 @@ struct Trial {
     double price = 0.0;    ///< in units of the sum of costs a byte
     std::size_t cells = 0; ///< in all bins
     bool beyond = false;   ///< they are larger than the goal lets them be; for a variance, as large as needed
-    TreeSize::Tree tree;   ///< where it had to be looked at
+    SizedTree tree;        ///< where its size counts
 };
 
 /// The same, stored, and what they come to.
@@ -44,7 +43,7 @@ struct Candidate {
 class Search {
 public:
     Search(const std::vector<Grid>& bins, const FitOptions& options)
-        : goal_(options.goal), options_(options), size_(bins.size(), most_ratio(options)) {
+        : goal_(options.goal), options_(options), sizer_(bins.size(), most_ratio(options)) {
         dark_axis_ = bins.front().axes.front();
         for (const Grid& bin : bins) {
             const double total = integral(bin);
@@ -86,29 +85,41 @@ private:
     double search() {
         Trial grown = grow();
         progress(0.6);
-        if (grown.beyond) return bisect(std::move(grown));
+        if (grown.beyond) {
+            if (forgetful()) forget(grown.price);
+            grown.tree = {}; // of other partitions
+            return bisect(std::move(grown));
+        }
         if (goal_.kind == Goal::Kind::variance)
             throw std::runtime_error(
                 out_of_reach("a relative variance", goal_.variance, store_trees(grown.price).variance));
         return grown.price;
     }
 
+    /// What pruning looks at, of the partitions as they are.
+    void look_at_partitions() {
+        sizer_.forget();
+        nodes_.clear();
+        for (const auto& partition : partitions_)
+            nodes_.push_back(partition ? prune_nodes(partition->parts(), heaviest_) : PruneNodes{});
+    }
+
     std::vector<Pruned> pruned(double price) const {
         std::vector<Pruned> out;
-        for (const auto& partition : partitions_)
-            out.push_back(partition ? prune(partition->parts(), price, heaviest_) : Pruned{});
+        for (const PruneNodes& nodes : nodes_) out.push_back(prune(nodes, price));
         return out;
     }
 
     /// What is not made here is made of the same trees as one of `known`.
-    Trial at(double price, std::initializer_list<const Trial*> known = {}) {
+    Trial at(double price, const std::vector<const Trial*>& known = {}) {
         Trial out;
         out.price = price;
         const std::vector<Pruned> trees = pruned(price);
         for (const Pruned& tree : trees) out.cells += tree.cells.empty() ? 1 : tree.cells[0];
         if (goal_.kind == Goal::Kind::cells) out.beyond = out.cells > goal_.cells;
+        else if (polished()) out.beyond = beyond(store_trees(trees, price)); // its knots are not the partition's
         else if (goal_.kind == Goal::Kind::variance && short_of_variance(trees)) out.beyond = false;
-        else look_at(trees, known, out);
+        else out.beyond = sized_beyond(trees, known, out);
         return out;
     }
 
@@ -117,30 +128,24 @@ private:
         double variance = 0.0;
         for (std::size_t bin = 0; bin < trees.size(); ++bin) {
             if (!partitions_[bin]) continue;
-            const double cost = costs_below(partitions_[bin]->parts(), trees[bin])[0];
+            const double cost = costs_below(nodes_[bin], trees[bin])[0];
             variance += cost * cost - 1.0;
         }
-        return !polished() && variance > (goal_.variance * (1.0 + 1e-9) + 1e-9) * double(lit_);
+        return variance > (goal_.variance * (1.0 + 1e-9) + 1e-9) * double(lit_);
     }
 
-    void look_at(const std::vector<Pruned>& trees, std::initializer_list<const Trial*> known, Trial& out) {
-        if (polished()) { // its knots are not those of the partition
-            out.beyond = beyond(store_trees(trees, out.price));
-            return;
-        }
-        size_.begin();
+    bool sized_beyond(const std::vector<Pruned>& trees, const std::vector<const Trial*>& known, Trial& out) {
+        std::vector<PrunedBin> bins;
         for (std::size_t bin = 0; bin < trees.size(); ++bin)
-            size_.add(partitions_[bin] ? &partitions_[bin]->parts() : nullptr, trees[bin]);
-        const std::uint64_t bytes = size_.finish(stored_price(out.price));
-        out.tree = size_.tree();
+            bins.push_back({partitions_[bin] ? &partitions_[bin]->parts() : nullptr, &nodes_[bin], &trees[bin]});
+        std::vector<const SizedTree*> known_trees;
+        for (const Trial* trial : known) known_trees.push_back(&trial->tree);
+        out.tree = sizer_.tree(bins, stored_price(out.price), known_trees);
         for (const Trial* trial : known)
-            if (trial->tree == out.tree) {
-                out.beyond = trial->beyond;
-                return;
-            }
+            if (trial->tree == out.tree) return trial->beyond;
         if (goal_.kind == Goal::Kind::budget && (!options_.file_size || options_.size_by_length))
-            out.beyond = file_size_of_length(bytes) > goal_.budget;
-        else out.beyond = beyond(store_trees(trees, out.price));
+            return file_size_of_length(sizer_.bytes(out.tree)) > goal_.budget;
+        return beyond(store_trees(trees, out.price));
     }
 
     std::uint64_t file_size_of_length(std::uint64_t bytes) const {
@@ -200,6 +205,15 @@ private:
         return options_.file_size ? options_.file_size(candidate.fitted.tree) : candidate.fitted.tree.bytes.size();
     }
 
+    /// Forgotten parts would be divided again where a bound on weights is tightened.
+    bool forgetful() const { return !(options_.max_weight > 0.0); }
+
+    void forget(double price) {
+        for (auto& partition : partitions_)
+            if (partition) partition->forget(price);
+        look_at_partitions();
+    }
+
     /// More parts than these are kept only where they may be needed: some for every step of the grid, and what the
     /// goal asks for.
     std::size_t most_parts(const Partition& partition) const {
@@ -217,11 +231,10 @@ private:
         for (auto& partition : partitions_) {
             if (!partition) continue;
             Forgetting forgetting;
-            // Forgotten parts would be divided again where a bound on weights is tightened.
-            if (!(options_.max_weight > 0.0)) forgetting = {finest / kLeastBytes, most_parts(*partition)};
+            if (forgetful()) forgetting = {finest / kLeastBytes, most_parts(*partition)};
             any = partition->refine(finest, heaviest_, forgetting) || any;
         }
-        size_.forget();
+        look_at_partitions();
         return any;
     }
 
@@ -271,7 +284,8 @@ private:
     std::uint32_t dark_axis_ = 0;                      ///< of the curve of a bin without energy
     std::size_t lit_ = 0;                              ///< bins that have energy
     double excess_ = 0.0, cost_ = 1.0, heaviest_ = 0.0;
-    TreeSize size_;
+    std::vector<PruneNodes> nodes_; ///< of the partitions
+    TreeSizer sizer_;
 };
 
 } // namespace

@@ -8,11 +8,11 @@ namespace {
 
 class Outliner {
 public:
-    Outliner(const std::vector<Part>& parts, const Pruned& pruned, const std::vector<double>& cost, Outline& out)
-        : parts_(parts), pruned_(pruned), cost_(cost), out_(out) {}
+    Outliner(const PruneNodes& nodes, const Pruned& pruned, const std::vector<double>& cost, Outline& out)
+        : nodes_(nodes), pruned_(pruned), cost_(cost), out_(out) {}
 
     std::int32_t add_curve(std::uint32_t i) {
-        const std::int8_t split = pruned_.divided[i] ? parts_[i].split : std::int8_t{0};
+        const std::int8_t split = pruned_.divided[i] ? nodes_[i].split : std::int8_t{0};
         const std::size_t index = out_.curves.size(), first = out_.segments.size();
         collect(i, split);
         const std::size_t count = out_.segments.size() - first;
@@ -25,11 +25,11 @@ public:
 private:
     /// The parts that become the segments of a curve that starts at part i.
     void collect(std::uint32_t i, std::int8_t split) {
-        if (!pruned_.divided[i] || parts_[i].split != split) {
+        if (!pruned_.divided[i] || nodes_[i].split != split) {
             out_.segments.push_back({i, -1});
             return;
         }
-        for (std::uint32_t k = 0; k < parts_[i].children; ++k) collect(parts_[i].first_child + k, split);
+        for (std::uint32_t k = 0; k < nodes_[i].children; ++k) collect(nodes_[i].first_child + k, split);
     }
 
     /// Small subtrees first: most links are then short enough for one byte.
@@ -49,7 +49,7 @@ private:
         order_.resize(begin);
     }
 
-    const std::vector<Part>& parts_;
+    const PruneNodes& nodes_;
     const Pruned& pruned_;
     const std::vector<double>& cost_;
     Outline& out_;
@@ -58,19 +58,19 @@ private:
 
 } // namespace
 
-std::vector<double> costs_below(const std::vector<Part>& parts, const Pruned& pruned) {
-    std::vector<double> cost(parts.size(), 0.0);
-    for (std::size_t i = parts.size(); i-- > 0;) {
-        if (!pruned.divided[i]) cost[i] = parts[i].moments.cost();
-        for (std::uint32_t k = 0; pruned.divided[i] && k < parts[i].children; ++k)
-            cost[i] += cost[parts[i].first_child + k];
+std::vector<double> costs_below(const PruneNodes& nodes, const Pruned& pruned) {
+    std::vector<double> cost(nodes.size(), 0.0);
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        if (!pruned.divided[i]) cost[i] = nodes[i].cost;
+        for (std::uint32_t k = 0; pruned.divided[i] && k < nodes[i].children; ++k)
+            cost[i] += cost[nodes[i].first_child + k];
     }
     return cost;
 }
 
-Outline outline(const std::vector<Part>& parts, const Pruned& pruned, const std::vector<double>& cost) {
+Outline outline(const PruneNodes& nodes, const Pruned& pruned, const std::vector<double>& cost) {
     Outline out;
-    Outliner(parts, pruned, cost, out).add_curve(0);
+    Outliner(nodes, pruned, cost, out).add_curve(0);
     return out;
 }
 

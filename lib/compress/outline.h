@@ -29,10 +29,10 @@ struct Outline {
 };
 
 /// For each part the sum of the costs of the cells below it.
-std::vector<double> costs_below(const std::vector<Part>& parts, const Pruned& pruned);
+std::vector<double> costs_below(const PruneNodes& nodes, const Pruned& pruned);
 
 /// Divisions along the same axis become one curve. `cost` is costs_below: where it is 0, nothing is refined.
-Outline outline(const std::vector<Part>& parts, const Pruned& pruned, const std::vector<double>& cost);
+Outline outline(const PruneNodes& nodes, const Pruned& pruned, const std::vector<double>& cost);
 
 /// The probability of a segment of the curve of part `whole`.
 inline double segment_probability(const std::vector<double>& cost, std::uint32_t whole, std::uint32_t segment) {

@@ -102,24 +102,26 @@ std::vector<Part> grow_subtree(const Growth& growth, std::int8_t forced, const P
     return parts;
 }
 
-/// The parts below parts[0] without the divisions that pay at no price from `price` on, level by level.
+/// Copies a part's children, then all that is below each of them, without the divisions that do not pay.
+void copy_below(const std::vector<Part>& parts, const std::vector<bool>& pays, std::uint32_t from, std::size_t to,
+                std::vector<Part>& out) {
+    if (!pays[from]) {
+        out[to].split = Part::whole;
+        out[to].first_child = out[to].children = 0;
+        return;
+    }
+    const std::uint32_t first = parts[from].first_child, count = parts[from].children;
+    const std::size_t placed = out.size();
+    out[to].first_child = static_cast<std::uint32_t>(placed);
+    out.insert(out.end(), parts.begin() + first, parts.begin() + first + count);
+    for (std::uint32_t k = 0; k < count; ++k) copy_below(parts, pays, first + k, placed + k, out);
+}
+
+/// The parts without the divisions that pay at no price from `price` on. What belongs together lies together.
 std::vector<Part> without_dear(const std::vector<Part>& parts, double price) {
     const std::vector<bool> pays = may_pay(parts, price);
     std::vector<Part> out{parts.front()};
-    std::vector<std::uint32_t> from{0};
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        if (!pays[from[i]]) {
-            out[i].split = Part::whole;
-            out[i].first_child = out[i].children = 0;
-            continue;
-        }
-        const std::uint32_t first = out[i].first_child;
-        out[i].first_child = static_cast<std::uint32_t>(out.size());
-        for (std::uint32_t k = first; k < first + out[i].children; ++k) {
-            out.push_back(parts[k]);
-            from.push_back(k);
-        }
-    }
+    copy_below(parts, pays, 0, 0, out);
     return out;
 }
 
@@ -232,11 +234,13 @@ void Partition::add_first_part(const Box& box, std::uint8_t depth) {
     parts_.push_back(first);
 }
 
+void Partition::forget(double price) {
+    parts_ = without_dear(parts_, price);
+    forgot_ = true;
+}
+
 bool Partition::refine(double finest, double heaviest, const Forgetting& forgetting) {
-    if (parts_.size() > forgetting.parts) {
-        parts_ = without_dear(parts_, forgetting.price);
-        forgot_ = true;
-    }
+    if (parts_.size() > forgetting.parts) forget(forgetting.price);
     bool any_new = false;
     const Growth growth{grid_, total_, finest, heaviest};
     Levels levels(growth, first_, forgetting, parts_);

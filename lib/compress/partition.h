@@ -50,6 +50,8 @@ public:
     /// With `forgetting`, memory does not grow with all that is tried: what is forgotten is divided again when
     /// refine is called again. Not for a bound on weights.
     bool refine(double finest, double heaviest, const Forgetting& forgetting = {});
+    /// Forgets divisions that pay at no price from `price` on.
+    void forget(double price);
     const std::vector<Part>& parts() const { return parts_; }
     const Grid& grid() const { return grid_; }
     /// The integral over the grid, to which it is normalised.

@@ -9,28 +9,41 @@
 
 namespace acdf::compress {
 
-Pruned prune(const std::vector<Part>& parts, double price, double heaviest) {
+PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest) {
+    PruneNodes out;
+    out.reserve(parts.size());
+    for (const Part& part : parts)
+        out.push_back({part.moments.cost(), part.first_child, static_cast<std::uint16_t>(part.children), part.split,
+                       part.moments.weight() > heaviest});
+    return out;
+}
+
+Pruned prune(const PruneNodes& nodes, double price) {
     Pruned out;
-    out.divided.assign(parts.size(), false);
-    out.cells.assign(parts.size(), 1);
-    std::vector<double> value(parts.size()); // cost and price of the best tree below a part
-    for (std::size_t i = parts.size(); i-- > 0;) {
-        const Part& part = parts[i];
-        value[i] = part.moments.cost();
-        if (part.split == Part::whole) continue;
-        double divided = price * kKnotBytes * (part.children - 1);
+    out.divided.assign(nodes.size(), 0);
+    out.cells.assign(nodes.size(), 1);
+    std::vector<double> value(nodes.size()); // cost and price of the best tree below a part
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const PruneNode& node = nodes[i];
+        value[i] = node.cost;
+        if (node.split == Part::whole) continue;
+        double divided = price * kKnotBytes * (node.children - 1);
         std::uint32_t count = 0;
-        for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k) {
+        for (std::uint32_t k = node.first_child; k < node.first_child + node.children; ++k) {
             divided += value[k];
-            if (out.divided[k] && parts[k].split != part.split) divided += price * kCurveBytes;
+            if (out.divided[k] && nodes[k].split != node.split) divided += price * kCurveBytes;
             count += out.cells[k];
         }
-        if (divided >= value[i] && part.moments.weight() <= heaviest) continue;
+        if (divided >= value[i] && !node.heavy) continue;
         value[i] = divided;
-        out.divided[i] = true;
+        out.divided[i] = 1;
         out.cells[i] = count;
     }
     return out;
+}
+
+Pruned prune(const std::vector<Part>& parts, double price, double heaviest) {
+    return prune(prune_nodes(parts, heaviest), price);
 }
 
 std::vector<bool> may_pay(const std::vector<Part>& parts, double price) {
@@ -51,8 +64,9 @@ std::vector<bool> may_pay(const std::vector<Part>& parts, double price) {
 
 void flatten(const Partition& partition, const Pruned& pruned, Flattened& out) {
     const std::vector<Part>& parts = partition.parts();
-    const std::vector<double> cost = costs_below(parts, pruned);
-    const Outline curves = outline(parts, pruned, cost);
+    const PruneNodes nodes = prune_nodes(parts, std::numeric_limits<double>::infinity());
+    const std::vector<double> cost = costs_below(nodes, pruned);
+    const Outline curves = outline(nodes, pruned, cost);
     const auto base = static_cast<std::int32_t>(out.cascade.curves.size());
     out.cascade.roots.push_back(static_cast<std::uint32_t>(base));
     out.cost.push_back(cost[0]);
