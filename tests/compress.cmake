@@ -16,6 +16,7 @@ acdf_add_test(test_compress SHARDS 4
         compress_tree.cpp
         compress_variance.cpp
         compress_seed.cpp
+        lib/compress/growth.cpp
     LIBRARIES acdf_measure rapidcheck)
 acdf_add_test(test_compress_fits
     SOURCES compress_checks.cpp compress_fits.cpp

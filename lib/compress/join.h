@@ -87,9 +87,14 @@ private:
         const std::uint32_t left = winner_[2 * node], right = winner_[2 * node + 1];
         winner_[node] = raise_[left] <= raise_[right] ? left : right;
     }
+    /// Matches that others won before and after are as they were, and so are all above them.
     void set(std::uint32_t pair, double raise) {
         raise_[pair] = raise;
-        for (std::size_t node = (leaves_ + pair) / 2; node > 0; node /= 2) play(node);
+        for (std::size_t node = (leaves_ + pair) / 2; node > 0; node /= 2) {
+            const std::uint32_t before = winner_[node];
+            play(node);
+            if (before != pair && winner_[node] == before) return;
+        }
     }
 
     std::size_t count_, leaves_;
