@@ -120,7 +120,11 @@ void copy_below(const std::vector<Part>& parts, const std::vector<bool>& pays, s
 /// The parts without the divisions that pay at no price from `price` on. What belongs together lies together.
 std::vector<Part> without_dear(const std::vector<Part>& parts, double price) {
     const std::vector<bool> pays = may_pay(parts, price);
-    std::vector<Part> out{parts.front()};
+    std::size_t kept = 1; // at most
+    for (std::size_t i = 0; i < parts.size(); ++i) kept += pays[i] ? parts[i].children : 0;
+    std::vector<Part> out;
+    out.reserve(kept);
+    out.push_back(parts.front());
     copy_below(parts, pays, 0, 0, out);
     return out;
 }
