@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -23,6 +24,10 @@ namespace {
 // Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
 // one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
 constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kEnvironmentMemoryOfPixel = 24;
+// A tree takes so much on top while it is looked for: of each cell asked for (four bytes of a budget, one where
+// it is for deflated ones). A variance may ask
+// for a cell a pixel.
+constexpr std::uint64_t kMemoryOfCell = 6000, kCellBytes = 4, kDeflatedCellBytes = 1, kVarianceMemoryOfPixel = 480;
 
 class EnvConversion : public Conversion {
 public:
@@ -37,6 +42,7 @@ private:
     void set_goal();
     void set_knots();
     void add_fit_options(CLI::App& command);
+    std::uint64_t memory_of_tree(std::uint64_t pixels) const;
     nlohmann::ordered_json report(const input::Probe& probe, const build::Environment& result) const;
 
     input::ProbeOptions input_;
@@ -125,9 +131,19 @@ nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const bu
             {"support_violations", a.support_violations}};
 }
 
+std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
+    const compress::FitOptions& fit = environment_.fit;
+    if (fit.fit != ACDF_FIT_VARIANCE) return 0;
+    if (fit.goal.kind == compress::Goal::Kind::variance) return pixels * kVarianceMemoryOfPixel;
+    const std::uint64_t bytes_of_cell = environment_.codec == ACDF_CODEC_NONE ? kCellBytes : kDeflatedCellBytes;
+    const std::uint64_t cells =
+        fit.goal.kind == compress::Goal::Kind::budget ? fit.goal.budget / bytes_of_cell : fit.goal.cells;
+    return std::min(cells * kMemoryOfCell, pixels * kVarianceMemoryOfPixel);
+}
+
 std::uint64_t EnvConversion::memory() const {
     const std::uint64_t pixels = input::image_pixels(source);
-    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel : 0;
+    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel + memory_of_tree(pixels) : 0;
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
