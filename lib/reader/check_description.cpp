@@ -224,8 +224,10 @@ void check_environment(const Payload& payload, const Payload& bins, Report& repo
     else check_environment_axes(payload, report, parts);
     if (d.bin_count != 1)
         report.add(7002, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins", d.bin_count);
-    else if (parts.bins && parts.bins[0].share != 1.0f)
-        report.add(7008, bins.at(offsetof(AcdfBin, share)), "it is %g", static_cast<double>(parts.bins[0].share));
+    if (!parts.bins || d.bin_count != 1) return;
+    const float share = parts.bins[0].share;
+    if (std::isfinite(share) && share >= 0.0f && share != 1.0f) // else rule 6017
+        report.add(7008, bins.at(offsetof(AcdfBin, share)), "it is %g", static_cast<double>(share));
 }
 
 void check_table_shares(const Payload& bins, Report& report, const Parts& parts) {
