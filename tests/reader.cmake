@@ -27,6 +27,8 @@ add_dependencies(test_reader_sampling acdf_test_headers)
 acdf_add_test(test_reader_rules SOURCES reader_rules.cpp reader_rules_local.cpp reader_rules_brdf.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_load SOURCES reader_load.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_spec SOURCES reader_spec.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
+acdf_add_test(test_vectors SOURCES format/vectors.cpp LIBRARIES acdf_reader)
+include(format/decoder.cmake)
 acdf_add_test(test_reader_memory SOURCES reader_memory.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 target_link_options(test_reader_memory PRIVATE -Wl,--wrap=malloc,--wrap=calloc,--wrap=aligned_alloc)
 

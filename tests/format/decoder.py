@@ -122,11 +122,15 @@ def hex_examples():
 
 
 def examples_of_the_text(fail):
+    """What §9 says of its two files."""
     smallest, second = map(load, hex_examples())
     fail.check(is_density(smallest.pdf((0.0, 0.0, 1.0)), float(np.float32(1 / (4 * math.pi)))), "smallest file")
-    # In cells of columns [0, 3] and [3, 8] of rows [0, 2]: what the text works out.
-    fail.check(is_density(second.pdf((-0.6, 0.0, 0.8)), float(np.float32(0.053260624))), "second file, left")
+    left, right = 64 / 255 * 8 / (2 * math.pi * 3), 191 / 255 * 8 / (2 * math.pi * 5)
+    fail.check(is_density(second.pdf((-0.6, 0.0, 0.8)), float(np.float32(0.5 * left))), "second file, the seam")
+    fail.check(is_density(second.pdf((0.6, 0.0, 0.8)), float(np.float32(right))), "second file, right")
     fail.check(second.pdf((0.0, 0.6, -0.8)) == 0.0, "second file, below")
+    told = (-0.219401, 0.623990, 0.75, 0.108987)
+    fail.check(np.allclose(second.sample(0.1, 0.25), told, rtol=0, atol=1e-6), "second file, a sample")
 
 
 # ---- damage ---------------------------------------------------------------------------------------------
