@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -181,7 +183,11 @@ std::vector<Case> container_cases() {
              f.chunks.insert(f.chunks.end(), 2, {"XTRA", {1, 2, 3}, 0, false});
          })},
         {3014, "control_character", rebuilt([](FileSpec& f) {
-             f.chunks.push_back({"XT\x1F" "A", {1, 2, 3}, 0, false});
+             f.chunks.push_back({"XT\x1F"
+                                 "A",
+                                 {1, 2, 3},
+                                 0,
+                                 false});
          })},
         {3014, "beyond_ascii", rebuilt([](FileSpec& f) {
              f.chunks.push_back({"\xC3\x84TR", {1, 2, 3}, 1, false});
@@ -618,6 +624,21 @@ TEST(Rules, eachHasABrokenFile) {
     for (const Case& c : cases()) tested.insert(c.rule);
     for (std::size_t i = 0; i < acdf::rule_count; ++i)
         EXPECT_TRUE(tested.count(acdf::rules[i].number)) << acdf::rules[i].number << " has no broken file";
+}
+
+// For other readers (tests/format/decoder.py): RULE_name.acdf for each broken file, in the folder that a variable
+// names.
+TEST(Rules, brokenFilesAreWrittenWhereAskedFor) {
+    const char* folder = std::getenv("ACDF_BROKEN_FILES");
+    if (!folder) GTEST_SKIP() << "ACDF_BROKEN_FILES names no folder";
+    for (const Case& c : cases()) {
+        if (c.limits.max_inflated_bytes != acdf::Limits().max_inflated_bytes) continue;
+        const Bytes file = c.make();
+        std::ofstream out(std::string(folder) + "/" + std::to_string(c.rule) + "_" + c.name + ".acdf",
+                          std::ios::binary);
+        out.write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+        ASSERT_TRUE(out.flush()) << folder;
+    }
 }
 
 // With no sampled axis no curve can be right either.

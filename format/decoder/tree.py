@@ -26,19 +26,22 @@ class Curve:
             require(64 <= self.n <= 1048575, 6005)
             at += 4
         self.maximum = (1 << 8 * (1 << c)) - 1
-        interior, at = array(tree, at, 1 << c, self.n - 1)
+        gaps = []
+        interior, at = array(tree, at, 1 << c, self.n - 1, gaps)
         self.cumulative = [0, *interior, self.maximum]
-        knots, at = array(tree, at, 1 << p, self.n - 1)
+        knots, at = array(tree, at, 1 << p, self.n - 1, gaps)
         self.positions = [None, *knots, None]
         self.relative = p == 0
         self.links = self.tilts = None
         if link:
-            self.links, at = array(tree, at, 1 << link - 1, self.n)
-        at = padded(tree, at, 2)
+            self.links, at = array(tree, at, 1 << link - 1, self.n, gaps)
+        at = padded(at, 2, gaps)
         if tilted:
             require(at + 2 * self.n <= len(tree), 6002)
             self.tilts = np.frombuffer(tree, "<i2", self.n, at).tolist()
             at += 2 * self.n
+        require(at <= len(tree), 6002)
+        require(not any(any(tree[low:high]) for low, high in gaps), 6011)
         self.end = at // 2
 
     def position(self, i, low):
@@ -60,16 +63,15 @@ class Curve:
         return self.tilts[i] if self.tilts else 0
 
 
-def padded(tree, at, size):
-    """The next multiple of `size`; what lies between is zero."""
+def padded(at, size, gaps):
+    """The next multiple of `size`; what lies between is padding."""
     to = -(-at // size) * size
-    require(to <= len(tree), 6002)
-    require(not any(tree[at:to]), 6011)
+    gaps.append((at, to))
     return to
 
 
-def array(tree, at, size, count):
-    at = padded(tree, at, size)
+def array(tree, at, size, count, gaps):
+    at = padded(at, size, gaps)
     require(at + size * count <= len(tree), 6002)
     return np.frombuffer(tree, UNSIGNED[size], count, at).tolist(), at + size * count
 

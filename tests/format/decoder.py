@@ -2,7 +2,7 @@
 """The decoder of format/decoder, which was written from SPEC.md alone, against the program: on the test vectors, on the
 examples of SPEC.md, and on files of every kind and fit that the program makes anew.
 
-    decoder.py [--program ACDF --make-vectors MAKE_VECTORS] [FILE.acdf FILE.csv]...
+    decoder.py [--program ACDF --make-vectors MAKE_VECTORS] [--broken-files TEST_READER_RULES] [FILE.acdf FILE.csv]...
 
 Tolerances are those of SPEC.md §6.9: tables bit for bit; directions to the neighbouring float or 1e-12; densities to a
 relative 1e-6 at the direction that the vectors tell.
@@ -10,6 +10,7 @@ relative 1e-6 at the direction that the vectors tell.
 import argparse
 import csv
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -28,6 +29,7 @@ from decoder.table import Table  # noqa: E402
 GOLDEN = ROOT / "tests" / "golden" / "v1.0"
 VECTORS = ROOT / "format" / "vectors"
 DENSITY = 1e-6
+WARNINGS = {6012}
 
 
 class Failures:
@@ -151,6 +153,23 @@ def damaged_files(fail):
             fail.check(refused, f"{name}: byte {at}")
 
 
+def broken_files(program, fail):
+    """Files that break one rule each, as the tests of the reader make them: refused by the number of that rule."""
+    with tempfile.TemporaryDirectory() as name:
+        subprocess.run([program, "--gtest_filter=Rules.brokenFilesAreWrittenWhereAskedFor"], check=True,
+                       capture_output=True, env=dict(os.environ, ACDF_BROKEN_FILES=name))
+        files = sorted(pathlib.Path(name).glob("*.acdf"))
+        fail.check(len(files) > 250, "there are broken files")
+        for file in files:
+            wanted = int(file.name.split("_")[0])
+            try:
+                load(file.read_bytes())
+                found = 0
+            except Refused as refused:
+                found = refused.rule
+            fail.check(found == (0 if wanted in WARNINGS else wanted), f"{file.name}: {found or 'not refused'}")
+
+
 # ---- fresh files ----------------------------------------------------------------------------------------
 
 
@@ -198,6 +217,20 @@ FRESH += [["table", *options.split()] for options in (
     "field.npy --cells 600 --indexed 2 --names i,j,nm --range nm=730:380 --compress zlib")]
 
 
+FEATURES = {"tilts", "links", "tiles", "roots of tiles", "trees of bins", "lights", "azimuths", "mirrored"}
+
+
+def features(view):
+    """What of the format a file uses: fresh files together shall use it all."""
+    curves, tiles = view.tree.curves.values(), getattr(view, "tiles", None)
+    uses = {"tilts": any(curve.tilts for curve in curves), "links": any(curve.links for curve in curves),
+            "tiles": tiles is not None, "roots of tiles": tiles is not None and tiles.roots is not None,
+            "trees of bins": isinstance(view, (Local, Brdf)) and tiles is None,
+            "lights": bool(getattr(view, "lights", None)), "azimuths": getattr(view, "F", 1) > 1,
+            "mirrored": getattr(view, "mirrored", False)}
+    return {name for name, there in uses.items() if there}
+
+
 def run(folder, *command):
     done = subprocess.run([str(part) for part in command], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -213,17 +246,21 @@ def fresh_files(program, make_vectors, fail):
             files.append(folder / f"{kind}_{i}.acdf")
             run(folder, program, kind, source, *options, "-o", files[-1], "--quiet", "--threads", 2)
         run(folder, make_vectors, folder, *files)
+        used = set()
         for file, command in zip(files, FRESH):
-            before = fail.count
-            compare(load(file.read_bytes()), file.with_suffix(".csv"), fail)
+            before, view = fail.count, load(file.read_bytes())
+            used |= features(view)
+            compare(view, file.with_suffix(".csv"), fail)
             if fail.count != before:
                 print("in", *command)
+        fail.check(used == FEATURES, f"fresh files do not use {FEATURES - used}")
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--program")
     parser.add_argument("--make-vectors")
+    parser.add_argument("--broken-files", help="the test program that writes files that break one rule each")
     parser.add_argument("pairs", nargs="*", type=pathlib.Path)
     options = parser.parse_args()
     fail = Failures()
@@ -233,6 +270,8 @@ def main():
         stored_vectors(fail)
         examples_of_the_text(fail)
         damaged_files(fail)
+        if options.broken_files:
+            broken_files(options.broken_files, fail)
         if options.program:
             fresh_files(options.program, options.make_vectors, fail)
     print(f"{fail.compared} compared, {fail.count} wrong")
