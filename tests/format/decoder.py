@@ -4,7 +4,7 @@ examples of SPEC.md, and on files of every kind and fit that the program makes a
 
     decoder.py [--program ACDF --make-vectors MAKE_VECTORS] [--broken-files TEST_READER_RULES] [FILE.acdf FILE.csv]...
 
-Tolerances are those of SPEC.md §6.9: tables bit for bit; directions to the neighbouring float or 2^-29; densities to a
+Tolerances are those of SPEC.md §6.10: tables bit for bit; directions to the neighbouring float or 2^-29; densities to a
 relative 1e-6 at the direction that the vectors tell.
 """
 import argparse
