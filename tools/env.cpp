@@ -4,6 +4,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
@@ -208,7 +209,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         .add_option("--max-weight", fit.max_weight,
                     "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "
                     "cells. It holds for whatever size is asked for, and fails where that is too small")
-        ->check(CLI::Range(1.01, 1e9))
+        ->check(number_range(1.01, 1e9))
         ->option_text("W")
         ->group("Size and accuracy");
     command
@@ -223,7 +224,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             "--eps", fit.epsilon,
             "Stop adding knots once no curve deviates by more: from the CDF for --fit cdf, from the density "
             "relative to its peak for --fit pdf")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group("Size and accuracy");
     command
