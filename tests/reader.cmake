@@ -2,12 +2,12 @@
 find_package(ZLIB REQUIRED)
 
 # Each public header alone, as the languages it is written for.
-foreach(header layout sample blend brdf local table)
+foreach(header layout elementary random tree sphere sample blend brdf local table)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/header_${header}.c)
     file(CONFIGURE OUTPUT ${source} CONTENT "#include <acdf/${header}.h>\nint acdf_header_${header};\n")
     list(APPEND acdf_header_sources ${source})
 endforeach()
-foreach(header layout sample blend brdf local table reader)
+foreach(header layout elementary random tree sphere sample blend brdf local table reader)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/header_${header}.cpp)
     file(CONFIGURE OUTPUT ${source} CONTENT "#include <acdf/${header}.h>\nextern \"C\" int acdf_header_${header}_cpp;\n")
     list(APPEND acdf_header_sources ${source})
