@@ -14,6 +14,7 @@
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
 
+#include <acdf/cells.h>
 #include <acdf/random.h>
 #include <acdf/sphere.h>
 
@@ -24,16 +25,19 @@ extern "C" {
 typedef struct AcdfEnvironment {
     const uint8_t* tree; /* chunk TREE */
     uint32_t root;
-    uint32_t columns; /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi */
-    uint32_t rows;    /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi */
-    double total;     /* integral of the target over the sphere */
+    uint32_t columns;       /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi */
+    uint32_t rows;          /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi */
+    double total;           /* integral of the target over the sphere */
+    const AcdfCells* cells; /* runtime tables; null: the tree is walked */
 } AcdfEnvironment;
 
 /* Draws a direction. u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
  * Monotone in each of them within a segment: strata of random numbers stay strata of directions. */
 ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
+    AcdfDirectionSample out;
     double u[2], p;
     AcdfRange range[2];
+    if (env->cells && acdf_cells_sample(env->cells, u0, u1, &out)) return out;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     acdf_sphere_ranges(env->columns, env->rows, range);
@@ -63,8 +67,10 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
  * and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
     AcdfRange range[2];
-    double t[2], dz[1];
-    const double p = acdf_environment_find(env, direction, range, t, dz, 0);
+    double t[2], dz[1], p;
+    float pdf;
+    if (env->cells && acdf_cells_pdf(env->cells, direction, &pdf)) return pdf;
+    p = acdf_environment_find(env, direction, range, t, dz, 0);
     if (!(p > 0.0)) return 0.0f;
     return acdf_cell_pdf(p, range[0].high - range[0].low, env->columns, dz[0],
                          acdf_tilt_density(range[0].tilt, t[0]) * acdf_tilt_density(range[1].tilt, t[1]));
