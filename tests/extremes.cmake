@@ -16,3 +16,6 @@ acdf_add_test(test_extremes_brdf COST 40
 acdf_add_test(test_extremes_local
     SOURCES extremes_local.cpp
     LIBRARIES acdf_compress acdf_input TBB::tbb)
+acdf_add_test(test_runtime_tables
+    SOURCES compress_checks.cpp lib/reader/runtime_tables.cpp
+    LIBRARIES acdf_measure)

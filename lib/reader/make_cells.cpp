@@ -26,10 +26,10 @@ constexpr u32 kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
 
 /// A cell as the walk of the tree finds it.
 struct Cell {
-    double probability = 1.0;
-    bool dark = false;
-    double low[2] = {0.0, 0.0}, high[2] = {1.0, 1.0}; ///< random numbers
-    AcdfRange range[2] = {};                          ///< positions
+    double probability;
+    double low[2], high[2]; ///< random numbers
+    u32 first[2], last[2];  ///< positions
+    bool dark;
 };
 
 /// What the trigonometry of a border between rows gives.
@@ -40,11 +40,11 @@ struct Row {
 
 /// The part of a cell's side that lies in one piece of the sphere: from low to high random numbers.
 struct Side {
-    u32 piece = 0;                 ///< quarter, or whether it is south
-    double low = 0.0, high = 0.0;  ///< random numbers
-    double local[2] = {0.0, 0.0};  ///< at low and high: local azimuth, or 1 - |z|
-    double margin[2] = {0.0, 0.0}; ///< of `local`
-    double key[2] = {0.0, 0.0};    ///< the lesser, and the greater
+    u32 piece;        ///< quarter, or whether it is south
+    double low, high; ///< random numbers
+    double local[2];  ///< at low and high: local azimuth, or 1 - |z|
+    double margin[2]; ///< of `local`
+    double key[2];    ///< the lesser, and the greater
 };
 
 class CellsMaker {
@@ -76,8 +76,7 @@ private:
 };
 
 bool CellsMaker::gather() {
-    Cell whole;
-    acdf_sphere_ranges(environment_.columns, environment_.rows, whole.range);
+    const Cell whole = {1.0, {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows}, false};
     const bool done = remember() && walk(environment_.root, whole) && pieces_.size() <= kMostPieces;
     return done && !(pieces_.failed() || densities_.failed() || numbers_.failed() || keys_.failed());
 }
@@ -97,7 +96,10 @@ bool CellsMaker::walk(u32 at, const Cell& above) {
         cell.probability *= static_cast<double>(high - low) / maximum;
         cell.low[axis] = above.low[axis] + width * (low / maximum);
         if (high != end) cell.high[axis] = above.low[axis] + width * (high / maximum);
-        acdf_curve_narrow(&curve, i, &cell.range[axis]);
+        AcdfRange range = {above.first[axis], above.last[axis], 0.0};
+        acdf_curve_narrow(&curve, i, &range);
+        cell.first[axis] = range.low;
+        cell.last[axis] = range.high;
         const u32 link = acdf_curve_link(&curve, i);
         if (link == 0) add(cell);
         else if (!walk(at + link, cell)) return false;
@@ -142,7 +144,7 @@ int CellsMaker::azimuths(const Cell& cell, Side* out) const {
         double middle;
         u32 quarter;
     } pieces[5] = {{0.125, 0.0, 2}, {0.375, 0.25, 1}, {0.625, 0.5, 0}, {0.875, 0.75, 3}, {1.0, 1.0, 2}};
-    const u32 first = cell.range[0].low, last = cell.range[0].high;
+    const u32 first = cell.first[0], last = cell.last[0];
     const double columns = environment_.columns, low = first, high = last;
     const double number = (cell.high[0] - cell.low[0]) / (high - low); // of a column
     double from = low;
@@ -167,7 +169,7 @@ int CellsMaker::azimuths(const Cell& cell, Side* out) const {
 }
 
 int CellsMaker::heights(const Cell& cell, Side* out) const {
-    const Row ends[2] = {row(cell.range[1].low), row(cell.range[1].high)};
+    const Row ends[2] = {row(cell.first[1]), row(cell.last[1])};
     const Row equator = {0.0, 1.0, kMargin};
     const double number = (cell.high[1] - cell.low[1]) / (ends[0].z - ends[1].z); // of z
     int count = 0;
@@ -192,11 +194,11 @@ int CellsMaker::heights(const Cell& cell, Side* out) const {
 void CellsMaker::add(const Cell& cell) {
     float pdf = 0.0f;
     if (!cell.dark) {
-        const double dz = row(cell.range[1].low).z - row(cell.range[1].high).z;
-        pdf = acdf_cell_pdf(acdf_positive(cell.probability), cell.range[0].high - cell.range[0].low,
-                            environment_.columns, dz, 1.0);
+        const double dz = row(cell.first[1]).z - row(cell.last[1]).z;
+        pdf = acdf_cell_pdf(acdf_positive(cell.probability), cell.last[0] - cell.first[0], environment_.columns, dz,
+                            1.0);
     }
-    Side columns[5], rows[2];
+    Side columns[5], rows[2]; // set as far as they are counted
     const int column_count = azimuths(cell, columns), row_count = heights(cell, rows);
     for (int r = 0; r < row_count; ++r)
         for (int c = 0; c < column_count; ++c) add_piece(columns[c], rows[r], pdf);

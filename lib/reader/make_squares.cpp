@@ -13,8 +13,8 @@ using u32 = std::uint32_t;
 constexpr u32 kEmptyBlock = 0;
 constexpr u32 kEmptyEntry = kEmptyBlock; // whatever the shifts
 constexpr u32 kByteBits = 8;
-constexpr u32 kMostBits = 16;           // of the grid
-constexpr std::size_t kLookedAt = 1024; // cells, to choose the shape of a grid
+constexpr u32 kMostBits = 16;          // of the grid
+constexpr std::size_t kLookedAt = 128; // cells, to choose an axis
 // Cells that a grid may look at for each that it holds, a division of a list counted once each: usual trees take 20
 // to 30.
 constexpr std::size_t kWork = 96;
@@ -46,7 +46,7 @@ SquaresMaker::Grid SquaresMaker::shaped(const Rectangle& rectangle, std::size_t 
                                         std::size_t number) const {
     Grid grid = {
         {rectangle.origin[0], rectangle.origin[1]}, {0, 0}, {rectangle.log2[0], rectangle.log2[1]}, number};
-    const std::size_t step = std::max<std::size_t>(1, (list_.size() - first) / kLookedAt);
+    const std::size_t step = 1 + (list_.size() - first) / kLookedAt;
     for (u32 i = 0; i < bits; ++i) {
         std::size_t cuts[2] = {0, 0};
         for (std::size_t k = first; k < list_.size(); k += step)
@@ -79,29 +79,34 @@ void SquaresMaker::divide(const Grid& grid, const Rectangle& rectangle, std::siz
     if (axis < 0) return refine(grid, rectangle, first);
     Rectangle half = rectangle;
     const u32 middle = rectangle.origin[axis] + (1u << --half.log2[axis]);
-    for (int upper = 0; upper < 2; ++upper) {
-        if (!list_.reserve(end + count)) return;
-        std::uint16_t* out = list_.data() + end;
-        for (std::size_t i = first; i < end; ++i) {
-            const KeyBox& box = boxes_[list_[i]];
-            *out = list_[i];
-            out += upper ? box.high[axis] >= middle : box.low[axis] < middle;
-        }
-        list_.cut(static_cast<std::size_t>(out - list_.data()));
-        half.origin[axis] = upper ? middle : rectangle.origin[axis];
-        divide(grid, half, end);
-        list_.cut(end);
+    if (!list_.reserve(end + 2 * count + 1)) return;
+    std::uint16_t* lower = list_.data() + end;
+    std::uint16_t* upper = lower + count;
+    for (std::size_t i = first; i < end; ++i) {
+        const std::uint16_t cell = list_[i];
+        *lower = *upper = cell;
+        lower += boxes_[cell].low[axis] < middle;
+        upper += boxes_[cell].high[axis] >= middle;
     }
+    const std::size_t lower_end = static_cast<std::size_t>(lower - list_.data());
+    list_.cut(static_cast<std::size_t>(upper - list_.data()));
+    half.origin[axis] = middle;
+    divide(grid, half, end + count);
+    list_.cut(lower_end);
+    half.origin[axis] = rectangle.origin[axis];
+    divide(grid, half, end);
+    list_.cut(end);
 }
 
-// The axis whose middle cuts fewer cells; -1 where the rectangle is as small as an entry.
+// The axis whose middle cuts fewer cells, of some; -1 where the rectangle is as small as an entry.
 int SquaresMaker::best_axis(const Grid& grid, const Rectangle& rectangle, std::size_t first) const {
     const bool may[2] = {rectangle.log2[0] > grid.shift[0], rectangle.log2[1] > grid.shift[1]};
     if (!may[0] || !may[1]) return may[0] ? 0 : may[1] ? 1 : -1;
     const u32 middle[2] = {rectangle.origin[0] + (1u << (rectangle.log2[0] - 1)),
                            rectangle.origin[1] + (1u << (rectangle.log2[1] - 1))};
     std::size_t cut[2] = {0, 0};
-    for (std::size_t i = first; i < list_.size(); ++i) {
+    const std::size_t step = 1 + (list_.size() - first) / kLookedAt;
+    for (std::size_t i = first; i < list_.size(); i += step) {
         const KeyBox& box = boxes_[list_[i]];
         for (int axis = 0; axis < 2; ++axis)
             cut[axis] += (box.low[axis] < middle[axis]) & (box.high[axis] >= middle[axis]);

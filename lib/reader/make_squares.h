@@ -50,7 +50,7 @@ private:
     std::size_t work_ = 0; ///< that is left
     Growable<std::uint32_t> entries_, finer_, block_boxes_;
     Growable<std::uint16_t> block_cells_;
-    Growable<std::uint16_t> list_; ///< a stack of lists of boxes: those of the rectangle, of its half, ...
+    Growable<std::uint16_t> list_; ///< a stack of lists of cells: of the rectangle, of both halves, of theirs
 };
 
 } // namespace acdf
