@@ -44,12 +44,12 @@ typedef struct AcdfPiece {
     AcdfPieceAxis azimuth, height;
 } AcdfPiece;
 
-ACDF_FN uint32_t acdf_float_bits(float x) {
+ACDF_INLINE uint32_t acdf_float_bits(float x) {
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
     return bits;
 }
-ACDF_FN float acdf_bits_float(uint32_t bits) {
+ACDF_INLINE float acdf_bits_float(uint32_t bits) {
     float x;
     memcpy(&x, &bits, sizeof x);
     return x;
@@ -58,17 +58,18 @@ ACDF_FN float acdf_bits_float(uint32_t bits) {
 /* ---- drawing ---------------------------------------------------------------------------------------- */
 
 /* Sine and cosine for |y| <= pi/4, interpolated at the Chebyshev nodes of y^2; error below 1e-7. */
-ACDF_FN float acdf_sine_float(float y) {
+ACDF_INLINE float acdf_sine_float(float y) {
     const float q = y * y;
     return y + y * q * (-0.16666651f + q * (0.0083320351f + q * -0.00019503819f));
 }
-ACDF_FN float acdf_cosine_float(float y) {
+ACDF_INLINE float acdf_cosine_float(float y) {
     const float q = y * y;
     return 1.0f + q * (-0.5f + q * (0.041666616f + q * (-0.0013886617f + q * 2.4379725e-5f)));
 }
 
 /* The direction at a local azimuth in a quarter (0: around +x, then +y, -x, -y) and 1 - |z|; south: 0 or 1. */
-ACDF_FN void acdf_piece_direction(float azimuth, float cap, uint32_t quarter, uint32_t south, float direction[3]) {
+ACDF_INLINE void acdf_piece_direction(float azimuth, float cap, uint32_t quarter, uint32_t south,
+                                      float direction[3]) {
     const float radius = sqrtf(cap * (2.0f - cap)); /* exact near the poles, where z is not */
     const uint32_t major = acdf_float_bits(radius * acdf_cosine_float(azimuth));
     const uint32_t minor = acdf_float_bits(radius * acdf_sine_float(azimuth));
@@ -79,13 +80,13 @@ ACDF_FN void acdf_piece_direction(float azimuth, float cap, uint32_t quarter, ui
 }
 
 /* d of a number in steps of 2^-52. */
-ACDF_FN float acdf_draw_distance(uint64_t number, uint32_t low) {
+ACDF_INLINE float acdf_draw_distance(uint64_t number, uint32_t low) {
     return (float)(int64_t)(number - ((uint64_t)low << 21));
 }
 
 /* Draws a direction, with acdf_environment_sample's contract. Returns 0, and leaves `out`, where the tree must be
  * walked: for numbers next to the borders of a cell, or not in [0, 1). */
-ACDF_FN int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, AcdfDirectionSample* out) {
+ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, AcdfDirectionSample* out) {
     const uint32_t* tables = (const uint32_t*)(const void*)cells;
     const double shifted[2] = {u0 + 1.0, u1 + 1.0}; /* u in steps of 2^-52 are the bits of its fraction */
     const uint16_t* found;
@@ -117,7 +118,7 @@ ACDF_FN int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, Acdf
 /* ---- finding ---------------------------------------------------------------------------------------- */
 
 /* atan(t) for t in [-1, 1], interpolated at the Chebyshev nodes of t^2; error below 2e-7. */
-ACDF_FN float acdf_atan_float(float t) {
+ACDF_INLINE float acdf_atan_float(float t) {
     const float q = t * t, q2 = q * q;
     const float low = (0.99999988f + q * -0.33331813f) + q2 * (0.19966962f + q * -0.14003290f);
     const float high = (0.098688655f + q * -0.058829753f) + q2 * (0.023780519f + q * -0.0045597920f);
@@ -138,7 +139,7 @@ enum { ACDF_DIRECTION_BITS = 25 };
 
 /* Returns 0 where floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by
  * more than 5e-5 or that are not finite. */
-ACDF_FN int acdf_direction_place(const float direction[3], AcdfPlace* place) {
+ACDF_INLINE int acdf_direction_place(const float direction[3], AcdfPlace* place) {
     const float x = direction[0], y = direction[1], z = direction[2];
     const float sin2 = x * x + y * y, length2 = sin2 + z * z;
     const uint32_t mask = (1u << ACDF_DIRECTION_BITS) - 1;
@@ -157,7 +158,7 @@ ACDF_FN int acdf_direction_place(const float direction[3], AcdfPlace* place) {
 
 /* The density of a direction into *pdf. Returns 0 where the tree must be walked: next to the borders of a cell, and
  * where acdf_direction_place tells nothing. */
-ACDF_FN int acdf_cells_pdf(const AcdfCells* cells, const float direction[3], float* pdf) {
+ACDF_INLINE int acdf_cells_pdf(const AcdfCells* cells, const float direction[3], float* pdf) {
     const uint32_t* tables = (const uint32_t*)(const void*)cells;
     const uint16_t* found;
     AcdfPlace place;

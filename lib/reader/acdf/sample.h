@@ -31,18 +31,24 @@ typedef struct AcdfEnvironment {
     const AcdfCells* cells; /* runtime tables; null: the tree is walked */
 } AcdfEnvironment;
 
-/* Draws a direction. u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
- * Monotone in each of them within a segment: strata of random numbers stay strata of directions. */
-ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
-    AcdfDirectionSample out;
+/* acdf_environment_sample by the tree alone. */
+ACDF_OUTLINE AcdfDirectionSample acdf_environment_walk_sample(const AcdfEnvironment* env, double u0, double u1) {
     double u[2], p;
     AcdfRange range[2];
-    if (env->cells && acdf_cells_sample(env->cells, u0, u1, &out)) return out;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     acdf_sphere_ranges(env->columns, env->rows, range);
     p = acdf_tree_sample(env->tree, env->root, u, range);
     return acdf_sphere_place(env->columns, env->rows, range, u, p);
+}
+
+/* Draws a direction. u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
+ * Monotone in each of them within a segment: strata of random numbers stay strata of directions. (Inlined: what is
+ * returned by a call goes through memory, in parts that are waited for longer than the tables take.) */
+ACDF_INLINE AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
+    AcdfDirectionSample out;
+    if (env->cells && acdf_cells_sample(env->cells, u0, u1, &out)) return out;
+    return acdf_environment_walk_sample(env, u0, u1);
 }
 
 /* Where a direction falls: its cell and, if `strata` is not null, the random numbers that lead there; if that
@@ -63,17 +69,22 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     return p;
 }
 
-/* Density per steradian with which acdf_environment_sample draws `direction` (unit). 0 where none falls,
- * and for directions that are NaN or not of unit length. */
-ACDF_FN float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
+/* acdf_environment_pdf by the tree alone. */
+ACDF_OUTLINE float acdf_environment_walk_pdf(const AcdfEnvironment* env, const float direction[3]) {
     AcdfRange range[2];
-    double t[2], dz[1], p;
-    float pdf;
-    if (env->cells && acdf_cells_pdf(env->cells, direction, &pdf)) return pdf;
-    p = acdf_environment_find(env, direction, range, t, dz, 0);
+    double t[2], dz[1];
+    const double p = acdf_environment_find(env, direction, range, t, dz, 0);
     if (!(p > 0.0)) return 0.0f;
     return acdf_cell_pdf(p, range[0].high - range[0].low, env->columns, dz[0],
                          acdf_tilt_density(range[0].tilt, t[0]) * acdf_tilt_density(range[1].tilt, t[1]));
+}
+
+/* Density per steradian with which acdf_environment_sample draws `direction` (unit). 0 where none falls,
+ * and for directions that are NaN or not of unit length. */
+ACDF_INLINE float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
+    float pdf;
+    if (env->cells && acdf_cells_pdf(env->cells, direction, &pdf)) return pdf;
+    return acdf_environment_walk_pdf(env, direction);
 }
 
 /* The random numbers u[2] for which acdf_environment_sample returns `direction`. Returns 1, or 0 (and u

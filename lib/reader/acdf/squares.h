@@ -38,8 +38,8 @@ typedef struct AcdfSquares {
 #define ACDF_SQUARES_BLOCK_BITS 21
 enum { ACDF_BLOCK_CELLS = 16, ACDF_FINER_BITS = 4 };
 
-ACDF_FN uint32_t acdf_squares_entry(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
-                                    uint32_t key1) {
+ACDF_INLINE uint32_t acdf_squares_entry(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
+                                        uint32_t key1) {
     uint32_t shift0 = squares->shift0, shift1 = squares->shift1;
     uint32_t entry = tables[squares->grid + ((key1 >> shift1) << squares->bits0) + (key0 >> shift0)];
     while (entry & ACDF_SQUARES_FINER) {
@@ -53,7 +53,7 @@ ACDF_FN uint32_t acdf_squares_entry(const uint32_t* tables, const AcdfSquares* s
 }
 
 /* Bit i: whether cell i of a block may hold the point; never of those that it lacks. */
-ACDF_FN uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byte0, uint32_t byte1) {
+ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byte0, uint32_t byte1) {
 #ifdef ACDF_SQUARES_SSE2
     const __m128i* box = (const __m128i*)(const void*)boxes;
     const __m128i at0 = _mm_set1_epi8((char)(byte0 ^ 0x80u)), at1 = _mm_set1_epi8((char)(byte1 ^ 0x80u));
@@ -73,7 +73,7 @@ ACDF_FN uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byte0, 
 }
 
 /* Number of the lowest bit that is set; one is. */
-ACDF_FN uint32_t acdf_lowest_bit(uint32_t mask) {
+ACDF_INLINE uint32_t acdf_lowest_bit(uint32_t mask) {
 #if defined(__CUDACC__) || !defined(__GNUC__)
     uint32_t i = 0;
     while (!(mask >> i & 1u)) ++i;
@@ -84,8 +84,8 @@ ACDF_FN uint32_t acdf_lowest_bit(uint32_t mask) {
 }
 
 /* The cells that may hold a point: *cells[i] for each bit i that is set in what is returned. */
-ACDF_FN uint32_t acdf_squares_find(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0, uint32_t key1,
-                                   const uint16_t** cells) {
+ACDF_INLINE uint32_t acdf_squares_find(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
+                                       uint32_t key1, const uint16_t** cells) {
     const uint32_t entry = acdf_squares_entry(tables, squares, key0, key1);
     const uint32_t block = entry & ((1u << ACDF_SQUARES_BLOCK_BITS) - 1);
     const uint32_t byte0 = key0 >> (entry >> 26) & 0xFFu, byte1 = key1 >> (entry >> 21 & 31u) & 0xFFu;
