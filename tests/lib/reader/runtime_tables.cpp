@@ -1,8 +1,8 @@
 // Runtime tables beside the walk of the tree that they stand for: the same cell for every draw, the same density
 // for every direction, on golden files, random trees and every fit.
-#include "compress_checks.h"
-#include "extreme_targets.h"
-#include "reader_random.h"
+#include "tests/extremes/targets.h"
+#include "tests/lib/compress/checks.h"
+#include "tests/lib/reader/random.h"
 
 #include "compress/store.h"
 
