@@ -34,9 +34,10 @@ struct Candidate {
 };
 
 struct Turns {
-    std::size_t rounds = 200, calls = 4096;
+    std::size_t rounds = 60, calls = 16384;
     std::size_t period = std::size_t{1} << 18; ///< calls until numbers repeat
-    bool evict = false;                        ///< whether 64 MiB of something else are touched before each turn
+    /// Whether 64 MiB of something else are touched before each turn; else what is timed runs as long before it.
+    bool evict = false;
 };
 
 inline void take_turns(std::vector<Candidate>& candidates, const Turns& turns) {
@@ -47,6 +48,7 @@ inline void take_turns(std::vector<Candidate>& candidates, const Turns& turns) {
         for (Candidate& candidate : candidates) {
             if (turns.evict)
                 for (std::size_t i = 0; i < other.size(); i += 8) ++other[i];
+            else candidate.calls(turns.period - turns.calls - first, turns.calls);
             const double begin = thread_seconds();
             candidate.calls(first, turns.calls);
             const double ns = (thread_seconds() - begin) * 1e9 / static_cast<double>(turns.calls);

@@ -15,6 +15,13 @@
 #include <emmintrin.h>
 #endif
 
+/* What is wanted next, on its way while its place is searched for. */
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define ACDF_PREFETCH(address) __builtin_prefetch(address)
+#else
+#define ACDF_PREFETCH(address) (void)(address)
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -90,6 +97,7 @@ ACDF_INLINE uint32_t acdf_squares_find(const uint32_t* tables, const AcdfSquares
     const uint32_t block = entry & ((1u << ACDF_SQUARES_BLOCK_BITS) - 1);
     const uint32_t byte0 = key0 >> (entry >> 26) & 0xFFu, byte1 = key1 >> (entry >> 21 & 31u) & 0xFFu;
     *cells = (const uint16_t*)(const void*)(tables + squares->cells + 8u * block);
+    ACDF_PREFETCH(*cells);
     return acdf_squares_candidates(tables + squares->boxes + 16u * block, byte0, byte1);
 }
 
