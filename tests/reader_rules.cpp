@@ -301,7 +301,7 @@ std::vector<Case> plane_cases() {
 std::vector<Case> description_cases() {
     return {
         {5001, "zero", payload_field("DESC", 0, 4, 0)},
-        {5001, "four", payload_field("DESC", 0, 4, 4)},
+        {5001, "five", payload_field("DESC", 0, 4, 5)},
         {5002, "zero", payload_field("DESC", 4, 4, 0)},
         {5002, "five", payload_field("DESC", 4, 4, 5)},
         {5003, "two", payload_field("DESC", 8, 4, 2)},
@@ -467,6 +467,12 @@ std::vector<Case> tree_cases() {
              return file.encode();
          }},
         {7001, "name", payload_field("DESC", 64, 1, 'P')},
+        {7001, "octahedral_with_angles", payload_field("DESC", 0, 4, 4)},
+        {7001, "angles_with_u_and_v", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 0, 4, 1); })},
+        {7001, "octahedral_name", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64, 1, 'v'); })},
+        {7001, "octahedral_measure", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64 + 68, 4, 1); })},
+        {7001, "octahedral_resolution",
+         octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64 + 24, 4, 65537); })},
         {7001, "role",
          [] {
              FileSpec file = chain(1).file();

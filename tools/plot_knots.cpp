@@ -129,8 +129,8 @@ float opacity_at(const std::vector<Extents>& extents, const input::Map& map, int
 std::vector<float> knot_opacity(const EnvironmentView& view, const input::Map& map, const Progress& progress) {
     const AcdfEnvironment& env = view.data();
     const FindCell find = [&env](const float direction[3], AcdfRange range[2]) {
-        double t[2], dz[1];
-        acdf_environment_find(&env, direction, range, t, dz, nullptr);
+        double t[2];
+        acdf_environment_find(&env, direction, range, t, nullptr);
     };
     return knot_opacity(find, env.columns, env.rows, map, progress);
 }

@@ -241,14 +241,19 @@ Text File::metadata(const char* key) const noexcept {
 
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
-                            axes_[ACDF_AXIS_THETA].resolution, description_->total});
+                            axes_[ACDF_AXIS_THETA].resolution, description_->total,
+                            description_->parameterization});
 }
 
 LocalEnvironmentView File::local() const noexcept {
     AcdfLocal local = {};
     local.blend = blend_;
-    local.environment = {tree_, 0, axes_[ACDF_AXIS_PHI].resolution, axes_[ACDF_AXIS_THETA].resolution,
-                         description_->total};
+    local.environment = {tree_,
+                         0,
+                         axes_[ACDF_AXIS_PHI].resolution,
+                         axes_[ACDF_AXIS_THETA].resolution,
+                         description_->total,
+                         description_->parameterization};
     local.bins = bins_;
     local.lights = lights_;
     local.light_count = local_->light_count;

@@ -1,5 +1,5 @@
 /* Sampling and evaluating .acdf environments: freestanding headers, valid C99, C++17 and CUDA/HIP/SYCL.
- * acdf/tree.h has the trees, acdf/sphere.h the sphere, acdf/random.h random numbers, acdf/elementary.h the rest.
+ * acdf/tree.h has the trees, acdf/grid.h the sphere, acdf/random.h random numbers, acdf/elementary.h the rest.
  *
  * It works on plain views into the bytes of a *checked* file (acdf/reader.h checks once, at load; nothing
  * is checked here). Functions are pure: no allocation, no globals, no errors. To call them in a GPU kernel
@@ -14,8 +14,8 @@
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
 
+#include <acdf/grid.h>
 #include <acdf/random.h>
-#include <acdf/sphere.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -24,50 +24,58 @@ extern "C" {
 typedef struct AcdfEnvironment {
     const uint8_t* tree; /* chunk TREE */
     uint32_t root;
-    uint32_t columns; /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi */
-    uint32_t rows;    /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi */
-    double total;     /* integral of the target over the sphere */
+    uint32_t columns;          /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi; or u from 0 to 1 */
+    uint32_t rows;             /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi; or v from 0 to 1 */
+    double total;              /* integral of the target over the sphere */
+    uint32_t parameterization; /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
 } AcdfEnvironment;
 
-/* Draws a direction. u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0.
+ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
+    AcdfGrid grid;
+    grid.columns = env->columns;
+    grid.rows = env->rows;
+    grid.parameterization = env->parameterization;
+    return grid;
+}
+
+/* Draws a direction. u0 (phi or u) and u1 (theta or v) in [0, 1]; values outside are clamped, NaN counts as 0.
  * Monotone in each of them within a segment: strata of random numbers stay strata of directions. */
 ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
+    const AcdfGrid grid = acdf_environment_grid(env);
     double u[2], p;
     AcdfRange range[2];
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     acdf_sphere_ranges(env->columns, env->rows, range);
     p = acdf_tree_sample(env->tree, env->root, u, range);
-    return acdf_sphere_place(env->columns, env->rows, range, u, p);
+    return acdf_grid_place(&grid, range, u, p);
 }
 
 /* Where a direction falls: its cell and, if `strata` is not null, the random numbers that lead there; if that
- * or a tilt asks for them, also the fractions t[axis] across the cell (t[1] in z). Returns the cell's
- * probability; 0 for directions that are NaN or whose length differs from 1 by more than about 5e-4. */
+ * or a tilt asks for them, also the fractions t[axis] across the cell in the measures of the axes. Returns the
+ * cell's probability; 0 for directions that are NaN or whose length differs from 1 by more than about 5e-4. */
 ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float direction[3], AcdfRange range[2],
-                                     double t[2], double dz[1], AcdfStratum* strata) {
-    double column, p, z0;
+                                     double t[2], AcdfStratum* strata) {
+    const AcdfGrid grid = acdf_environment_grid(env);
+    double position[2], p;
     uint32_t square[2];
-    if (!acdf_sphere_square(env->columns, env->rows, direction, square, &column)) return 0.0;
+    if (!acdf_grid_square(&grid, direction, square, position)) return 0.0;
     acdf_sphere_ranges(env->columns, env->rows, range);
     p = acdf_tree_find(env->tree, env->root, square, range, strata);
-    z0 = acdf_row_z(range[1].low, env->rows);
-    dz[0] = z0 - acdf_row_z(range[1].high, env->rows);
     t[0] = t[1] = 0.5;
     if (strata || range[0].tilt != 0.0 || range[1].tilt != 0.0)
-        acdf_sphere_fractions(direction, column, range, z0, dz[0], t);
+        acdf_grid_fractions(&grid, direction, position, range, t);
     return p;
 }
 
 /* Density per steradian with which acdf_environment_sample draws `direction` (unit). 0 where none falls,
  * and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(env);
     AcdfRange range[2];
-    double t[2], dz[1];
-    const double p = acdf_environment_find(env, direction, range, t, dz, 0);
-    if (!(p > 0.0)) return 0.0f;
-    return acdf_cell_pdf(p, range[0].high - range[0].low, env->columns, dz[0],
-                         acdf_tilt_density(range[0].tilt, t[0]) * acdf_tilt_density(range[1].tilt, t[1]));
+    double t[2];
+    const double p = acdf_environment_find(env, direction, range, t, 0);
+    return p > 0.0 ? acdf_grid_pdf(&grid, range, t, p) : 0.0f;
 }
 
 /* The random numbers u[2] for which acdf_environment_sample returns `direction`. Returns 1, or 0 (and u
@@ -75,11 +83,11 @@ ACDF_FN float acdf_environment_pdf(const AcdfEnvironment* env, const float direc
 ACDF_FN int acdf_environment_invert(const AcdfEnvironment* env, const float direction[3], double u[2]) {
     AcdfRange range[2];
     AcdfStratum strata[2];
-    double t[2], dz[1];
+    double t[2];
     int axis;
     strata[0].low = strata[1].low = 0.0;
     strata[0].width = strata[1].width = 1.0;
-    if (!(acdf_environment_find(env, direction, range, t, dz, strata) > 0.0)) return 0;
+    if (!(acdf_environment_find(env, direction, range, t, strata) > 0.0)) return 0;
     for (axis = 0; axis < 2; ++axis)
         u[axis] = strata[axis].low + strata[axis].width * acdf_tilt_cdf(range[axis].tilt, t[axis]);
     return 1;
