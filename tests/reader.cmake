@@ -2,12 +2,12 @@
 find_package(ZLIB REQUIRED)
 
 # Each public header alone, as the languages it is written for.
-foreach(header layout elementary random tree sphere sample blend brdf local table)
+foreach(header layout elementary random tree sphere octahedral grid sample blend brdf local table)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/header_${header}.c)
     file(CONFIGURE OUTPUT ${source} CONTENT "#include <acdf/${header}.h>\nint acdf_header_${header};\n")
     list(APPEND acdf_header_sources ${source})
 endforeach()
-foreach(header layout elementary random tree sphere sample blend brdf local table reader)
+foreach(header layout elementary random tree sphere octahedral grid sample blend brdf local table reader)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/header_${header}.cpp)
     file(CONFIGURE OUTPUT ${source} CONTENT "#include <acdf/${header}.h>\nextern \"C\" int acdf_header_${header}_cpp;\n")
     list(APPEND acdf_header_sources ${source})
@@ -24,6 +24,7 @@ acdf_add_test(test_reader_sampling
     SOURCES reader_sampling.cpp $<TARGET_OBJECTS:acdf_test_c99>
     LIBRARIES acdf_reader ZLIB::ZLIB)
 add_dependencies(test_reader_sampling acdf_test_headers)
+acdf_add_test(test_octahedral SOURCES octahedral.cpp LIBRARIES acdf_reader)
 acdf_add_test(test_reader_rules SOURCES reader_rules.cpp reader_rules_local.cpp reader_rules_brdf.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_load SOURCES reader_load.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
 acdf_add_test(test_reader_spec SOURCES reader_spec.cpp LIBRARIES acdf_reader ZLIB::ZLIB)
