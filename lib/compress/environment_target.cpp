@@ -116,14 +116,41 @@ void nearest_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::ve
     }
 }
 
-/// A double as a float that is positive where the double is: rounding must not make darkness out of light.
+} // namespace
+
+std::uint32_t planes_of(const TargetOptions& options) {
+    return options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1;
+}
+
+bool take_texels(const float* rgb, std::size_t count, const TargetOptions& options, float* out,
+                 std::size_t stride) {
+    const ChannelWeights& w = options.weights;
+    bool finite = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<float, kChannels> c;
+        for (std::size_t k = 0; k < kChannels; ++k) {
+            const float v = rgb[kChannels * i + k];
+            finite = finite && std::isfinite(v);
+            c[k] = std::max(v, 0.0f);
+        }
+        if (options.channels == ACDF_CHANNELS_SEPARATE) {
+            for (std::size_t k = 0; k < kChannels; ++k) out[k * stride + i] = c[k];
+            continue;
+        }
+        out[i] = options.channels == ACDF_CHANNELS_LARGEST
+                     ? std::max({c[0], c[1], c[2]})
+                     : static_cast<float>(w.r * c[0] + w.g * c[1] + w.b * c[2]);
+        finite = finite && std::isfinite(out[i]);
+    }
+    return finite;
+}
+
 float positive_float(double value) {
     const auto rounded = static_cast<float>(value);
     return rounded > 0.0f || !(value > 0.0) ? rounded : std::numeric_limits<float>::denorm_min();
 }
 
-/// What is the same for all targets of a resolution.
-Target sphere(std::uint32_t columns, std::uint32_t rows, AcdfParameterization parameterization) {
+Target empty_target(std::uint32_t columns, std::uint32_t rows, AcdfParameterization parameterization) {
     Target target;
     target.columns = columns;
     target.rows = rows;
@@ -141,32 +168,16 @@ Target sphere(std::uint32_t columns, std::uint32_t rows, AcdfParameterization pa
     return target;
 }
 
-} // namespace
-
 EnvironmentTarget::EnvironmentTarget(std::uint32_t columns, std::uint32_t rows, const TargetOptions& options)
-    : options_(options), columns_(columns), rows_(rows),
-      planes_(options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1),
+    : options_(options), columns_(columns), rows_(rows), planes_(planes_of(options)),
       values_(std::size_t{planes_} * columns * rows) {}
 
 void EnvironmentTarget::take(std::uint32_t first, std::uint32_t count, const float* rgb) {
     const std::size_t texels = std::size_t{columns_} * rows_, begin = std::size_t{first} * columns_;
-    const ChannelWeights& w = options_.weights;
     std::vector<std::uint8_t> finite(count, 1);
     tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t row) {
-        for (std::size_t i = std::size_t{row} * columns_; i < std::size_t{row + 1} * columns_; ++i) {
-            std::array<float, kChannels> c;
-            for (std::size_t k = 0; k < kChannels; ++k) {
-                const float v = rgb[kChannels * i + k];
-                if (!std::isfinite(v)) finite[row] = 0;
-                c[k] = std::max(v, 0.0f);
-            }
-            float* out = values_.data() + begin + i;
-            if (planes_ == kChannels)
-                for (std::size_t k = 0; k < kChannels; ++k) out[k * texels] = c[k];
-            else if (options_.channels == ACDF_CHANNELS_LARGEST) *out = std::max({c[0], c[1], c[2]});
-            else *out = static_cast<float>(w.r * c[0] + w.g * c[1] + w.b * c[2]);
-            if (planes_ == 1 && !std::isfinite(*out)) finite[row] = 0;
-        }
+        const std::size_t i = std::size_t{row} * columns_;
+        finite[row] = take_texels(rgb + kChannels * i, columns_, options_, values_.data() + begin + i, texels);
     });
     if (std::find(finite.begin(), finite.end(), 0) != finite.end())
         throw std::invalid_argument("radiance that is not finite");
@@ -180,7 +191,7 @@ Target EnvironmentTarget::finish() {
 
 /// g is f.
 Target EnvironmentTarget::nearest() {
-    Target target = sphere(columns_, rows_, options_.parameterization);
+    Target target = empty_target(columns_, rows_, options_.parameterization);
     target.values = std::move(values_);
     std::vector<double> row_total(rows_);
     tbb::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
@@ -197,7 +208,7 @@ Target EnvironmentTarget::nearest() {
 
 Target EnvironmentTarget::moments() {
     const Integrand f{columns_, rows_, values_.data(), options_.parameterization == ACDF_PARAM_OCTAHEDRAL};
-    Target target = sphere(columns_, rows_, options_.parameterization);
+    Target target = empty_target(columns_, rows_, options_.parameterization);
     const bool bilinear = options_.filter == ACDF_FILTER_BILINEAR;
     target.values.resize(std::size_t{columns_} * rows_);
     if (bilinear) target.peaks.resize(target.values.size());

@@ -47,6 +47,19 @@ struct TargetOptions {
     AcdfParameterization parameterization = ACDF_PARAM_LATLONG; ///< of the probe: lat-long or octahedral
 };
 
+/// How many numbers of a texel count: three, or one.
+std::uint32_t planes_of(const TargetOptions& options);
+
+/// The numbers that count of `count` texels of RGB, negatives as 0 channel by channel: plane k of texel i becomes
+/// out[k * stride + i]. False where any is not finite.
+bool take_texels(const float* rgb, std::size_t count, const TargetOptions& options, float* out, std::size_t stride);
+
+/// A double as a float that is positive where the double is: rounding must not make darkness out of light.
+float positive_float(double value);
+
+/// A grid of directions without any light: all but the values.
+Target empty_target(std::uint32_t columns, std::uint32_t rows, AcdfParameterization parameterization);
+
 /// Makes the target of a lat-long or octahedral probe of columns x rows RGB texels that come in bands of rows. One
 /// channel with nearest lookup takes four bytes a texel, and no more on the way.
 class EnvironmentTarget {
