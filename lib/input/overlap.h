@@ -108,9 +108,10 @@ void for_each_strip(const Polygon& polygon, int axis, Visit&& visit) {
     visit(strip, *rest);
 }
 
-/// Calls visit(column, row, solid_angle) for the texels that `cell` (one of the above) overlaps, or for `parts`
-/// times `parts` parts of each, numbered over the whole map. The solid angles add up to the cell's. Cells are
-/// halved until they are small and simple; after `depth` halvings, the middle decides.
+/// Calls visit(column, row, solid_angle, polygon) for the texels that `cell` (one of the above) overlaps, or for
+/// `parts` times `parts` parts of each, numbered over the whole map. The solid angles add up to the cell's. The
+/// polygon is what is overlapped, in such parts, or one point of it: cells are halved until they are small and
+/// simple; after `depth` halvings, the middle decides.
 template <typename Cell, typename Visit>
 void for_each_overlap(const Map& map, const Cell& cell, int depth, Visit&& visit, int parts = 1) {
     Polygon quad;
@@ -127,13 +128,16 @@ void for_each_overlap(const Map& map, const Cell& cell, int depth, Visit&& visit
     const double omega = cell.solid_angle(), total = simple ? area(quad) : 0.0;
     if (!(total > 1e-12)) {
         const ImagePoint p = to_image(map, cell.middle());
-        visit(static_cast<int>(p.u * columns), static_cast<int>(p.v * rows), omega);
+        quad.size = 1;
+        quad.x[0] = p.u * columns;
+        quad.y[0] = p.v * rows;
+        visit(static_cast<int>(quad.x[0]), static_cast<int>(quad.y[0]), omega, quad);
         return;
     }
     for_each_strip(quad, 1, [&](int row, const Polygon& in_row) {
         for_each_strip(in_row, 0, [&](int column, const Polygon& part) {
             // Corners that split() made may lie a rounding error outside of the image.
-            visit(std::min(column, columns - 1), row, omega * (area(part) / total));
+            visit(std::min(column, columns - 1), row, omega * (area(part) / total), part);
         });
     });
 }

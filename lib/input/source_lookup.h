@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/target.h"
+#include "input/overlap.h"
 #include "input/projection.h"
 
 #include <array>
@@ -34,10 +35,11 @@ public:
 
     const Map& map() const { return map_; }
     std::uint32_t planes() const { return planes_; }
-    /// Parts of a texel along each side within which moments() are told: one, or for an interpolated map four.
-    int parts() const { return bilinear_ ? 4 : 1; }
-    /// Of part (column, row), counted over the whole map.
-    LookupMoments moments(int column, int row) const;
+    /// Parts of a texel along each side within which f is one polynomial: one, or for an interpolated map two.
+    int parts() const { return bilinear_ ? 2 : 1; }
+    /// Means over a convex polygon, or at a single point, within part (column, row); both counted in parts over the
+    /// whole map. Exact, but that the largest value is that of corners and middles of sides.
+    LookupMoments moments(int column, int row, const Polygon& polygon) const;
 
 private:
     double value(std::uint32_t plane, const TexelPlace& at) const {

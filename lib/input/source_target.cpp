@@ -86,7 +86,7 @@ private:
 
     void cover(std::uint32_t row) {
         for (std::uint32_t column = 0; column < domain_.columns; ++column)
-            overlaps(column, row, [&](int x, int y, double omega) {
+            overlaps(column, row, [&](int x, int y, double omega, const Polygon&) {
                 covered_[texel_of(x, y)].fetch_add(static_cast<std::uint64_t>(omega * kUnits),
                                                    std::memory_order_relaxed);
             });
@@ -97,15 +97,22 @@ private:
         std::array<double, 3> flux{};
         for (std::uint32_t column = 0; column < domain_.columns; ++column) {
             Overlapped sum;
-            overlaps(column, row, [&](int x, int y, double omega) {
+            overlaps(column, row, [&](int x, int y, double omega, const Polygon& part) {
                 const std::size_t texel = texel_of(x, y);
                 const double whole = covered(texel);
-                if (whole > 0.0) add(source_.moments(x, y), omega * (solid_angle(texel) / whole), sum);
+                if (whole > 0.0) add(source_.moments(x, y, part), omega * (solid_angle(texel) / whole), sum);
             });
             for (std::size_t plane = 0; plane < 3; ++plane) flux[plane] += sum.flux[plane];
             put(column, row, sum);
         }
         return flux;
+    }
+    LookupMoments at_middle(int column, int row) const { // of a part
+        Polygon point;
+        point.size = 1;
+        point.x[0] = column + 0.5;
+        point.y[0] = row + 0.5;
+        return source_.moments(column, row, point);
     }
     static void add(const LookupMoments& f, double omega, Overlapped& sum) {
         for (std::size_t plane = 0; plane < 3; ++plane) sum.flux[plane] += omega * f.mean[plane];
@@ -136,7 +143,7 @@ private:
             if (!acdf_grid_square(&grid, direction, square, position)) continue;
             Overlapped sum;
             for (int k = 0; k < parts * parts; ++k)
-                add(source_.moments(parts * x + k % parts, parts * y + k / parts), omega / (parts * parts), sum);
+                add(at_middle(parts * x + k % parts, parts * y + k / parts), omega / (parts * parts), sum);
             for (std::size_t plane = 0; plane < 3; ++plane) total[plane].add(sum.flux[plane]);
             put(square[0], square[1], sum);
         }
@@ -169,11 +176,9 @@ private:
             const double omega = solid_angle(texel);
             if (!(omega > 0.0)) continue;
             const int parts = source_.parts();
-            const double square =
-                source_
-                    .moments(parts * static_cast<int>(texel % static_cast<std::size_t>(map_.width)),
-                             parts * static_cast<int>(texel / static_cast<std::size_t>(map_.width)))
-                    .square;
+            const double square = at_middle(parts * static_cast<int>(texel % static_cast<std::size_t>(map_.width)),
+                                            parts * static_cast<int>(texel / static_cast<std::size_t>(map_.width)))
+                                      .square;
             missed.add(square * std::abs(covered(texel) - omega));
             all.add(square * omega);
         }
