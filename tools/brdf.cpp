@@ -1,134 +1,229 @@
-#include "brdf.h"
+// acdf brdf: a BRDF to an .acdf file.
+#include "build/brdf.h"
+#include "build/format_names.h"
+#include "input/brdf_models.h"
+#include "tools/cli/conversion.h"
+#include "tools/cli/goal_options.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/sizes.h"
+#include "tools/cli/target_options.h"
+#include "tools/commands.h"
 
-#include "option_text.h"
+#include <CLI/CLI.hpp>
 
-#include <acdf/reader.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <stdexcept>
+#include <filesystem>
+#include <memory>
 
 namespace acdf::tools {
 namespace {
 
-compress::Metadata metadata(const input::Brdf& brdf, const BrdfFileOptions& options,
-                            const measure::BrdfAccuracy& a) {
-    compress::Metadata out{
-        {"tool", "acdf " ACDF_VERSION}, {"fit.options", option_text(options)}, {"source.name", brdf.name}};
-    if (!brdf.sha256.empty()) out.push_back({"source.sha256", brdf.sha256});
-    out.push_back({"accuracy.relative_variance", accuracy_text(a.relative_variance)});
-    out.push_back({"accuracy.relative_variance_median", accuracy_text(a.median)});
-    out.push_back({"accuracy.relative_variance_worst", accuracy_text(a.worst)});
-    out.push_back({"accuracy.rms_pdf_error", accuracy_text(a.rms_pdf_error)});
-    out.push_back({"accuracy.kl_divergence", accuracy_text(a.kl_divergence)});
-    out.push_back({"accuracy.max_weight", accuracy_text(a.max_weight)});
-    out.push_back({"accuracy.share_above_horizon", accuracy_text(a.share_above_horizon)});
-    return out;
+// Peaks beside the program itself: 76 MiB for models, 80 MiB for files of RGL, 135 MiB for the 33 MiB of MERL.
+constexpr std::uint64_t kBrdfMemory = 96 << 20, kMemoryOfByte = 2;
+
+class BrdfConversion : public Conversion {
+public:
+    void add_options(CLI::App& command) override;
+    void check() override;
+    std::string option_text() const override { return build::option_text(file_); }
+    std::uint64_t memory() const override;
+    Converted convert(const Listener& listener) override;
+
+private:
+    bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
+    void check_fit() const;
+    void add_fit_options(CLI::App& command);
+    void add_size_options(CLI::App& command);
+    nlohmann::ordered_json report(const build::BrdfFile& result) const;
+
+    build::BrdfFileOptions file_;
+    std::string views_, knots_, budget_;
+    const CLI::App* command_ = nullptr;
+    bool separate_ = false;
+};
+
+/// "32" or "32x16".
+bool parse_views(const std::string& text, std::uint32_t& theta, std::uint32_t& phi) {
+    unsigned a = 0, b = 1;
+    int end = 0;
+    if (std::sscanf(text.c_str(), "%5ux%5u%n", &a, &b, &end) != 2) {
+        b = 1;
+        if (std::sscanf(text.c_str(), "%5u%n", &a, &end) != 1) return false;
+    }
+    theta = a;
+    phi = b;
+    return static_cast<std::size_t>(end) == text.size() && a >= 2 && a <= 1024 && b >= 1 && b <= 1024 && b != 2 &&
+           b != 3;
 }
 
-compress::Chunk views_chunk(const compress::BrdfFit& fit, float diffuse_share) {
-    const AcdfViews header = {static_cast<std::uint32_t>(fit.nodes.size()), fit.phi_views,
-                              fit.mirrored ? ACDF_VIEWS_MIRRORED : 0u, diffuse_share};
-    compress::Chunk chunk{ACDF_CHUNK_VIEWS, {}};
-    const std::size_t bytes = fit.nodes.size() * sizeof(float);
-    chunk.bytes.resize(sizeof header + bytes);
-    std::memcpy(chunk.bytes.data(), &header, sizeof header);
-    std::memcpy(chunk.bytes.data() + sizeof header, fit.nodes.data(), bytes);
-    return chunk;
+void BrdfConversion::check_fit() const {
+    const bool variance = file_.fit.fit == ACDF_FIT_VARIANCE;
+    for (const char* option : {"--cells", "--budget", "--target-variance", "--no-sharing"})
+        if (!variance && given(option))
+            throw CLI::ValidationError(option, "is for --fit variance; use --knots or --eps with the other fits");
+    for (const char* option : {"--knots", "--eps"})
+        if (variance && given(option))
+            throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf; use --budget or --cells");
+    if (given("--eps") && file_.fit.fit == ACDF_FIT_UNIFORM)
+        throw CLI::ValidationError("--eps", "is for --fit cdf and pdf");
 }
 
-measure::BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Reflected& reflected,
-                                    bool isotropic) {
-    File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
-    // A coarser sum than that of `acdf measure`: it takes no longer than the fit.
-    const auto views =
-        measure::measure_views(file, reflected, measure::random_views(kMeasuredViews, isotropic), 251, 601);
-    measure::BrdfAccuracy out = measure::summary(views);
-    out.cells = measure::brdf_cells(file);
-    return out;
+void BrdfConversion::check() {
+    check_fit();
+    compress::BrdfOptions& fit = file_.fit;
+    if (given("--views") && !parse_views(views_, fit.theta_views, fit.phi_views))
+        throw CLI::ValidationError("--views",
+                                   "needs a count such as 32, or two such as 16x8 (theta_o x phi_o, at least 4)");
+    if (given("--knots") && !parse_views(knots_, fit.phi_segments, fit.theta_segments))
+        throw CLI::ValidationError("--knots", "needs two counts such as 10x30 (phi_h x theta_h)");
+    if (given("--eps") && !given("--knots")) fit.phi_segments = fit.theta_segments = ACDF_MAX_SEGMENTS;
+    fit.sharing = !separate_;
+    if (fit.fit != ACDF_FIT_VARIANCE) return;
+    fit.goal = {compress::Goal::Kind::budget, fit.goal.cells, std::uint64_t{64} << 10, fit.goal.variance};
+    read_goal(*command_, budget_, fit.goal);
+}
+
+nlohmann::ordered_json BrdfConversion::report(const build::BrdfFile& result) const {
+    const build::BrdfAccuracy& a = result.accuracy;
+    return {{"source", source},
+            {"fit", build::fit_name(file_.fit.fit)},
+            {"views", {result.theta_views, result.phi_views}},
+            {"bytes", result.bytes.size()},
+            {"bins", result.theta_views * result.phi_views},
+            {"cells", a.cells},
+            {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"relative_variance_median", a.median},
+            {"relative_variance_worst", a.worst},
+            {"rms_pdf_error", a.rms_pdf_error},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"share_above_horizon", a.share_above_horizon},
+            {"support_violations", a.support_violations}};
+}
+
+std::uint64_t BrdfConversion::memory() const {
+    if (input::is_model(source)) return kBrdfMemory;
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(source, error);
+    return error ? 0 : kBrdfMemory + bytes * kMemoryOfByte;
+}
+
+Converted BrdfConversion::convert(const Listener& listener) {
+    const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
+    for (const std::string& note : brdf->notes) listener.note(note);
+    build::BrdfFile result;
+    try {
+        result = build::build_brdf(*brdf, file_, listener.progress);
+    } catch (const std::invalid_argument& error) {
+        throw Failure(source + ": " + error.what());
+    } catch (const std::runtime_error& error) { // the goal is out of reach
+        throw Failure(source + ": " + error.what());
+    }
+    const build::BrdfAccuracy& a = result.accuracy;
+    char summary[200];
+    std::snprintf(summary, sizeof summary, "%u views, %llu cells, relative variance %.4g (mean; worst %.4g)",
+                  result.theta_views * result.phi_views, static_cast<unsigned long long>(a.cells),
+                  a.relative_variance, a.worst);
+    nlohmann::ordered_json told = report(result);
+    return {std::move(result.bytes), a.relative_variance, std::move(told), summary};
+}
+
+void BrdfConversion::add_fit_options(CLI::App& command) {
+    compress::BrdfOptions& fit = file_.fit;
+    const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
+                                              {"cdf", ACDF_FIT_CDF},
+                                              {"pdf", ACDF_FIT_PDF},
+                                              {"variance", ACDF_FIT_VARIANCE}};
+    command
+        .add_option(
+            "--fit", fit.fit,
+            "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
+            "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
+            "views, the nearest bin serves)")
+        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->option_text("NAME [variance]")
+        ->group("Fit");
+    command
+        .add_option(
+            "--views", views_,
+            "Stored views in theta_o and phi_o, such as 32 or 16x8; two counts treat the BRDF as anisotropic")
+        ->option_text("N|NxM [as suits the size]")
+        ->group("Fit");
+    command
+        .add_flag("--no-sharing", separate_,
+                  "Give each bin of views a tree of its own, of which the nearest serves: to compare with")
+        ->group("Fit");
+    std::vector<std::string> names;
+    for (const build::ChannelName& channel : build::channel_names) names.push_back(channel.name);
+    command
+        .add_option_function<std::string>(
+            "--channel",
+            [this](const std::string& name) {
+                for (const build::ChannelName& channel : build::channel_names)
+                    if (name == channel.name) {
+                        file_.channels = channel.channels;
+                        file_.weights = channel.weights;
+                    }
+            },
+            "Whose noise is minimised: luminance (Rec. 709), rgb (all three channels), max (the largest), red, "
+            "green or "
+            "blue alone")
+        ->check(CLI::IsMember(names).description(""))
+        ->option_text("NAME [luminance]")
+        ->group("Fit");
+    command
+        .add_option(
+            "--diffuse-floor", file_.diffuse_share,
+            "Share of samples that follow the cosine instead. Not needed for what the fit has seen, which it "
+            "covers; it bounds weights where a renderer's BRDF differs from the one fitted")
+        ->check(CLI::Range(0.0f, 0.99f))
+        ->option_text("X [0]")
+        ->group("Fit");
+}
+
+void BrdfConversion::add_size_options(CLI::App& command) {
+    compress::BrdfOptions& fit = file_.fit;
+    add_goal(command, fit.goal.cells, budget_, fit.goal.variance,
+             {"Cells that all views share; without sharing: of each, on average", "N", "SIZE [64KiB]",
+              ", about, as mean over views", 1, ACDF_MAX_TILES});
+    command
+        .add_option("--knots", knots_, "Segments of curves over phi_h and theta_h, for --fit uniform, cdf and pdf")
+        ->option_text("AxB [10x30]")
+        ->group("Size and accuracy");
+    command
+        .add_option("--eps", fit.epsilon, "Stop adding knots once no curve deviates by more, for --fit cdf and pdf")
+        ->check(CLI::Range(0.0, 1.0))
+        ->option_text("E")
+        ->group("Size and accuracy");
+}
+
+void BrdfConversion::add_options(CLI::App& command) {
+    command_ = &command;
+    add_fit_options(command);
+    add_size_options(command);
+    add_codec(command, file_.codec);
 }
 
 } // namespace
 
-std::string option_text(const BrdfFileOptions& options) {
-    const compress::BrdfOptions& fit = options.fit;
-    std::string text = target_text({options.weights, options.channels, ACDF_FILTER_NEAREST}) +
-                       codec_text(options.codec) + fit_text(fit.fit);
-    if (fit.theta_views) {
-        text += "--views " + std::to_string(fit.theta_views);
-        text += (fit.phi_views > 1 ? "x" + std::to_string(fit.phi_views) : "") + " ";
-    }
-    if (options.diffuse_share > 0.0f) text += "--diffuse-floor " + option_number(options.diffuse_share) + " ";
-    if (fit.fit == ACDF_FIT_VARIANCE) return text + (fit.sharing ? "" : "--no-sharing ") + goal_text(fit.goal);
-    text += "--knots " + std::to_string(fit.phi_segments) + "x" + std::to_string(fit.theta_segments);
-    return fit.epsilon > 0.0 ? text + " --eps " + option_number(fit.epsilon) : text;
-}
+std::unique_ptr<Conversion> brdf_conversion() { return std::make_unique<BrdfConversion>(); }
 
-compress::Reflected reflected_light(const input::Brdf& brdf, AcdfChannels channels,
-                                    const compress::ChannelWeights& weights) {
-    return [&brdf, channels, weights](const double wo[3], const double wi[3]) {
-        double rgb[3];
-        brdf.evaluate(wo, wi, rgb);
-        const double cosine = std::max(0.0, wi[2]);
-        if (channels == ACDF_CHANNELS_SEPARATE)
-            return cosine * std::sqrt(rgb[0] * rgb[0] + rgb[1] * rgb[1] + rgb[2] * rgb[2]);
-        if (channels == ACDF_CHANNELS_LARGEST) return cosine * std::max({rgb[0], rgb[1], rgb[2]});
-        return cosine * std::max(0.0, weights.r * rgb[0] + weights.g * rgb[1] + weights.b * rgb[2]);
-    };
-}
-
-std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFileOptions& options,
-                                     const compress::Metadata& metadata) {
-    constexpr double pi = ACDF_PI;
-    compress::Description d;
-    d.kind = ACDF_KIND_BRDF;
-    d.parameterization = ACDF_PARAM_HALF_ANGLE;
-    d.fit = options.fit.fit;
-    d.channels = options.channels;
-    d.channel_weights[0] = options.weights.r;
-    d.channel_weights[1] = options.weights.g;
-    d.channel_weights[2] = options.weights.b;
-    d.total = fit.total > 0.0 ? fit.total : 1.0;
-    d.shares = fit.shares;
-    d.axes = {{"phi_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, compress::HalfGrid::column_resolution,
-               fit.mirrored ? 0.0 : -pi, pi},
-              {"cos_theta_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, compress::HalfGrid::row_resolution, 1.0, 0.0},
-              {"theta_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, static_cast<std::uint32_t>(fit.nodes.size()), 0.0,
-               0.5 * pi},
-              {"phi_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, fit.phi_views, -pi, pi}};
-    d.chunks.push_back(views_chunk(fit, options.diffuse_share));
-    if (fit.shared())
-        for (compress::Chunk& chunk : compress::shared_chunks(fit.rows)) d.chunks.push_back(std::move(chunk));
-    d.metadata = metadata;
-    return compress::store(fit.tree, d, options.codec);
-}
-
-BrdfFile build_brdf(const input::Brdf& brdf, const BrdfFileOptions& given, const Progress& progress) {
-    BrdfFileOptions options = given;
-    const bool isotropic = brdf.isotropic && options.fit.phi_views <= 1;
-    options.fit.symmetry = {isotropic, isotropic && brdf.mirror};
-    const compress::Reflected reflected = reflected_light(brdf, options.channels, options.weights);
-    const compress::Metadata unknown = metadata(brdf, options, {});
-    BrdfFileOptions plain = options; // rows that are not made yet cannot tell how well they compress
-    plain.codec = ACDF_CODEC_NONE;
-    options.fit.file_size = [&](const compress::BrdfFit& fit) {
-        return std::uint64_t{brdf_bytes(fit, plain, unknown).size()};
-    };
-    options.fit.progress = [&](double share) {
-        if (progress) progress(0.8 * share, "fitting");
-    };
-    const compress::BrdfFit fit = compress::fit_brdf(reflected, options.fit);
-    if (progress) progress(0.8, "measuring");
-    BrdfFile out;
-    out.accuracy = measure_bytes(brdf_bytes(fit, options, unknown), reflected, brdf.isotropic);
-    out.bytes = brdf_bytes(fit, options, metadata(brdf, options, out.accuracy));
-    out.theta_views = static_cast<std::uint32_t>(fit.nodes.size());
-    out.phi_views = fit.phi_views;
-    return out;
+void add_brdf(CLI::App& program, int& exit_code) {
+    CLI::App& command =
+        *program.add_subcommand("brdf", "Compress a BRDF: directions of light by what they reflect");
+    add_conversion(command, brdf_conversion(),
+                   {"BRDF",
+                    "MERL .binary, RGL .bsdf, an .npy over (theta_o, phi_o, theta_h, phi_h), or a model: lambert, "
+                    "ggx:alpha=0.1[,0.3], cook-torrance:m=0.2,n=1.5,k=0, blinn:e=100",
+                    help_footer("Prints the size and the relative variance of the stored densities over random "
+                                "views, cos(theta_o) uniform in "
+                                "[0.1, 1]: n samples have that over n.",
+                                "acdf brdf nickel.binary -o nickel.acdf\n"
+                                "acdf brdf cc_ibiza_sunset_rgb.bsdf -o ibiza.acdf --budget 200KiB\n"
+                                "acdf brdf ggx:alpha=0.1,0.3 -o brushed.acdf --target-variance 0.01\n"
+                                "acdf brdf nickel.binary -o paper.acdf --fit cdf --knots 10x30 --views 32x16")},
+                   exit_code);
 }
 
 } // namespace acdf::tools

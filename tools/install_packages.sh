@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages of tools/packages.txt, or of the list given, that are missing (Debian 12 and its kin). Asks for
-# nothing, changes nothing where all are there. Used by tools/demo.sh, tests/run.sh and tests/farm.sh.
+# nothing, changes nothing where all are there. Used by tools/demo.sh, tests/run.sh and tests/tools/batch/farm.sh.
 set -euo pipefail
 
 list=${1:-"$(dirname "${BASH_SOURCE[0]}")/packages.txt"}

@@ -1,257 +1,328 @@
-#include "local.h"
+// acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
+#include "build/local.h"
+#include "build/format_names.h"
+#include "input/image.h"
+#include "input/image_header.h"
+#include "input/scene_normals.h"
+#include "tools/cli/conversion.h"
+#include "tools/cli/goal_options.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/probe_options.h"
+#include "tools/cli/sizes.h"
+#include "tools/cli/target_options.h"
+#include "tools/commands.h"
 
-#include "compress/fit_local.h"
-#include "option_text.h"
+#include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <random>
-#include <stdexcept>
+#include <memory>
 
 namespace acdf::tools {
 namespace {
 
-using compress::Goal;
-using compress::NormalBins;
+// Peaks beside the program itself, measured on probes of 2^19 to 2^23 pixels with budgets up to 1 MiB: 20 to 35
+// bytes a pixel.
+constexpr std::uint64_t kLocalMemory = 96 << 20, kLocalMemoryOfPixel = 40;
 
-constexpr std::uint32_t kTestNormals = 256;
+class LocalConversion : public Conversion {
+public:
+    void add_options(CLI::App& command) override;
+    void check() override;
+    std::vector<std::string*> files() override;
+    std::string option_text() const override;
+    std::uint64_t memory() const override;
+    Converted convert(const Listener& listener) override;
 
-compress::Description description_of(const compress::Target& target, const Source& source, const LocalOptions& o,
-                                     const NormalBins& bins, const measure::LocalAccuracy& accuracy) {
-    compress::Description d = compress::environment_description(target.columns, target.rows);
-    d.kind = ACDF_KIND_LOCAL;
-    d.fit = o.sharing ? ACDF_FIT_VARIANCE : o.fit.fit;
-    d.filter = o.target.filter;
-    d.channels = o.target.channels;
-    const double weights[3] = {o.target.weights.r, o.target.weights.g, o.target.weights.b};
-    std::copy(std::begin(weights), std::end(weights), d.channel_weights);
-    d.total = target.total;
-    if (bins.subdivisions > 0) {
-        const auto count = static_cast<std::uint32_t>(bins.normals.size());
-        d.axes.push_back({"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, count, 0.0, double(count)});
-    } else {
-        d.axes.push_back({"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.rows, 0.0, ACDF_PI});
-        d.axes.push_back({"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.columns, ACDF_PI, -ACDF_PI});
-    }
-    d.metadata = {{"tool", "acdf " ACDF_VERSION},
-                  {"fit.options", option_text(source.reading, o)},
-                  {"source.name", source.name},
-                  {"source.sha256", source.sha256},
-                  {"source.projection", source.projection},
-                  {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)},
-                  {"accuracy.relative_variance_full_cdf", accuracy_text(accuracy.relative_variance_full_cdf)},
-                  {"accuracy.share_above_horizon", accuracy_text(accuracy.share_above_horizon)}};
-    return d;
-}
+private:
+    bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
+    void set_normals();
+    void set_separate();
+    std::string scene_text() const;
+    build::LocalOptions read_scene(const Note& note) const;
+    void add_bins(CLI::App& command);
+    void add_size(CLI::App& command);
+    void add_separate(CLI::App& command);
+    nlohmann::ordered_json report(const input::Probe& probe, const build::Local& result) const;
 
-/// Subdivisions that suit a size: the denser the bins, the fewer tiles there are bytes for (docs/local.md).
-std::uint32_t subdivisions_for(double bytes) {
-    return static_cast<std::uint32_t>(std::clamp(std::lround(8.0 * std::pow(bytes / 262144.0, 0.3)), 3l, 64l));
-}
-
-NormalBins bins_of(const LocalOptions& o, std::uint32_t subdivisions) {
-    NormalBins bins =
-        o.columns > 0 ? compress::latlong_bins(o.columns, o.rows) : compress::octahedral_bins(subdivisions);
-    if (!o.scene.empty()) compress::weigh(bins, o.scene);
-    return bins;
-}
-
-/// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.
-NormalBins bins_for(const LocalOptions& o, double bytes) {
-    const std::uint32_t all = subdivisions_for(bytes);
-    NormalBins bins = bins_of(o, o.subdivisions > 0 ? o.subdivisions : all);
-    if (o.subdivisions > 0 || o.columns > 0 || o.scene.empty()) return bins;
-    const std::size_t rows = 4 * std::size_t{all} * all + 2;
-    for (std::uint32_t finer = all + 1; finer <= 2 * all; ++finer) {
-        NormalBins next = bins_of(o, finer);
-        if (next.stored() > rows) break;
-        bins = std::move(next);
-    }
-    return bins;
-}
-
-Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, const LocalOptions& options) {
-    Local out;
-    out.bytes = std::move(bytes);
-    const std::vector<measure::Normal> normals = test_normals(options.scene, kTestNormals);
-    File file;
-    if (const Status status = File::from_memory(out.bytes.data(), out.bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
-    out.accuracy = measure::summary(measure::measure_normals(file, target, normals));
-    out.normals = static_cast<std::uint32_t>(normals.size());
-    return out;
-}
-
-/// Everything of a file but its accuracy.
-struct Draft {
-    compress::EncodedTree tree;
-    compress::Description description;
+    std::string normals_, budget_, knots_, scene_;
+    input::ProbeOptions input_;
+    input::SceneOptions scene_input_;
+    build::LocalOptions local_;
+    const CLI::App* command_ = nullptr;
+    bool no_sharing_ = false;
 };
 
-/// Stores a draft with the accuracy that it has.
-Local finish(Draft draft, const compress::Target& target, const Source& source, const LocalOptions& options,
-             const NormalBins& bins) {
-    Local out = measured(compress::store(draft.tree, draft.description), target, options);
-    const compress::Description told = description_of(target, source, options, bins, out.accuracy);
-    draft.description.metadata = told.metadata; // of the same size as before
-    out.bytes = compress::store(draft.tree, draft.description, options.codec);
-    return out;
+constexpr double kWorthwhile = 1.5; ///< gain below which a file without normals would do as well
+
+void LocalConversion::set_normals() {
+    if (!given("--normals")) return;
+    build::LocalOptions& local = local_;
+    unsigned n = 0;
+    int end = 0;
+    if (std::sscanf(normals_.c_str(), "%4u%n", &n, &end) == 1 && static_cast<std::size_t>(end) == normals_.size() &&
+        n >= 1 && n <= 256) {
+        local.subdivisions = n;
+        return;
+    }
+    if (!parse_pair(normals_, 1024, local.columns, local.rows))
+        throw CLI::ValidationError("--normals", "needs a number from 1 to 256, or two such as 25x10 (phi x theta)");
 }
 
-Draft shared_draft(const compress::Target& target, const Source& source, const LocalOptions& options,
-                   const NormalBins& bins, const compress::LocalSize& size, const Progress& progress) {
-    compress::LocalFit fit = compress::fit_local(target, bins, size, [&](double share) {
-        if (progress) progress(0.8 * share, "fitting");
-    });
-    Draft draft{std::move(fit.tree), description_of(target, source, options, bins, {})};
-    draft.description.shares = std::move(fit.shares);
-    draft.description.chunks = compress::shared_chunks(fit.shared);
-    draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
-    return draft;
-}
-
-/// Tiles and curves that fill a budget. Curves take three tenths: more of them, or fewer, and the variance rises.
-compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes) {
-    constexpr double fixed = 2600.0;
-    const double each = double(bins.stored()) + sizeof(AcdfSplit) + sizeof(std::uint32_t);
-    const double room = bytes - fixed - double(bins.normals.size() * sizeof(AcdfBin));
-    compress::LocalSize size;
-    const double tiles = o.tiles > 0 ? o.tiles : 0.7 * room / each;
-    size.tiles = static_cast<std::uint32_t>(std::clamp(tiles, 1.0, double(ACDF_MAX_TILES)));
-    size.tree_bytes = static_cast<std::uint64_t>(std::max(room - size.tiles * each, 256.0));
-    return size;
-}
-
-Local build_in_budget(const compress::Target& target, const Source& source, const LocalOptions& options,
-                      std::uint64_t budget, const Progress& progress) {
-    const NormalBins bins = bins_for(options, double(budget));
-    compress::LocalSize size = size_for(options, bins, double(budget));
-    for (int tries = 0;; ++tries) {
-        Draft draft = shared_draft(target, source, options, bins, size, progress);
-        const std::uint64_t bytes = compress::store(draft.tree, draft.description, options.codec).size();
-        // What lights and packing take is known now; once is enough but where tiles or curves run out.
-        const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
-        if (fits && (full || tries > 0)) return finish(std::move(draft), target, source, options, bins);
-        const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
-        const std::int64_t next = static_cast<std::int64_t>(size.tree_bytes) + miss - 192;
-        if (next < 64 || tries == 6) {
-            if (size.tiles <= 2)
-                throw std::runtime_error("a size of " + std::to_string(budget) +
-                                         " bytes is out of reach; the least that can be had is about " +
-                                         std::to_string(bytes));
-            size.tiles = size.tiles * 3 / 4;
-            size.tree_bytes = size_for(options, bins, double(budget)).tree_bytes;
-            tries = 0;
-            continue;
-        }
-        size.tree_bytes = static_cast<std::uint64_t>(next);
+void LocalConversion::set_separate() {
+    build::LocalOptions& local = local_;
+    compress::FitOptions& fit = local.fit;
+    local.sharing = !no_sharing_;
+    if (local.sharing) {
+        if (local.columns > 0)
+            throw CLI::ValidationError("--normals",
+                                       "AxB is for --no-sharing: bins that share tiles are interpolated");
+        for (const char* option : {"--fit", "--knots", "--eps", "--order", "--bin-target"})
+            if (given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
+        return;
+    }
+    if (given("--tiles")) throw CLI::ValidationError("--tiles", "is for files whose bins share tiles");
+    if (given("--target-variance"))
+        throw CLI::ValidationError("--target-variance",
+                                   "is for files whose bins share tiles; use --budget or --cells");
+    const bool variance = fit.fit == ACDF_FIT_VARIANCE;
+    for (const char* option : {"--knots", "--eps"})
+        if (variance && given(option)) throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf");
+    for (const char* option : {"--cells", "--budget"})
+        if (!variance && given(option)) throw CLI::ValidationError(option, "is for --fit variance");
+    if (!variance && !fit.order) fit.order = compress::Order::z;
+    if (given("--knots")) {
+        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
+            throw CLI::ValidationError("--knots", "needs two counts such as 30x30 (phi x theta)");
+    } else if (given("--eps")) {
+        fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
     }
 }
 
-/// The smallest file whose measured variance is low enough.
-Local build_to_variance(const compress::Target& target, const Source& source, const LocalOptions& options,
-                        const Progress& progress) {
-    const auto at = [&](double bytes) {
-        return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), {});
-    };
-    constexpr double largest = 64.0 * 1048576.0;
-    double low = 16384.0, high = 65536.0;
-    Local best = at(high);
-    while (best.accuracy.relative_variance > options.goal.variance) {
-        if (high >= largest)
-            throw std::runtime_error("a relative variance of " + option_number(options.goal.variance) +
-                                     " is out of reach; 64 MiB have " +
-                                     option_number(best.accuracy.relative_variance));
-        low = high;
-        high = std::min(4.0 * high, largest);
-        best = at(high);
-    }
-    for (int step = 0; step < 7; ++step) {
-        if (progress) progress(0.3 + 0.1 * step, "searching");
-        const double middle = std::sqrt(low * high);
-        Local candidate = at(middle);
-        if (candidate.accuracy.relative_variance > options.goal.variance) {
-            low = middle;
-        } else {
-            high = middle;
-            best = std::move(candidate);
-        }
-    }
-    return best;
+void LocalConversion::check() {
+    set_normals();
+    read_goal(*command_, budget_, local_.goal);
+    set_separate();
 }
 
-Local build_separate(const compress::Target& target, const Source& source, const LocalOptions& options,
-                     const Progress& progress) {
-    const NormalBins bins = bins_of(options, options.subdivisions > 0 ? options.subdivisions : 6);
-    Draft draft{{}, description_of(target, source, options, bins, {})};
-    draft.description.shares.assign(bins.normals.size(), 0.0f);
-    draft.description.chunks = {compress::local_chunk(static_cast<float>(options.cosine_share), {})};
-    compress::FitOptions fit = options.fit;
-    fit.goal = options.goal;
-    fit.file_size = [&](const compress::EncodedTree& tree) {
-        return std::uint64_t{compress::store(tree, draft.description, options.codec).size()};
-    };
-    fit.progress = [&](double share) {
-        if (progress) progress(0.9 * share, "fitting");
-    };
-    compress::SeparateFit fitted = compress::fit_local_separate(target, bins, options.bin_target, fit);
-    draft.tree = std::move(fitted.tree);
-    draft.description.shares = std::move(fitted.shares);
-    return finish(std::move(draft), target, source, options, bins);
+std::vector<std::string*> LocalConversion::files() {
+    if (scene_.empty()) return {&source};
+    return {&source, &scene_};
+}
+
+std::string LocalConversion::scene_text() const {
+    return "--scene " + input::file_sha256(scene_) + (scene_input_.up == input::UpAxis::y ? " --scene-up y" : "") +
+           (scene_input_.rgb_is_normal ? " --scene-rgb" : "");
+}
+
+std::string LocalConversion::option_text() const {
+    build::LocalOptions told = local_;
+    if (!scene_.empty()) {
+        told.scene = {{}}; // any: only the text tells which
+        told.scene_text = scene_text();
+    }
+    return build::option_text(reading_text(input_), told);
+}
+
+/// The options with the normals of the scene.
+build::LocalOptions LocalConversion::read_scene(const Note& note) const {
+    build::LocalOptions local = local_;
+    if (scene_.empty()) return local;
+    const input::SceneNormals scene = input::read_scene_normals(scene_, scene_input_);
+    for (const input::WeightedNormal& n : scene.normals)
+        local.scene.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
+    local.scene_text = scene_text();
+    note(scene_ + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
+         std::to_string(scene.skipped) + " skipped");
+    return local;
+}
+
+double gain(const build::Local& result) {
+    return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
+}
+
+nlohmann::ordered_json LocalConversion::report(const input::Probe& probe, const build::Local& result) const {
+    const build::LocalAccuracy& a = result.accuracy;
+    File file;
+    File::from_memory(result.bytes.data(), result.bytes.size(), file);
+    return {{"source", source},
+            {"resolution", {probe.width, probe.height}},
+            {"bytes", result.bytes.size()},
+            {"bins", file.description().bin_count},
+            {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
+            {"normals_measured", result.normals},
+            {"relative_variance", a.relative_variance},
+            {"relative_variance_full_cdf", a.relative_variance_full_cdf},
+            {"gain", gain(result)},
+            {"share_above_horizon", a.share_above_horizon},
+            {"least_share_above_horizon", a.least_share_above_horizon},
+            {"support_violations", a.support_violations}};
+}
+
+std::string summary_of(const build::Local& result) {
+    const build::LocalAccuracy& a = result.accuracy;
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "relative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
+                  "%.1f %% of samples above the horizon",
+                  a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf,
+                  100.0 * a.share_above_horizon);
+    return text;
+}
+
+std::uint64_t LocalConversion::memory() const {
+    const std::uint64_t pixels = input::image_pixels(source);
+    return pixels > 0 ? kLocalMemory + pixels * kLocalMemoryOfPixel : 0;
+}
+
+Converted LocalConversion::convert(const Listener& listener) {
+    const build::LocalOptions local = read_scene(listener.note);
+    const auto [probe, target] = load_target(source, input_, local.target, listener.note);
+    build::Local result;
+    try {
+        result = build::build_local(target, source_of(probe, input_), local, listener.progress);
+    } catch (const std::runtime_error& error) { // the goal is out of reach
+        throw Failure(source + ": " + error.what());
+    }
+    if (gain(result) < kWorthwhile) {
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "knowing the normal lowers the variance by a factor of %.2f only; `acdf env` would do about "
+                      "as well, in a smaller file",
+                      gain(result));
+        listener.note(text);
+    }
+    nlohmann::ordered_json told = report(probe, result);
+    const std::string summary = summary_of(result);
+    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
+}
+
+void LocalConversion::add_bins(CLI::App& command) {
+    build::LocalOptions& local = local_;
+    command
+        .add_option(
+            "--normals", normals_,
+            "Bins of normals: N divides each edge of an octahedron, 4 N^2 + 2 bins that are interpolated; AxB is "
+            "a lat-long grid (phi x theta) whose nearest bin serves, as in the paper, for --no-sharing, with "
+            "--no-sharing")
+        ->option_text("N|AxB [as suits the size]")
+        ->group("Normals");
+    command
+        .add_option(
+            "--scene", scene_,
+            "Only what a scene requires: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals (.txt, "
+            "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
+            "whole environment, unbiased but noisier")
+        ->type_name("FILE")
+        ->group("Normals");
+    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    command
+        .add_option(
+            "--scene-up", scene_input_.up,
+            "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
+        ->transform(CLI::CheckedTransformer(axes).description(""))
+        ->option_text("y|z [z]")
+        ->group("Normals");
+    command
+        .add_flag("--scene-rgb", scene_input_.rgb_is_normal,
+                  "Take R, G and B of the scene's image as a normal where no channel is named as one")
+        ->group("Normals");
+    command
+        .add_option(
+            "--cosine-share", local.cosine_share,
+            "This share of samples is drawn around the normal instead, density cos/pi; sample and pdf apply "
+            "the mixture. For scenes in which the brightest light is often hidden; 0.2 is a good value")
+        ->check(CLI::Range(0.0, 0.99))
+        ->option_text("X [0]")
+        ->group("Normals");
+}
+
+void LocalConversion::add_size(CLI::App& command) {
+    build::LocalOptions& local = local_;
+    add_goal(command, local.goal.cells, budget_, local.goal.variance,
+             {"Cells of the curves that bins share, about; with --no-sharing: of a bin, in the mean", "N",
+              "SIZE [1MiB]", ", in the mean over normals", 16});
+    command
+        .add_option(
+            "--tiles", local.tiles,
+            "Tiles whose probability each bin stores, a byte each: more of them and the cosine is followed more "
+            "closely, at the price of cells within them")
+        ->check(CLI::Range(1u, ACDF_MAX_TILES))
+        ->option_text("N [as suits the size]")
+        ->group("Size and accuracy");
+}
+
+void LocalConversion::add_separate(CLI::App& command) {
+    compress::FitOptions& fit = local_.fit;
+    const char* group = "Trees of their own";
+    command
+        .add_flag("--no-sharing", no_sharing_,
+                  "A tree of its own for each bin, as in the paper, to compare with: larger and noisier")
+        ->group(group);
+    const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
+                                              {"cdf", ACDF_FIT_CDF},
+                                              {"pdf", ACDF_FIT_PDF},
+                                              {"variance", ACDF_FIT_VARIANCE}};
+    command.add_option("--fit", fit.fit, "How knots are chosen: as in acdf env")
+        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->option_text("NAME [variance]")
+        ->group(group);
+    command.add_option("--knots", knots_, "Segments of a curve over phi and over theta: as in acdf env")
+        ->option_text("AxB [64x64]")
+        ->group(group);
+    command.add_option("--eps", fit.epsilon, "Deviation at which a curve has knots enough: as in acdf env")
+        ->check(CLI::Range(0.0, 1.0))
+        ->option_text("E")
+        ->group(group);
+    const std::map<std::string, compress::Order> orders{{"phi", compress::Order::phi}, {"z", compress::Order::z}};
+    command
+        .add_option_function<compress::Order>(
+            "--order", [&fit](compress::Order order) { fit.order = order; }, "Which axis is split first")
+        ->transform(CLI::CheckedTransformer(orders).description(""))
+        ->option_text("phi|z [z]")
+        ->group(group);
+    const std::map<std::string, compress::BinTarget> targets{{"mean", compress::BinTarget::mean},
+                                                             {"centre", compress::BinTarget::centre}};
+    command
+        .add_option(
+            "--bin-target", local_.bin_target,
+            "What a bin's tree is fitted to: mean (right for all of its normals) or centre (the paper's: biased "
+            "for the others)")
+        ->transform(CLI::CheckedTransformer(targets).description(""))
+        ->option_text("NAME [mean]")
+        ->group(group);
+}
+
+void LocalConversion::add_options(CLI::App& command) {
+    command_ = &command;
+    add_projection(command, input_.projection);
+    add_repairs(command, input_);
+    add_bins(command);
+    add_size(command);
+    add_separate(command);
+    add_target_options(command, local_.target);
+    add_codec(command, local_.codec);
 }
 
 } // namespace
 
-std::string option_text(const std::string& reading, const LocalOptions& o) {
-    std::string text = reading + target_text(o.target) + codec_text(o.codec);
-    if (o.subdivisions > 0) text += "--normals " + std::to_string(o.subdivisions) + " ";
-    if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
-    if (!o.scene.empty()) text += o.scene_text.empty() ? "--scene " : o.scene_text + " ";
-    if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
-    if (o.sharing) {
-        if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";
-        return text + goal_text(o.goal);
-    }
-    text += "--no-sharing " + fit_text(o.fit.fit);
-    if (o.bin_target == compress::BinTarget::centre) text += "--bin-target centre ";
-    if (o.fit.order) text += "--order " + std::string(to_string(*o.fit.order)) + " ";
-    if (o.fit.fit == ACDF_FIT_VARIANCE) return text + goal_text(o.goal);
-    text += "--knots " + std::to_string(o.fit.column_segments) + "x" + std::to_string(o.fit.row_segments);
-    return o.fit.epsilon > 0.0 ? text + " --eps " + option_number(o.fit.epsilon) : text;
-}
+std::unique_ptr<Conversion> local_conversion() { return std::make_unique<LocalConversion>(); }
 
-std::vector<measure::Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count) {
-    if (scene.empty()) return measure::random_normals(count);
-    double sum = 0.0;
-    std::vector<double> upto;
-    for (const compress::SceneNormal& n : scene) upto.push_back(sum += n.weight);
-    std::vector<measure::Normal> out;
-    for (std::uint32_t i = 0; i < count; ++i) { // even steps: the scene's own frequencies
-        const double at = sum * (i + 0.5) / count;
-        const auto found = std::upper_bound(upto.begin(), upto.end() - 1, at);
-        out.push_back(scene[static_cast<std::size_t>(found - upto.begin())].normal);
-    }
-    return out;
-}
-
-Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
-                  const Progress& progress) {
-    if (!(compress::integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
-    if (!options.sharing) return build_separate(target, source, options, progress);
-    switch (options.goal.kind) {
-    case Goal::Kind::budget:
-        return build_in_budget(target, source, options, options.goal.budget, progress);
-    case Goal::Kind::variance:
-        return build_to_variance(target, source, options, progress);
-    default: {
-        const double bytes = 4.2 * options.goal.cells; // of the shared curves, three tenths of the file
-        const NormalBins bins = bins_for(options, bytes / 0.3);
-        compress::LocalSize size = size_for(options, bins, bytes / 0.3);
-        size.tree_bytes = static_cast<std::uint64_t>(bytes);
-        return finish(shared_draft(target, source, options, bins, size, progress), target, source, options, bins);
-    }
-    }
+void add_local(CLI::App& program, int& exit_code) {
+    CLI::App& command = *program.add_subcommand(
+        "local", "Compress an environment map for every normal: clipped at its horizon, times "
+                 "the cosine");
+    add_conversion(
+        command, local_conversion(),
+        {"PROBE", "The environment map: any image OpenImageIO reads",
+         help_footer("Prints the exact relative variance of irradiance estimates, mean over 256 random normals (or "
+                     "those of the "
+                     "scene), beside that of the probe's full-resolution CDF.",
+                     "acdf local probe.exr -o probe.local.acdf\n"
+                     "acdf local probe.exr -o small.acdf --budget 128KiB\n"
+                     "acdf local probe.exr -o car.acdf --scene car.obj --scene-up y --cosine-share 0.2\n"
+                     "acdf local probe.exr -o paper.acdf --no-sharing --normals 25x10 --fit cdf --knots 64x64")},
+        exit_code);
 }
 
 } // namespace acdf::tools

@@ -1,6 +1,6 @@
 // The `acdf` program: a table of subcommands, and the one place where errors become exit codes.
-#include "commands.h"
-#include "help.h"
+#include "tools/cli/help.h"
+#include "tools/commands.h"
 
 #include <acdf/layout.h>
 

@@ -1,199 +1,223 @@
-#include "table.h"
+// acdf table: an array of numbers of any number of axes to an .acdf file.
+#include "build/table.h"
+#include "input/image.h"
+#include "input/npy.h"
+#include "tools/cli/file_input.h"
+#include "tools/cli/goal_options.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/output.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/sizes.h"
+#include "tools/commands.h"
 
-#include "compress/fit_tree.h"
-#include "compress/sum.h"
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
-#include <acdf/reader.h>
-
-#include <algorithm>
-#include <cfloat>
-#include <cmath>
+#include <charconv>
+#include <cinttypes>
 #include <cstdio>
-#include <set>
-#include <stdexcept>
+#include <filesystem>
+#include <memory>
 
 namespace acdf::tools {
 namespace {
 
-constexpr std::uint64_t max_bins = 1 << 20; // each has a partition of its own while it is fitted
-constexpr std::uint32_t default_cells = 4096, least_default_cells = 64;
+struct TableArguments {
+    std::string array, output;
+    std::vector<std::string> ranges;
+    std::string budget;
+    input::NpyOptions input;
+    build::TableOptions table;
+    const CLI::App* command = nullptr;
+    int threads = 0;
+    bool json = false, quiet = false, force = false;
 
-std::string number(double value, const char* format = "%.9g") {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
+    bool given(const char* option) const { return command->get_option(option)->count() > 0; }
+};
+
+/// A number that fills all of `text`.
+template <class Number>
+bool parse_number(const std::string& text, Number& value) {
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc{} && rest == end;
 }
 
-std::uint64_t bin_count(const std::vector<std::uint32_t>& shape, std::uint32_t indexed) {
-    std::uint64_t bins = 1;
-    for (std::uint32_t axis = 0; axis < indexed; ++axis) bins *= shape[axis];
-    return bins;
+/// The axis that `text` names or counts.
+std::uint32_t axis_of(const std::string& text, const std::vector<std::string>& names, std::size_t axes) {
+    for (std::uint32_t i = 0; i < names.size(); ++i)
+        if (names[i] == text) return i;
+    std::uint32_t axis = 0;
+    if (!parse_number(text, axis) || axis >= axes)
+        throw CLI::ValidationError("--range", "'" + text + "' is none of the " + std::to_string(axes) + " axes");
+    return axis;
 }
 
-void check_options(const std::vector<std::uint32_t>& shape, const TableOptions& options) {
-    const std::string axes = std::to_string(shape.size()) + (shape.size() == 1 ? " axis" : " axes");
-    if (options.indexed >= shape.size())
-        throw std::invalid_argument("the array has " + axes +
-                                    ", of which one at least is sampled: index fewer than " +
-                                    std::to_string(shape.size()));
-    if (bin_count(shape, options.indexed) > max_bins)
-        throw std::invalid_argument("the indexed axes make more than 2^20 bins; index fewer");
-    if (!options.names.empty() && options.names.size() != shape.size())
-        throw std::invalid_argument("the array has " + axes + ", but there are " +
-                                    std::to_string(options.names.size()) + " names");
-    if (!options.ranges.empty() && options.ranges.size() != shape.size())
-        throw std::invalid_argument("one range an axis is needed");
-    std::set<std::string> seen;
-    for (const std::string& name : options.names) {
-        if (name.empty() || name.size() > 15) throw std::invalid_argument("the name of an axis has 1 to 15 bytes");
-        if (!seen.insert(name).second) throw std::invalid_argument("two axes are called '" + name + "'");
+/// "theta=0:3.14" or "1=0:3.14", for each axis that has one.
+void set_ranges(TableArguments& options, const std::vector<std::uint32_t>& shape) {
+    if (options.ranges.empty()) return;
+    for (const std::uint32_t length : shape) options.table.ranges.emplace_back(0.0, length);
+    for (const std::string& text : options.ranges) {
+        const std::size_t equals = text.rfind('='),
+                          colon = text.find(':', equals == std::string::npos ? 0 : equals);
+        double low = 0.0, high = 0.0;
+        if (equals == std::string::npos || colon == std::string::npos ||
+            !parse_number(text.substr(equals + 1, colon - equals - 1), low) ||
+            !parse_number(text.substr(colon + 1), high))
+            throw CLI::ValidationError("--range", "'" + text + "' is not of the form AXIS=LOW:HIGH");
+        options.table.ranges[axis_of(text.substr(0, equals), options.table.names, shape.size())] = {low, high};
     }
 }
 
-/// What rules 5015 and 9004 ask of an axis: that its coordinates tell its steps apart.
-void check_range(const compress::AxisDescription& axis) {
-    if (!std::isfinite(axis.low) || !std::isfinite(axis.high) || axis.low == axis.high)
-        throw std::invalid_argument("the range of axis '" + axis.name + "' is empty or not finite");
-    AcdfAxis record = {};
-    record.resolution = axis.resolution;
-    record.low = axis.low;
-    record.high = axis.high;
-    if (!acdf_table_axis_steps(&record))
-        throw std::invalid_argument("the range of axis '" + axis.name +
-                                    "' is too far from 0 for its width, or too "
-                                    "large or small; choose other units");
+void remark(const TableArguments& options, const input::NpyArray& array) {
+    const input::BadValues& bad = array.bad;
+    if (bad.count() > 0 && !options.quiet)
+        std::fprintf(stderr,
+                     "%s: %" PRIu64 " NaN, %" PRIu64 " infinite and %" PRIu64
+                     " negative numbers set to 0, the first at [%s]\n",
+                     options.array.c_str(), bad.nan, bad.infinite, bad.negative,
+                     input::index_text(array.shape, bad.first).c_str());
 }
 
-std::vector<compress::AxisDescription> describe_axes(const std::vector<std::uint32_t>& shape,
-                                                     const TableOptions& options) {
-    std::vector<compress::AxisDescription> axes;
-    for (std::uint32_t i = 0; i < shape.size(); ++i) {
-        compress::AxisDescription axis;
-        axis.name = options.names.empty() ? "x" + std::to_string(i) : options.names[i];
-        axis.role = i < options.indexed ? ACDF_AXIS_INDEXED : ACDF_AXIS_SAMPLED;
-        axis.resolution = shape[i];
-        axis.low = options.ranges.empty() ? 0.0 : options.ranges[i].first;
-        axis.high = options.ranges.empty() ? shape[i] : options.ranges[i].second;
-        check_range(axis);
-        axes.push_back(axis);
+nlohmann::ordered_json report(const TableArguments& options, const input::NpyArray& array, std::size_t bins,
+                              const build::Table& result) {
+    const build::TableAccuracy& a = result.accuracy;
+    const input::BadValues& bad = array.bad;
+    return {{"file", options.output},
+            {"source", options.array},
+            {"shape", array.shape},
+            {"indexed", options.table.indexed},
+            {"bad_values", {{"nan", bad.nan}, {"infinite", bad.infinite}, {"negative", bad.negative}}},
+            {"bytes", result.bytes.size()},
+            {"bins", bins},
+            {"bins_with_energy", a.lit_bins},
+            {"cells", a.cells},
+            {"total", result.total},
+            {"relative_variance", a.relative_variance},
+            {"relative_variance_median", a.median},
+            {"relative_variance_worst", a.worst},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"support_violations", a.support_violations}};
+}
+
+build::Table build(const TableArguments& options, const input::NpyArray& array) {
+    const std::string name = std::filesystem::path(options.array).filename().string();
+    const std::string sha256 = input::file_sha256(options.array);
+    ProgressBar bar(options.quiet);
+    try {
+        return build::build_table(array, name, sha256, options.table, bar.callback());
+    } catch (const std::invalid_argument& error) {
+        throw Failure(options.array + ": " + error.what());
+    } catch (const std::runtime_error& error) { // the goal is out of reach
+        throw Failure(options.array + ": " + error.what());
     }
-    return axes;
 }
 
-/// Volume of the sampled axes in their units.
-double volume(const std::vector<compress::AxisDescription>& axes) {
-    double volume = 1.0;
-    for (const compress::AxisDescription& axis : axes)
-        if (axis.role == ACDF_AXIS_SAMPLED) volume *= std::abs(axis.high - axis.low);
-    return volume;
+void run(TableArguments& options) {
+    read_goal(*options.command, options.budget, options.table.fit.goal);
+    const auto limit = limit_threads(options.threads);
+    Output output(options.output, options.force, {options.array}); // refuses early, before the work
+    const input::NpyArray array = input::read_npy(options.array, options.input);
+    remark(options, array);
+    set_ranges(options, array.shape);
+    const build::Table result = build(options, array);
+    output.write(result.bytes.data(), result.bytes.size());
+    output.commit(check_reads_back);
+
+    std::size_t bins = 1;
+    for (std::uint32_t axis = 0; axis < options.table.indexed; ++axis) bins *= array.shape[axis];
+    std::FILE* out = options.output == "-" ? stderr : stdout;
+    const build::TableAccuracy& a = result.accuracy;
+    if (options.json) std::fprintf(out, "%s\n", report(options, array, bins, result).dump(2).c_str());
+    else if (!options.quiet && bins == 1)
+        std::fprintf(out, "%s: %s, %" PRIu64 " cells, relative variance %.4g\n", options.output.c_str(),
+                     to_readable_size(result.bytes.size()).c_str(), a.cells, a.relative_variance);
+    else if (!options.quiet)
+        std::fprintf(out, "%s: %s, %zu bins, %" PRIu64 " cells, relative variance %.4g (mean; worst %.4g)\n",
+                     options.output.c_str(), to_readable_size(result.bytes.size()).c_str(), bins, a.cells,
+                     a.relative_variance, a.worst);
 }
 
-/// Integral of each bin and, last, their sum, with a volume of 1 a bin.
-std::vector<double> integrals(const std::vector<compress::Grid>& bins) {
-    std::vector<double> out;
-    compress::Sum total;
-    for (const compress::Grid& bin : bins) {
-        out.push_back(compress::integral(bin));
-        total.add(out.back());
-    }
-    out.push_back(total.value());
-    return out;
+void add_axis_options(CLI::App& command, TableArguments& options) {
+    command
+        .add_option(
+            "--indexed", options.table.indexed,
+            "How many of the first axes are chosen by whoever samples (a view direction, a pixel) instead of "
+            "drawn: each combination of their indices is a bin with a density of its own")
+        ->check(CLI::Range(0u, 5u))
+        ->option_text("K [0]")
+        ->group("Axes");
+    command.add_option("--names", options.table.names, "Names of all axes in order, for `acdf info` and --range")
+        ->delimiter(',')
+        ->type_name("")
+        ->option_text("A,B,... [x0,x1,...]")
+        ->group("Axes");
+    command
+        .add_option(
+            "--range", options.ranges,
+            "The coordinates at both ends of an axis, by its name or number: samples come, and densities are "
+            "evaluated, in these units (--range theta=0:3.14159). May be repeated")
+        ->option_text("AXIS=LOW:HIGH [0 to length]")
+        ->group("Axes");
+    const std::map<std::string, input::BadValuePolicy> policies{{"error", input::BadValuePolicy::refuse},
+                                                                {"zero", input::BadValuePolicy::zero}};
+    command
+        .add_option(
+            "--bad-values", options.input.bad_values,
+            "What to do about NaN, infinities and negative numbers: error (refuse, and say how many and where) "
+            "or zero (nothing is drawn there)")
+        ->transform(CLI::CheckedTransformer(policies).description(""))
+        ->option_text("NAME [error]")
+        ->group("Input");
 }
 
-/// A bin with any energy keeps a positive share, however small: share 0 says that there is nothing to draw.
-std::vector<float> shares(const std::vector<double>& integrals) {
-    std::vector<float> out;
-    for (std::size_t i = 0; i + 1 < integrals.size(); ++i)
-        out.push_back(integrals[i] > 0.0 ? std::max(static_cast<float>(integrals[i] / integrals.back()), FLT_MIN)
-                                         : 0.0f);
-    return out;
-}
-
-std::string option_text(const TableOptions& options) {
-    std::string text = options.indexed > 0 ? "--indexed " + std::to_string(options.indexed) + " " : "";
-    const compress::Goal& goal = options.fit.goal;
-    if (goal.kind == compress::Goal::Kind::budget) text += "--budget " + std::to_string(goal.budget);
-    else if (goal.kind == compress::Goal::Kind::variance) text += "--target-variance " + number(goal.variance);
-    else text += "--cells " + std::to_string(options.cells);
-    if (options.fit.max_weight > 0.0) text += " --max-weight " + number(options.fit.max_weight);
-    return text;
-}
-
-compress::Metadata metadata(const std::string& name, const std::string& sha256, const TableOptions& options,
-                            const measure::TableAccuracy& accuracy) {
-    // A fixed width: what accuracy is reached must not change the size that a budget is compared with.
-    const auto fixed = [](double value) { return number(std::clamp(value, 0.0, 9.99e99), "%.8e"); };
-    return {{"tool", "acdf " ACDF_VERSION},
-            {"fit.options", option_text(options)},
-            {"source.name", name},
-            {"source.sha256", sha256},
-            {"accuracy.relative_variance", fixed(accuracy.relative_variance)},
-            {"accuracy.relative_variance_median", fixed(accuracy.median)},
-            {"accuracy.relative_variance_worst", fixed(accuracy.worst)},
-            {"accuracy.kl_divergence", fixed(accuracy.kl_divergence)},
-            {"accuracy.max_weight", fixed(accuracy.max_weight)}};
-}
-
-measure::TableAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes,
-                                     const std::vector<compress::Grid>& bins) {
-    File file;
-    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
-        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
-    return measure::summary(measure::measure_bins(file, bins));
+void add_size_options(CLI::App& command, TableArguments& options) {
+    compress::FitOptions& fit = options.table.fit;
+    add_goal(command, options.table.cells, options.budget, fit.goal.variance,
+             {"Cells a bin, on average: a bin that is harder gets more of them",
+              "N [4096 in all, at least 64 a bin]", "SIZE", ", as mean over the bins"});
+    command
+        .add_option("--max-weight", fit.max_weight,
+                    "Bound on f/p over its mean, in every bin: no sample counts for more (no fireflies)")
+        ->check(CLI::Range(1.0, 1e30).description(""))
+        ->option_text("W")
+        ->group("Size and accuracy");
 }
 
 } // namespace
 
-std::vector<compress::Grid> table_grids(const input::NpyArray& array, std::uint32_t indexed) {
-    compress::Grid grid;
-    std::size_t size = 1;
-    for (std::uint32_t axis = indexed; axis < array.shape.size(); ++axis) {
-        grid.shape.push_back(array.shape[axis]);
-        grid.measure.emplace_back(array.shape[axis], 1.0 / array.shape[axis]);
-        grid.axes.push_back(axis);
-        size *= array.shape[axis];
-    }
-    std::vector<compress::Grid> bins(bin_count(array.shape, indexed), grid);
-    for (std::size_t i = 0; i < bins.size(); ++i) bins[i].values = array.values.data() + i * size;
-    return bins;
-}
-
-Table build_table(const input::NpyArray& array, const std::string& source_name, const std::string& source_sha256,
-                  const TableOptions& given, const Progress& progress) {
-    TableOptions options = given;
-    check_options(array.shape, options);
-    compress::Description description;
-    description.kind = ACDF_KIND_TABLE;
-    description.parameterization = ACDF_PARAM_TABLE;
-    description.axes = describe_axes(array.shape, options);
-    const std::vector<compress::Grid> bins = table_grids(array, options.indexed);
-    const std::vector<double> energy = integrals(bins);
-    if (!(energy.back() > 0.0)) throw std::invalid_argument("all its numbers are 0, so there is nothing to sample");
-    Table out;
-    out.total = description.total = energy.back() * array.scale * volume(description.axes);
-    if (!(out.total >= DBL_MIN && out.total <= DBL_MAX))
-        throw std::invalid_argument("its integral over the ranges is no number that a double holds; scale it");
-    description.shares = shares(energy);
-    std::fill(description.channel_weights, description.channel_weights + 3, 0.0);
-    description.channel_weights[0] = 1.0; // a table has one channel
-
-    if (options.cells == 0)
-        options.cells = std::max(least_default_cells, static_cast<std::uint32_t>(default_cells / bins.size()));
-    options.fit.goal.cells = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(std::uint64_t{options.cells} * bins.size(), 0xFFFFFFFFu));
-    description.metadata = metadata(source_name, source_sha256, options, {});
-    options.fit.file_size = [&](const compress::EncodedTree& tree) {
-        return std::uint64_t{compress::store(tree, description, options.codec).size()};
-    };
-    options.fit.progress = [&](double share) {
-        if (progress) progress(0.9 * share, "fitting");
-    };
-    const compress::EncodedTree tree = compress::fit_trees(bins, options.fit).tree;
-    out.accuracy = measure_bytes(compress::store(tree, description), bins);
-    description.metadata = metadata(source_name, source_sha256, options, out.accuracy);
-    out.bytes = compress::store(tree, description, options.codec);
-    if (progress) progress(1.0, "measuring");
-    return out;
+void add_table(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<TableArguments>();
+    CLI::App& command = *program.add_subcommand(
+        "table", "Compress a table of any number of axes: points by the numbers stored there");
+    options->command = &command;
+    command
+        .add_option("ARRAY", options->array,
+                    "The table: an .npy file (numpy.save) of float32 or float64, 1 to 6 axes, no number negative")
+        ->required()
+        ->type_name("")
+        ->group("Input");
+    add_axis_options(command, *options);
+    add_size_options(command, *options);
+    add_output(command, options->output, options->force, "The .acdf file to write")->required();
+    add_codec(command, options->table.codec);
+    add_threads(command, options->threads);
+    add_json(command, options->json);
+    add_quiet(command, options->quiet);
+    command.footer(help_footer(
+        "Each number is the value of a function that is constant on its box of the grid. The density is per "
+        "product "
+        "of the units of the sampled axes. A float64 table is fitted as float32, scaled by a power of two where it "
+        "would not fit; the integral stays exact.",
+        "acdf table histogram.npy -o histogram.acdf\n"
+        "acdf table field.npy -o field.acdf --indexed 2 --names s,t,u,v --range u=-1:1 --range v=-1:1\n"
+        "acdf table volume.npy -o volume.acdf --budget 64KiB --json"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
 }
 
 } // namespace acdf::tools

@@ -1,7 +1,7 @@
 #include "input/brdf_models.h"
 
+#include "compress/trigonometry.h"
 #include "input/image.h"
-#include "input/trigonometry.h"
 
 #include <algorithm>
 #include <array>
@@ -115,7 +115,7 @@ public:
     explicit Lambert(Parameters& p) : albedo_(p.colour("albedo", 0.0, 1.0, 1.0)) {}
 
 private:
-    Rgb above(const double*, const double*) const override { return scaled(albedo_, 1.0 / pi); }
+    Rgb above(const double*, const double*) const override { return scaled(albedo_, 1.0 / compress::pi); }
     Rgb albedo_;
 };
 
@@ -131,7 +131,7 @@ private:
     Rgb above(const double wo[3], const double wi[3]) const override {
         const Half h(wo, wi);
         const double x = h.x / alpha_x_, y = h.y / alpha_y_, s = x * x + y * y + h.z * h.z;
-        const double d = 1.0 / (pi * alpha_x_ * alpha_y_ * s * s);
+        const double d = 1.0 / (compress::pi * alpha_x_ * alpha_y_ * s * s);
         const double masked = 2.0 * (wo[2] * norm(wi) + wi[2] * norm(wo)); // 4 cos cos / G
         const double f = std::pow(1.0 - h.dot, 5.0);
         return scaled({f0_[0] + (1.0 - f0_[0]) * f, f0_[1] + (1.0 - f0_[1]) * f, f0_[2] + (1.0 - f0_[2]) * f},
@@ -169,7 +169,7 @@ private:
     Rgb above(const double wo[3], const double wi[3]) const override {
         const Half h(wo, wi);
         const double cos2 = h.z * h.z, tan2 = (h.x * h.x + h.y * h.y) / cos2;
-        const double d = std::exp(-tan2 / (m_ * m_)) / (pi * m_ * m_ * cos2 * cos2);
+        const double d = std::exp(-tan2 / (m_ * m_)) / (compress::pi * m_ * m_ * cos2 * cos2);
         // G / (4 cos cos), each branch with what cancels taken out.
         const double low = std::min(wo[2], wi[2]), high = std::max(wo[2], wi[2]);
         const double masked = std::min(0.25 / (low * high), 0.5 * h.z / (h.dot * high));
@@ -184,7 +184,7 @@ private:
 class Blinn : public Model {
 public:
     explicit Blinn(Parameters& p) : e_(p.one("e", 0.0, 1e7, 100.0)), albedo_(p.colour("albedo", 0.0, 1.0, 1.0)) {
-        scale_ = (e_ + 2.0) * (e_ + 4.0) / (8.0 * pi * (std::exp2(-0.5 * e_) + e_));
+        scale_ = (e_ + 2.0) * (e_ + 4.0) / (8.0 * compress::pi * (std::exp2(-0.5 * e_) + e_));
     }
 
 private:

@@ -1,7 +1,7 @@
 #include "input/brdf_npy.h"
 
+#include "compress/trigonometry.h"
 #include "input/image.h"
-#include "input/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,8 +37,11 @@ public:
         std::fill(rgb, rgb + 3, 0.0);
         if (!(wo[2] > 0.0 && wi[2] > 0.0)) return;
         const double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
-        const auto theta = [](const double w[3]) { return std::atan2(norm(w[0], w[1]), w[2]) / (0.5 * pi); };
-        const double phi_o = std::atan2(wo[1], wo[0]) / (2.0 * pi), phi_h = std::atan2(h[1], h[0]) / (2.0 * pi);
+        const auto theta = [](const double w[3]) {
+            return std::atan2(compress::norm(w[0], w[1]), w[2]) / (0.5 * compress::pi);
+        };
+        const double phi_o = std::atan2(wo[1], wo[0]) / (2.0 * compress::pi),
+                     phi_h = std::atan2(h[1], h[0]) / (2.0 * compress::pi);
         const auto& shape = table_.shape;
         const Between at[4] = {clamped(theta(wo), shape[0]), periodic(phi_o, shape[1]), clamped(theta(h), shape[2]),
                                periodic(isotropic ? phi_h - phi_o : phi_h, shape[3])};

@@ -1,6 +1,6 @@
 #include "input/detect.h"
 
-#include "input/cube.h"
+#include "build/cube.h"
 
 #include <algorithm>
 #include <array>
@@ -61,8 +61,8 @@ double black_share(const Image& image, Select&& select) {
 // something, or black proves nothing.
 constexpr double mostly = 0.9, hardly = 0.5;
 
-bool is_cross(const Image& image, Layout layout) {
-    const Map map{layout, image.width, image.height};
+bool is_cross(const Image& image, build::Layout layout) {
+    const build::Map map{layout, image.width, image.height};
     return black_share(image, [&](int x, int y) { return !on_cube_face(map, x, y); }) >= mostly &&
            black_share(image, [&](int x, int y) { return on_cube_face(map, x, y); }) <= hardly;
 }
@@ -114,38 +114,38 @@ bool is_octahedral(const Image& image) {
     throw input_error(path, shape(image) + " " + what);
 }
 
-Layout cube_layout(const std::string& path, const Image& image) {
-    if (has_ratio(image, 3, 4)) return Layout::vertical_cross;
-    if (has_ratio(image, 4, 3)) return Layout::horizontal_cross;
-    if (has_ratio(image, 1, 6)) return Layout::stacked_cube;
+build::Layout cube_layout(const std::string& path, const Image& image) {
+    if (has_ratio(image, 3, 4)) return build::Layout::vertical_cross;
+    if (has_ratio(image, 4, 3)) return build::Layout::horizontal_cross;
+    if (has_ratio(image, 1, 6)) return build::Layout::stacked_cube;
     refuse(path, image, "is no cube cross (3:4 or 4:3) and no column of faces (1:6); crop it, or set --projection");
 }
 
 Detected as_asked(const std::string& path, const Image& image, Projection projection) {
     const std::string reason = std::string("--projection ") + to_string(projection);
-    if (projection == Projection::latlong) return {Layout::latlong, reason};
+    if (projection == Projection::latlong) return {build::Layout::latlong, reason};
     if (projection == Projection::cube_cross) return {cube_layout(path, image), reason};
     if (!is_square(image))
         refuse(path, image,
                std::string("is not square, as ") + to_string(projection) +
                    " is; crop it to the disc or the square, or set another --projection");
-    if (projection == Projection::angular) return {Layout::angular, reason};
-    if (projection == Projection::mirrorball) return {Layout::mirrorball, reason};
-    return {Layout::octahedral, reason};
+    if (projection == Projection::angular) return {build::Layout::angular, reason};
+    if (projection == Projection::mirrorball) return {build::Layout::mirrorball, reason};
+    return {build::Layout::octahedral, reason};
 }
 
 Detected by_tag(const std::string& path, const Image& image) {
     if (image.tag == EnvironmentTag::latlong)
-        return {Layout::latlong, "the file says so (OpenEXR envmap attribute or texture format)"};
+        return {build::Layout::latlong, "the file says so (OpenEXR envmap attribute or texture format)"};
     if (!has_ratio(image, 1, 6))
         refuse(path, image, "says it is a cube map, but is not 1:6 as OpenEXR's are; set --projection");
-    return {Layout::stacked_cube, "the file says so (OpenEXR envmap attribute)"};
+    return {build::Layout::stacked_cube, "the file says so (OpenEXR envmap attribute)"};
 }
 
 Detected by_shape(const std::string& path, const Image& image) {
-    if (has_ratio(image, 2, 1)) return {Layout::latlong, "2:1 shape"};
-    for (const Layout layout : {Layout::vertical_cross, Layout::horizontal_cross}) {
-        const bool vertical = layout == Layout::vertical_cross;
+    if (has_ratio(image, 2, 1)) return {build::Layout::latlong, "2:1 shape"};
+    for (const build::Layout layout : {build::Layout::vertical_cross, build::Layout::horizontal_cross}) {
+        const bool vertical = layout == build::Layout::vertical_cross;
         if (!has_ratio(image, vertical ? 3 : 4, vertical ? 4 : 3)) continue;
         if (is_cross(image, layout))
             return {layout, vertical ? "3:4 shape, black beside the cross" : "4:3 shape, black beside the cross"};
@@ -158,7 +158,7 @@ Detected by_shape(const std::string& path, const Image& image) {
                "may be six cube faces, but no envmap attribute says so; set --projection cube-cross "
                "for OpenEXR's order (+X -X +Y -Y +Z -Z)");
     if (is_square(image) && is_octahedral(image) && !is_disc(image))
-        return {Layout::octahedral, "square, and the borders match when folded"};
+        return {build::Layout::octahedral, "square, and the borders match when folded"};
     if (is_square(image) && is_disc(image))
         refuse(path, image,
                "with black corners is an angular map or a mirror ball, and nothing in the image tells "
@@ -184,15 +184,15 @@ bool is_latlong(const Image& image, Projection projection) {
     return image.tag == EnvironmentTag::latlong || (image.tag == EnvironmentTag::none && has_ratio(image, 2, 1));
 }
 
-Projection projection_of(Layout layout) {
+Projection projection_of(build::Layout layout) {
     switch (layout) {
-    case Layout::latlong:
+    case build::Layout::latlong:
         return Projection::latlong;
-    case Layout::angular:
+    case build::Layout::angular:
         return Projection::angular;
-    case Layout::mirrorball:
+    case build::Layout::mirrorball:
         return Projection::mirrorball;
-    case Layout::octahedral:
+    case build::Layout::octahedral:
         return Projection::octahedral;
     default:
         return Projection::cube_cross;

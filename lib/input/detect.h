@@ -1,15 +1,15 @@
 // Which layout an image has: what the user says, what the file says, or what its shape and texels prove.
 #pragma once
 
+#include "build/projection.h"
 #include "input/image.h"
-#include "input/projection.h"
 
 #include <string>
 
 namespace acdf::input {
 
 struct Detected {
-    Layout layout = Layout::latlong;
+    build::Layout layout = build::Layout::latlong;
     std::string reason; ///< for a person
 };
 
@@ -21,6 +21,6 @@ Detected detect_layout(const std::string& path, const Image& image, Projection p
 bool is_latlong(const Image& image, Projection projection);
 
 /// The projection a layout belongs to.
-Projection projection_of(Layout layout);
+Projection projection_of(build::Layout layout);
 
 } // namespace acdf::input

@@ -1,7 +1,7 @@
 #include "input/merl.h"
 
+#include "compress/trigonometry.h"
 #include "input/image.h"
-#include "input/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ private:
         double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
         const double length = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
         for (double& x : h) x /= length;
-        const double sin_theta = norm(h[0], h[1]);
+        const double sin_theta = compress::norm(h[0], h[1]);
         const double cos_phi = sin_theta > 0.0 ? h[0] / sin_theta : 1.0;
         const double sin_phi = sin_theta > 0.0 ? h[1] / sin_theta : 0.0;
         const double turned = cos_phi * wi[0] + sin_phi * wi[1];
@@ -44,10 +44,11 @@ private:
 
         const double theta_h = std::atan2(sin_theta, h[2]), theta_d = std::acos(std::clamp(z, -1.0, 1.0));
         double phi_d = std::atan2(y, x);
-        if (phi_d < 0.0) phi_d += pi;
-        const std::size_t row = step(std::sqrt(theta_h / (0.5 * pi)), MerlLayout::theta_h);
-        const std::size_t column = step(theta_d / (0.5 * pi), MerlLayout::theta_d);
-        return (row * MerlLayout::theta_d + column) * MerlLayout::phi_d + step(phi_d / pi, MerlLayout::phi_d);
+        if (phi_d < 0.0) phi_d += compress::pi;
+        const std::size_t row = step(std::sqrt(theta_h / (0.5 * compress::pi)), MerlLayout::theta_h);
+        const std::size_t column = step(theta_d / (0.5 * compress::pi), MerlLayout::theta_d);
+        return (row * MerlLayout::theta_d + column) * MerlLayout::phi_d +
+               step(phi_d / compress::pi, MerlLayout::phi_d);
     }
 
     std::vector<float> table_; ///< theta_h x theta_d x phi_d x 3, in sr^-1

@@ -2,6 +2,7 @@
 // 3).
 #pragma once
 
+#include "build/array.h"
 #include "input/probe.h"
 
 #include <cstdint>
@@ -33,13 +34,8 @@ struct BadValues {
     std::uint64_t count() const { return nan + infinite + negative; }
 };
 
-/// A table of numbers >= 0. Each is `values[i] * scale`. The scale is 1 unless a float64 lies outside what float32
-/// holds in full precision; it is then the power of two that brings the largest number to about 2^127, and numbers
-/// that are still too small become the smallest that float32 has, never 0.
-struct NpyArray {
-    std::vector<std::uint32_t> shape;
-    std::vector<float> values; ///< row-major, whatever the order in the file; finite, >= 0
-    double scale = 1.0;
+/// The numbers of a file, row-major whatever the order there.
+struct NpyArray : build::Array {
     BadValues bad; ///< set to 0
 };
 

@@ -1,9 +1,9 @@
 #include "input/probe.h"
 
-#include "input/bad_texels.h"
+#include "build/bad_texels.h"
+#include "build/resample.h"
 #include "input/detect.h"
 #include "input/image.h"
-#include "input/resample.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -27,7 +27,8 @@ public:
     }
     /// Texels of the source: counted there.
     void repair(int first, int count, float* rgb) {
-        repair_texels(rgb, probe_.source_width, first, count, options_.bad_pixels, options_.threads, probe_.bad);
+        build::repair_texels(rgb, probe_.source_width, first, count, options_.bad_pixels, options_.threads,
+                             probe_.bad);
     }
     void take(int first, int count, const float* rgb) {
         if (black_) {
@@ -61,13 +62,13 @@ void take_whole(const std::string& path, const ProbeOptions& options, Image& ima
     repair.repair(0, image.height, image.rgb.data());
     const Detected detected = detect_layout(path, image, options.projection);
     repair.begin(detected, image);
-    const Map map{detected.layout, image.width, image.height};
-    probe.width = latlong_width(map);
-    probe.height = detected.layout == Layout::latlong ? image.height : probe.width / 2;
+    const build::Map map{detected.layout, image.width, image.height};
+    probe.width = build::latlong_width(map);
+    probe.height = detected.layout == build::Layout::latlong ? image.height : probe.width / 2;
     const std::vector<float> rgb =
-        detected.layout == Layout::latlong
+        detected.layout == build::Layout::latlong
             ? std::move(image.rgb)
-            : resample_to_latlong(map, std::move(image.rgb), probe.width, options.threads);
+            : build::resample_to_latlong(map, std::move(image.rgb), probe.width, options.threads);
     rows.begin(probe.width, probe.height);
     repair.take(0, probe.height, rgb.data());
 }
@@ -87,6 +88,17 @@ public:
 private:
     std::size_t row_ = 0;
 };
+
+std::string text(const build::BadTexels& bad) {
+    return std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) + " infinite and " +
+           std::to_string(bad.negative) + " negative texels, the first at " + std::to_string(bad.x) + "," +
+           std::to_string(bad.y);
+}
+
+void refuse_bad_texels(const std::string& path, const build::BadTexels& bad) {
+    if (bad.count() > 0)
+        throw input_error(path, "it has " + text(bad) + "; mend it, or take --bad-pixels zero or clamp");
+}
 
 } // namespace
 
@@ -122,7 +134,7 @@ Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows
     Repair repair(options, probe, rows);
     try {
         Image image = read_image(path, options.threads, [&](const Image& header) -> TakeRows {
-            if (options.bad_pixels == BadPixels::clamp || !is_latlong(header, options.projection)) return {};
+            if (options.bad_pixels == build::BadPixels::clamp || !is_latlong(header, options.projection)) return {};
             repair.begin(detect_layout(path, header, options.projection), header);
             rows.begin(header.width, header.height);
             return [&](int first, int count, float* rgb) {
@@ -132,7 +144,7 @@ Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows
         });
         probe.warnings = std::move(image.warnings);
         if (!image.rgb.empty()) take_whole(path, options, image, probe, rows, repair);
-        if (options.bad_pixels == BadPixels::error) refuse_bad_texels(path, probe.bad);
+        if (options.bad_pixels == build::BadPixels::error) refuse_bad_texels(path, probe.bad);
         repair.light_if_black();
     } catch (const std::bad_alloc&) {
         throw input_error(path, "there is not enough memory for its pixels; resize it");

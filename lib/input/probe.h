@@ -1,6 +1,8 @@
 // Reads environment maps of any common projection into one form: lat-long radiance.
 #pragma once
 
+#include "build/bad_texels.h"
+
 #include <array>
 #include <cstdint>
 #include <stdexcept>
@@ -19,28 +21,12 @@ enum class Projection { automatic, latlong, angular, mirrorball, cube_cross, oct
 /// "latlong", "angular", "mirrorball", "cube-cross", "octahedral", "auto".
 const char* to_string(Projection projection);
 
-/// What becomes of values that are no radiance: NaN, infinite, negative. None of them ever reaches a CDF.
-enum class BadPixels {
-    zero,  ///< all are 0
-    clamp, ///< +infinity is the largest finite value of its channel; the others are 0
-    error, ///< an image that has any is refused
-};
-
 struct ProbeOptions {
     Projection projection = Projection::automatic;
-    BadPixels bad_pixels = BadPixels::zero;
+    build::BadPixels bad_pixels = build::BadPixels::zero;
     /// A probe without any light counts as one of the faintest constant light, so that it can be sampled.
     bool uniform_if_black = false;
     int threads = 0; ///< 0: all cores
-};
-
-/// Texels with channels that are no radiance, each counted once, as the first of nan, infinite, negative that it
-/// has. `x`, `y`: the first in the source, row by row from the top.
-struct BadTexels {
-    std::uint64_t nan = 0, infinite = 0, negative = 0;
-    int x = -1, y = -1;
-
-    std::uint64_t count() const { return nan + infinite + negative; }
 };
 
 /// A probe as lat-long RGB radiance in the frame of docs/conventions.md: row 0 touches +z, column 0 begins
@@ -53,7 +39,7 @@ struct Probe {
     int source_width = 0, source_height = 0;
     Projection projection = Projection::latlong; ///< what was used, never `automatic`
     std::string projection_reason;               ///< why, for a person: "2:1 shape", "envmap attribute"
-    BadTexels bad;
+    build::BadTexels bad;
     std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
 };
 

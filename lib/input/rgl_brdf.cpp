@@ -1,6 +1,6 @@
 #include "input/rgl_brdf.h"
 
-#include "input/trigonometry.h"
+#include "compress/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@ namespace acdf::input {
 namespace {
 
 template <class Real>
-constexpr Real half_turn = static_cast<Real>(pi);
+constexpr Real half_turn = static_cast<Real>(compress::pi);
 
 template <class Real>
 Real angle_from_z(const Real w[3]) {
-    return std::atan2(norm(w[0], w[1]), w[2]);
+    return std::atan2(compress::norm(w[0], w[1]), w[2]);
 }
 
 template <class Real>
@@ -55,7 +55,7 @@ RglHalf<Real> rgl_half(const RglTables& tables, const RglView<Real>& view, const
     const Real dot = view.wo[0] * m[0] + view.wo[1] * m[1] + view.wo[2] * m[2];
     // The bound is the authors'; it only matters within 1e-5 of the pole.
     half.jacobian =
-        std::max(2 * half_turn<Real> * half_turn<Real> * half.x * norm(m[0], m[1]), Real(1e-6)) * 4 * dot;
+        std::max(2 * half_turn<Real> * half_turn<Real> * half.x * compress::norm(m[0], m[1]), Real(1e-6)) * 4 * dot;
     return half;
 }
 
@@ -82,7 +82,7 @@ void RglBrdf::evaluate(const double wo[3], const double wi[3], double rgb[3]) co
     double scale = 1.0 / wi[2]; // the tables hold rho cos(theta_i)
     if (tables_.jacobian) {
         const RglMix<double> only = {{0}, {1.0}, 1};
-        const double view_y = (view.phi + pi) / (2.0 * pi);
+        const double view_y = (view.phi + compress::pi) / (2.0 * compress::pi);
         const auto towards = tables_.sigma.place(theta_coordinate(view.theta), view_y);
         scale *= tables_.ndf.bilinear(only, tables_.ndf.place(half.x, half.y)) /
                  (4.0 * tables_.sigma.bilinear(only, towards));

@@ -70,8 +70,8 @@ GgxFit best_ggx(const compress::Reflected& reflected, const std::vector<compress
                 std::uint32_t columns, std::uint32_t rows) {
     const auto cost = [&](double x) {
         const GgxSampler ggx(std::exp(x));
-        const ViewDensity density = [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); };
-        return summary(measure_views(density, reflected, views, columns, rows)).relative_variance;
+        const build::ViewDensity density = [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); };
+        return build::summary(build::measure_views(density, reflected, views, columns, rows)).relative_variance;
     };
     // A coarse scan first: the cost of a lobe over a pedestal can have two valleys.
     constexpr int scan = 12;

@@ -29,7 +29,7 @@ struct Hemisphere {
     }
 };
 
-Hemisphere hemisphere(const Target& target, const TexelCosines& cosines, const float n[3]) {
+Hemisphere hemisphere(const Target& target, const build::TexelCosines& cosines, const float n[3]) {
     Sum flux, irradiance, radiance_cosine2, radiance2_cosine;
     for (std::uint32_t r = 0; r < target.rows; ++r) {
         const float* row = target.row(r);

@@ -6,9 +6,9 @@
 // texels; relative variances take each texel's cosine at its centre (TexelCosines), and are 0 where E(n) is.
 #pragma once
 
+#include "build/texel_cosines.h"
 #include "compress/target.h"
 #include "measure/full_cdf.h"
-#include "measure/texel_cosines.h"
 
 #include <acdf/sample.h>
 
@@ -41,7 +41,7 @@ public:
 private:
     const compress::Target& target_;
     FullCdf cdf_;
-    TexelCosines cosines_;
+    build::TexelCosines cosines_;
     double flux_;
 };
 
@@ -103,7 +103,7 @@ public:
 
 private:
     const compress::Target& target_;
-    TexelCosines cosines_;
+    build::TexelCosines cosines_;
 };
 
 } // namespace acdf::measure

@@ -1,9 +1,9 @@
 // The strongest known rival of a local environment map: tiles of the probe, weighted anew at each shading point.
 #pragma once
 
+#include "build/texel_cosines.h"
 #include "compress/target.h"
 #include "measure/full_cdf.h"
-#include "measure/texel_cosines.h"
 
 #include <acdf/sample.h>
 
@@ -59,7 +59,7 @@ private:
     Borders columns_, rows_;
     std::vector<FullCdf> tables_;
     std::vector<double> flux_;
-    TexelCosines cosines_;
+    build::TexelCosines cosines_;
 };
 
 } // namespace acdf::measure

@@ -3,7 +3,8 @@
 // linker picks code that the processor does not have.
 //
 // Each function is that of the same name in acdf/brdf.h and acdf/blend.h, a lane an element, operation by
-// operation: results agree bit for bit (tests/wavefront.cpp). Lanes that need a branch are left to those functions.
+// operation: results agree bit for bit (tests/lib/reader/wavefront.cpp). Lanes that need a branch are left to those
+// functions.
 #pragma once
 
 #include "wavefront.h"

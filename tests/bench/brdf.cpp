@@ -2,7 +2,7 @@
 // database publish, the full table, a GGX lobe and the cosine. Each call has another view, another direction and
 // other random numbers. The time of the RGL sampler is taken in turns with that of what is timed, a millisecond or
 // two each: `of_rgl` is the ratio of the two.
-#include "brdf.h"
+#include "build/brdf.h"
 
 #include "input/rgl_brdf.h"
 #include "measure/brdf_samplers.h"
@@ -154,15 +154,15 @@ struct Case {
 
 const File& file_of(const Case& given) {
     static std::map<std::string, std::unique_ptr<File>> open;
-    static std::map<std::string, tools::BrdfFile> made;
+    static std::map<std::string, build::BrdfFile> made;
     const auto [found, missing] = open.try_emplace(given.label());
     if (missing) {
         const std::string path = path_of(given.source);
         const auto brdf = input::open_brdf(std::filesystem::exists(path) ? path : given.source);
-        tools::BrdfFileOptions options;
+        build::BrdfFileOptions options;
         options.fit.goal.kind = compress::Goal::Kind::budget;
         options.fit.goal.budget = given.bytes;
-        const auto& bytes = (made[given.label()] = tools::build_brdf(*brdf, options)).bytes;
+        const auto& bytes = (made[given.label()] = build::build_brdf(*brdf, options)).bytes;
         found->second = std::make_unique<File>();
         File::from_memory(bytes.data(), bytes.size(), *found->second);
     }
@@ -256,9 +256,9 @@ const measure::TabulatedBrdf& table(const Case& given) {
     if (!made) {
         const std::string path = path_of(given.source);
         brdf = input::open_brdf(std::filesystem::exists(path) ? path : given.source);
-        const tools::BrdfFileOptions options;
+        const build::BrdfFileOptions options;
         made = std::make_unique<measure::TabulatedBrdf>(
-            tools::reflected_light(*brdf, options.channels, options.weights), true, measure::BrdfTableKind::centre);
+            build::reflected_light(*brdf, options.channels, options.weights), true, measure::BrdfTableKind::centre);
     }
     return *made;
 }

@@ -1,7 +1,7 @@
 // Time of a sample of the irradiance integrand by the rivals of a local environment map. Every shading point has
 // another normal; tiling on the fly builds its weights there and shares them among the samples of the point.
-#include "local.h"
-#include "synthetic.h"
+#include "build/local.h"
+#include "tests/inputs/synthetic.h"
 
 #include "measure/local_rivals.h"
 #include "measure/tiling.h"
@@ -110,19 +110,19 @@ void resampling_32(benchmark::State& state) {
 }
 
 /// Ours, a file of 1 MB. Everything of a normal is looked up once a shading point.
-const tools::Local& local_map(std::uint32_t columns) {
-    static std::map<std::uint32_t, tools::Local> made;
+const build::Local& local_map(std::uint32_t columns) {
+    static std::map<std::uint32_t, build::Local> made;
     const auto [found, missing] = made.try_emplace(columns);
     if (missing) {
-        tools::LocalOptions options;
+        build::LocalOptions options;
         options.goal.budget = 1000000;
-        found->second = tools::build_local(sky(columns), {}, options);
+        found->second = build::build_local(sky(columns), {}, options);
     }
     return found->second;
 }
 
 File open_map(std::uint32_t columns) {
-    const tools::Local& map = local_map(columns);
+    const build::Local& map = local_map(columns);
     File file;
     File::from_memory(map.bytes.data(), map.bytes.size(), file);
     return file;

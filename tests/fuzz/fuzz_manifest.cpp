@@ -1,5 +1,5 @@
 // Any bytes: reading them as a manifest of `acdf batch` gives a job or one fault for each line, in order.
-#include "batch_manifest.h"
+#include "tools/batch/manifest.h"
 
 #include <cstdint>
 #include <cstdlib>

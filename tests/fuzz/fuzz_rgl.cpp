@@ -2,7 +2,7 @@
 // The mutator starts from whole files, isotropic and not, RGB and spectral.
 #include "input/image.h"
 #include "input/rgl_brdf.h"
-#include "input_brdf.h"
+#include "tests/lib/input/brdf.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Any bytes: reading them as a scene of `acdf render` gives one that is within its limits, or an error of one line.
-#include "scene_file.h"
+#include "tools/render/scene_file.h"
 
 #include <cmath>
 #include <cstdint>

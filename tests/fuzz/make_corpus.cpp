@@ -1,8 +1,8 @@
 // Writes the seeds of fuzz_reader, small valid files that use everything, to FOLDER/fuzz_reader: make_corpus FOLDER
 // (Those of the other fuzzers are in seeds/.)
-#include "brdf_builder.h"
-#include "local_random.h"
-#include "reader_planes.h"
+#include "tests/lib/reader/brdf_builder.h"
+#include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/planes.h"
 
 #include <cstdio>
 #include <filesystem>

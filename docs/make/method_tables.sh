@@ -1,0 +1,145 @@
+#!/usr/bin/env bash
+# method_tables.sh PROBES: the tables of docs/method.md, from the probes in a folder, as Markdown on stdout.
+# ACDF names the program (default: build/release/tools/acdf). The table of layouts comes from the program `layouts`
+# beside it in tests/bench (-DACDF_BUILD_BENCHMARKS=ON), and is left out where that is not built; LAYOUTS names it.
+# TABLES chooses some of: fits sizes options ratio layouts.
+set -euo pipefail
+probes=${1:?usage: docs/make/method_tables.sh PROBES}
+build=$(dirname "${BASH_SOURCE[0]}")/../../build/release
+acdf=${ACDF:-$build/tools/acdf}
+layouts=${LAYOUTS:-$build/tests/bench/layouts}
+tables=${TABLES:-fits sizes options ratio layouts}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# field KEY ARGUMENTS...: one number of the report of `acdf env ARGUMENTS`.
+field() {
+    local key=$1
+    shift
+    "$acdf" env "$@" -o "$work/x.acdf" --force --quiet --json | sed -n "s/^  \"$key\": \([0-9.e+-]*\),*$/\1/p"
+}
+row() { # LABEL ARGUMENTS...: relative variances for each set of options in `columns`
+    local label=$1 options
+    shift
+    printf '| %s' "$label"
+    for options in "${columns[@]}"; do
+        # shellcheck disable=SC2086 # options are several words
+        printf ' | %.3g' "$(field relative_variance "$@" $options)"
+    done
+    printf ' |\n'
+}
+
+six=(city.exr sunset.exr studio.exr courtyard.exr noon_grass_1k.hdr grace_probe.hdr)
+projection() { [ "$1" = grace_probe.hdr ] && echo "--projection angular" || true; }
+
+fits() {
+    echo "| probe | uniform | cdf | cdf, eq. 4 as printed | cdf, 16 gradient knots | pdf | variance, cascade | variance, tree |"
+    echo "|---|---|---|---|---|---|---|---|"
+    columns=("--fit uniform" "--fit cdf --order z" "--fit cdf --order z --conditional mean" "--fit cdf --order z --gradient 16"
+        "--fit pdf" "--shape cascade" "")
+    for probe in city sunset studio courtyard; do row "$probe" "$probes/$probe.exr"; done
+}
+
+sizes() {
+    echo "| probe | 4 KiB | 16 KiB | 64 KiB | 256 KiB | 64 KiB, weights below 3 | 64 KiB, zlib |"
+    echo "|---|---|---|---|---|---|---|"
+    columns=("--budget 4KiB" "--budget 16KiB" "--budget 64KiB" "--budget 256KiB" "--budget 64KiB --max-weight 3"
+        "--budget 64KiB --compress zlib")
+    # shellcheck disable=SC2046
+    for probe in "${six[@]}"; do row "${probe%.*}" "$probes/$probe" $(projection "$probe"); done
+}
+
+# One row for each option of `acdf env`: what it does to a file of one probe. Seconds are of the processor, over all
+# threads, the reading of the probe and the exact measurement included.
+options() {
+    local map=$probes/courtyard.exr arguments numbers TIMEFORMAT='%U %S'
+    echo "| \`acdf env courtyard.exr\` with | bytes | cells | relative variance | largest weight | seconds |"
+    echo "|---|---|---|---|---|---|"
+    while read -r arguments; do
+        # shellcheck disable=SC2086
+        { time "$acdf" env "$map" $arguments -o "$work/x.acdf" --force --quiet --json >"$work/report"; } 2>"$work/time"
+        numbers=$(for key in bytes cells relative_variance max_weight; do
+            sed -n "s/^  \"$key\": \([0-9.e+-]*\),*$/\1/p" "$work/report"
+        done)
+        # shellcheck disable=SC2086
+        printf '| %s | %d | %d | %.4g | %.3g | %.2f |\n' "${arguments:+\`$arguments\`}" $numbers \
+            "$(awk '{ print $1 + $2 }' "$work/time")"
+    done <<'LIST'
+
+--cells 1024
+--cells 16384
+--budget 16KiB
+--budget 64KiB
+--target-variance 0.05
+--target-variance 0.005
+--budget 64KiB --max-weight 3
+--order phi
+--order z
+--shape cascade
+--shape cascade --order z
+--channel rgb
+--channel max
+--channel red
+--channel green
+--channel blue
+--filter bilinear
+--compress zlib
+--threads 1
+--fit uniform
+--fit cdf
+--fit cdf --order phi
+--fit cdf --order z
+--fit cdf --knots 32x128
+--fit cdf --eps 0.01
+--fit cdf --eps 0.001
+--fit cdf --gradient 16
+--fit cdf --conditional mean
+--fit pdf
+--fit pdf --eps 0.01
+LIST
+}
+
+# Bytes that --fit cdf needs, its better order, for the variance of --budget SIZE, over that size. Between two
+# counts of knots the variance is taken as a power of the bytes.
+ratio() {
+    local probe size goal knots line
+    echo "| probe | cdf over 16 KiB | cdf over 64 KiB |"
+    echo "|---|---|---|"
+    for probe in "${six[@]}"; do
+        # shellcheck disable=SC2046
+        for knots in 16 23 32 45 64 90 128 181 256 362 512; do
+            echo "$(field bytes "$probes/$probe" $(projection "$probe") --fit cdf --knots "${knots}x$knots")" \
+                "$(field relative_variance "$probes/$probe" $(projection "$probe") --fit cdf --knots "${knots}x$knots")"
+        done >"$work/points"
+        line="| ${probe%.*}"
+        for size in 16 64; do
+            # shellcheck disable=SC2046
+            goal=$(field relative_variance "$probes/$probe" $(projection "$probe") --budget "${size}KiB")
+            line+=" | $(awk -v goal="$goal" -v size=$((size * 1024)) '
+                $2 <= goal && NR > 1 && !done { share = log(v / goal) / log(v / $2)
+                    printf "%.2f", b / size * exp(share * log($1 / b)); done = 1 }
+                { b = $1; v = $2 }
+                END { if (!done) printf "> %.2f", b / size }' "$work/points")"
+        done
+        echo "$line |"
+    done
+}
+
+# What chunk TREE would take in other layouts.
+layouts() {
+    local probe size
+    [ -x "$layouts" ] || return 0
+    for size in 16KiB 64KiB; do
+        for probe in "${six[@]}"; do
+            # shellcheck disable=SC2046
+            "$acdf" env "$probes/$probe" $(projection "$probe") --budget "$size" --quiet --json \
+                -o "$work/${probe%.*}_$size.acdf" >"$work/report"
+        done
+    done
+    "$layouts" "$work"/*_16KiB.acdf "$work"/*_64KiB.acdf
+}
+
+for table in $tables; do
+    "$table"
+    echo
+done

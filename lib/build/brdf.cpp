@@ -1,0 +1,132 @@
+#include "build/brdf.h"
+
+#include "build/option_text.h"
+
+#include <acdf/reader.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace acdf::build {
+namespace {
+
+compress::Metadata metadata(const Brdf& brdf, const BrdfFileOptions& options, const BrdfAccuracy& a) {
+    compress::Metadata out{
+        {"tool", "acdf " ACDF_VERSION}, {"fit.options", option_text(options)}, {"source.name", brdf.name}};
+    if (!brdf.sha256.empty()) out.push_back({"source.sha256", brdf.sha256});
+    out.push_back({"accuracy.relative_variance", accuracy_text(a.relative_variance)});
+    out.push_back({"accuracy.relative_variance_median", accuracy_text(a.median)});
+    out.push_back({"accuracy.relative_variance_worst", accuracy_text(a.worst)});
+    out.push_back({"accuracy.rms_pdf_error", accuracy_text(a.rms_pdf_error)});
+    out.push_back({"accuracy.kl_divergence", accuracy_text(a.kl_divergence)});
+    out.push_back({"accuracy.max_weight", accuracy_text(a.max_weight)});
+    out.push_back({"accuracy.share_above_horizon", accuracy_text(a.share_above_horizon)});
+    return out;
+}
+
+compress::Chunk views_chunk(const compress::BrdfFit& fit, float diffuse_share) {
+    const AcdfViews header = {static_cast<std::uint32_t>(fit.nodes.size()), fit.phi_views,
+                              fit.mirrored ? ACDF_VIEWS_MIRRORED : 0u, diffuse_share};
+    compress::Chunk chunk{ACDF_CHUNK_VIEWS, {}};
+    const std::size_t bytes = fit.nodes.size() * sizeof(float);
+    chunk.bytes.resize(sizeof header + bytes);
+    std::memcpy(chunk.bytes.data(), &header, sizeof header);
+    std::memcpy(chunk.bytes.data() + sizeof header, fit.nodes.data(), bytes);
+    return chunk;
+}
+
+BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Reflected& reflected,
+                           bool isotropic) {
+    File file;
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+    // A coarser sum than that of `acdf measure`: it takes no longer than the fit.
+    const auto views = measure_views(file, reflected, random_views(kMeasuredViews, isotropic), 251, 601);
+    BrdfAccuracy out = summary(views);
+    out.cells = brdf_cells(file);
+    return out;
+}
+
+} // namespace
+
+std::string option_text(const BrdfFileOptions& options) {
+    const compress::BrdfOptions& fit = options.fit;
+    std::string text = target_text({options.weights, options.channels, ACDF_FILTER_NEAREST}) +
+                       codec_text(options.codec) + fit_text(fit.fit);
+    if (fit.theta_views) {
+        text += "--views " + std::to_string(fit.theta_views);
+        text += (fit.phi_views > 1 ? "x" + std::to_string(fit.phi_views) : "") + " ";
+    }
+    if (options.diffuse_share > 0.0f) text += "--diffuse-floor " + option_number(options.diffuse_share) + " ";
+    if (fit.fit == ACDF_FIT_VARIANCE) return text + (fit.sharing ? "" : "--no-sharing ") + goal_text(fit.goal);
+    text += "--knots " + std::to_string(fit.phi_segments) + "x" + std::to_string(fit.theta_segments);
+    return fit.epsilon > 0.0 ? text + " --eps " + option_number(fit.epsilon) : text;
+}
+
+compress::Reflected reflected_light(const Brdf& brdf, AcdfChannels channels,
+                                    const compress::ChannelWeights& weights) {
+    return [&brdf, channels, weights](const double wo[3], const double wi[3]) {
+        double rgb[3];
+        brdf.evaluate(wo, wi, rgb);
+        const double cosine = std::max(0.0, wi[2]);
+        if (channels == ACDF_CHANNELS_SEPARATE)
+            return cosine * std::sqrt(rgb[0] * rgb[0] + rgb[1] * rgb[1] + rgb[2] * rgb[2]);
+        if (channels == ACDF_CHANNELS_LARGEST) return cosine * std::max({rgb[0], rgb[1], rgb[2]});
+        return cosine * std::max(0.0, weights.r * rgb[0] + weights.g * rgb[1] + weights.b * rgb[2]);
+    };
+}
+
+std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFileOptions& options,
+                                     const compress::Metadata& metadata) {
+    constexpr double pi = ACDF_PI;
+    compress::Description d;
+    d.kind = ACDF_KIND_BRDF;
+    d.parameterization = ACDF_PARAM_HALF_ANGLE;
+    d.fit = options.fit.fit;
+    d.channels = options.channels;
+    d.channel_weights[0] = options.weights.r;
+    d.channel_weights[1] = options.weights.g;
+    d.channel_weights[2] = options.weights.b;
+    d.total = fit.total > 0.0 ? fit.total : 1.0;
+    d.shares = fit.shares;
+    d.axes = {{"phi_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, compress::HalfGrid::column_resolution,
+               fit.mirrored ? 0.0 : -pi, pi},
+              {"cos_theta_h", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, compress::HalfGrid::row_resolution, 1.0, 0.0},
+              {"theta_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, static_cast<std::uint32_t>(fit.nodes.size()), 0.0,
+               0.5 * pi},
+              {"phi_o", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, fit.phi_views, -pi, pi}};
+    d.chunks.push_back(views_chunk(fit, options.diffuse_share));
+    if (fit.shared())
+        for (compress::Chunk& chunk : compress::shared_chunks(fit.rows)) d.chunks.push_back(std::move(chunk));
+    d.metadata = metadata;
+    return compress::store(fit.tree, d, options.codec);
+}
+
+BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& given, const Progress& progress) {
+    BrdfFileOptions options = given;
+    const bool isotropic = brdf.isotropic && options.fit.phi_views <= 1;
+    options.fit.symmetry = {isotropic, isotropic && brdf.mirror};
+    const compress::Reflected reflected = reflected_light(brdf, options.channels, options.weights);
+    const compress::Metadata unknown = metadata(brdf, options, {});
+    BrdfFileOptions plain = options; // rows that are not made yet cannot tell how well they compress
+    plain.codec = ACDF_CODEC_NONE;
+    options.fit.file_size = [&](const compress::BrdfFit& fit) {
+        return std::uint64_t{brdf_bytes(fit, plain, unknown).size()};
+    };
+    options.fit.progress = [&](double share) {
+        if (progress) progress(0.8 * share, "fitting");
+    };
+    const compress::BrdfFit fit = compress::fit_brdf(reflected, options.fit);
+    if (progress) progress(0.8, "measuring");
+    BrdfFile out;
+    out.accuracy = measure_bytes(brdf_bytes(fit, options, unknown), reflected, brdf.isotropic);
+    out.bytes = brdf_bytes(fit, options, metadata(brdf, options, out.accuracy));
+    out.theta_views = static_cast<std::uint32_t>(fit.nodes.size());
+    out.phi_views = fit.phi_views;
+    return out;
+}
+
+} // namespace acdf::build

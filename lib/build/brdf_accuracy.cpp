@@ -1,0 +1,171 @@
+#include "build/brdf_accuracy.h"
+
+#include "build/cells.h"
+#include "compress/sum.h"
+
+#include <acdf/sample.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace acdf::build {
+namespace {
+
+/// A fraction in [0, 1) that looks random (the finalizer of MurmurHash3).
+double hashed(std::uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x85EBCA6Bu;
+    x ^= x >> 13;
+    x *= 0xC2B2AE35u;
+    x ^= x >> 16;
+    return x * 0x1p-32;
+}
+
+/// Sums of one view.
+class ViewSums {
+public:
+    void add(double f, double p, double measure, double cosine) {
+        if (cosine <= 0.0) {
+            below_.add(p * measure);
+            return;
+        }
+        above_.add(p * measure);
+        albedo_.add(f * measure);
+        square_p_.add(p * p * measure);
+        cross_.add(p * f * measure);
+        square_f_.add(f * f * measure);
+        if (!(f > 0.0)) return;
+        if (!(p > 0.0)) {
+            ++violations_;
+            return;
+        }
+        second_.add(f * f / p * measure);
+        log_.add(f * std::log(f / p) * measure);
+        largest_ = std::max(largest_, f / p);
+    }
+    ViewAccuracy result() const {
+        ViewAccuracy out;
+        const double e = albedo_.value();
+        out.albedo = e;
+        out.share_above_horizon = above_.value();
+        out.below_horizon = below_.value();
+        if (!(e > 0.0)) return out;
+        out.relative_variance = violations_ > 0 ? std::numeric_limits<double>::infinity()
+                                                : std::max(0.0, second_.value() / (e * e) - 1.0);
+        out.square_error = square_p_.value() - 2.0 * cross_.value() / e + square_f_.value() / (e * e);
+        out.kl_divergence = log_.value() / e - std::log(e);
+        out.max_weight = largest_ / e;
+        out.support_violations = violations_;
+        return out;
+    }
+
+private:
+    compress::Sum albedo_, above_, below_, second_, square_p_, cross_, square_f_, log_;
+    double largest_ = 0.0;
+    std::uint64_t violations_ = 0;
+};
+
+/// Half-vectors around the view's azimuth; theta_h in steps of its square root.
+ViewAccuracy measure_view(const ViewDensity& density, const compress::Reflected& reflected,
+                          const compress::View& view, std::uint32_t columns, std::uint32_t rows) {
+    double wo[3];
+    view.direction(wo);
+    ViewSums sums;
+    const auto theta = [&](double r) { return 0.5 * ACDF_PI * (r / rows) * (r / rows); };
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        const double sine = std::sin(theta(r + 0.5)), hz = std::cos(theta(r + 0.5));
+        const double low = std::sin(0.5 * theta(r)), high = std::sin(0.5 * theta(r + 1.0));
+        const double measure = 2.0 * (high * high - low * low) * 2.0 * ACDF_PI / columns;
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            const double phi = view.phi + 2.0 * ACDF_PI * (c + 0.5) / columns;
+            const double h[3] = {sine * std::cos(phi), sine * std::sin(phi), hz};
+            const double dot = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
+            const double wi[3] = {2.0 * dot * h[0] - wo[0], 2.0 * dot * h[1] - wo[1], 2.0 * dot * h[2] - wo[2]};
+            const double p = density(wo, wi);
+            sums.add(wi[2] > 0.0 ? reflected(wo, wi) : 0.0, p, measure * 4.0 * std::abs(dot), wi[2]);
+        }
+    }
+    ViewAccuracy out = sums.result();
+    out.view = view;
+    return out;
+}
+
+} // namespace
+
+std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, double low, double high) {
+    std::vector<compress::View> out;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        compress::View view;
+        const double cosine = low + (high - low) * (i + hashed(2 * i + 1)) / count;
+        view.x = std::sqrt(1.0 - cosine);
+        view.phi = isotropic ? 0.0 : ACDF_PI * (2.0 * hashed(2 * i + 2) - 1.0);
+        out.push_back(view);
+    }
+    return out;
+}
+
+std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compress::Reflected& reflected,
+                                        const std::vector<compress::View>& views, std::uint32_t columns,
+                                        std::uint32_t rows) {
+    std::vector<ViewAccuracy> out(views.size());
+    tbb::parallel_for(std::size_t{0}, views.size(),
+                      [&](std::size_t v) { out[v] = measure_view(density, reflected, views[v], columns, rows); });
+    return out;
+}
+
+std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflected& reflected,
+                                        const std::vector<compress::View>& views, std::uint32_t columns,
+                                        std::uint32_t rows) {
+    const BrdfView brdf = file.brdf();
+    const ViewDensity density = [&](const double wo[3], const double wi[3]) {
+        const float o[3] = {float(wo[0]), float(wo[1]), float(wo[2])};
+        const float i[3] = {float(wi[0]), float(wi[1]), float(wi[2])};
+        return double{brdf.pdf(o, i)};
+    };
+    return measure_views(density, reflected, views, columns, rows);
+}
+
+BrdfAccuracy summary(const std::vector<ViewAccuracy>& views) {
+    BrdfAccuracy out;
+    compress::Sum variance, square_error, kl, above;
+    std::vector<double> sorted;
+    for (const ViewAccuracy& v : views) {
+        if (!(v.albedo > 0.0)) continue;
+        ++out.views;
+        variance.add(v.relative_variance);
+        square_error.add(v.square_error);
+        kl.add(v.kl_divergence);
+        above.add(v.share_above_horizon);
+        sorted.push_back(v.relative_variance);
+        if (sorted.size() == 1 || v.relative_variance > out.worst) {
+            out.worst = v.relative_variance;
+            out.worst_view = v.view;
+        }
+        out.max_weight = std::max(out.max_weight, v.max_weight);
+        out.support_violations += v.support_violations;
+    }
+    if (sorted.empty()) throw std::invalid_argument("it reflects nothing to any of the views");
+    const double count = out.views;
+    std::sort(sorted.begin(), sorted.end());
+    out.median = 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
+    out.relative_variance =
+        out.support_violations > 0 ? std::numeric_limits<double>::infinity() : variance.value() / count;
+    out.rms_pdf_error = std::sqrt(std::max(0.0, square_error.value()) / (2.0 * ACDF_PI * count));
+    out.kl_divergence = kl.value() / count;
+    out.share_above_horizon = above.value() / count;
+    return out;
+}
+
+std::uint64_t brdf_cells(const File& file) {
+    if (file.blend().tiles) return file.blend().tiles->tile_count;
+    std::uint64_t cells = 0;
+    for (std::uint32_t b = 0; b < file.description().bin_count; ++b)
+        for_each_cell(file, file.bin(b).root, [&](const Cell&) { ++cells; });
+    return cells;
+}
+
+} // namespace acdf::build

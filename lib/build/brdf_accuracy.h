@@ -1,0 +1,63 @@
+// How far the stored densities of a BRDF are from what it reflects, for views between those that are stored.
+#pragma once
+
+#include "compress/brdf_target.h"
+
+#include <acdf/reader.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace acdf::build {
+
+/// Of one view: p is the stored density, f = rho cos(theta_i), both over the directions wi.
+struct ViewAccuracy {
+    compress::View view;
+    double albedo = 0.0; ///< integral of f; 0: all of the rest is 0 but `share_above_horizon`
+    /// Variance of one sample of the estimator f/p, over (integral of f)^2. Infinite with a support violation.
+    double relative_variance = 0.0;
+    double square_error = 0.0;            ///< integral over the hemisphere of (p - f / albedo)^2, sr^-1
+    double kl_divergence = 0.0;           ///< integral of (f / albedo) ln(f / (albedo p)), nats
+    double max_weight = 0.0;              ///< largest f/p over its mean
+    double share_above_horizon = 0.0;     ///< of samples
+    double below_horizon = 0.0;           ///< of samples: 1 less the above, but for what the sum resolves
+    std::uint64_t support_violations = 0; ///< places with f > 0 and p = 0
+};
+
+/// Over views, each as important as any other.
+struct BrdfAccuracy {
+    double relative_variance = 0.0; ///< mean
+    double median = 0.0, worst = 0.0;
+    compress::View worst_view;
+    double rms_pdf_error = 0.0;                            ///< over views and the hemisphere, sr^-1
+    double kl_divergence = 0.0, share_above_horizon = 0.0; ///< means
+    double max_weight = 0.0;
+    std::uint64_t support_violations = 0, cells = 0;
+    std::uint32_t views = 0; ///< of those that reflect anything
+};
+
+/// What p is asked of: the density of wi for wo, in sr^-1. Called by several threads at once.
+using ViewDensity = std::function<double(const double wo[3], const double wi[3])>;
+
+/// `count` views with cos(theta_o) stratified and uniform in [low, high] and azimuths as random as a hash makes
+/// them: not those that are stored. The same for the same arguments.
+std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, double low = 0.1, double high = 1.0);
+
+/// Sums over a grid of half-vectors, rows x columns, finer than any fit sees and not aligned with it, and over the
+/// same grid the part of samples that falls below the horizon: no samples are drawn.
+std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compress::Reflected& reflected,
+                                        const std::vector<compress::View>& views, std::uint32_t columns = 401,
+                                        std::uint32_t rows = 701);
+
+/// The same of a BRDF file.
+std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflected& reflected,
+                                        const std::vector<compress::View>& views, std::uint32_t columns = 401,
+                                        std::uint32_t rows = 701);
+
+/// Throws std::invalid_argument where no view reflects anything.
+BrdfAccuracy summary(const std::vector<ViewAccuracy>& views);
+
+/// Cells of a BRDF file: of all its bins, shared ones counted once.
+std::uint64_t brdf_cells(const File& file);
+
+} // namespace acdf::build

@@ -1,0 +1,31 @@
+// The cells of a stored tree, one by one: what exact summation and pictures are made from.
+#pragma once
+
+#include <acdf/reader.h>
+
+#include <functional>
+
+namespace acdf::build {
+
+/// A cell of a tree of up to `Axes` axes: its range on each in grid positions, and its probability.
+template <std::size_t Axes>
+struct CellOf {
+    AcdfRange range[Axes];
+    double probability = 0.0; ///< exactly what acdf_tree_sample returns there
+};
+using Cell = CellOf<2>;
+using TableCell = CellOf<ACDF_MAX_AXES>;
+
+/// Calls `visit` for every cell under `root`, those of probability 0 included. The cells partition
+/// [0, columns) x [0, rows).
+void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit);
+
+/// The same for a tree within a box: range[2], without tilts.
+void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* range,
+                      const std::function<void(const Cell&)>& visit);
+
+/// The same for a tree of any number of axes; on indexed axes, and on those that the file lacks, the range is
+/// of no meaning.
+void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit);
+
+} // namespace acdf::build

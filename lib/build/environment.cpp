@@ -1,0 +1,109 @@
+#include "build/environment.h"
+
+#include "build/option_text.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+namespace acdf::build {
+namespace {
+
+using compress::Order;
+
+std::string knots_text(const compress::FitOptions& fit) {
+    std::string text = "--knots " + std::to_string(fit.column_segments) + "x" + std::to_string(fit.row_segments);
+    if (fit.epsilon > 0.0) text += " --eps " + option_number(fit.epsilon);
+    if (fit.gradient_knots > 0) text += " --gradient " + std::to_string(fit.gradient_knots);
+    if (fit.conditional == compress::Conditional::mean) text += " --conditional mean";
+    return text;
+}
+
+compress::Metadata metadata(const Source& source, const EnvironmentOptions& options, std::optional<Order> tried,
+                            const Accuracy& accuracy) {
+    compress::Metadata out{{"tool", "acdf " ACDF_VERSION},
+                           {"fit.options", option_text(source.reading, options)},
+                           {"source.name", source.name},
+                           {"source.sha256", source.sha256},
+                           {"source.projection", source.projection},
+                           {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)},
+                           {"accuracy.rms_pdf_error", accuracy_text(accuracy.rms_pdf_error)},
+                           {"accuracy.kl_divergence", accuracy_text(accuracy.kl_divergence)},
+                           {"accuracy.max_weight", accuracy_text(accuracy.max_weight)}};
+    if (tried) out.push_back({"fit.order", to_string(*tried)});
+    return out;
+}
+
+Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {
+    File file;
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+    return measure_environment(file, target);
+}
+
+/// Splits in the order `tried`, if it is one, in place of that of the options.
+Environment build_once(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
+                       std::optional<Order> tried, const Progress& progress) {
+    compress::Description description = compress::environment_description(target.columns, target.rows);
+    description.fit = options.fit.fit;
+    description.total = target.total;
+    description.filter = options.target.filter;
+    description.channels = options.target.channels;
+    const compress::ChannelWeights& weights = options.target.weights;
+    const double stored_weights[3] = {weights.r, weights.g, weights.b};
+    std::copy(std::begin(stored_weights), std::end(stored_weights), description.channel_weights);
+    description.metadata = metadata(source, options, tried, {});
+
+    compress::FitOptions fit = options.fit;
+    if (tried) fit.order = tried;
+    fit.file_size = [&](const compress::EncodedTree& tree) {
+        return std::uint64_t{compress::store(tree, description, options.codec).size()};
+    };
+    fit.progress = [&](double share) {
+        if (progress) progress(0.9 * share, "fitting");
+    };
+    const compress::EncodedTree tree = compress::fit(target, fit).tree;
+    Environment out;
+    out.order = fit.order;
+    out.accuracy = measure_bytes(compress::store(tree, description), target);
+    description.metadata = metadata(source, options, tried, out.accuracy);
+    out.bytes = compress::store(tree, description, options.codec);
+    if (progress) progress(1.0, "measuring");
+    return out;
+}
+
+/// Both orders; `progress` covers them in turn.
+Environment build_better(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
+                         const Progress& progress) {
+    const auto build = [&](Order order, double begin) {
+        return build_once(target, source, options, order, [&progress, begin](double share, const char* what) {
+            if (progress) progress(begin + 0.5 * share, what);
+        });
+    };
+    Environment z = build(Order::z, 0.0), phi = build(Order::phi, 0.5);
+    return phi.accuracy.relative_variance < z.accuracy.relative_variance ? phi : z;
+}
+
+} // namespace
+
+const char* to_string(Order order) { return order == Order::phi ? "phi" : "z"; }
+
+std::string option_text(const std::string& reading, const EnvironmentOptions& options) {
+    const compress::FitOptions& fit = options.fit;
+    std::string text = reading + target_text(options.target) + codec_text(options.codec) + fit_text(fit.fit);
+    if (fit.order) text += "--order " + std::string(to_string(*fit.order)) + " ";
+    if (fit.fit != ACDF_FIT_VARIANCE) return text + knots_text(fit);
+    if (fit.shape == compress::Shape::cascade) text += "--shape cascade ";
+    if (fit.max_weight > 0.0) text += "--max-weight " + option_number(fit.max_weight) + " ";
+    return text + goal_text(fit.goal);
+}
+
+Environment build_environment(const compress::Target& target, const Source& source,
+                              const EnvironmentOptions& options, const Progress& progress) {
+    if (!(compress::integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    const bool tree = options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == compress::Shape::tree;
+    return tree || options.fit.order ? build_once(target, source, options, {}, progress)
+                                     : build_better(target, source, options, progress);
+}
+
+} // namespace acdf::build

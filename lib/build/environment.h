@@ -1,0 +1,45 @@
+// From a probe to the bytes of an environment file: target, fit, cascade, file, and its exact accuracy.
+#pragma once
+
+#include "build/environment_accuracy.h"
+#include "build/progress.h"
+#include "compress/fit.h"
+#include "compress/store.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace acdf::build {
+
+/// What `acdf env` was asked for, beside the probe.
+struct EnvironmentOptions {
+    compress::TargetOptions target;
+    compress::FitOptions fit; ///< without an order, fits of two levels are made both ways, the better one kept
+    AcdfCodec codec = ACDF_CODEC_NONE;
+};
+
+struct Environment {
+    std::vector<std::uint8_t> bytes;      ///< the whole file
+    Accuracy accuracy;                    ///< of the stored density, after quantization
+    std::optional<compress::Order> order; ///< which axis was split first, where that was tried or asked for
+};
+
+/// Where a probe came from, for the metadata.
+struct Source {
+    std::string name, sha256, projection;
+    std::string reading = {}; ///< how it was read: see reading_text
+};
+
+/// All options that shape the file, in one spelling: what its `fit.options` tells.
+std::string option_text(const std::string& reading, const EnvironmentOptions& options);
+
+/// Throws std::invalid_argument where the target has no energy, std::runtime_error where the goal is out of reach.
+Environment build_environment(const compress::Target& target, const Source& source,
+                              const EnvironmentOptions& options, const Progress& progress = {});
+
+/// "phi" or "z".
+const char* to_string(compress::Order order);
+
+} // namespace acdf::build

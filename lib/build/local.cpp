@@ -1,0 +1,257 @@
+#include "build/local.h"
+
+#include "build/option_text.h"
+#include "compress/fit_local.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <stdexcept>
+
+namespace acdf::build {
+namespace {
+
+using compress::Goal;
+using compress::NormalBins;
+
+constexpr std::uint32_t kTestNormals = 256;
+
+compress::Description description_of(const compress::Target& target, const Source& source, const LocalOptions& o,
+                                     const NormalBins& bins, const LocalAccuracy& accuracy) {
+    compress::Description d = compress::environment_description(target.columns, target.rows);
+    d.kind = ACDF_KIND_LOCAL;
+    d.fit = o.sharing ? ACDF_FIT_VARIANCE : o.fit.fit;
+    d.filter = o.target.filter;
+    d.channels = o.target.channels;
+    const double weights[3] = {o.target.weights.r, o.target.weights.g, o.target.weights.b};
+    std::copy(std::begin(weights), std::end(weights), d.channel_weights);
+    d.total = target.total;
+    if (bins.subdivisions > 0) {
+        const auto count = static_cast<std::uint32_t>(bins.normals.size());
+        d.axes.push_back({"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, count, 0.0, double(count)});
+    } else {
+        d.axes.push_back({"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.rows, 0.0, ACDF_PI});
+        d.axes.push_back({"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.columns, ACDF_PI, -ACDF_PI});
+    }
+    d.metadata = {{"tool", "acdf " ACDF_VERSION},
+                  {"fit.options", option_text(source.reading, o)},
+                  {"source.name", source.name},
+                  {"source.sha256", source.sha256},
+                  {"source.projection", source.projection},
+                  {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)},
+                  {"accuracy.relative_variance_full_cdf", accuracy_text(accuracy.relative_variance_full_cdf)},
+                  {"accuracy.share_above_horizon", accuracy_text(accuracy.share_above_horizon)}};
+    return d;
+}
+
+/// Subdivisions that suit a size: the denser the bins, the fewer tiles there are bytes for (docs/local.md).
+std::uint32_t subdivisions_for(double bytes) {
+    return static_cast<std::uint32_t>(std::clamp(std::lround(8.0 * std::pow(bytes / 262144.0, 0.3)), 3l, 64l));
+}
+
+NormalBins bins_of(const LocalOptions& o, std::uint32_t subdivisions) {
+    NormalBins bins =
+        o.columns > 0 ? compress::latlong_bins(o.columns, o.rows) : compress::octahedral_bins(subdivisions);
+    if (!o.scene.empty()) compress::weigh(bins, o.scene);
+    return bins;
+}
+
+/// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.
+NormalBins bins_for(const LocalOptions& o, double bytes) {
+    const std::uint32_t all = subdivisions_for(bytes);
+    NormalBins bins = bins_of(o, o.subdivisions > 0 ? o.subdivisions : all);
+    if (o.subdivisions > 0 || o.columns > 0 || o.scene.empty()) return bins;
+    const std::size_t rows = 4 * std::size_t{all} * all + 2;
+    for (std::uint32_t finer = all + 1; finer <= 2 * all; ++finer) {
+        NormalBins next = bins_of(o, finer);
+        if (next.stored() > rows) break;
+        bins = std::move(next);
+    }
+    return bins;
+}
+
+Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, const LocalOptions& options) {
+    Local out;
+    out.bytes = std::move(bytes);
+    const std::vector<Normal> normals = test_normals(options.scene, kTestNormals);
+    File file;
+    if (const Status status = File::from_memory(out.bytes.data(), out.bytes.size(), file); !status.ok())
+        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+    out.accuracy = summary(measure_normals(file, target, normals));
+    out.normals = static_cast<std::uint32_t>(normals.size());
+    return out;
+}
+
+/// Everything of a file but its accuracy.
+struct Draft {
+    compress::EncodedTree tree;
+    compress::Description description;
+};
+
+/// Stores a draft with the accuracy that it has.
+Local finish(Draft draft, const compress::Target& target, const Source& source, const LocalOptions& options,
+             const NormalBins& bins) {
+    Local out = measured(compress::store(draft.tree, draft.description), target, options);
+    const compress::Description told = description_of(target, source, options, bins, out.accuracy);
+    draft.description.metadata = told.metadata; // of the same size as before
+    out.bytes = compress::store(draft.tree, draft.description, options.codec);
+    return out;
+}
+
+Draft shared_draft(const compress::Target& target, const Source& source, const LocalOptions& options,
+                   const NormalBins& bins, const compress::LocalSize& size, const Progress& progress) {
+    compress::LocalFit fit = compress::fit_local(target, bins, size, [&](double share) {
+        if (progress) progress(0.8 * share, "fitting");
+    });
+    Draft draft{std::move(fit.tree), description_of(target, source, options, bins, {})};
+    draft.description.shares = std::move(fit.shares);
+    draft.description.chunks = compress::shared_chunks(fit.shared);
+    draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
+    return draft;
+}
+
+/// Tiles and curves that fill a budget. Curves take three tenths: more of them, or fewer, and the variance rises.
+compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes) {
+    constexpr double fixed = 2600.0;
+    const double each = double(bins.stored()) + sizeof(AcdfSplit) + sizeof(std::uint32_t);
+    const double room = bytes - fixed - double(bins.normals.size() * sizeof(AcdfBin));
+    compress::LocalSize size;
+    const double tiles = o.tiles > 0 ? o.tiles : 0.7 * room / each;
+    size.tiles = static_cast<std::uint32_t>(std::clamp(tiles, 1.0, double(ACDF_MAX_TILES)));
+    size.tree_bytes = static_cast<std::uint64_t>(std::max(room - size.tiles * each, 256.0));
+    return size;
+}
+
+Local build_in_budget(const compress::Target& target, const Source& source, const LocalOptions& options,
+                      std::uint64_t budget, const Progress& progress) {
+    const NormalBins bins = bins_for(options, double(budget));
+    compress::LocalSize size = size_for(options, bins, double(budget));
+    for (int tries = 0;; ++tries) {
+        Draft draft = shared_draft(target, source, options, bins, size, progress);
+        const std::uint64_t bytes = compress::store(draft.tree, draft.description, options.codec).size();
+        // What lights and packing take is known now; once is enough but where tiles or curves run out.
+        const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
+        if (fits && (full || tries > 0)) return finish(std::move(draft), target, source, options, bins);
+        const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
+        const std::int64_t next = static_cast<std::int64_t>(size.tree_bytes) + miss - 192;
+        if (next < 64 || tries == 6) {
+            if (size.tiles <= 2)
+                throw std::runtime_error("a size of " + std::to_string(budget) +
+                                         " bytes is out of reach; the least that can be had is about " +
+                                         std::to_string(bytes));
+            size.tiles = size.tiles * 3 / 4;
+            size.tree_bytes = size_for(options, bins, double(budget)).tree_bytes;
+            tries = 0;
+            continue;
+        }
+        size.tree_bytes = static_cast<std::uint64_t>(next);
+    }
+}
+
+/// The smallest file whose measured variance is low enough.
+Local build_to_variance(const compress::Target& target, const Source& source, const LocalOptions& options,
+                        const Progress& progress) {
+    const auto at = [&](double bytes) {
+        return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), {});
+    };
+    constexpr double largest = 64.0 * 1048576.0;
+    double low = 16384.0, high = 65536.0;
+    Local best = at(high);
+    while (best.accuracy.relative_variance > options.goal.variance) {
+        if (high >= largest)
+            throw std::runtime_error("a relative variance of " + option_number(options.goal.variance) +
+                                     " is out of reach; 64 MiB have " +
+                                     option_number(best.accuracy.relative_variance));
+        low = high;
+        high = std::min(4.0 * high, largest);
+        best = at(high);
+    }
+    for (int step = 0; step < 7; ++step) {
+        if (progress) progress(0.3 + 0.1 * step, "searching");
+        const double middle = std::sqrt(low * high);
+        Local candidate = at(middle);
+        if (candidate.accuracy.relative_variance > options.goal.variance) {
+            low = middle;
+        } else {
+            high = middle;
+            best = std::move(candidate);
+        }
+    }
+    return best;
+}
+
+Local build_separate(const compress::Target& target, const Source& source, const LocalOptions& options,
+                     const Progress& progress) {
+    const NormalBins bins = bins_of(options, options.subdivisions > 0 ? options.subdivisions : 6);
+    Draft draft{{}, description_of(target, source, options, bins, {})};
+    draft.description.shares.assign(bins.normals.size(), 0.0f);
+    draft.description.chunks = {compress::local_chunk(static_cast<float>(options.cosine_share), {})};
+    compress::FitOptions fit = options.fit;
+    fit.goal = options.goal;
+    fit.file_size = [&](const compress::EncodedTree& tree) {
+        return std::uint64_t{compress::store(tree, draft.description, options.codec).size()};
+    };
+    fit.progress = [&](double share) {
+        if (progress) progress(0.9 * share, "fitting");
+    };
+    compress::SeparateFit fitted = compress::fit_local_separate(target, bins, options.bin_target, fit);
+    draft.tree = std::move(fitted.tree);
+    draft.description.shares = std::move(fitted.shares);
+    return finish(std::move(draft), target, source, options, bins);
+}
+
+} // namespace
+
+std::string option_text(const std::string& reading, const LocalOptions& o) {
+    std::string text = reading + target_text(o.target) + codec_text(o.codec);
+    if (o.subdivisions > 0) text += "--normals " + std::to_string(o.subdivisions) + " ";
+    if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
+    if (!o.scene.empty()) text += o.scene_text.empty() ? "--scene " : o.scene_text + " ";
+    if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
+    if (o.sharing) {
+        if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";
+        return text + goal_text(o.goal);
+    }
+    text += "--no-sharing " + fit_text(o.fit.fit);
+    if (o.bin_target == compress::BinTarget::centre) text += "--bin-target centre ";
+    if (o.fit.order) text += "--order " + std::string(to_string(*o.fit.order)) + " ";
+    if (o.fit.fit == ACDF_FIT_VARIANCE) return text + goal_text(o.goal);
+    text += "--knots " + std::to_string(o.fit.column_segments) + "x" + std::to_string(o.fit.row_segments);
+    return o.fit.epsilon > 0.0 ? text + " --eps " + option_number(o.fit.epsilon) : text;
+}
+
+std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count) {
+    if (scene.empty()) return random_normals(count);
+    double sum = 0.0;
+    std::vector<double> upto;
+    for (const compress::SceneNormal& n : scene) upto.push_back(sum += n.weight);
+    std::vector<Normal> out;
+    for (std::uint32_t i = 0; i < count; ++i) { // even steps: the scene's own frequencies
+        const double at = sum * (i + 0.5) / count;
+        const auto found = std::upper_bound(upto.begin(), upto.end() - 1, at);
+        out.push_back(scene[static_cast<std::size_t>(found - upto.begin())].normal);
+    }
+    return out;
+}
+
+Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
+                  const Progress& progress) {
+    if (!(compress::integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    if (!options.sharing) return build_separate(target, source, options, progress);
+    switch (options.goal.kind) {
+    case Goal::Kind::budget:
+        return build_in_budget(target, source, options, options.goal.budget, progress);
+    case Goal::Kind::variance:
+        return build_to_variance(target, source, options, progress);
+    default: {
+        const double bytes = 4.2 * options.goal.cells; // of the shared curves, three tenths of the file
+        const NormalBins bins = bins_for(options, bytes / 0.3);
+        compress::LocalSize size = size_for(options, bins, bytes / 0.3);
+        size.tree_bytes = static_cast<std::uint64_t>(bytes);
+        return finish(shared_draft(target, source, options, bins, size, progress), target, source, options, bins);
+    }
+    }
+}
+
+} // namespace acdf::build

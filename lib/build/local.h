@@ -1,0 +1,50 @@
+// From a probe to the bytes of a local environment file, and its exact accuracy.
+#pragma once
+
+#include "build/environment.h"
+#include "build/local_accuracy.h"
+#include "build/progress.h"
+#include "compress/fit_local_separate.h"
+#include "compress/normals.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace acdf::build {
+
+/// What `acdf local` was asked for, beside the probe.
+struct LocalOptions {
+    compress::TargetOptions target;
+    compress::Goal goal{compress::Goal::Kind::budget, 0, std::uint64_t{1} << 20,
+                        0.0};                 ///< cells: of the shared curves
+    std::uint32_t subdivisions = 0;           ///< octahedral bins; 0: as suits the size
+    std::uint32_t columns = 0, rows = 0;      ///< lat-long bins, if not 0
+    std::uint32_t tiles = 0;                  ///< 0: as suits the size
+    std::vector<compress::SceneNormal> scene; ///< empty: all normals
+    bool sharing = true;
+    compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
+    compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
+    double cosine_share = 0.0;
+    std::string scene_text; ///< what `scene` was read from and how, as options in one spelling
+    AcdfCodec codec = ACDF_CODEC_NONE;
+};
+
+/// All options that shape the file, in one spelling: what its `fit.options` tells.
+std::string option_text(const std::string& reading, const LocalOptions& options);
+
+struct Local {
+    std::vector<std::uint8_t> bytes;
+    LocalAccuracy accuracy; ///< over normals() of them
+    std::uint32_t normals = 0;
+};
+
+/// Throws std::invalid_argument where the target has no energy, std::runtime_error where the goal is out of reach.
+Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
+                  const Progress& progress = {});
+
+/// The normals over which accuracy is measured: random ones or, where a scene is given, of the scene.
+std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count);
+
+} // namespace acdf::build

@@ -1,0 +1,44 @@
+// From an array of numbers to the bytes of a table file: bins, fit, trees, file, and its exact accuracy.
+#pragma once
+
+#include "build/array.h"
+#include "build/progress.h"
+#include "build/table_accuracy.h"
+#include "compress/fit.h"
+#include "compress/grid.h"
+#include "compress/store.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace acdf::build {
+
+/// What `acdf table` was asked for, beside the array.
+struct TableOptions {
+    std::uint32_t indexed = 0;                     ///< leading axes that the caller of a sample chooses
+    std::vector<std::string> names;                ///< one an axis; empty: x0, x1, ...
+    std::vector<std::pair<double, double>> ranges; ///< one an axis: coordinates of its ends; empty: 0 to its length
+    std::uint32_t cells = 0;                       ///< a bin, on average; 0: 4096 in all, at least 64 each
+    compress::FitOptions fit;                      ///< goal (cells: see above), max_weight, progress
+    AcdfCodec codec = ACDF_CODEC_NONE;
+};
+
+struct Table {
+    std::vector<std::uint8_t> bytes; ///< the whole file
+    TableAccuracy accuracy;          ///< of the stored densities, after quantization
+    double total = 0.0;
+};
+
+/// One grid a bin: the values of the array under each combination of its first `indexed` axes, each sampled axis of
+/// length 1. `array` must outlive them.
+std::vector<compress::Grid> table_grids(const Array& array, std::uint32_t indexed);
+
+/// Throws std::invalid_argument where options and array do not fit each other (which says how), where the array has
+/// no energy or its integral is not a number that the format holds; std::runtime_error where the goal is out of
+/// reach.
+Table build_table(const Array& array, const std::string& source_name, const std::string& source_sha256,
+                  const TableOptions& options, const Progress& progress = {});
+
+} // namespace acdf::build

@@ -1,0 +1,44 @@
+# Installs the reader: headers, static library, CMake package and pkg-config file (component `reader`).
+# Everything is relocatable: the prefix may be moved or staged after installation.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(ACDF_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/acdf)
+
+install(TARGETS acdf_reader EXPORT acdfTargets COMPONENT reader
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES
+    ${PROJECT_SOURCE_DIR}/format/acdf/layout.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tree.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/wavefront.h
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
+
+install(EXPORT acdfTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT reader)
+configure_package_config_file(
+    ${PROJECT_SOURCE_DIR}/lib/acdfConfig.cmake.in ${PROJECT_BINARY_DIR}/acdfConfig.cmake
+    INSTALL_DESTINATION ${ACDF_CMAKE_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/acdfConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/acdfConfig.cmake ${PROJECT_BINARY_DIR}/acdfConfigVersion.cmake
+    DESTINATION ${ACDF_CMAKE_DIR} COMPONENT reader)
+
+# From the folder of acdf.pc up to the prefix.
+file(RELATIVE_PATH ACDF_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+string(REGEX REPLACE "/$" "" ACDF_PC_PREFIX "${ACDF_PC_PREFIX}")
+configure_file(${PROJECT_SOURCE_DIR}/lib/reader/acdf.pc.in ${PROJECT_BINARY_DIR}/acdf.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/acdf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT reader)
+
+if(TARGET acdf)
+    install(TARGETS acdf RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+endif()

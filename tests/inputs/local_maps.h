@@ -1,0 +1,286 @@
+// Local environment maps for tests: fitted, stored and loaded again; and what is exact about them.
+#pragma once
+
+#include "tests/inputs/synthetic.h"
+
+#include "compress/fit_local.h"
+#include "compress/fit_local_separate.h"
+#include "compress/sum.h"
+#include "input/probe.h"
+
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace acdf_test {
+
+using Normal = std::array<float, 3>;
+
+inline double dot(const float a[3], const float b[3]) {
+    return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
+}
+inline double length(const float a[3]) { return std::sqrt(dot(a, a)); }
+
+inline Normal random_direction(std::mt19937_64& random) {
+    Normal n;
+    const double z = 2.0 * uniform(random) - 1.0;
+    direction_of(kPi * (2.0 * uniform(random) - 1.0), z, n.data());
+    return n;
+}
+
+// ---- files ----------------------------------------------------------------------------------------------
+
+struct LocalFileOptions {
+    acdf::compress::LocalSize size;
+    bool sharing = true;
+    double cosine_share = 0.0;
+    AcdfCodec codec = ACDF_CODEC_NONE;
+};
+
+inline acdf::compress::Description local_description(const acdf::compress::Target& target,
+                                                     const acdf::compress::NormalBins& bins) {
+    acdf::compress::Description d = acdf::compress::environment_description(target.columns, target.rows);
+    d.kind = ACDF_KIND_LOCAL;
+    d.total = target.total;
+    if (bins.subdivisions > 0) {
+        const auto count = static_cast<std::uint32_t>(bins.normals.size());
+        d.axes.push_back({"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, count, 0.0, double(count)});
+    } else {
+        d.axes.push_back({"normal theta", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.rows, 0.0, kPi});
+        d.axes.push_back({"normal phi", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, bins.columns, kPi, -kPi});
+    }
+    return d;
+}
+
+inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& target,
+                                             const acdf::compress::NormalBins& bins,
+                                             const LocalFileOptions& options) {
+    using namespace acdf::compress;
+    Description description = local_description(target, bins);
+    const auto cosine = static_cast<float>(options.cosine_share);
+    if (options.sharing) {
+        LocalFit fit = fit_local(target, bins, options.size);
+        description.shares = std::move(fit.shares);
+        description.chunks = shared_chunks(fit.shared);
+        description.chunks.push_back(local_chunk(cosine, fit.lights));
+        return store(fit.tree, description, options.codec);
+    }
+    FitOptions each;
+    each.goal.kind = Goal::Kind::cells;
+    each.goal.cells = 128;
+    SeparateFit fit = fit_local_separate(target, bins, BinTarget::mean, each);
+    description.shares = std::move(fit.shares);
+    description.chunks = {local_chunk(cosine, {})};
+    return store(fit.tree, description, options.codec);
+}
+
+/// A file in memory, and what it was made from.
+struct LocalMap {
+    acdf::compress::Target target;
+    acdf::compress::NormalBins bins;
+    std::vector<std::uint8_t> bytes;
+    acdf::File file;
+
+    LocalMap(acdf::compress::Target t, acdf::compress::NormalBins b, const LocalFileOptions& options)
+        : target(std::move(t)), bins(std::move(b)), bytes(local_bytes(target, bins, options)) {
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        if (!status.ok()) throw std::runtime_error(status.message);
+    }
+    acdf::LocalEnvironmentView view() const { return file.local(); }
+    /// The same without its cosine share: what follows the light.
+    acdf::LocalEnvironmentView light_view() const {
+        AcdfLocal data = view().data();
+        data.cosine_share = 0.0;
+        return acdf::LocalEnvironmentView(data);
+    }
+    float radiance(std::uint32_t column, std::uint32_t row) const { return target.row(row)[column]; }
+    float radiance(const float direction[3]) const {
+        std::uint32_t square[2] = {0, 0};
+        double column = 0.0;
+        if (!acdf_sphere_square(target.columns, target.rows, direction, square, &column)) return 0.0f;
+        return radiance(square[0], square[1]);
+    }
+};
+
+// ---- exact sums -----------------------------------------------------------------------------------------
+
+inline double square_area(const AcdfEnvironment& env, std::uint32_t row) {
+    return 2.0 * kPi / env.columns * (acdf_row_z(row, env.rows) - acdf_row_z(row + 1, env.rows));
+}
+
+/// Probability of each grid square, row-major, in the part that follows the light. Needs curves without tilt.
+inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView& view, const float normal[3]) {
+    const AcdfLocal& local = view.data();
+    const AcdfEnvironment& env = local.environment;
+    AcdfLocalPoint source;
+    acdf_local_at(&local, normal, &source);
+    std::vector<double> out(std::size_t{env.columns} * env.rows, 0.0);
+    if (source.what == ACDF_LOCAL_NOTHING) return out;
+    for (std::uint32_t r = 0; r < env.rows; ++r)
+        for (std::uint32_t c = 0; c < env.columns; ++c) {
+            const std::uint32_t square[2] = {c, r};
+            AcdfRange range[2];
+            acdf_sphere_ranges(env.columns, env.rows, range);
+            const double p = source.what == ACDF_LOCAL_BLEND
+                                 ? acdf_local_blend_find(&local, &source, square, range)
+                                 : acdf_tree_find(env.tree, source.root, square, range, nullptr);
+            const double height = acdf_row_z(range[1].low, env.rows) - acdf_row_z(range[1].high, env.rows);
+            out[std::size_t{r} * env.columns + c] = p * (acdf_row_z(r, env.rows) - acdf_row_z(r + 1, env.rows)) /
+                                                    height / (range[0].high - range[0].low);
+        }
+    return out;
+}
+
+/// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where
+/// no part is below the horizon, else of quarters, down to a thousandth of a radian.
+inline double clamped_cosine(const double n[3], double phi0, double phi1, double theta0, double theta1) {
+    const auto cosine = [&](double phi, double theta) {
+        return std::sin(theta) * (n[0] * std::cos(phi) + n[1] * std::sin(phi)) + n[2] * std::cos(theta);
+    };
+    const double phi = 0.5 * (phi0 + phi1), theta = 0.5 * (theta0 + theta1);
+    const double reach = 0.5 * (std::fabs(phi0 - phi1) + std::fabs(theta1 - theta0)), middle = cosine(phi, theta);
+    if (middle <= -reach) return 0.0;
+    if (middle >= reach || reach < 1e-3) {
+        if (middle <= 0.0) return 0.0;
+        const auto sine_square = [](double t) { return 0.5 * (t - std::sin(t) * std::cos(t)); };
+        return (n[0] * (std::sin(phi0) - std::sin(phi1)) - n[1] * (std::cos(phi0) - std::cos(phi1))) *
+                   (sine_square(theta1) - sine_square(theta0)) +
+               n[2] * (phi0 - phi1) * 0.5 *
+                   (std::sin(theta1) * std::sin(theta1) - std::sin(theta0) * std::sin(theta0));
+    }
+    return clamped_cosine(n, phi0, phi, theta0, theta) + clamped_cosine(n, phi, phi1, theta0, theta) +
+           clamped_cosine(n, phi0, phi, theta, theta1) + clamped_cosine(n, phi, phi1, theta, theta1);
+}
+
+/// Of a texel.
+inline double clamped_cosine(const acdf::compress::Target& target, const float normal[3], std::uint32_t column,
+                             std::uint32_t row) {
+    const double size = length(normal);
+    const double n[3] = {normal[0] / size, normal[1] / size, normal[2] / size};
+    return clamped_cosine(n, kPi - 2.0 * kPi * column / target.columns,
+                          kPi - 2.0 * kPi * (column + 1) / target.columns, kPi * row / target.rows,
+                          kPi * (row + 1) / target.rows);
+}
+
+inline double exact_irradiance(const acdf::compress::Target& target, const float normal[3]) {
+    acdf::compress::Sum sum;
+    for (std::uint32_t r = 0; r < target.rows; ++r)
+        for (std::uint32_t c = 0; c < target.columns; ++c)
+            if (const float g = target.row(r)[c]; g > 0.0f)
+                sum.add(static_cast<double>(g) * clamped_cosine(target, normal, c, r));
+    return sum.value();
+}
+
+/// E[(f/p)^2] of one sample for f = L max(0, n . omega), about: of 2 x 2 directions a texel.
+inline double second_moment(const LocalMap& map, const float normal[3]) {
+    const auto view = map.view();
+    const double columns = map.target.columns, rows = map.target.rows, size = length(normal);
+    acdf::compress::Sum sum;
+    for (std::uint32_t r = 0; r < map.target.rows; ++r)
+        for (std::uint32_t c = 0; c < map.target.columns; ++c)
+            for (int k = 0; k < 4 && map.radiance(c, r) > 0.0f; ++k) {
+                const double phi = kPi - 2.0 * kPi * (c + 0.25 + 0.5 * (k % 2)) / columns;
+                float d[3];
+                direction_of(phi, std::cos(kPi * (r + 0.25 + 0.5 * (k / 2)) / rows), d);
+                const double cosine = dot(normal, d) / size, f = static_cast<double>(map.radiance(c, r)) * cosine;
+                if (!(cosine > 0.0)) continue;
+                sum.add(0.25 * square_area(view.data().environment, r) * f * f /
+                        static_cast<double>(view.pdf(normal, d)));
+            }
+    return sum.value();
+}
+
+// ---- normals --------------------------------------------------------------------------------------------
+
+/// Random ones, and those where something changes: axes, corners, middles of edges and of faces of the bins' own
+/// octahedron, seams and poles of their lat-long grid, and next to all of these.
+inline std::vector<Normal> hard_normals(const acdf::compress::NormalBins& bins, std::uint64_t seed,
+                                        std::size_t random_ones) {
+    std::mt19937_64 random(seed);
+    std::vector<Normal> out;
+    for (float s : {1.0f, -1.0f}) {
+        out.push_back({s, 0, 0});
+        out.push_back({0, s, 0});
+        out.push_back({0, 0, s});
+        out.push_back({s, s, s});
+        out.push_back({s, -s, 0});
+        out.push_back({-1, s * 0.0f, 0}); // phi = +pi and -pi
+        out.push_back({-1, s * 1e-7f, 0.3f});
+        out.push_back({s * 1e-20f, 0, 1});
+    }
+    const auto n = static_cast<int>(bins.subdivisions);
+    for (int i = 0; i < 12 && n > 0; ++i) {
+        const auto step = [&](int most) { return static_cast<int>(random() % (std::uint64_t(most) + 1)); };
+        const int x = step(n), y = step(n - x), z = n - x - y;
+        const float sx = random() % 2 ? 1.0f : -1.0f, sy = random() % 2 ? 1.0f : -1.0f;
+        out.push_back({sx * static_cast<float>(x), sy * static_cast<float>(y), static_cast<float>(z)}); // corner
+        if (x == 0) continue;
+        out.push_back({sx * (static_cast<float>(x) - 0.5f), sy * (static_cast<float>(y) + 0.5f),
+                       static_cast<float>(z)}); // the middle of an edge
+        out.push_back({sx * (static_cast<float>(x) - 2.0f / 3), sy * (static_cast<float>(y) + 1.0f / 3),
+                       static_cast<float>(z) + 1.0f / 3}); // of a face
+    }
+    for (std::uint32_t i = 0; i < 12 && n == 0; ++i) {
+        Normal at;
+        const double phi = kPi - 2.0 * kPi * double(i % bins.columns) / bins.columns;
+        direction_of(phi, std::cos(kPi * double(i % (bins.rows + 1)) / bins.rows), at.data());
+        out.push_back(at);
+    }
+    const std::size_t count = out.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        Normal near = out[i];
+        for (float& v : near) v += static_cast<float>(1e-6 * (uniform(random) - 0.5));
+        out.push_back(near);
+    }
+    for (std::size_t i = 0; i < random_ones; ++i) out.push_back(random_direction(random));
+    return out;
+}
+
+// ---- maps -----------------------------------------------------------------------------------------------
+
+/// Lights of a few texels, of very different strength, over a dim sky.
+inline acdf::compress::Target suns_target(std::uint32_t columns, std::uint32_t rows) {
+    return texel_target(columns, rows, [=](std::uint32_t c, std::uint32_t r) {
+        const double sky = smooth_sky(centre_phi(c, columns), centre_z(r, rows));
+        const auto near = [&](double column, double row) {
+            return std::fabs(c + 0.5 - column * columns) < 2.0 && std::fabs(r + 0.5 - row * rows) < 1.5;
+        };
+        return near(0.3, 0.3) ? 2e5 * sky : near(0.8, 0.51) ? 3e3 * sky : near(0.55, 0.04) ? 1e4 * sky : sky;
+    });
+}
+
+/// A real probe, its texels averaged `by` x `by`; nothing where it is absent.
+inline std::optional<acdf::compress::Target> probe_target(const std::string& name, int by) {
+    const std::string path = ACDF_TEST_DATA "/probes/" + name;
+    if (!std::filesystem::exists(path)) return std::nullopt;
+    acdf::input::ProbeOptions options;
+    if (name == "grace_probe.hdr") options.projection = acdf::input::Projection::angular;
+    const acdf::input::Probe probe = acdf::input::read_probe(path, options);
+    const int columns = probe.width / by, rows = probe.height / by;
+    std::vector<float> rgb(std::size_t(3) * std::size_t(columns) * std::size_t(rows));
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c)
+            for (int k = 0; k < 3; ++k) {
+                double sum = 0.0;
+                for (int y = r * by; y < (r + 1) * by; ++y)
+                    for (int x = c * by; x < (c + 1) * by; ++x)
+                        sum += static_cast<double>(
+                            std::max(0.0f, probe.rgb[std::size_t(3 * (y * probe.width + x) + k)]));
+                rgb[std::size_t(3 * (r * columns + c) + k)] = static_cast<float>(sum / (by * by));
+            }
+    return acdf::compress::environment_target(rgb.data(), std::uint32_t(columns), std::uint32_t(rows), {});
+}
+
+} // namespace acdf_test

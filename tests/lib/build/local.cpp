@@ -1,0 +1,223 @@
+// Local environments from probe to file: sizes, bins with trees of their own, scenes, and what is measured.
+#include "build/local.h"
+#include "tests/inputs/synthetic.h"
+
+#include "compress/fit_local_separate.h"
+#include "compress/light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace acdf {
+namespace {
+
+using compress::BinTarget;
+using compress::Goal;
+using compress::NormalBins;
+using compress::Target;
+
+const Target& probe() {
+    static const Target made = acdf_test::texel_target(128, 64, [](std::uint32_t c, std::uint32_t r) {
+        const double phi = acdf_test::centre_phi(c, 128), z = acdf_test::centre_z(r, 64);
+        const bool sun = std::hypot(phi - 0.6, z - 0.3) < 0.05, dark = z < -0.8;
+        return sun    ? 500.0
+               : dark ? 0.0
+                      : acdf_test::smooth_sky(phi, z) * (1.0 + 0.5 * ((c * 7 + r * 13) % 11) / 11.0);
+    });
+    return made;
+}
+
+build::Local build(const build::LocalOptions& options) {
+    return build::build_local(probe(), {"probe.exr", "", "latlong"}, options);
+}
+
+File load(const build::Local& local) {
+    File file;
+    const Status status = File::from_memory(local.bytes.data(), local.bytes.size(), file);
+    EXPECT_TRUE(status.ok()) << status.message;
+    return file;
+}
+
+build::LocalOptions separate(AcdfFit fit) {
+    build::LocalOptions options;
+    options.sharing = false;
+    options.columns = 12;
+    options.rows = 6;
+    options.fit.fit = fit;
+    options.fit.order = compress::Order::z;
+    options.fit.column_segments = options.fit.row_segments = 24;
+    options.goal = {Goal::Kind::cells, 300, 0, 0.0};
+    return options;
+}
+
+TEST(LocalFiles, BudgetsAreFilledAndKept) {
+    double before = INFINITY, full_cdf = 0.0;
+    for (std::uint64_t budget : {12288u, 32768u, 131072u}) {
+        build::LocalOptions options;
+        options.goal.budget = budget;
+        const build::Local local = build(options);
+        EXPECT_LE(local.bytes.size(), budget);
+        EXPECT_GE(double(local.bytes.size()), 0.95 * double(budget));
+        EXPECT_EQ(local.accuracy.support_violations, 0u);
+        EXPECT_LT(local.accuracy.relative_variance, before);
+        before = local.accuracy.relative_variance;
+        full_cdf = local.accuracy.relative_variance_full_cdf;
+    }
+    EXPECT_LT(before, full_cdf / 50.0);
+}
+
+TEST(LocalFiles, BudgetsTooSmallAreRefused) {
+    build::LocalOptions options;
+    options.goal.budget = 2048;
+    EXPECT_THROW(build(options), std::runtime_error);
+}
+
+TEST(LocalFiles, TargetVarianceIsReachedByNoMoreThanItTakes) {
+    build::LocalOptions options;
+    options.goal = {Goal::Kind::variance, 0, 0, 0.03};
+    const build::Local local = build(options);
+    EXPECT_LE(local.accuracy.relative_variance, 0.03);
+    build::LocalOptions smaller;
+    smaller.goal.budget = local.bytes.size() * 8 / 10;
+    EXPECT_GT(build(smaller).accuracy.relative_variance, 0.03);
+}
+
+TEST(LocalFiles, MeasuresWhatSamplesHave) {
+    build::LocalOptions options;
+    options.goal.budget = 24576;
+    options.cosine_share = 0.25;
+    const build::Local local = build(options);
+    const File file = load(local);
+    const LocalEnvironmentView view = file.local();
+    const Target& target = probe();
+    const std::vector<build::Normal> normals = build::random_normals(6);
+    const std::vector<build::NormalAccuracy> measured = build::measure_normals(file, target, normals);
+    for (std::size_t i = 0; i < normals.size(); ++i) { // the slow way, one density at a time
+        double irradiance = 0.0, second = 0.0, above = 0.0;
+        const double n[3] = {normals[i][0], normals[i][1], normals[i][2]};
+        for (std::uint32_t r = 0; r < target.rows; ++r)
+            for (std::uint32_t c = 0; c < target.columns; ++c) {
+                float direction[3];
+                acdf_test::direction_of(acdf_test::centre_phi(c, target.columns),
+                                        acdf_test::centre_z(r, target.rows), direction);
+                const double omega = target.row_measure[r] * target.column_measure[c];
+                const double cosine = n[0] * direction[0] + n[1] * direction[1] + n[2] * direction[2];
+                const double p = view.pdf(normals[i].data(), direction),
+                             f = target.row(r)[c] * std::max(0.0, cosine);
+                irradiance += f * omega;
+                if (cosine > 0.0) above += p * omega;
+                if (f > 0.0) second += f * f / p * omega;
+            }
+        EXPECT_NEAR(measured[i].irradiance, irradiance, 1e-5 * irradiance);
+        EXPECT_NEAR(measured[i].relative_variance, second / irradiance / irradiance - 1.0, 1e-4);
+        EXPECT_NEAR(measured[i].share_above_horizon, above, 1e-4);
+        EXPECT_EQ(measured[i].support_violations, 0u);
+    }
+}
+
+TEST(LocalFiles, TreesOfTheirOwnCoverAllNormalsOfABin) {
+    for (AcdfFit fit : {ACDF_FIT_UNIFORM, ACDF_FIT_CDF, ACDF_FIT_VARIANCE}) {
+        const build::Local local = build(separate(fit));
+        EXPECT_EQ(local.accuracy.support_violations, 0u) << fit;
+        EXPECT_TRUE(std::isfinite(local.accuracy.relative_variance)) << fit;
+        EXPECT_EQ(load(local).description().bin_count, 72u);
+        if (fit == ACDF_FIT_UNIFORM) continue; // misses the sun
+        EXPECT_LT(local.accuracy.relative_variance, 0.5 * local.accuracy.relative_variance_full_cdf) << fit;
+    }
+}
+
+TEST(LocalFiles, TreesOfTheMiddleNormalAreBiased) {
+    build::LocalOptions options = separate(ACDF_FIT_CDF);
+    options.bin_target = BinTarget::centre;
+    EXPECT_GT(build(options).accuracy.support_violations, 0u);
+}
+
+TEST(LocalFiles, OctahedralBinsCanHaveTreesOfTheirOwn) {
+    build::LocalOptions options;
+    options.sharing = false;
+    options.subdivisions = 3;
+    options.goal.budget = 100000;
+    const build::Local local = build(options);
+    EXPECT_LE(local.bytes.size(), 100000u);
+    EXPECT_EQ(local.accuracy.support_violations, 0u);
+    EXPECT_LT(local.accuracy.relative_variance, 0.5 * local.accuracy.relative_variance_full_cdf);
+}
+
+/// The mean over the normals of a bin, by many more of them than the fit takes.
+double dense_mean(const NormalBins& bins, std::size_t bin, const std::vector<compress::LightPoint>& light,
+                  const compress::Direction& omega) {
+    constexpr int side = 32;
+    double sum = 0.0;
+    for (int i = 0; i < side; ++i)
+        for (int k = 0; k < side; ++k) {
+            const double theta = acdf_test::kPi * (double(bin / bins.columns) + (i + 0.5) / side) / bins.rows;
+            const double phi =
+                acdf_test::kPi * (1.0 - 2.0 * (double(bin % bins.columns) + (k + 0.5) / side) / bins.columns);
+            const compress::Direction n = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                           std::cos(theta)};
+            double irradiance = 0.0;
+            for (const compress::LightPoint& p : light)
+                irradiance += p.amount * std::max(0.0, compress::dot(p.direction, n));
+            const double f = std::max(0.0, compress::dot(omega, n)) / irradiance;
+            sum += f * f / (side * side);
+        }
+    return sum;
+}
+
+TEST(LocalFiles, MeanOverABinIsGoodToAFewPerCent) {
+    const NormalBins bins = compress::latlong_bins(12, 6);
+    const std::vector<compress::LightPoint> light = compress::light_points(probe());
+    for (std::size_t bin : {14u, 30u, 66u}) {
+        const Target target = compress::bin_target(probe(), bins, bin, BinTarget::mean);
+        for (std::uint32_t r = 1; r < 64; r += 9)
+            for (std::uint32_t c = 3; c < 128; c += 23) {
+                if (probe().row(r)[c] == 0.0f) continue;
+                const double phi = acdf_test::centre_phi(c, 128), theta = acdf_test::kPi * (r + 0.5) / 64;
+                const compress::Direction omega = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                                   std::cos(theta)};
+                const double dense = dense_mean(bins, bin, light, omega);
+                const double fitted = std::pow(target.row(r)[c] / double(probe().row(r)[c]), 2.0);
+                EXPECT_TRUE(fitted > 0.0 || dense == 0.0);
+                if (dense > 0.01) {
+                    EXPECT_NEAR(fitted / dense, 1.0, 0.05) << bin << ", " << r << ", " << c;
+                }
+            }
+    }
+}
+
+TEST(LocalFiles, OnlyTheBinsOfASceneAreStored) {
+    build::LocalOptions options;
+    options.goal.budget = 32768;
+    options.scene = {{{0.0f, 0.0f, 1.0f}, 1.0}, {{0.1f, 0.0f, 1.0f}, 3.0}};
+    const build::Local local = build(options);
+    const File file = load(local);
+    std::size_t stored = 0;
+    for (std::uint32_t b = 0; b < file.description().bin_count; ++b) stored += file.bin(b).root != ACDF_NO_ROOT;
+    EXPECT_GE(stored, 1u);
+    EXPECT_LE(stored, 6u);
+    const float up[3] = {0.0f, 0.0f, 1.0f}, down[3] = {0.3f, 0.2f, -1.0f};
+    EXPECT_TRUE(file.local().stored(up));
+    EXPECT_FALSE(file.local().stored(down));
+    const std::vector<build::NormalAccuracy> outside = build::measure_normals(file, probe(), {{0.3f, 0.2f, -1.0f}});
+    EXPECT_EQ(outside[0].support_violations, 0u); // served by the whole environment
+    build::LocalOptions all;
+    all.goal = options.goal;
+    const build::Local whole = build(all);
+    const File general = load(whole);
+    const std::vector<build::Normal> normals = build::test_normals(options.scene, 256);
+    EXPECT_LT(local.accuracy.relative_variance,
+              build::summary(build::measure_normals(general, probe(), normals)).relative_variance);
+}
+
+TEST(LocalFiles, ManyFilesAreTheSameBytes) {
+    for (bool sharing : {true, false}) {
+        build::LocalOptions options = separate(ACDF_FIT_VARIANCE);
+        if (sharing) options = {};
+        if (sharing) options.goal.budget = 32768;
+        EXPECT_EQ(build(options).bytes, build(options).bytes);
+    }
+}
+
+} // namespace
+} // namespace acdf

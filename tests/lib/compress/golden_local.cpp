@@ -1,0 +1,90 @@
+// The frozen local environments of every version: format/make_golden.cpp makes those of the present one.
+#include "tests/lib/reader/golden_numbers.h"
+
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace {
+
+const std::string kGolden = ACDF_TEST_DIR "/golden/v1.0/";
+
+/// A golden file and the samples beside it.
+struct Line {
+    float normal[3];
+    double u[2];
+    float direction[3], pdf;
+};
+
+class GoldenLocal : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        const acdf::Status status = acdf::File::open((kGolden + GetParam() + ".acdf").c_str(), file_);
+        ASSERT_TRUE(status.ok()) << status.message;
+        for (const auto& v : acdf_test::golden_numbers<9>(kGolden + GetParam() + ".txt"))
+            lines_.push_back(parse(v));
+        ASSERT_EQ(lines_.size(), 96u);
+    }
+
+    static Line parse(const std::array<double, 9>& v) {
+        return {{float(v[0]), float(v[1]), float(v[2])},
+                {v[3], v[4]},
+                {float(v[5]), float(v[6]), float(v[7])},
+                float(v[8])};
+    }
+
+    acdf::File file_;
+    std::vector<Line> lines_;
+};
+
+TEST_P(GoldenLocal, DrawsTheSameSamples) {
+    for (const Line& line : lines_) {
+        const auto s = file_.local().sample(line.normal, line.u[0], line.u[1]);
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
+        EXPECT_EQ(s.pdf, line.pdf);
+    }
+}
+
+TEST_P(GoldenLocal, HasThatDensityThere) {
+    int drawn = 0;
+    for (const Line& line : lines_) {
+        EXPECT_EQ(file_.local().pdf(line.normal, line.direction), line.pdf);
+        drawn += line.pdf > 0.0f;
+    }
+    EXPECT_GT(drawn, 60);
+}
+
+INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal, ::testing::Values("local", "local_grid"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {
+    acdf::File local, grid;
+    ASSERT_TRUE(acdf::File::open((kGolden + "local.acdf").c_str(), local).ok());
+    ASSERT_TRUE(acdf::File::open((kGolden + "local_grid.acdf").c_str(), grid).ok());
+    EXPECT_EQ(local.local().data().subdivisions, 2u);
+    EXPECT_EQ(local.local().data().light_count, 1u);
+    EXPECT_EQ(local.local().data().cosine_share, 0.25);
+    EXPECT_EQ(local.bin(7).root, ACDF_NO_ROOT);
+    EXPECT_EQ(grid.local().data().columns, 3u);
+    EXPECT_EQ(grid.local().data().rows, 2u);
+    EXPECT_EQ(grid.blend().tiles, nullptr);
+}
+
+// Frame of normals, by hand: theta from +z, the first column of phi begins at -x and turns towards +y.
+TEST(GoldenLocalFrame, NormalsFindTheirBins) {
+    acdf::File grid;
+    ASSERT_TRUE(acdf::File::open((kGolden + "local_grid.acdf").c_str(), grid).ok());
+    const auto view = grid.local();
+    const float left[3] = {-0.5f, 1.0f, 0.1f}, front[3] = {1.0f, 0.0f, 0.1f}, right[3] = {-0.5f, -1.0f, 0.1f};
+    EXPECT_DOUBLE_EQ(view.irradiance(left), 3.0 * 0.125);
+    EXPECT_DOUBLE_EQ(view.irradiance(front), 3.0 * 0.25);
+    EXPECT_FALSE(view.stored(right)); // bin 2
+    const float below[3] = {1.0f, 0.0f, -0.1f};
+    EXPECT_EQ(view.sample(below, 0.5, 0.5).pdf, 0.0f); // bin 4 is dark
+}
+
+} // namespace

@@ -1,0 +1,360 @@
+// The density of fitted local environment maps: what is drawn is what is told, and it covers the light.
+#include "tests/inputs/local_maps.h"
+
+#include "tests/extremes/targets.h"
+#include "tests/lib/compress/chi_square.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+using namespace acdf_test;
+
+namespace {
+
+using namespace acdf::compress;
+
+struct MapCase {
+    const char* name;
+    std::function<std::optional<Target>()> target;
+    std::function<NormalBins()> bins;
+    LocalFileOptions options;
+};
+
+void PrintTo(const MapCase& map, std::ostream* out) { *out << map.name; } // for GoogleTest
+
+LocalFileOptions with(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0, bool sharing = true) {
+    LocalFileOptions options;
+    options.size = {tiles, bytes};
+    options.cosine_share = cosine_share;
+    options.sharing = sharing;
+    return options;
+}
+
+std::function<std::optional<Target>()> synthetic(const std::string& name) {
+    return [name]() -> std::optional<Target> {
+        for (NamedTarget& t : synthetic_targets())
+            if (t.name == name) return std::move(t.target);
+        for (NamedTarget& t : extreme_targets())
+            if (t.name == name) return std::move(t.target);
+        throw std::logic_error(name);
+    };
+}
+std::function<std::optional<Target>()> probe(const std::string& name, int by) {
+    return [=] { return probe_target(name, by); };
+}
+std::function<NormalBins()> corners(std::uint32_t n) {
+    return [n] { return octahedral_bins(n); };
+}
+std::function<NormalBins()> grid(std::uint32_t columns, std::uint32_t rows) {
+    return [=] { return latlong_bins(columns, rows); };
+}
+
+// A third of the bins serves no normal.
+NormalBins scene_bins() {
+    NormalBins bins = octahedral_bins(4);
+    std::vector<SceneNormal> scene;
+    std::mt19937_64 random(9);
+    for (int i = 0; i < 400; ++i) {
+        const Normal n = random_direction(random);
+        if (n[2] > -0.2f) scene.push_back({n, 1.0});
+    }
+    weigh(bins, scene);
+    return bins;
+}
+
+std::vector<MapCase> map_cases() {
+    return {
+        {"smooth_sky", synthetic("smooth_sky"), corners(4), with(60, 1500)},
+        {"peaky_sun", synthetic("peaky_sun"), corners(5), with(120, 3000)},
+        {"one_lit_texel", synthetic("one_lit_texel"), corners(4), with(30, 400)},
+        {"black_lower_hemisphere", synthetic("black_lower_hemisphere"), corners(3), with(80, 2000, 0.25)},
+        {"checkerboard", synthetic("checkerboard"), corners(2), with(200, 8000)},
+        {"denormals", synthetic("denormals"), corners(3), with(50, 1000, 0.5)},
+        {"huge", synthetic("huge"), corners(3), with(50, 1000)},
+        {"one_row", synthetic("one_row"), corners(3), with(20, 500)},
+        {"one_column", synthetic("one_column"), corners(3), with(20, 500)},
+        {"one_texel", synthetic("one_texel"), corners(1), with(5, 100)},
+        {"one_tile", synthetic("odd_noise"), corners(2), with(1, 1000)},
+        {"odd_noise", synthetic("odd_noise"), corners(6), with(100, 3000, 0.0625)},
+        {"constant", synthetic("constant"), corners(1), with(40, 300)},
+        {"faint_texel", synthetic("faint_texel"), corners(3), with(30, 400)},
+        {"bright_texel_in_the_dark", synthetic("bright_texel_in_the_dark"), corners(3), with(60, 1000)},
+        {"largest_half", synthetic("largest_half"), corners(3), with(60, 1000)},
+        {"range_of_1e12", synthetic("range_of_1e12"), corners(3), with(150, 4000)},
+        {"sun_at_the_pole", synthetic("sun_at_the_pole"), corners(4), with(80, 1500)},
+        {"sun_at_the_seam", synthetic("sun_at_the_seam"), corners(4), with(80, 1500)},
+        {"sun_at_the_horizon", synthetic("sun_at_the_horizon"), corners(4), with(80, 1500)},
+        {"only_the_nadir", synthetic("only_the_nadir"), corners(4), with(60, 1000)},
+        {"suns", [] { return std::optional(suns_target(256, 128)); }, corners(5), with(150, 3000)},
+        {"suns_cosine", [] { return std::optional(suns_target(128, 64)); }, corners(4), with(100, 2000, 0.2)},
+        {"scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, with(100, 2000)},
+        {"separate_corners", synthetic("peaky_sun"), corners(3), with(0, 0, 0.0, false)},
+        {"separate_grid", synthetic("black_lower_hemisphere"), grid(9, 5), with(0, 0, 0.125, false)},
+        {"separate_paper_grid", synthetic("odd_noise"), grid(25, 10), with(0, 0, 0.0, false)},
+        {"city", probe("city.exr", 8), corners(6), with(200, 6000)},
+        {"noon_grass", probe("noon_grass_1k.hdr", 8), corners(6), with(200, 6000)},
+        {"grace", probe("grace_probe.hdr", 8), corners(6), with(200, 6000)},
+        {"city_cosine", probe("city.exr", 4), corners(4), with(300, 12000, 0.2)},
+    };
+}
+
+std::vector<MapCase> fine_map_cases() {
+    std::vector<MapCase> all = map_cases();
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [](const MapCase& c) {
+                                 const std::string name = c.name;
+                                 return name == "one_row" || name == "one_column" || name == "one_texel";
+                             }),
+              all.end());
+    return all;
+}
+
+class Maps : public ::testing::TestWithParam<MapCase> {
+protected:
+    void SetUp() override {
+        static std::map<std::string, std::unique_ptr<LocalMap>> made;
+        auto& map = made[GetParam().name];
+        if (!map) {
+            std::optional<Target> target = GetParam().target();
+            if (!target) GTEST_SKIP() << "the probe is absent; set ACDF_TEST_DATA";
+            map = std::make_unique<LocalMap>(std::move(*target), GetParam().bins(), GetParam().options);
+        }
+        map_ = map.get();
+    }
+
+    const LocalMap* map_ = nullptr;
+};
+
+/// Those whose texels have about one cosine each.
+class FineMaps : public Maps {};
+
+TEST_P(Maps, DensitiesIntegrateToOne) {
+    const auto light = map_->light_view();
+    const AcdfEnvironment& env = light.data().environment;
+    for (const Normal& n : hard_normals(map_->bins, 1, 20)) {
+        Sum exact, floats;
+        const std::vector<double> p = square_probabilities(light, n.data());
+        for (const double v : p) exact.add(v);
+        for (std::uint32_t r = 0; r < env.rows; ++r)
+            for (std::uint32_t c = 0; c < env.columns; ++c) {
+                float d[3];
+                direction_of(centre_phi(c, env.columns), centre_z(r, env.rows), d);
+                floats.add(static_cast<double>(light.pdf(n.data(), d)) * square_area(env, r));
+            }
+        const bool lit = map_->view().sample(n.data(), 0.5, 0.5).pdf > 0.0f;
+        EXPECT_NEAR(exact.value(), lit ? 1.0 : 0.0, 1e-9) << n[0] << ' ' << n[1] << ' ' << n[2];
+        EXPECT_NEAR(floats.value(), lit ? 1.0 : 0.0, 1e-6) << n[0] << ' ' << n[1] << ' ' << n[2];
+    }
+}
+
+TEST_P(Maps, PdfOfASampleIsExact) {
+    const double edges[] = {0.0, 1.0, 1.0 - 0x1p-24, 0x1p-24, -1.0, 2.0, std::nan("")};
+    std::mt19937_64 random(2);
+    const auto view = map_->view();
+    for (const Normal& n : hard_normals(map_->bins, 2, 100))
+        for (int i = 0; i < 200; ++i) {
+            const double u0 = i < 49 ? edges[i / 7] : uniform(random), u1 = i < 49 ? edges[i % 7] : uniform(random);
+            const acdf::DirectionSample s = view.sample(n.data(), u0, u1);
+            ASSERT_TRUE(std::isfinite(s.pdf));
+            ASSERT_EQ(view.pdf(n.data(), s.direction), s.pdf) << n[0] << ' ' << n[1] << ' ' << n[2] << ", " << i;
+            if (s.pdf == 0.0f) continue;
+            ASSERT_NEAR(length(s.direction), 1.0, 1e-6);
+        }
+}
+
+TEST_P(Maps, LengthOfNormalsDoesNotMatter) {
+    std::mt19937_64 random(3);
+    const auto view = map_->view();
+    for (int i = 0; i < 300; ++i) {
+        const Normal n = random_direction(random), d = random_direction(random);
+        const double expected = static_cast<double>(view.pdf(n.data(), d.data()));
+        for (const float scale : {1e-20f, 1e-3f, 3.0f, 1e20f}) {
+            const Normal scaled = {n[0] * scale, n[1] * scale, n[2] * scale};
+            EXPECT_NEAR(view.pdf(scaled.data(), d.data()), expected, 1e-5 * expected) << scale;
+            EXPECT_NEAR(view.irradiance(scaled.data()), view.irradiance(n.data()),
+                        1e-5 * view.irradiance(n.data()));
+        }
+    }
+}
+
+/// Samples fall into grid squares as often as the density says.
+TEST_P(Maps, ChiSquare) {
+    constexpr std::uint32_t samples = 20000;
+    const std::vector<Normal> normals = hard_normals(map_->bins, 4, 10);
+    const double significance = sidak(1e-3, static_cast<int>(normals.size() * map_cases().size()));
+    const auto view = map_->view();
+    const double share = view.data().cosine_share;
+    const Target& target = map_->target;
+    std::mt19937_64 random(4);
+    for (const Normal& n : normals) {
+        std::vector<double> probability = square_probabilities(view, n.data());
+        if (!(view.sample(n.data(), 0.5, 0.5).pdf > 0.0f)) continue;
+        for (std::uint32_t r = 0; share > 0.0 && r < target.rows; ++r)
+            for (std::uint32_t c = 0; c < target.columns; ++c) {
+                double& p = probability[std::size_t{r} * target.columns + c];
+                p = (1.0 - share) * p + share / kPi * clamped_cosine(target, n.data(), c, r);
+            }
+        std::vector<std::uint32_t> observed(probability.size(), 0);
+        for (std::uint32_t i = 0; i < samples; ++i) {
+            const double u0 = uniform(random), u1 = uniform(random);
+            const acdf::DirectionSample s = view.sample(n.data(), u0, u1);
+            std::uint32_t square[2] = {0, 0};
+            double column = 0.0;
+            ASSERT_TRUE(acdf_sphere_square(target.columns, target.rows, s.direction, square, &column));
+            ++observed[std::size_t{square[1]} * target.columns + square[0]];
+        }
+        const ChiSquare test = chi_square(observed, probability);
+        EXPECT_FALSE(test.impossible) << n[0] << ' ' << n[1] << ' ' << n[2];
+        EXPECT_GT(test.p_value, significance)
+            << n[0] << ' ' << n[1] << ' ' << n[2] << ": " << test.statistic << " with " << test.degrees;
+    }
+}
+
+/// A direction within a texel, often at its very border.
+Normal within(const Target& target, std::uint32_t column, std::uint32_t row, std::mt19937_64& random) {
+    const auto place = [&] {
+        const double t = uniform(random);
+        return random() % 4 == 0 ? (t < 0.5 ? 1e-5 : 1.0 - 1e-5) : 1e-5 + (1.0 - 2e-5) * t;
+    };
+    const double theta = kPi * (row + place()) / target.rows;
+    Normal d;
+    direction_of(kPi - 2.0 * kPi * (column + place()) / target.columns, std::cos(theta), d.data());
+    return d;
+}
+
+/// Wherever light is above the horizon, however little, it can be drawn.
+TEST_P(Maps, CoverTheLight) {
+    const Target& target = map_->target;
+    std::vector<std::size_t> lit, bright;
+    for (std::size_t i = 0; i < target.values.size(); ++i)
+        if (target.values[i] > 0.0f) lit.push_back(i);
+    const float most = *std::max_element(target.values.begin(), target.values.end());
+    for (std::size_t i : lit)
+        if (target.values[i] > 0.1f * most) bright.push_back(i);
+    const std::vector<Normal> special = hard_normals(map_->bins, 5, 0);
+    std::mt19937_64 random(5);
+    const auto view = map_->light_view();
+    int pairs = 0, near_horizon = 0;
+    while (pairs < 100000) {
+        const auto& from = random() % 4 == 0 ? bright : lit;
+        const std::size_t texel = from[random() % from.size()];
+        const Normal d =
+            within(target, std::uint32_t(texel % target.columns), std::uint32_t(texel / target.columns), random);
+        if (!(map_->radiance(d.data()) > 0.0f)) continue; // carried over a border
+        Normal n = random_direction(random);
+        if (random() % 8 == 0) n = special[random() % special.size()];
+        if (random() % 2 == 0) { // turned so that the direction is just above its horizon
+            const double down = dot(n.data(), d.data()) - std::pow(10.0, -8.0 * uniform(random));
+            for (std::size_t k = 0; k < 3; ++k) n[k] = static_cast<float>(double{n[k]} - down * double{d[k]});
+        }
+        const double cosine = dot(n.data(), d.data()) / length(n.data());
+        if (!(cosine > 1e-9)) continue;
+        near_horizon += cosine < 1e-3;
+        ++pairs;
+        ASSERT_GT(view.pdf(n.data(), d.data()), 0.0f)
+            << "normal " << n[0] << ' ' << n[1] << ' ' << n[2] << ", cosine " << cosine << ", texel "
+            << texel % target.columns << ' ' << texel / target.columns;
+    }
+    EXPECT_GT(near_horizon, 5000);
+}
+
+/// The mean of f/p over samples is the irradiance: over all maps, of ten million of them. The standard error is
+/// that of the density where that is larger than of the samples, which may have missed what is rare and large.
+TEST_P(FineMaps, EstimatesAreUnbiased) {
+    constexpr int normals = 100, samples = 4500;
+    const auto view = map_->view();
+    std::mt19937_64 random(6);
+    const std::vector<Normal> hard = hard_normals(map_->bins, 6, 60);
+    for (int k = 0; k < normals; ++k) {
+        const Normal& n = hard[hard.size() - 1 - std::size_t(k) % hard.size()];
+        const double exact = exact_irradiance(map_->target, n.data());
+        double mean = 0.0, square = 0.0;
+        for (int i = 0; i < samples; ++i) {
+            const double u0 = uniform(random), u1 = uniform(random);
+            const acdf::DirectionSample s = view.sample(n.data(), u0, u1);
+            const double cosine = s.pdf > 0.0f ? dot(n.data(), s.direction) / length(n.data()) : 0.0;
+            const double f = cosine > 0.0 ? map_->radiance(s.direction) * cosine / s.pdf : 0.0;
+            mean += f / samples;
+            square += f * f / samples;
+        }
+        const double moment = std::max(square - mean * mean, second_moment(*map_, n.data()) - exact * exact);
+        const double error = std::sqrt(std::max(0.0, moment) / samples);
+        EXPECT_LE(std::fabs(mean - exact), 4.5 * error + 1e-6 * exact) // any of all 2000 with a chance of 1 %
+            << n[0] << ' ' << n[1] << ' ' << n[2] << ": " << mean << " for " << exact;
+    }
+}
+
+TEST_P(FineMaps, IrradianceIsAboutRight) {
+    const auto view = map_->view();
+    std::mt19937_64 random(7);
+    for (int i = 0; i < 40; ++i) {
+        const Normal n = random_direction(random);
+        const double told = view.irradiance(n.data()), exact = exact_irradiance(map_->target, n.data());
+        if (told == 0.0) {
+            EXPECT_EQ(exact, 0.0) << "light that a normal sees is never forgotten";
+            EXPECT_EQ(view.sample(n.data(), uniform(random), uniform(random)).pdf, 0.0f);
+        } else if (!view.stored(n.data())) {
+            EXPECT_EQ(told, view.environment().total());
+        } else if (GetParam().options.sharing) {
+            // Weights are root mean squares, which are no less than means, and so is what is interpolated.
+            EXPECT_GE(told, 0.98 * exact);
+        } else {
+            EXPECT_NEAR(told, exact, 0.5 * map_->target.total); // of the bin's mean
+        }
+    }
+}
+
+TEST(LocalMap, IrradianceIsGoodToAFewPerCent) {
+    const LocalMap map(suns_target(256, 128), octahedral_bins(8), with(600, 20000));
+    std::mt19937_64 random(8);
+    for (int i = 0; i < 60; ++i) {
+        const Normal n = random_direction(random);
+        const double exact = exact_irradiance(map.target, n.data());
+        EXPECT_NEAR(map.view().irradiance(n.data()) / exact, 1.0, 0.04) << n[0] << ' ' << n[1] << ' ' << n[2];
+    }
+}
+
+/// Within a cell more of a random number leads to more of its axis.
+TEST_P(Maps, StrataStayStrata) {
+    constexpr int steps = 400;
+    const AcdfLocal local = map_->light_view().data();
+    const std::uint32_t columns = map_->target.columns, rows = map_->target.rows;
+    std::mt19937_64 random(8);
+    int compared = 0;
+    for (int k = 0; k < 40; ++k) {
+        const Normal n = random_direction(random);
+        const double other = uniform(random);
+        const int axis = k % 2;
+        AcdfRange before[2] = {};
+        double place = 0.0;
+        for (int i = 0; i < steps; ++i) {
+            double u[2] = {other, other};
+            u[axis] = (i + 0.5) / steps;
+            AcdfLocalPoint source;
+            acdf_local_at(&local, n.data(), &source);
+            if (source.what == ACDF_LOCAL_NOTHING) break;
+            AcdfRange range[2];
+            acdf_sphere_ranges(columns, rows, range);
+            if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
+            else acdf_tree_sample(local.environment.tree, source.root, u, range);
+            const bool same = i > 0 && range[0].low == before[0].low && range[1].low == before[1].low &&
+                              range[0].high == before[0].high && range[1].high == before[1].high;
+            if (same) {
+                EXPECT_GT(u[axis], place);
+                ++compared;
+            }
+            place = u[axis];
+            before[0] = range[0];
+            before[1] = range[1];
+        }
+    }
+    EXPECT_GT(compared, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Maps, ::testing::ValuesIn(map_cases()),
+                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, FineMaps, ::testing::ValuesIn(fine_map_cases()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace

@@ -1,0 +1,111 @@
+// Every fit, both orders, on real probes, and the figures that must hold there.
+#include "tests/lib/compress/checks.h"
+
+#include "build/environment_accuracy.h"
+#include "compress/store.h"
+#include "input/probe.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <ostream>
+
+namespace {
+
+using namespace acdf::compress;
+
+struct Figures {
+    const char* name;
+    double cdf;      ///< 64 x 64 segments, order z: relative variance, met within 5 %
+    double variance; ///< 4096 cells, the better order: at most
+};
+
+void PrintTo(const Figures& figures, std::ostream* out) { *out << figures.name; } // for GoogleTest
+
+class Probe : public ::testing::TestWithParam<Figures> {
+protected:
+    void SetUp() override {
+        const std::string path = std::string(ACDF_TEST_DATA "/probes/") + GetParam().name + ".exr";
+        if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent; set ACDF_TEST_DATA";
+        const acdf::input::Probe probe = acdf::input::read_probe(path);
+        ASSERT_EQ(probe.width, 1024);
+        ASSERT_EQ(probe.height, 512);
+        target_ = environment_target(probe.rgb.data(), 1024, 512, TargetOptions{});
+    }
+
+    /// What `acdf measure` would say of the stored file.
+    double relative_variance(const FitOptions& options) const {
+        const auto bytes = store(fit(target_, options).tree, environment_description(1024, 512));
+        acdf::File file;
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        EXPECT_TRUE(status.ok()) << status.message;
+        if (!status.ok()) return INFINITY;
+        return acdf::build::measure_environment(file, target_).relative_variance;
+    }
+
+    Target target_;
+};
+
+TEST_P(Probe, EveryFitIsADensityThatCoversIt) {
+    for (const auto& fit : acdf_test::all_fits(64, 64, 4096)) acdf_test::check_fit(target_, fit);
+}
+
+TEST_P(Probe, PaperFitMeetsItsFigure) {
+    FitOptions options;
+    options.fit = ACDF_FIT_CDF;
+    options.order = Order::z;
+    options.column_segments = options.row_segments = 64;
+    EXPECT_NEAR(relative_variance(options) / GetParam().cdf, 1.0, 0.05);
+}
+
+TEST_P(Probe, VarianceFitMeetsItsFigure) {
+    FitOptions options;
+    options.fit = ACDF_FIT_VARIANCE;
+    options.goal.cells = 4096;
+    for (const Shape shape : {Shape::cascade, Shape::tree}) {
+        SCOPED_TRACE(shape == Shape::tree ? "tree" : "cascade");
+        options.shape = shape;
+        options.order = Order::phi;
+        const double phi = relative_variance(options);
+        options.order = Order::z;
+        EXPECT_LE(std::min(phi, relative_variance(options)), GetParam().variance);
+    }
+}
+
+/// A probe in a projection; the discs and squares are read in several, as any of them is a map of the sphere.
+struct Projected {
+    const char* name;
+    const char* file;
+    acdf::input::Projection projection;
+};
+
+void PrintTo(const Projected& projected, std::ostream* out) { *out << projected.name; }
+
+class Projection : public ::testing::TestWithParam<Projected> {};
+
+TEST_P(Projection, EveryFitIsADensityThatCoversIt) {
+    const std::string path = std::string(ACDF_TEST_DATA "/probes/") + GetParam().file;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent; set ACDF_TEST_DATA";
+    acdf::input::ProbeOptions options;
+    options.projection = GetParam().projection;
+    const acdf::input::Probe probe = acdf::input::read_probe(path, options);
+    const Target target = environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
+                                             static_cast<std::uint32_t>(probe.height), TargetOptions{});
+    for (const auto& fit : acdf_test::all_fits(64, 64, 4096)) acdf_test::check_fit(target, fit);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Real, Projection,
+    ::testing::Values(Projected{"angular", "beach_probe.hdr", acdf::input::Projection::angular},
+                      Projected{"mirrorball", "beach_probe.hdr", acdf::input::Projection::mirrorball},
+                      Projected{"octahedral", "beach_probe.hdr", acdf::input::Projection::octahedral},
+                      Projected{"cube_cross", "stpeters_cross.hdr", acdf::input::Projection::cube_cross}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+INSTANTIATE_TEST_SUITE_P(Real, Probe,
+                         ::testing::Values(Figures{"city", 0.0250, 0.0165}, Figures{"sunset", 0.0174, 0.0085},
+                                           Figures{"studio", 0.0317, 0.0145}, Figures{"courtyard", 0.105, 0.046}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace

@@ -1,0 +1,254 @@
+// acdf/brdf.h against a decoder written from the specification (SPEC.md §6.8), on files of which no fit would
+// think.
+#include "tests/lib/reader/brdf_loaded.h"
+
+#include <acdf/acdf.h>
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+using namespace acdf_test;
+
+namespace {
+
+using Direction = std::array<float, 3>;
+
+Direction at_angles(double cosine, double phi) {
+    const double s = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    return {float(s * std::cos(phi)), float(s * std::sin(phi)), float(cosine)};
+}
+
+/// Probability that a row gives to the cell of a square, and the cell.
+struct Cell {
+    double probability = 1.0;
+    std::uint32_t low[2], high[2];
+};
+Cell cell_of(const BrdfSpec& spec, std::size_t row, const std::uint32_t square[2]) {
+    Cell cell{1.0, {0, 0}, {spec.columns, spec.rows}};
+    for (std::uint32_t node = 0; !(node & tile_flag);) {
+        const SplitSpec& split = spec.splits[node];
+        const double lower = spec.codebook[spec.codes[row][node]] / 65535.0;
+        const bool upper = square[split.axis] >= split.position;
+        cell.probability *= upper ? 1.0 - lower : lower;
+        (upper ? cell.low : cell.high)[split.axis] = split.position;
+        node = split.child[upper];
+    }
+    return cell;
+}
+
+/// Bins and weights of a view.
+std::vector<std::pair<std::size_t, double>> weights_of(const BrdfSpec& spec, const Direction& wo) {
+    const double g = std::sqrt(1.0 - double{wo[2]});
+    std::size_t i = 0;
+    while (i + 2 < spec.nodes.size() && double{spec.nodes[i + 1]} <= g) ++i;
+    const double t = std::min(
+        1.0, std::max(0.0, (g - double{spec.nodes[i]}) / (double{spec.nodes[i + 1]} - double{spec.nodes[i]})));
+    std::vector<std::pair<std::size_t, double>> out;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double weight = k == 0 ? 1.0 - t : t;
+        if (spec.azimuths == 1) {
+            out.push_back({i + k, weight});
+            continue;
+        }
+        const double c = spec.azimuths * (0.5 + std::atan2(double{wo[1]}, double{wo[0]}) / (2.0 * pi));
+        const auto first = static_cast<std::size_t>(c) % spec.azimuths;
+        out.push_back({(i + k) * spec.azimuths + first, weight * (1.0 - (c - std::floor(c)))});
+        out.push_back({(i + k) * spec.azimuths + (first + 1) % spec.azimuths, weight * (c - std::floor(c))});
+    }
+    return out;
+}
+
+double expected_pdf(const BrdfSpec& spec, const Direction& wo, const Direction& wi) {
+    double h[3], length = 0.0, dot = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        h[k] = double{wo[k]} + double{wi[k]};
+        length += h[k] * h[k];
+    }
+    length = std::sqrt(length);
+    for (std::size_t k = 0; k < 3; ++k) dot += double{wo[k]} * h[k] / length;
+    if (h[2] < 0.0)
+        for (double& x : h) x = -x;
+    double phi = std::atan2(h[1], h[0]);
+    if (spec.azimuths == 1) phi -= std::atan2(double{wo[1]}, double{wo[0]});
+    phi = std::remainder(phi, 2.0 * pi);
+    const double x = spec.flags & 1 ? spec.columns * std::abs(phi) / pi : spec.columns * (0.5 + phi / (2.0 * pi));
+    const double y = spec.rows * (1.0 - h[2] / length);
+    const std::uint32_t square[2] = {std::min(static_cast<std::uint32_t>(x), spec.columns - 1),
+                                     std::min(static_cast<std::uint32_t>(y), spec.rows - 1)};
+    double sum = 0.0, all = 0.0, area = 1.0;
+    for (const auto& [bin, weight] : weights_of(spec, wo)) {
+        const double w = weight * double{spec.bins[bin].share};
+        const Cell cell = cell_of(spec, spec.bins[bin].root, square);
+        sum += w * cell.probability;
+        all += w;
+        area = double(cell.high[0] - cell.low[0]) / spec.columns * 2.0 * pi * double(cell.high[1] - cell.low[1]) /
+               spec.rows;
+    }
+    const double light = sum / all / area / (4.0 * std::abs(dot));
+    const double share = double{spec.diffuse_share};
+    return (1.0 - share) * light + share * std::max(0.0, double{wi[2]}) / pi;
+}
+
+/// Specs of all forms with rows: mirrored, not, with azimuths, with a diffuse share.
+std::vector<BrdfSpec> shared_forms() {
+    std::vector<BrdfSpec> out(4, shared_brdf());
+    out[1].flags = 0;
+    out[2].flags = 0;
+    out[2].azimuths = 4;
+    out[2].bins.clear();
+    for (std::uint32_t b = 0; b < 12; ++b) out[2].bins.push_back({b % 3, 0.05f + 0.01f * float(b)});
+    out[3].diffuse_share = 0.3f;
+    return out;
+}
+
+TEST(BrdfReader, evaluatesAsTheSpecificationSays) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> u(0.0, 1.0);
+    for (const BrdfSpec& given : shared_forms()) {
+        BrdfSpec spec = given;
+        const Loaded loaded(spec.encode());
+        for (int i = 0; i < 5000; ++i) {
+            const Direction wo = at_angles(0.02 + 0.97 * u(random), 2.0 * pi * u(random));
+            const Direction wi = at_angles(2.0 * u(random) - 1.0, 2.0 * pi * u(random));
+            const double expected = expected_pdf(spec, wo, wi);
+            ASSERT_NEAR(loaded.view().pdf(wo.data(), wi.data()), expected, 2e-5 * expected) << i;
+        }
+    }
+}
+
+TEST(BrdfReader, nearestTreeServesWithoutRows) {
+    BrdfSpec spec = separate_brdf();
+    spec.diffuse_share = 0.0f;
+    spec.tree.curves = {CurveSpec{}, CurveSpec{}}; // uniform, and the lower half of the rows alone
+    spec.tree.curves[1] = even_curve(1, {4});
+    spec.tree.curves[1].cumulative = {spec.tree.curves[1].maximum()};
+    for (std::size_t b = 0; b < spec.bins.size(); ++b) spec.bins[b].root = b == 5 ? 1 : 0;
+    const Loaded loaded(spec.encode());
+    // Bin 5: elevation 1 (g = 0.75), azimuth 1 of 4 (-pi/2).
+    const double cosine = 1.0 - 0.75 * 0.75;
+    const Direction inside = at_angles(cosine, -0.5 * pi + 0.7), outside = at_angles(cosine, -0.5 * pi + 0.9);
+    const auto at_half_vector = [&](const Direction& wo, double cap) { // in the plane of wo
+        const double t = std::acos(double{wo[2]}), th = std::acos(1.0 - cap);
+        const double phi = std::atan2(double{wo[1]}, double{wo[0]});
+        const double ti = 2.0 * th - t;
+        return Direction{float(std::sin(ti) * std::cos(phi)), float(std::sin(ti) * std::sin(phi)),
+                         float(std::cos(ti))};
+    };
+    for (const double cap : {0.1, 0.4, 0.6}) {
+        const Direction a = at_half_vector(inside, cap), b = at_half_vector(outside, cap);
+        const double dot_a = std::cos(std::acos(cosine) - std::acos(1.0 - cap));
+        const double uniform = 1.0 / (2.0 * pi * 4.0 * std::abs(dot_a));
+        EXPECT_NEAR(loaded.view().pdf(inside.data(), a.data()), cap < 0.5 ? 2.0 * uniform : 0.0, 1e-5 * uniform)
+            << cap;
+        EXPECT_NEAR(loaded.view().pdf(outside.data(), b.data()), uniform, 1e-5 * uniform) << cap;
+    }
+}
+
+TEST(BrdfReader, samplesAreWhatPdfTells) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> u(0.0, 1.0);
+    std::vector<BrdfSpec> forms = shared_forms();
+    forms.push_back(separate_brdf());
+    for (BrdfSpec& spec : forms) {
+        const Loaded loaded(spec.encode());
+        for (int i = 0; i < 4000; ++i) {
+            const double cosine = i % 4 == 0 ? 1.0 : i % 4 == 1 ? 0.5 : i % 4 == 2 ? 0.1 : 1e-3;
+            const Direction wo = at_angles(cosine, 2.0 * pi * u(random));
+            const auto s = loaded.view().sample(wo.data(), u(random), u(random));
+            ASSERT_GT(s.pdf, 0.0f);
+            ASSERT_TRUE(std::isfinite(s.pdf));
+            ASSERT_EQ(s.pdf, loaded.view().pdf(wo.data(), s.direction)) << cosine << " " << i;
+        }
+    }
+}
+
+TEST(BrdfReader, invertsWhatItDraws) {
+    std::mt19937_64 random(13);
+    std::uniform_real_distribution<double> u(0.0, 1.0);
+    for (BrdfSpec& spec : shared_forms()) {
+        const Loaded loaded(spec.encode());
+        for (int i = 0; i < 2000; ++i) {
+            const Direction wo = at_angles(0.05 + 0.9 * u(random), 2.0 * pi * u(random));
+            const double u0 = u(random),
+                         u1 = double{spec.diffuse_share} + (1.0 - double{spec.diffuse_share}) * u(random);
+            const auto s = loaded.view().sample(wo.data(), u0, u1);
+            double back[2];
+            if (s.direction[0] * wo[0] + s.direction[1] * wo[1] + s.direction[2] * wo[2] < -0.99f)
+                continue; // opposite
+            ASSERT_TRUE(loaded.view().invert(wo.data(), s.direction, back));
+            ASSERT_NEAR(back[0], u0, 2e-3) << i;
+            ASSERT_NEAR(back[1], u1, 2e-3) << i;
+        }
+    }
+}
+
+TEST(BrdfReader, anyNumbersAreSafe) {
+    const float nan = std::nanf("");
+    std::vector<BrdfSpec> forms = shared_forms();
+    forms.push_back(separate_brdf());
+    for (BrdfSpec& spec : forms) {
+        const Loaded loaded(spec.encode());
+        const Direction up = {0.0f, 0.0f, 1.0f}, down = {0.6f, 0.0f, -0.8f}, bad = {nan, 0.0f, 1.0f},
+                        longer = {0.0f, 0.0f, 1.1f};
+        const Direction flat = {1.0f, 0.0f, 0.0f};
+        for (const Direction& wo : {down, bad, longer, flat}) {
+            EXPECT_EQ(loaded.view().sample(wo.data(), 0.5, 0.5).pdf, 0.0f);
+            EXPECT_EQ(loaded.view().pdf(wo.data(), up.data()), 0.0f);
+            EXPECT_EQ(loaded.view().albedo(wo.data()), 0.0);
+        }
+        for (const Direction& wi : {bad, longer}) EXPECT_EQ(loaded.view().pdf(up.data(), wi.data()), 0.0f);
+        EXPECT_GE(loaded.view().pdf(up.data(), down.data()), 0.0f);
+        const Direction opposite = {0.0f, 0.0f, -1.0f};
+        EXPECT_EQ(loaded.view().pdf(up.data(), opposite.data()), 0.0f);
+        for (const double u0 : {-1.0, 0.0, 0.5, 1.0, 2.0, double{nan}})
+            for (const double u1 : {-1.0, 0.0, 0.5, 1.0, 2.0, double{nan}}) {
+                const auto s = loaded.view().sample(up.data(), u0, u1);
+                EXPECT_GT(s.pdf, 0.0f);
+                EXPECT_TRUE(std::isfinite(s.direction[0] + s.direction[1] + s.direction[2]));
+            }
+    }
+}
+
+TEST(BrdfReader, albedoIsThatOfTheNodesAndBetweenThem) {
+    BrdfSpec spec = shared_brdf();
+    const Loaded loaded(spec.encode());
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double x = double{spec.nodes[i]};
+        EXPECT_NEAR(loaded.view().albedo(at_angles(1.0 - x * x, 1.0).data()), 2.0 * double{spec.bins[i].share},
+                    1e-5);
+    }
+    EXPECT_NEAR(loaded.view().albedo(at_angles(1.0 - 0.25 * 0.25, 0.0).data()), 2.0 * 0.375, 1e-5);
+}
+
+TEST(BrdfReader, cInterfaceGivesTheSameView) {
+    const Bytes bytes = shared_brdf().encode();
+    AcdfError error;
+    AcdfFile* file = acdf_from_memory(bytes.data(), bytes.size(), &error);
+    ASSERT_NE(file, nullptr) << error.message;
+    AcdfBrdf brdf;
+    AcdfTable table;
+    ASSERT_TRUE(acdf_brdf(file, &brdf));
+    EXPECT_FALSE(acdf_table(file, &table));
+    const Loaded loaded(bytes);
+    const Direction wo = at_angles(0.6, 1.0);
+    const auto a = loaded.view().sample(wo.data(), 0.3, 0.7), b = acdf_brdf_sample(&brdf, wo.data(), 0.3, 0.7);
+    EXPECT_EQ(a.pdf, b.pdf);
+    EXPECT_EQ(a.direction[0], b.direction[0]);
+    acdf_close(file);
+}
+
+TEST(BrdfReader, compressedFilesAreTheSame) {
+    BrdfSpec spec = shared_brdf();
+    const Loaded plain(spec.encode());
+    spec.zlib = true;
+    const Loaded packed(spec.encode());
+    const Direction wo = at_angles(0.4, 2.0);
+    for (double u = 0.05; u < 1.0; u += 0.1)
+        EXPECT_EQ(plain.view().sample(wo.data(), u, 1.0 - u).pdf, packed.view().sample(wo.data(), u, 1.0 - u).pdf);
+}
+
+} // namespace

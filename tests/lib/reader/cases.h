@@ -1,0 +1,23 @@
+// Files that break one rule each.
+#pragma once
+
+#include "tests/lib/reader/builder.h"
+
+#include <acdf/reader.h>
+
+#include <functional>
+#include <vector>
+
+namespace acdf_test {
+
+struct Case {
+    int rule;
+    const char* name;
+    std::function<Bytes()> make;
+    acdf::Limits limits = {};
+};
+
+std::vector<Case> brdf_cases();  ///< of kind 3
+std::vector<Case> local_cases(); ///< of kind 2 and of what bins share
+
+} // namespace acdf_test

@@ -1,0 +1,79 @@
+// The frozen BRDFs of every version (format/make_golden.cpp makes those of the present one).
+#include "tests/lib/reader/golden_numbers.h"
+
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+const std::string kGolden = ACDF_TEST_DIR "/golden/v1.0/";
+
+/// A line `wo  u0 u1  wi  pdf` beside a golden file.
+struct Line {
+    float wo[3];
+    double u[2];
+    float wi[3], pdf;
+};
+
+class GoldenBrdf : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        const acdf::Status status = acdf::File::open((kGolden + GetParam() + ".acdf").c_str(), file_);
+        ASSERT_TRUE(status.ok()) << status.message;
+        for (const auto& v : acdf_test::golden_numbers<9>(kGolden + GetParam() + ".txt"))
+            lines_.push_back(parse(v));
+        ASSERT_EQ(lines_.size(), 96u);
+    }
+
+    static Line parse(const std::array<double, 9>& v) {
+        return {{float(v[0]), float(v[1]), float(v[2])},
+                {v[3], v[4]},
+                {float(v[5]), float(v[6]), float(v[7])},
+                float(v[8])};
+    }
+
+    acdf::File file_;
+    std::vector<Line> lines_;
+};
+
+TEST_P(GoldenBrdf, DrawsTheSameSamples) {
+    for (const Line& line : lines_) {
+        const auto s = file_.brdf().sample(line.wo, line.u[0], line.u[1]);
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.wi[i]);
+        EXPECT_EQ(s.pdf, line.pdf);
+    }
+}
+
+TEST_P(GoldenBrdf, HasThatDensityThere) {
+    for (const Line& line : lines_) {
+        EXPECT_GT(line.pdf, 0.0f);
+        EXPECT_EQ(file_.brdf().pdf(line.wo, line.wi), line.pdf);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(V1_0, GoldenBrdf,
+                         ::testing::Values("brdf", "brdf_mirrored", "brdf_anisotropic", "brdf_floor",
+                                           "brdf_separate"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(GoldenBrdfContents, EachFileHasWhatItIsFor) {
+    const auto opened = [](const char* name) {
+        acdf::File file;
+        EXPECT_TRUE(acdf::File::open((kGolden + name + ".acdf").c_str(), file).ok());
+        return file;
+    };
+    const acdf::File brdf = opened("brdf"), mirrored = opened("brdf_mirrored"), turned = opened("brdf_anisotropic"),
+                     floored = opened("brdf_floor"), separate = opened("brdf_separate");
+    EXPECT_FALSE(acdf_brdf_mirrored(&brdf.brdf().data()));
+    EXPECT_TRUE(acdf_brdf_mirrored(&mirrored.brdf().data()));
+    EXPECT_EQ(turned.brdf().data().views->phi_count, 4u);
+    EXPECT_EQ(floored.brdf().data().views->diffuse_share, 0.25f);
+    EXPECT_NE(brdf.blend().tiles, nullptr);
+    EXPECT_EQ(separate.blend().tiles, nullptr);
+}
+
+} // namespace

@@ -1,0 +1,446 @@
+// Loading: damage of every kind, memory of every alignment, compression, metadata, files.
+#include "tests/lib/reader/load.h"
+#include "tests/lib/reader/files.h"
+#include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/planes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define ACDF_TEST_ASAN 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ACDF_TEST_ASAN 1
+#endif
+#endif
+
+using namespace acdf_test;
+using acdf::ErrorCode;
+using acdf::File;
+using acdf::Status;
+
+namespace {
+
+EnvironmentSpec compressed() {
+    EnvironmentSpec spec = complete_environment();
+    spec.zlib = true;
+    return spec;
+}
+
+// ---- damage ---------------------------------------------------------------------------------------------
+
+TEST(Damage, everyTruncationIsRefused) {
+    for (const Bytes& file : {complete_environment().encode(), compressed().encode(), EnvironmentSpec().encode()})
+        for (std::size_t size = 0; size < file.size(); ++size) {
+            const Status status = load(truncated(file, size));
+            ASSERT_EQ(status.rule, size < 64 ? 2001 : 2005) << size << ": " << status.message;
+            ASSERT_FALSE(findings(truncated(file, size)).rules.empty());
+        }
+}
+
+TEST(Damage, extraBytesAreRefused) {
+    for (std::size_t extra = 1; extra <= 200; ++extra) {
+        Bytes file = complete_environment().encode();
+        file.resize(file.size() + extra);
+        ASSERT_EQ(load(file).rule, 2005) << extra;
+    }
+}
+
+// Header and table, payloads, and padding are each covered by a CRC or must be zero.
+TEST(Damage, everyFlippedBitIsFound) {
+    for (const Bytes& file : {complete_environment().encode(), compressed().encode(), EnvironmentSpec().encode()})
+        for (std::size_t bit = 0; bit < 8 * file.size(); ++bit) {
+            Bytes damaged = file;
+            damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ 1u << bit % 8);
+            ASSERT_FALSE(load(damaged).ok()) << "byte " << bit / 8 << ", bit " << bit % 8;
+        }
+}
+
+// What a malicious writer does: wrong bytes under right CRCs. Whatever is accepted can be sampled.
+TEST(Damage, everyByteUnderRightCrcsIsSafe) {
+    std::mt19937 rng(1);
+    int accepted = 0;
+    for (const Bytes& file : {complete_environment().encode(), compressed().encode()})
+        for (std::size_t at = 12; at < file.size(); ++at)
+            for (std::uint32_t value : {0x00u, 0x01u, 0x7Fu, 0x80u, 0xFFu, file[at] + 1u, file[at] ^ 0x10u}) {
+                Bytes damaged = file;
+                damaged[at] = static_cast<std::uint8_t>(value);
+                seal(damaged);
+                const Exact exact(damaged);
+                File loaded;
+                const Status status = File::from_memory(exact.data(), exact.size(), loaded);
+                ASSERT_EQ(status.ok(),
+                          acdf::validate(exact.data(), exact.size(), [](const acdf::Finding&) {}).valid());
+                if (!status.ok() || loaded.kind() != ACDF_KIND_ENVIRONMENT) continue;
+                ++accepted;
+                for (int n = 0; n < 20; ++n) {
+                    const double u0 = std::generate_canonical<double, 53>(rng),
+                                 u1 = std::generate_canonical<double, 53>(rng);
+                    const auto s = loaded.environment().sample(u0, u1);
+                    ASSERT_GT(s.pdf, 0.0f);
+                    ASSERT_GT(loaded.environment().pdf(s.direction), 0.0f);
+                }
+            }
+    EXPECT_GT(accepted, 100);
+}
+
+TEST(Damage, otherFormatsAreNamed) {
+    const auto message_of = [](std::string start, std::size_t size = 1000) {
+        Bytes file(start.begin(), start.end());
+        file.resize(size);
+        const Status status = load(file);
+        EXPECT_EQ(status.rule, 2002);
+        return std::string(status.message);
+    };
+    using namespace std::string_literals;
+    const auto expect = [](const std::string& message, const char* word) {
+        EXPECT_NE(message.find(word), std::string::npos) << message;
+    };
+    expect(message_of("\x76\x2f\x31\x01"), "OpenEXR");
+    expect(message_of("#?RADIANCE\n"), "Radiance HDR");
+    expect(message_of("#?RGBE\n"), "Radiance HDR");
+    expect(message_of("\x89PNG\r\n\x1a\n"), "PNG");
+    expect(message_of("\x93NUMPY"), "NumPy");
+    expect(message_of("II*\0"s), "TIFF");
+    expect(message_of("MM\0*"s), "TIFF");
+    expect(message_of("tensor_file\0"s), "RGL");
+    expect(message_of("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0"s, 12 + 3 * 8 * 90 * 90 * 180), "MERL");
+    expect(message_of("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0"s), "not an .acdf file");
+    expect(message_of("\xab"
+                      "ACDF  \xbb\n\x1a\n"),
+           "CR LF into LF");
+    expect(message_of("\xab"
+                      "ACDF  \xbb\r\r\n\x1a\r\n"),
+           "LF into CR LF");
+    expect(message_of("+ACDF  ;\r\n\x1a\n"), "highest bit");
+    expect(message_of("\xab"
+                      "ACDF\0"s),
+           "damaged");
+    expect(message_of("hello"), "not an .acdf file");
+    EXPECT_EQ(load({'P', 'N'}).rule, 2002); // shorter than any magic
+}
+
+// ---- versions -------------------------------------------------------------------------------------------
+
+TEST(Versions, whatAnOlderReaderMustRead) {
+    FileSpec spec = complete_file();
+    spec.minor = 9;
+    spec.chunks.insert(spec.chunks.begin(), {"xtra", {1, 2, 3}, 0, true});
+    spec.chunks.push_back({"more", {}, 0, false});
+    Bytes file = spec.encode();
+    set(file, 32, 4, 0xFFFFFFFF); // optional features
+    seal(file);
+    EXPECT_TRUE(findings(file).rules.empty()) << findings(file).text;
+    File loaded;
+    ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded).ok());
+    EXPECT_EQ(loaded.header().version_minor, 9);
+    EXPECT_EQ(loaded.environment().data().columns, 8u);
+}
+
+TEST(Versions, errorCodesSayWhoIsToBlame) {
+    const auto code_of = [](std::size_t at, int size, std::uint64_t value) {
+        Bytes file = complete_file().encode();
+        set(file, at, size, value);
+        seal(file);
+        return load(file).code;
+    };
+    EXPECT_EQ(code_of(12, 2, 2), ErrorCode::unsupported);  // major version
+    EXPECT_EQ(code_of(24, 4, 77), ErrorCode::unsupported); // kind
+    EXPECT_EQ(code_of(28, 4, 1), ErrorCode::unsupported);  // required feature
+    EXPECT_EQ(code_of(16, 8, 77), ErrorCode::malformed);   // length
+    EXPECT_EQ(static_cast<int>(ErrorCode::malformed), 5);
+    EXPECT_EQ(static_cast<int>(ErrorCode::unsupported), 6);
+}
+
+TEST(Versions, otherKindsLoad) {
+    const Bytes file = shared_local().encode();
+    File loaded;
+    ASSERT_TRUE(File::from_memory(file.data(), file.size(), loaded).ok());
+    EXPECT_EQ(loaded.kind(), ACDF_KIND_LOCAL);
+    EXPECT_EQ(loaded.description().axis_count, 3u);
+    EXPECT_EQ(loaded.axis(2).role, static_cast<std::uint32_t>(ACDF_AXIS_INDEXED));
+}
+
+// ---- memory ---------------------------------------------------------------------------------------------
+
+bool inside(const void* p, const Exact& bytes) {
+    const auto* q = static_cast<const std::uint8_t*>(p);
+    return q >= bytes.data() && q < bytes.data() + bytes.size();
+}
+
+TEST(Memory, usedInPlaceWhereAligned) {
+    const Bytes bytes = complete_environment().encode();
+    for (std::size_t shift = 0; shift <= 16; ++shift) {
+        const Exact exact(bytes, shift);
+        File file;
+        ASSERT_TRUE(File::from_memory(exact.data(), exact.size(), file).ok());
+        EXPECT_EQ(inside(file.tree(), exact), shift % 8 == 0) << shift;
+        EXPECT_EQ(inside(&file.header(), exact), shift % 8 == 0) << shift;
+        EXPECT_EQ(file.tree_units(), 18u);
+        EXPECT_EQ(file.size(), bytes.size());
+        EXPECT_EQ(std::memcmp(&file.header(), bytes.data(), bytes.size()), 0);
+        EXPECT_TRUE(findings(bytes).rules.empty());
+        EXPECT_TRUE(acdf::validate(exact.data(), exact.size(), [](const acdf::Finding&) {}).valid());
+    }
+}
+
+// Children in 300 segments of a curve of 301: more than a byte can count.
+EnvironmentSpec wide_preorder() {
+    EnvironmentSpec spec;
+    spec.columns = 301;
+    spec.rows = 4000;
+    std::vector<std::uint32_t> columns;
+    for (std::uint32_t i = 1; i < 301; ++i) columns.push_back(i);
+    CurveSpec root = even_curve(0, columns);
+    root.link_bytes = 2;
+    root.children.assign(301, -1);
+    spec.tree.curves.clear();
+    for (int i = 0; i < 300; ++i) root.children[static_cast<std::size_t>(300 - i)] = i + 1;
+    spec.tree.curves.push_back(root);
+    for (std::uint32_t i = 0; i < 300; ++i) spec.tree.curves.push_back(even_curve(1, {7 * i + 3, 9 * i + 1000}));
+    return spec;
+}
+
+TEST(Memory, planesAreTheSame) {
+    for (const EnvironmentSpec& spec : {preorder_environment(), chain(64), chain(1), wide_preorder()}) {
+        EnvironmentSpec same = spec;
+        const Bytes plain = same.encode(), packed = as_planes(spec).encode();
+        File a, b;
+        const Status plain_status = File::from_memory(plain.data(), plain.size(), a);
+        const Status status = File::from_memory(packed.data(), packed.size(), b);
+        ASSERT_TRUE(plain_status.ok()) << plain_status.message;
+        ASSERT_TRUE(status.ok()) << status.message;
+        EXPECT_TRUE(findings(packed).rules.empty()) << findings(packed).text;
+        ASSERT_EQ(a.tree_units(), b.tree_units());
+        EXPECT_EQ(std::memcmp(a.tree(), b.tree(), 2 * a.tree_units()), 0);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(b.tree()) % 64, 0u);
+    }
+}
+
+TEST(Damage, planesWithAFlippedBitAreRefused) {
+    const Bytes file = as_planes(preorder_environment()).encode();
+    for (std::size_t bit = 0; bit < 8 * file.size(); ++bit) {
+        Bytes damaged = file;
+        damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ 1u << bit % 8);
+        ASSERT_FALSE(load(damaged).ok()) << bit;
+    }
+}
+
+TEST(Memory, compressedIsTheSame) {
+    for (std::uint32_t seed = 0; seed < 20; ++seed) {
+        EnvironmentSpec spec = RandomTree(seed, {}).make();
+        spec.metadata = {{"key", std::string(3000, 'v')}};
+        const Bytes plain = spec.encode();
+        spec.zlib = true;
+        const Bytes packed = spec.encode();
+        File a, b;
+        ASSERT_TRUE(File::from_memory(plain.data(), plain.size(), a).ok());
+        ASSERT_TRUE(File::from_memory(packed.data(), packed.size(), b).ok());
+        ASSERT_EQ(a.tree_units(), b.tree_units());
+        EXPECT_EQ(std::memcmp(a.tree(), b.tree(), 2 * a.tree_units()), 0);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(b.tree()) % 64, 0u);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(&b.description()) % 64, 0u);
+        EXPECT_EQ(b.metadata("key").size, 3000u);
+        EXPECT_EQ(b.environment().data().root, a.environment().data().root);
+        for (double u : {0.1, 0.5, 0.9}) {
+            const auto s = a.environment().sample(u, 1 - u), t = b.environment().sample(u, 1 - u);
+            EXPECT_EQ(std::memcmp(&s, &t, sizeof s), 0);
+        }
+    }
+}
+
+TEST(Memory, filesMove) {
+    const Bytes bytes = compressed().encode();
+    File a;
+    EXPECT_TRUE(a.empty());
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), a).ok());
+    const acdf::EnvironmentView view = a.environment();
+    const auto before = view.sample(0.3, 0.7);
+    File b = std::move(a);
+    EXPECT_TRUE(a.empty()); // NOLINT: that is the test
+    File c;
+    c = std::move(b);
+    EXPECT_TRUE(b.empty()); // NOLINT
+    File& same = c;
+    c = std::move(same);
+    ASSERT_FALSE(c.empty());
+    const auto after = view.sample(0.3, 0.7); // the view's bytes moved along
+    EXPECT_EQ(std::memcmp(&before, &after, sizeof before), 0);
+    const Bytes bad = {1, 2, 3};
+    EXPECT_FALSE(File::from_memory(bad.data(), bad.size(), c).ok());
+    EXPECT_TRUE(c.empty()) << "a failed load leaves nothing behind";
+}
+
+TEST(Memory, limitsHold) {
+    const Bytes plain = complete_environment().encode(), packed = compressed().encode();
+    acdf::Limits limits;
+    limits.max_file_bytes = plain.size();
+    EXPECT_TRUE(load(plain, limits).ok());
+    limits.max_file_bytes = plain.size() - 1;
+    EXPECT_EQ(load(plain, limits).rule, 1004);
+    EXPECT_EQ(findings(plain, limits).rules, std::multiset<int>{1004});
+    limits = {};
+    limits.max_inflated_bytes = 0;
+    EXPECT_TRUE(load(plain, limits).ok()); // nothing to inflate
+    EXPECT_EQ(load(packed, limits).rule, 3012);
+    std::uint64_t raw = 0;
+    for (std::size_t i = 0; i < 4; ++i) raw += get(packed, chunk_at(i) + 32, 8);
+    limits.max_inflated_bytes = raw - 1;
+    EXPECT_EQ(load(packed, limits).code, ErrorCode::limit_exceeded);
+    limits.max_inflated_bytes = raw;
+    EXPECT_TRUE(load(packed, limits).ok());
+}
+
+// ---- contents -------------------------------------------------------------------------------------------
+
+std::string text(acdf::Text t) { return {t.data ? t.data : "", t.size}; }
+
+TEST(Contents, metadata) {
+    const Bytes bytes = complete_environment().encode();
+    File file;
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    ASSERT_EQ(file.metadata_count(), 2u);
+    acdf::Text key, value;
+    file.metadata(1, key, value);
+    EXPECT_EQ(text(key), "source.name");
+    EXPECT_EQ(text(value), "härbour.exr");
+    file.metadata(2, key, value);
+    EXPECT_EQ(text(key), "");
+    EXPECT_EQ(text(file.metadata("tool")), "test 1");
+    EXPECT_EQ(file.metadata("too").data, nullptr);
+    const Bytes none = EnvironmentSpec().encode();
+    ASSERT_TRUE(File::from_memory(none.data(), none.size(), file).ok());
+    EXPECT_EQ(file.metadata_count(), 0u);
+    EXPECT_EQ(file.metadata("tool").data, nullptr);
+}
+
+TEST(Contents, fields) {
+    EnvironmentSpec spec = complete_environment();
+    spec.total = 12.5;
+    const Bytes bytes = spec.encode();
+    File file;
+    ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    EXPECT_EQ(file.kind(), ACDF_KIND_ENVIRONMENT);
+    EXPECT_EQ(file.description().fit, static_cast<std::uint32_t>(ACDF_FIT_VARIANCE));
+    EXPECT_EQ(file.description().channel_weights[1], 0.7152);
+    EXPECT_EQ(file.axis(1).resolution, 8u);
+    EXPECT_EQ(file.bin(0).root, 0u);
+    EXPECT_EQ(file.bin(0).share, 1.0f);
+    EXPECT_EQ(file.environment().total(), 12.5);
+}
+
+// ---- files ----------------------------------------------------------------------------------------------
+
+class Open : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = std::filesystem::path(testing::TempDir()) /
+                  ("acdf_open_" + std::to_string(getpid()) +
+                   testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string write(const std::string& name, const Bytes& bytes) const {
+        std::ofstream(path(name), std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return path(name);
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(Open, aFileIsReadWhole) {
+    for (const Bytes& bytes : {complete_environment().encode(), compressed().encode()}) {
+        File file;
+        const Status status = File::open(write("a.acdf", bytes).c_str(), file);
+        ASSERT_TRUE(status.ok()) << status.message;
+        EXPECT_EQ(status.rule, 0);
+        EXPECT_EQ(file.size(), bytes.size());
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(&file.header()) % 64, 0u);
+        EXPECT_EQ(std::memcmp(&file.header(), bytes.data(), bytes.size()), 0);
+        EXPECT_EQ(text(file.metadata("tool")), "test 1");
+    }
+}
+
+TEST_F(Open, aBrokenFileIsNamed) {
+    File file;
+    const std::string name = write("broken.acdf", truncated(complete_environment().encode(), 300));
+    const Status status = File::open(name.c_str(), file);
+    EXPECT_EQ(status.rule, 2005);
+    EXPECT_TRUE(file.empty());
+    const std::string message = status.message;
+    EXPECT_NE(message.find("broken.acdf: truncated: 300 bytes of"), std::string::npos) << message;
+}
+
+TEST_F(Open, messagesAreOneLineOfText) {
+    File file;
+    std::string name = "evil\nname\x1b[2J-";
+    for (int i = 0; i < 50; ++i) name += "ä";
+    const Status status = File::open(write(name, {1, 2, 3}).c_str(), file);
+    EXPECT_EQ(status.rule, 2002);
+    for (const char* c = status.message; *c; ++c) EXPECT_GE(static_cast<unsigned char>(*c), 0x20);
+    EXPECT_NE(std::strstr(status.message, "ää: this is not"), nullptr) << status.message;
+    std::string folder = "missing";
+    for (int i = 0; i < 100; ++i) folder += "/ä";
+    EXPECT_EQ(File::open(folder.c_str(), file).rule, 1001);
+}
+
+TEST_F(Open, rule1001) {
+    File file;
+    const Status status = File::open(path("missing.acdf").c_str(), file);
+    EXPECT_EQ(status.code, ErrorCode::cannot_open);
+    EXPECT_EQ(status.rule, 1001);
+    EXPECT_NE(std::strstr(status.message, "missing.acdf: No such file"), nullptr) << status.message;
+    EXPECT_EQ(File::open(nullptr, file).rule, 1001);
+    EXPECT_EQ(File::open("", file).rule, 1001);
+}
+
+TEST_F(Open, rule1002) {
+    File file;
+    Status status = File::open(folder_.c_str(), file);
+    EXPECT_EQ(status.code, ErrorCode::cannot_read);
+    EXPECT_EQ(status.rule, 1002);
+    EXPECT_NE(std::strstr(status.message, "directory"), nullptr) << status.message;
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    status = File::open(path("pipe").c_str(), file); // and does not wait for a writer
+    EXPECT_EQ(status.rule, 1002) << status.message;
+    EXPECT_EQ(File::open("/dev/zero", file).rule, 1002);
+}
+
+TEST_F(Open, rule1003) {
+#ifdef ACDF_TEST_ASAN
+    GTEST_SKIP() << "AddressSanitizer needs the address space that this test takes away";
+#else
+    const std::string big = write("big.acdf", {});
+    std::filesystem::resize_file(big, std::uintmax_t{2} << 30); // sparse: it is never read
+    const auto open_with_little_memory = [&] {
+        const rlimit limit = {512u << 20, 512u << 20};
+        if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(2);
+        File file;
+        const Status status = File::open(big.c_str(), file);
+        _exit(status.rule == 1003 && status.code == ErrorCode::out_of_memory && file.empty() ? 0 : 1);
+    };
+    EXPECT_EXIT(open_with_little_memory(), testing::ExitedWithCode(0), "");
+#endif
+}
+
+TEST_F(Open, rule1004) {
+    File file;
+    const std::string big = write("big.acdf", {});
+    std::filesystem::resize_file(big, (std::uintmax_t{4} << 30) + 1); // the default limit and a byte; sparse
+    const Status status = File::open(big.c_str(), file);
+    EXPECT_EQ(status.code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(status.rule, 1004) << status.message;
+}
+
+} // namespace

@@ -1,0 +1,65 @@
+// Loading and validating bytes from memory that is exactly as long as they are, so that a sanitizer sees the
+// first byte read beyond.
+#pragma once
+
+#include "tests/lib/reader/builder.h"
+
+#include <check.h>
+
+#include <cstdlib>
+#include <memory>
+#include <set>
+#include <sstream>
+
+namespace acdf_test {
+
+/// A heap copy of exact size, at `shift` bytes from an aligned address.
+class Exact {
+public:
+    explicit Exact(const Bytes& bytes, std::size_t shift = 0)
+        : block_(static_cast<std::uint8_t*>(std::malloc(bytes.size() + shift))), shift_(shift),
+          size_(bytes.size()) {
+        if (!bytes.empty()) std::memcpy(block_ + shift, bytes.data(), bytes.size());
+    }
+    ~Exact() { std::free(block_); }
+    Exact(const Exact&) = delete;
+    Exact& operator=(const Exact&) = delete;
+
+    const std::uint8_t* data() const { return block_ + shift_; }
+    std::size_t size() const { return size_; }
+
+private:
+    std::uint8_t* block_;
+    std::size_t shift_, size_;
+};
+
+/// Loads and forgets.
+inline acdf::Status load(const Bytes& bytes, const acdf::Limits& limits = {}) {
+    const Exact exact(bytes);
+    acdf::File file;
+    return acdf::File::from_memory(exact.data(), exact.size(), file, limits);
+}
+
+struct Findings {
+    std::multiset<int> rules;
+    std::string text; ///< one line each
+    std::uint64_t last_offset = 0;
+};
+
+inline Findings findings(const Bytes& bytes, const acdf::Limits& limits = {}) {
+    const Exact exact(bytes);
+    Findings out;
+    std::ostringstream text;
+    acdf::validate(
+        exact.data(), exact.size(),
+        [&](const acdf::Finding& finding) {
+            out.rules.insert(finding.rule->number);
+            out.last_offset = finding.offset;
+            text << finding.rule->number << " at " << finding.offset << ": " << finding.detail << '\n';
+        },
+        limits);
+    out.text = text.str();
+    return out;
+}
+
+} // namespace acdf_test

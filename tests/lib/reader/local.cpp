@@ -1,0 +1,330 @@
+// acdf/local.h against a decoder written from the specification, on files of which no fit would think.
+#include "tests/lib/reader/load.h"
+#include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/local_reference.h"
+
+#include <acdf/acdf.h>
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace acdf_test;
+
+extern "C" void acdf_c_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1,
+                                    AcdfDirectionSample* out);
+
+namespace {
+
+using acdf_reference::Local;
+
+// Files of both parameterizations: the first `latlong_count` are lat-long, the others octahedral.
+constexpr std::uint32_t latlong_count = 80, file_count = 2 * latlong_count;
+
+struct Loaded {
+    Bytes bytes;
+    acdf::File file;
+
+    explicit Loaded(LocalSpec spec) : bytes(spec.encode()) {
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        EXPECT_TRUE(status.ok()) << status.message;
+    }
+    acdf::LocalEnvironmentView view() const { return file.local(); }
+};
+
+LocalSpec random_local(std::uint32_t seed, bool tilts) {
+    RandomOptions options;
+    options.columns = seed % 3 == 0 ? 1 + seed : seed % 3 == 1 ? 64 : 5000;
+    options.rows = seed % 4 == 0 ? 33 : 1 + 7 * seed;
+    options.depth = 3 + static_cast<int>(seed % 3);
+    options.tilts = tilts;
+    options.long_curves = false;
+    options.octahedral = seed >= latlong_count;
+    LocalSpec spec = RandomLocal(seed, options).make();
+    spec.zlib = seed % 5 == 0;
+    return spec;
+}
+
+double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
+
+struct Normal {
+    float n[3];
+    Local::Vector exact() const { return {double{n[0]}, double{n[1]}, double{n[2]}}; }
+};
+
+// Anywhere, of any length, and where bins meet: on the axes, on edges of the octahedron, in its corners.
+Normal random_normal(std::mt19937_64& rng) {
+    const auto step = [&] { return static_cast<float>(static_cast<int>(rng() % 7) - 3); };
+    switch (rng() % 4) {
+    case 0: {
+        Normal n{{step(), step(), step()}};
+        if (n.n[0] == 0.0f && n.n[1] == 0.0f && n.n[2] == 0.0f) n.n[rng() % 3] = 1.0f;
+        return n;
+    }
+    case 1:
+        return {{static_cast<float>(unit(rng) - 0.5), 0.0f, static_cast<float>(unit(rng) - 0.5)}};
+    default: {
+        const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), length = std::exp(20 * unit(rng) - 10);
+        const double sine = std::sqrt(1 - z * z);
+        return {{static_cast<float>(length * sine * std::cos(phi)),
+                 static_cast<float>(length * sine * std::sin(phi)), static_cast<float>(length * z)}};
+    }
+    }
+}
+
+TEST(LocalView, agreesWithTheSlowDecoder) {
+    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+        const Loaded loaded(random_local(seed, seed % 2 == 0));
+        const Local reference(loaded.bytes);
+        const acdf::LocalEnvironmentView view = loaded.view();
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 400; ++i) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
+            const Normal normal = random_normal(rng);
+            const double u0 = unit(rng), u1 = unit(rng), sigma = reference.sigma;
+            const Local::Source source = reference.source(normal.exact());
+            const acdf::DirectionSample s = view.sample(normal.n, u0, u1);
+            const double d[3] = {s.direction[0], s.direction[1], s.direction[2]};
+            ASSERT_EQ(s.pdf > 0.0f, source.what != Local::Source::nothing);
+            if (s.pdf == 0.0f) continue;
+            if (u0 < sigma) {
+                ASSERT_NEAR(s.pdf / reference.pdf(normal.exact(), d), 1.0, 1e-5);
+                continue;
+            }
+            const auto expected = reference.sample_light(source, sigma > 0 ? (u0 - sigma) / (1 - sigma) : u0, u1);
+            for (int k = 0; k < 3; ++k) ASSERT_NEAR(d[k], expected.direction[k], 3e-7);
+            const auto n = normal.exact();
+            const double cosine = (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]) / std::hypot(n[0], n[1], n[2]);
+            const double pdf = (1 - sigma) * expected.pdf + sigma * std::max(0.0, cosine) / M_PI;
+            ASSERT_NEAR(s.pdf / pdf, 1.0, 1e-5);
+        }
+        for (int i = 0; i < 400; ++i) { // directions anywhere, dark ones too
+            const Normal normal = random_normal(rng);
+            const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), sine = std::sqrt(1 - z * z);
+            const float f[3] = {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)),
+                                static_cast<float>(z)};
+            const double expected = reference.pdf(normal.exact(), {double{f[0]}, double{f[1]}, double{f[2]}});
+            ASSERT_NEAR(view.pdf(normal.n, f), expected, 1e-5 * expected) << seed << ' ' << i;
+        }
+    }
+}
+
+// To the bit, cosine share or not, for normals and random numbers of every kind.
+TEST(LocalView, pdfOfASampleIsExact) {
+    const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000};
+    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+        const Loaded loaded(random_local(seed, false));
+        const acdf::LocalEnvironmentView view = loaded.view();
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 2000; ++i) {
+            const Normal n = random_normal(rng);
+            const double u0 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
+            const double u1 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
+            const acdf::DirectionSample s = view.sample(n.n, u0, u1);
+            ASSERT_TRUE(std::isfinite(s.pdf));
+            if (s.pdf == 0.0f) continue;
+            ASSERT_EQ(view.pdf(n.n, s.direction), s.pdf) << "seed " << seed << ", sample " << i;
+            ASSERT_NEAR(std::hypot(s.direction[0], s.direction[1], s.direction[2]), 1.0, 1e-6);
+        }
+    }
+}
+
+// Of the bins' own weights, the sum that the specification asks for: the corners add up to the normal.
+TEST(NormalBins, cornersAddUpToTheNormal) {
+    for (std::uint32_t n : {1u, 2u, 3u, 7u, 64u, 1023u, 1024u}) {
+        std::vector<std::array<double, 3>> corners(4 * std::size_t{n} * n + 2);
+        const int s = static_cast<int>(n);
+        std::size_t numbered = 0;
+        for (int x = -s; x <= s; ++x)
+            for (int y = std::abs(x) - s; y <= s - std::abs(x); ++y)
+                for (int sign : {1, -1}) {
+                    const int z = sign * (s - std::abs(x) - std::abs(y));
+                    if (sign < 0 && z == 0) continue;
+                    const std::uint32_t bin = acdf_octahedral_corner(n, x, y, z);
+                    ASSERT_LT(bin, corners.size());
+                    ASSERT_EQ(bin, Local::corner(n, x, y, z));
+                    corners[bin] = {double(x), double(y), double(z)};
+                    ++numbered;
+                }
+        ASSERT_EQ(numbered, corners.size());
+        std::mt19937_64 rng(n);
+        for (int i = 0; i < 3000; ++i) {
+            const Normal normal = random_normal(rng);
+            AcdfNormalBins bins;
+            ASSERT_TRUE(acdf_octahedral_bins(n, normal.n, &bins));
+            ASSERT_GE(bins.count, 1);
+            ASSERT_LE(bins.count, 3);
+            const auto exact = normal.exact();
+            const double norm = std::fabs(exact[0]) + std::fabs(exact[1]) + std::fabs(exact[2]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                double sum = 0.0;
+                for (int b = 0; b < bins.count; ++b) {
+                    const auto& c = corners[bins.bin[b]];
+                    ASSERT_GT(bins.weight[b], 0.0);
+                    sum += bins.weight[b] * c[k] / std::hypot(c[0], c[1], c[2]);
+                }
+                ASSERT_NEAR(sum, n * exact[k] / norm, 1e-12 * n) << n << ' ' << i;
+            }
+        }
+    }
+}
+
+TEST(NormalBins, everyCornerServesItself) {
+    constexpr std::uint32_t n = 5;
+    std::set<std::uint32_t> seen;
+    for (int x = -5; x <= 5; ++x)
+        for (int y = -5; y <= 5; ++y)
+            for (int z = -5; z <= 5; ++z) {
+                if (std::abs(x) + std::abs(y) + std::abs(z) != 5) continue;
+                const float normal[3] = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+                AcdfNormalBins bins;
+                ASSERT_TRUE(acdf_octahedral_bins(n, normal, &bins));
+                EXPECT_EQ(bins.count, 1);
+                EXPECT_EQ(bins.bin[0], acdf_octahedral_corner(n, x, y, z));
+                EXPECT_DOUBLE_EQ(bins.weight[0], std::sqrt(double(x * x + y * y + z * z)));
+                EXPECT_TRUE(seen.insert(bins.bin[0]).second);
+            }
+    EXPECT_EQ(seen.size(), 102u);
+}
+
+TEST(LocalView, normalsThatAreNoneHaveNoDensity) {
+    const Loaded shared(lit_local()), separate(separate_local());
+    const float up[3] = {0.0f, 0.0f, 1.0f}, nan = std::nanf(""), inf = HUGE_VALF;
+    const float bad[][3] = {{0, 0, 0},   {-0.0f, 0, 0}, {nan, 0, 1},   {0, nan, 1},
+                            {1, 0, nan}, {inf, 0, 1},   {0, -inf, inf}};
+    for (const Loaded* loaded : {&shared, &separate})
+        for (const auto& normal : bad) {
+            const acdf::LocalEnvironmentView view = loaded->view();
+            EXPECT_EQ(view.pdf(normal, up), 0.0f);
+            EXPECT_EQ(view.sample(normal, 0.5, 0.5).pdf, 0.0f);
+            EXPECT_EQ(view.sample(normal, 0.1, 0.5).pdf, 0.0f);
+            EXPECT_EQ(view.irradiance(normal), 0.0);
+            EXPECT_FALSE(view.stored(normal));
+        }
+}
+
+TEST(LocalView, directionsThatAreNoneHaveNoDensity) {
+    LocalSpec spec = lit_local();
+    for (float cosine : {0.0f, 0.5f}) {
+        spec.cosine_share = cosine;
+        const Loaded loaded(spec);
+        const float up[3] = {0.1f, 0.2f, 1.0f}, nan = std::nanf("");
+        const float nans[][3] = {{nan, 0, 0}, {0, 0, nan}, {1, nan, 0}};
+        for (const auto& d : nans) EXPECT_EQ(loaded.view().pdf(up, d), 0.0f);
+        const float bad[][3] = {{0, 0, 0}, {0, 0, 2}, {0, 0, 0.99f}, {HUGE_VALF, 0, 0}};
+        for (const auto& d : bad) EXPECT_EQ(loaded.view().pdf(up, d), 0.0f);
+    }
+}
+
+TEST(LocalView, whatIsStoredIsTold) {
+    const Loaded shared(shared_local()); // corners 0 +z, 1 +x, 2 +y, 3 -x (not stored), 4 -y, 5 -z
+    const auto stored = [&](float x, float y, float z) {
+        const float n[3] = {x, y, z};
+        return shared.view().stored(n);
+    };
+    EXPECT_TRUE(stored(0, 0, 1));
+    EXPECT_TRUE(stored(1, 2, -3));
+    EXPECT_TRUE(stored(0, 1, 1)); // -x is not among its corners
+    EXPECT_FALSE(stored(-1, 0, 0));
+    EXPECT_FALSE(stored(-1e-3f, 1, 1));
+    const float back[3] = {-1, 0, 0};
+    EXPECT_EQ(shared.view().irradiance(back), shared.file.description().total);
+    std::mt19937_64 rng(1);
+    for (int i = 0; i < 200; ++i) { // there it is the environment itself
+        const double u0 = unit(rng), u1 = unit(rng);
+        const auto a = shared.view().sample(back, u0, u1), b = shared.view().environment().sample(u0, u1);
+        EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+    }
+}
+
+// By hand: at +x row 1 rules, of codes 200 and 255: columns [0, 3) have 200/255 of all, the rest is in tile 1.
+TEST(LocalView, handMadeDensities) {
+    LocalSpec spec = shared_local();
+    spec.tile_curves.clear(); // all tiles are cells
+    spec.tree = {{CurveSpec{}}, {}};
+    const Loaded loaded(spec);
+    const float x[3] = {7.0f, 0.0f, 0.0f};
+    const auto at = [&](double column, double row) { // positions
+        const double phi = pi - 2 * pi * column / 8, theta = pi * row / 8;
+        const float d[3] = {static_cast<float>(std::sin(theta) * std::cos(phi)),
+                            static_cast<float>(std::sin(theta) * std::sin(phi)),
+                            static_cast<float>(std::cos(theta))};
+        return static_cast<double>(loaded.view().pdf(x, d));
+    };
+    const double left = 200.0 / 255.0 / (2 * pi * 3 / 8 * 2);
+    const double above = 55.0 / 255.0 / (2 * pi * 5 / 8 * (1 - std::cos(pi / 4)));
+    EXPECT_NEAR(at(0.5, 1.5) / left, 1.0, 1e-6);
+    EXPECT_NEAR(at(2.9, 7.5) / left, 1.0, 1e-6);
+    EXPECT_NEAR(at(3.1, 1.9) / above, 1.0, 1e-6);
+    EXPECT_NEAR(at(7.9, 0.1) / above, 1.0, 1e-6);
+    EXPECT_EQ(at(7.9, 2.1), 0.0);
+    EXPECT_NEAR(loaded.view().irradiance(x), 3.0 * 0.25, 1e-6);
+    const float xy[3] = {1.0f, 1.0f, 0.0f}; // halfway to +y: E = (E(+x) + E(+y)) / sqrt(2)
+    EXPECT_NEAR(loaded.view().irradiance(xy), 3.0 * (0.25 + 0.125) / std::sqrt(2.0), 1e-6);
+}
+
+// A light's part of the samples by hand: half of its flux above the horizon where its middle is on it.
+TEST(LocalView, handMadeLight) {
+    LocalSpec spec = lit_local();
+    spec.lights[0].radius = 0.1f;
+    spec.lights[0].share = 2.0f;
+    const Loaded loaded(spec);
+    const double h[] = {0.8, 0.05, 0.0, -0.05, -0.1, -0.2};
+    const double weight[] = {1.6, 2 * 0.15 * 0.15 / 0.4, 2 * 0.1 * 0.1 / 0.4, 2 * 0.05 * 0.05 / 0.4, 0.0, 0.0};
+    for (std::size_t i = 0; i < std::size(h); ++i) {
+        // The light is at (0.6, 0, 0.8); (0.8, 0, -0.6) is at right angles to it.
+        const double c = std::sqrt(1 - h[i] * h[i]);
+        const float n[3] = {static_cast<float>(0.6 * h[i] + 0.8 * c), 0.0f,
+                            static_cast<float>(0.8 * h[i] - 0.6 * c)};
+        AcdfLocalPoint source;
+        acdf_local_at(&loaded.view().data(), n, &source);
+        EXPECT_NEAR(source.lights / source.length, weight[i], 1e-6) << h[i];
+        int lit = 0;
+        for (int k = 0; k < 10000; ++k) {
+            const auto s = loaded.view().sample(n, (k + 0.5) / 10000, 0.5);
+            std::uint32_t square[2] = {8, 8};
+            double column = 0.0;
+            acdf_sphere_square(8, 8, s.direction, square, &column);
+            lit += square[0] >= 3 && square[1] < 2;
+        }
+        EXPECT_NEAR(lit / 10000.0, source.lights / source.sum, 2e-4) << h[i];
+    }
+}
+
+TEST(LocalView, compiledAsCIsTheSame) {
+    for (std::uint32_t seed = 0; seed < 8; ++seed) {
+        const Loaded loaded(random_local(seed, true));
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 300; ++i) {
+            const Normal n = random_normal(rng);
+            const double u0 = unit(rng), u1 = unit(rng);
+            const auto a = loaded.view().sample(n.n, u0, u1);
+            AcdfDirectionSample b;
+            acdf_c_local_sample(&loaded.view().data(), n.n, u0, u1, &b);
+            EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+        }
+    }
+}
+
+TEST(LocalView, throughTheCInterface) {
+    Bytes bytes = lit_local().encode();
+    AcdfFile* file = acdf_from_memory(bytes.data(), bytes.size(), nullptr);
+    ASSERT_NE(file, nullptr);
+    AcdfLocal local;
+    AcdfEnvironment environment;
+    ASSERT_TRUE(acdf_local(file, &local));
+    EXPECT_FALSE(acdf_environment(file, &environment));
+    const Loaded same(lit_local());
+    const float n[3] = {1.0f, 0.5f, 2.0f};
+    const auto a = same.view().sample(n, 0.3, 0.7), b = acdf_local_sample(&local, n, 0.3, 0.7);
+    EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+    acdf_close(file);
+    bytes = complete_environment().encode();
+    file = acdf_from_memory(bytes.data(), bytes.size(), nullptr);
+    ASSERT_NE(file, nullptr);
+    EXPECT_FALSE(acdf_local(file, &local));
+    acdf_close(file);
+}
+
+} // namespace

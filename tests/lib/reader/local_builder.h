@@ -1,0 +1,157 @@
+// Writes files of kind 2 from format/SPEC.md alone. It checks nothing, so that tests can write broken files too.
+#pragma once
+
+#include "tests/lib/reader/files.h"
+
+namespace acdf_test {
+
+constexpr std::uint32_t tile_flag = 0x8000, no_root = 0xFFFFFFFF;
+
+struct SplitSpec {
+    std::uint32_t axis, position;
+    std::uint32_t child[2]; ///< a split, or tile_flag | a tile
+};
+
+struct LightSpec {
+    float direction[3] = {0.6f, 0.0f, 0.8f};
+    float radius = 2.0f, share = 0.25f;
+    std::uint32_t tile = 0;
+    std::array<std::uint32_t, 2> low{}, high{};
+};
+
+/// A local environment. Bins have rows where there are tiles, else trees.
+struct LocalSpec {
+    std::uint32_t columns = 8, rows = 8;
+    std::uint32_t subdivisions = 1;              ///< 0: lat-long bins
+    std::uint32_t bin_columns = 0, bin_rows = 0; ///< of these
+    TreeSpec tree;                               ///< curve 0 is the root of the environment
+    std::uint32_t tiles = 0;                     ///< 0: bins share nothing
+    std::vector<SplitSpec> splits;               ///< tiles - 1
+    std::vector<int> tile_curves;                ///< empty, or one a tile: its first curve, -1: it is a cell
+    std::vector<std::uint16_t> codebook;         ///< 256
+    std::vector<Bytes> codes;                    ///< rows of one byte a split
+    std::vector<BinSpec> bins;                   ///< root: the row, or a curve of `tree`; no_root: not stored
+    std::vector<LightSpec> lights;
+    float cosine_share = 0.0f;
+    double total = 3.0;
+    bool zlib = false;
+    bool octahedral = false; ///< axes u and v
+
+    DescriptionSpec description() const {
+        DescriptionSpec d;
+        d.axes[0].resolution = columns;
+        d.axes[1].resolution = rows;
+        d.total = total;
+        if (octahedral) d.make_octahedral();
+        d.bin_count = static_cast<std::uint32_t>(bins.size());
+        const std::uint32_t corners = 4 * subdivisions * subdivisions + 2;
+        if (subdivisions > 0) {
+            d.axes.push_back({"normal", 1, 0, corners, 0.0, double(corners)});
+        } else {
+            d.axes.push_back({"normal theta", 1, 0, bin_rows, 0.0, pi});
+            d.axes.push_back({"normal phi", 1, 0, bin_columns, pi, -pi});
+        }
+        return d;
+    }
+
+    Bytes tile_chunk() const {
+        Bytes out;
+        for (std::size_t v : {std::size_t{tiles}, tile_curves.size(), codes.size(), std::size_t{0}})
+            put32(out, static_cast<std::uint32_t>(v));
+        for (std::uint16_t v : codebook) put16(out, v);
+        for (const SplitSpec& split : splits) {
+            put32(out, split.axis | split.position << 3);
+            for (std::uint32_t child : split.child) put16(out, child);
+        }
+        for (int curve : tile_curves)
+            put32(out, curve < 0 ? no_root : tree.starts[static_cast<std::size_t>(curve)]);
+        return out;
+    }
+
+    Bytes row_chunk() const {
+        Bytes out;
+        for (const Bytes& row : codes) out.insert(out.end(), row.begin(), row.end());
+        return out;
+    }
+
+    Bytes local_chunk() const {
+        Bytes out;
+        put_float(out, cosine_share);
+        put32(out, static_cast<std::uint32_t>(lights.size()));
+        for (const LightSpec& light : lights) {
+            for (float x : light.direction) put_float(out, x);
+            put_float(out, light.radius);
+            put_float(out, light.share);
+            put32(out, light.tile);
+            for (std::uint32_t v : light.low) put32(out, v);
+            for (std::uint32_t v : light.high) put32(out, v);
+        }
+        return out;
+    }
+
+    FileSpec file() {
+        const Bytes curves = tree.encode();
+        std::vector<BinSpec> stored = bins;
+        for (BinSpec& bin : stored)
+            if (tiles == 0 && bin.root != no_root) bin.root = tree.starts[bin.root];
+        FileSpec file;
+        file.kind = 2;
+        file.chunks = {{"DESC", description().encode(), 1, zlib},
+                       {"BINS", acdf_test::encode(stored), 1, zlib},
+                       {"TREE", curves, 1, zlib}};
+        if (tiles > 0) {
+            file.chunks.push_back({"TILE", tile_chunk(), 1, zlib});
+            file.chunks.push_back({"ROWS", row_chunk(), 1, zlib});
+        }
+        file.chunks.push_back({"LOCL", local_chunk(), 1, zlib});
+        return file;
+    }
+    Bytes encode() { return file().encode(); }
+};
+
+/// Codes and probabilities in proportion.
+inline std::vector<std::uint16_t> even_codebook() {
+    std::vector<std::uint16_t> out;
+    for (int i = 0; i < 256; ++i) out.push_back(static_cast<std::uint16_t>(257 * i));
+    return out;
+}
+
+/// The six corners of the octahedron and three tiles of the curves of complete_environment:
+///   tile 0 columns [0, 3), curve 1; tile 1 columns [3, 8) x rows [0, 2), a cell; tile 2 rows [2, 8) of those,
+///   curve 2.
+inline LocalSpec shared_local() {
+    LocalSpec spec;
+    spec.tree = complete_environment().tree;
+    spec.tiles = 3;
+    spec.splits = {{0, 3, {tile_flag, 1}}, {1, 2, {tile_flag | 1, tile_flag | 2}}};
+    spec.tile_curves = {1, -1, 2};
+    spec.codebook = even_codebook();
+    spec.codes = {{100, 30}, {200, 255}};
+    spec.bins = {{0, 0.5f}, {1, 0.25f}, {0, 0.125f}, {no_root, 0.0f}, {1, 0.5f}, {0, 0.75f}};
+    return spec;
+}
+
+/// Tile 1 as a light: no row may give it anything.
+inline LocalSpec lit_local() {
+    LocalSpec spec = shared_local();
+    spec.codes = {{100, 0}, {255, 77}}; // at the last split; at the one above it
+    spec.lights.resize(1);
+    spec.lights[0].tile = 1;
+    spec.lights[0].low = {3, 0};
+    spec.lights[0].high = {8, 2};
+    return spec;
+}
+
+/// Without tiles: bins of a lat-long grid of 3 x 2.
+inline LocalSpec separate_local() {
+    LocalSpec spec;
+    spec.tree = complete_environment().tree;
+    spec.subdivisions = 0;
+    spec.bin_columns = 3;
+    spec.bin_rows = 2;
+    spec.bins = {{1, 0.5f}, {2, 0.25f}, {no_root, 0.0f}, {0, 0.125f}, {1, 0.0f}, {2, 0.75f}};
+    spec.cosine_share = 0.25f;
+    return spec;
+}
+
+} // namespace acdf_test

@@ -1,0 +1,347 @@
+// acdf batch as a user runs it: resume, failures, refusals, shards, Ninja.
+#include "tests/tools/batch/files.h"
+#include "tests/tools/run.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cctype>
+#include <csignal>
+#include <map>
+#include <random>
+#include <thread>
+
+namespace acdf::test {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+using Files = std::map<std::string, std::string>;
+
+/// All files in a folder and below, by name.
+Files files_in(const std::string& folder) {
+    Files files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file())
+            files[entry.path().lexically_relative(folder).string()] = read_text(entry.path());
+    return files;
+}
+
+class BatchCommand : public testing::Test {
+protected:
+    Folder folder;
+    const std::string probes = folder / "probes", out = folder / "out", manifest = folder / "library.jsonl";
+
+    Result batch(std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "batch");
+        arguments.insert(arguments.end(), {"-o", out});
+        return run_acdf(arguments);
+    }
+
+    json report(std::vector<std::string> arguments, int code = 0) {
+        arguments.push_back("--json");
+        const Result result = batch(arguments);
+        EXPECT_EQ(result.code, code) << result.err;
+        messages = result.err;
+        return json::parse(result.out, nullptr, false);
+    }
+    std::string messages;
+
+    /// A manifest of these lines is refused, with `what` on a line of its own, and nothing is written.
+    void expect_refused(const std::string& lines, const std::string& what) {
+        write_text(manifest, lines);
+        const Result result = batch({manifest});
+        EXPECT_EQ(result.code, 1) << what;
+        EXPECT_NE(result.err.find(what), std::string::npos) << what << " is not in: " << result.err;
+        EXPECT_NE(result.err.find("nothing was started"), std::string::npos) << result.err;
+        EXPECT_FALSE(fs::exists(out));
+    }
+};
+
+TEST_F(BatchCommand, MakesTheSameBytesAsTheSubcommands) {
+    write_small_probes(probes + "/sub", 2);
+    const json all =
+        report({probes, "--kind", "env,local", "--set", "env.cells=50", "--set", "local.budget=12KiB"});
+    EXPECT_EQ(all["done"], 4);
+    EXPECT_EQ(files_in(out).size(), 4u);
+    const std::string probe = probes + "/sub/probe001.pfm", one = folder / "one.acdf";
+    ASSERT_EQ(run_acdf({"env", probe, "-o", one, "--cells", "50"}).code, 0);
+    EXPECT_EQ(read_text(out + "/sub/probe001.acdf"), read_text(one));
+    ASSERT_EQ(run_acdf({"local", probe, "-o", one, "--budget", "12288", "--force"}).code, 0);
+    EXPECT_EQ(read_text(out + "/sub/probe001.local.acdf"), read_text(one));
+    for (const json& job : all["jobs"]) {
+        EXPECT_EQ(job["bytes"], fs::file_size(out + "/" + job["output"].get<std::string>()));
+        EXPECT_GT(job["relative_variance"], 0.0);
+        EXPECT_GE(job["seconds"], 0.0);
+        EXPECT_TRUE(job["error"].is_null());
+    }
+}
+
+TEST_F(BatchCommand, SkipsWhatIsUpToDateAndTellsWhyTheRestIsNot) {
+    write_small_probes(probes, 6);
+    const std::vector<std::string> run = {probes, "--set", "env.cells=40"};
+    EXPECT_EQ(report(run)["done"], 6);
+    EXPECT_EQ(report(run)["up_to_date"], 6);
+
+    write_small_probe(probes + "/probe000.pfm", 99);           // another source
+    fs::rename(probes + "/probe001.pfm", probes + "/new.pfm"); // another name
+    fs::resize_file(out + "/probe002.acdf", 600);              // cut short
+    std::string bytes = read_text(out + "/probe003.acdf");
+    bytes[bytes.size() / 2] ^= 1;
+    write_text(out + "/probe003.acdf", bytes); // damaged
+    ASSERT_EQ(run_acdf({"env", probes + "/probe004.pfm", "-o", out + "/probe004.acdf", "-f", "--cells", "41"}).code,
+              0);
+
+    std::vector<std::string> dry = run;
+    dry.push_back("--dry-run");
+    std::map<std::string, std::string> reasons;
+    for (const json& job : report(dry)) reasons[job["output"]] = job["reason"];
+    EXPECT_EQ(reasons["probe000.acdf"], "its source changed");
+    EXPECT_EQ(reasons["new.acdf"], "new");
+    EXPECT_NE(reasons["probe002.acdf"].find("not valid"), std::string::npos) << reasons["probe002.acdf"];
+    EXPECT_NE(reasons["probe003.acdf"].find("not valid"), std::string::npos) << reasons["probe003.acdf"];
+    EXPECT_EQ(reasons["probe004.acdf"], "its options changed from --cells 41");
+    EXPECT_EQ(reasons["probe005.acdf"], "up to date");
+
+    const json again = report(run);
+    EXPECT_EQ(again["done"], 5);
+    EXPECT_EQ(again["up_to_date"], 1);
+    for (const json& job : again["jobs"]) EXPECT_GT(job["relative_variance"], 0.0) << "also of what was skipped";
+    std::vector<std::string> forced = run;
+    forced.push_back("--force");
+    EXPECT_EQ(report(forced)["done"], 6);
+}
+
+TEST_F(BatchCommand, OptionsAreComparedAsMeantNotAsSpelled) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    EXPECT_EQ(report({probes, "--set", "env.budget=2KiB"})["done"], 1);
+    EXPECT_EQ(report({probes, "--set", "env.budget=2048"})["up_to_date"], 1);
+    for (const char* other : {"env.filter=bilinear", "env.channel=rgb", "env.compress=zlib",
+                              "env.projection=latlong", "env.max-weight=50", "env.bad-pixels=clamp"}) {
+        const std::vector<std::string> run = {probes, "--set", "env.budget=2048", "--set", other};
+        EXPECT_EQ(report(run)["done"], 1) << other;
+        EXPECT_EQ(report(run)["up_to_date"], 1) << other;
+    }
+    const std::vector<std::string> local = {probes, "--kind", "local", "--set", "local.budget=12KiB"};
+    EXPECT_EQ(report(local)["done"], 1);
+    EXPECT_EQ(report(local)["up_to_date"], 1);
+    for (const char* other : {"local.normals=3", "local.tiles=9", "local.cosine-share=0.2"}) {
+        std::vector<std::string> run = local;
+        run.insert(run.end(), {"--set", other});
+        EXPECT_EQ(report(run)["done"], 1) << other;
+        EXPECT_EQ(report(run)["up_to_date"], 1) << other;
+    }
+}
+
+TEST_F(BatchCommand, AChangedSceneIsAnotherOption) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    write_text(folder / "scene.txt", "0 0 1\n0 1 0\n");
+    write_text(manifest, "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", "
+                         "\"options\": {\"budget\": \"12KiB\", \"scene\": \"scene.txt\"}}\n");
+    EXPECT_EQ(report({manifest})["done"], 1);
+    EXPECT_EQ(report({manifest})["up_to_date"], 1);
+    write_text(folder / "scene.txt", "0 0 1\n1 0 0\n");
+    EXPECT_EQ(report({manifest})["done"], 1);
+}
+
+TEST_F(BatchCommand, GoesOnPastFailures) {
+    write_small_probes(probes, 3);
+    write_text(probes + "/broken.exr", "no image");
+    fs::resize_file(probes + "/probe001.pfm", 200);
+    write_text(manifest,
+               "{\"source\": \"lambert\", \"options\": {\"views\": 4, \"budget\": \"16KiB\"}}\n"
+               "{\"source\": \"probes/probe000.pfm\", \"options\": {\"budget\": 100}, \"output\": \"b.acdf\"}\n");
+    const json all = report({probes, manifest}, 1);
+    EXPECT_EQ(all["done"], 3);
+    EXPECT_EQ(all["failed"], 3);
+    EXPECT_EQ(lines_in(messages), 3u) << messages;
+    for (const char* part : {"broken.exr: ", "probe001.pfm: ", "out of reach"})
+        EXPECT_NE(messages.find(part), std::string::npos) << messages;
+    EXPECT_EQ(files_in(out).size(), 3u) << "and no litter";
+}
+
+TEST_F(BatchCommand, KeepsWithinMemory) {
+    write_small_probes(probes, 2);
+    write_small_probe(probes + "/large.pfm", 1, 400);
+    const json all = report({probes, "--memory", "17MiB", "--set", "env.cells=50"}, 1);
+    EXPECT_EQ(all["done"], 2);
+    EXPECT_EQ(all["failed"], 1);
+    EXPECT_NE(messages.find("large.pfm: needs about"), std::string::npos) << messages;
+}
+
+TEST_F(BatchCommand, FilesAreTheSameForAnyThreadsAndJobs) {
+    write_small_probes(probes, 5, 16);
+    const std::vector<std::string> run = {probes, "--kind", "env,local", "--set", "local.budget=12KiB", "--force"};
+    Files expected;
+    for (const auto& [threads, jobs] : {std::pair{"1", "1"}, {"4", "1"}, {"3", "3"}, {"2", "7"}}) {
+        std::vector<std::string> arguments = run;
+        arguments.insert(arguments.end(), {"--threads", threads, "--jobs", jobs});
+        EXPECT_EQ(report(arguments)["done"], 10);
+        EXPECT_EQ(messages, "");
+        if (expected.empty()) expected = files_in(out);
+        else EXPECT_EQ(files_in(out), expected) << threads << " threads, " << jobs << " jobs";
+    }
+}
+
+TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    const std::string good = "{\"source\": \"probes/a.pfm\"}\n", at2 = manifest + ":2: ";
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"colour\": 1}\n", at2 + "has an unknown key 'colour'");
+    expect_refused(good + "{\"source\": []}\n", at2 + "'source' is to be a text");
+    expect_refused(good + good, at2 + "writes a.acdf, as does " + manifest + ":1");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"./a.acdf\"}\n", at2 + "writes a.acdf");
+    expect_refused(good + "{\"source\": \"probes/b.pfm\"}\n", at2 + "there is no file");
+    expect_refused(good + "{\"source\": \"probes\"}\n", at2);
+    expect_refused(good + "{\"source\": \"\xff\"}\n", at2 + "is not UTF-8");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"../a.acdf\"}\n", at2);
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"a.acdf/b.acdf\"}\n", at2);
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", \"options\": {\"cell\": 5}}\n",
+                   at2 + "options of env: ");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", \"options\": {\"threads\": 5}}\n",
+                   at2 + "options of env: ");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", "
+                          "\"options\": {\"cells\": 5, \"budget\": \"1KiB\"}}\n",
+                   at2 + "options of env: ");
+    expect_refused("\n", "has no jobs");
+}
+
+TEST_F(BatchCommand, TellsTheOneWrongLineOfHundredThousand) {
+    fs::create_directory(probes);
+    write_small_probe(probes + "/a.pfm", 1);
+    std::string text;
+    for (int i = 1; i <= 100000; ++i)
+        text += "{\"source\":\"probes/a.pfm\",\"output\":\"" + std::to_string(i == 99999 ? 5 : i) + ".acdf\"}\n";
+    expect_refused(text, manifest + ":99999: writes 5.acdf, as does " + manifest + ":5");
+}
+
+TEST_F(BatchCommand, OutputsDoNotFollowLinksOut) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    fs::create_directory(out);
+    fs::create_directory(folder / "elsewhere");
+    fs::create_directory_symlink(folder / "elsewhere", out + "/link");
+    fs::create_symlink(folder / "elsewhere/new", out + "/file.acdf");
+    for (const char* name : {"link/a.acdf", "file.acdf"}) {
+        write_text(manifest, std::string("{\"source\": \"probes/a.pfm\", \"output\": \"") + name + "\"}\n");
+        const Result result = batch({manifest});
+        EXPECT_EQ(result.code, 1);
+        EXPECT_NE(result.err.find("symbolic link"), std::string::npos) << result.err;
+    }
+    EXPECT_TRUE(fs::is_empty(folder / "elsewhere"));
+}
+
+TEST_F(BatchCommand, DoesNotReplaceFilesThatAreNotItsOwn) {
+    write_small_probes(probes, 2);
+    fs::create_directory(out);
+    write_text(out + "/probe001.acdf", "my notes");
+    const Result result = batch({probes});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find("is no .acdf file"), std::string::npos) << result.err;
+    EXPECT_EQ(files_in(out).size(), 1u);
+    EXPECT_EQ(batch({probes, "--force"}).code, 0);
+    EXPECT_EQ(files_in(out).size(), 2u);
+}
+
+TEST_F(BatchCommand, TwoSourcesOfOneOutputAreRefused) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    fs::copy_file(probes + "/a.pfm", probes + "/a.hdr");
+    const Result result = batch({probes});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find("a.pfm: writes a.acdf, as does"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(out));
+    EXPECT_EQ(batch({probes + "/*.pfm"}).code, 0) << "a glob";
+    EXPECT_EQ(batch({probes + "/*.png"}).code, 1);
+}
+
+TEST_F(BatchCommand, WrongUsageIsTold) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{probes, "--shard", "0/3"},
+                                                  {probes, "--shard", "slurm"},
+                                                  {probes, "--memory", "much"},
+                                                  {probes, "--set", "env.colour=1"},
+                                                  {probes, "--set", "env"},
+                                                  {probes, "--kind", "brdf"},
+                                                  {probes, "--emit", "make"},
+                                                  {probes, "--emit", "ninja", "--json"},
+                                                  {}}) {
+        const Result result = batch(wrong);
+        EXPECT_EQ(result.code, 2) << result.err;
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+    }
+}
+
+TEST_F(BatchCommand, ShardsTogetherAreTheWholeAndReportsMerge) {
+    write_small_probes(probes, 9);
+    std::vector<std::string> merge = {"batch", "--merge-reports", "--json"};
+    for (const char* shard : {"1/3", "2/3", "3/3"}) {
+        const std::string path = folder / ("report" + std::string(1, shard[0]) + ".json");
+        write_text(path, report({probes, "--set", "env.cells=40", "--shard", shard}).dump());
+        merge.push_back(path);
+    }
+    EXPECT_EQ(report({probes, "--set", "env.cells=40"})["up_to_date"], 9);
+    const Result whole = run_acdf(merge);
+    EXPECT_EQ(whole.code, 0) << whole.err;
+    EXPECT_EQ(json::parse(whole.out)["done"], 9);
+    merge.pop_back();
+    const Result part = run_acdf(merge);
+    EXPECT_EQ(part.code, 1);
+    EXPECT_NE(part.err.find("shard 3/3 has no report"), std::string::npos) << part.err;
+}
+
+TEST_F(BatchCommand, KilledAtAnyTimeItEndsWithTheSameBytes) {
+    write_small_probes(probes, 200);
+    const std::vector<std::string> run = {probes,           "--kind", "env,local",         "--set",
+                                          "env.cells=40",   "--set",  "local.budget=8KiB", "--set",
+                                          "local.normals=2"};
+    std::vector<std::string> arguments = run;
+    arguments.insert(arguments.begin(), "batch");
+    const auto with_output = [&](const std::string& path) {
+        std::vector<std::string> all = arguments;
+        all.insert(all.end(), {"-o", path, "--quiet"});
+        return all;
+    };
+    ASSERT_EQ(run_acdf(with_output(folder / "undisturbed")).code, 0);
+
+    std::mt19937 random(2005);
+    const std::size_t jobs = 400;
+    for (int kill_number = 1; kill_number <= 5; ++kill_number) {
+        const pid_t pid = start_acdf(with_output(out), "/dev/null", folder / "stdout", folder / "stderr");
+        ASSERT_GT(pid, 0);
+        // By progress, not by the clock: after some share of the files that are still missing.
+        std::size_t at_most = 60 * static_cast<std::size_t>(kill_number) + random() % 40;
+        while (true) {
+            std::size_t made = 0;
+            std::error_code ignored;
+            for (fs::directory_iterator i(out, ignored), end; !ignored && i != end; i.increment(ignored)) ++made;
+            if (made >= at_most) break;
+            ASSERT_EQ(kill(pid, 0), 0);
+            std::this_thread::sleep_for(std::chrono::microseconds(200 + random() % 2000));
+        }
+        kill(pid, SIGKILL);
+        ASSERT_EQ(wait_for(pid), 128 + SIGKILL) << "it ended before it was killed";
+        EXPECT_LT(files_in(out).size(), jobs + 50);
+    }
+    // What a kill leaves behind, made certain.
+    write_text(out + "/.acdf-aB3xY9.acdf", "half a file");
+    const Result last = run_acdf(with_output(out));
+    ASSERT_EQ(last.code, 0) << last.err;
+    const Files files = files_in(out), expected = files_in(folder / "undisturbed");
+    EXPECT_EQ(files.size(), jobs);
+    EXPECT_TRUE(files == expected);
+}
+
+TEST_F(BatchCommand, TheBuildFileQuotesWhatItMust) {
+    const std::string odd = probes + "/it's a $kind: sky";
+    write_small_probes(odd, 1);
+    const Result result = batch({probes, "--emit", "ninja", "--set", "env.cells=40"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const std::string text = read_text(out + "/build.ninja");
+    EXPECT_NE(text.find("build it's$ a$ $$kind$:$ sky/probe000.acdf: convert "), std::string::npos) << text;
+    EXPECT_NE(text.find("'\\''s a $$kind: sky/probe000.pfm'"), std::string::npos) << text;
+    write_text(out + "/build.ninja", "rule mine\n");
+    EXPECT_EQ(batch({probes, "--emit", "ninja"}).code, 1);
+    EXPECT_EQ(batch({probes, "--emit", "ninja", "--force"}).code, 0);
+}
+
+} // namespace
+} // namespace acdf::test

@@ -1,0 +1,165 @@
+// acdf brdf and what else reads its files, as a user calls them.
+#include "tests/tools/run.h"
+
+#include <acdf/reader.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <sstream>
+
+using namespace acdf::test;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A small file of a model, made once.
+const std::string& small_file() {
+    static const Folder folder;
+    static const std::string path = folder / "ggx.acdf";
+    static const Result made = run_acdf({"brdf", "ggx:alpha=0.4", "-o", path, "--budget", "12KiB", "--json"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_LT(Json::parse(made.out).at("relative_variance").get<double>(), 0.02);
+    EXPECT_LE(Json::parse(made.out).at("bytes").get<std::size_t>(), 12u << 10);
+    return path;
+}
+
+TEST(BrdfCommand, fileIsValidAndTellsWhatItIs) {
+    EXPECT_EQ(run_acdf({"validate", small_file()}).code, 0);
+    const Json info = Json::parse(run_acdf({"info", "--json", small_file()}).out);
+    EXPECT_EQ(info.at("kind"), "brdf");
+    EXPECT_EQ(info.at("axes").size(), 4u);
+    EXPECT_EQ(info.at("source").at("name"), "ggx:alpha=0.4");
+    EXPECT_GT(info.at("cells").get<int>(), 100);
+    EXPECT_EQ(info.at("axes")[2].at("resolution"), info.at("bins"));
+}
+
+TEST(BrdfCommand, measureComparesWithOtherSamplers) {
+    const Result measured = run_acdf({"measure", small_file(), "--against", "ggx:alpha=0.4", "--json"});
+    ASSERT_EQ(measured.code, 0) << measured.err;
+    const Json j = Json::parse(measured.out);
+    for (const char* key : {"relative_variance", "relative_variance_median", "relative_variance_worst",
+                            "relative_variance_full_cdf", "rms_pdf_error", "kl_divergence", "max_weight",
+                            "support_violations", "bytes", "cells", "bins", "share_above_horizon"})
+        EXPECT_TRUE(j.contains(key)) << key;
+    EXPECT_EQ(j.at("support_violations"), 0);
+    EXPECT_EQ(j.at("views"), 64);
+    EXPECT_LT(j.at("relative_variance").get<double>(), 0.1 * j.at("relative_variance_cosine").get<double>());
+    EXPECT_LE(j.at("relative_variance_median"), j.at("relative_variance_worst"));
+    EXPECT_GT(j.at("share_above_horizon").get<double>(), 0.98);
+}
+
+TEST(BrdfCommand, plotsAView) {
+    const Folder folder;
+    const Result plotted =
+        run_acdf({"plot", small_file(), "-o", folder / "a.png", "--view", "60,30", "--width", "128"});
+    ASSERT_EQ(plotted.code, 0) << plotted.err;
+    EXPECT_GT(read_text(folder / "a.png").size(), 1000u);
+    EXPECT_EQ(run_acdf({"plot", small_file(), "-o", folder / "b.png", "--view", "95"}).code, 2);
+    EXPECT_EQ(run_acdf({"plot", small_file(), "-o", folder / "b.png", "--view", "10,"}).code, 2);
+    write_bytes(folder / "sky.acdf", small_environment());
+    EXPECT_EQ(run_acdf({"plot", folder / "sky.acdf", "-o", folder / "b.png", "--view", "10"}).code, 2);
+}
+
+TEST(BrdfCommand, samplesAndDensitiesAreThoseOfTheReader) {
+    acdf::File file;
+    ASSERT_TRUE(acdf::File::open(small_file().c_str(), file).ok());
+    const Result drawn = run_acdf({"sample", small_file(), "-n", "40", "--view", "50,20", "--sequence", "sobol"});
+    ASSERT_EQ(drawn.code, 0) << drawn.err;
+    const Result densities = run_acdf({"pdf", small_file(), "--view", "50,20"}, drawn.out);
+    ASSERT_EQ(densities.code, 0) << densities.err;
+    const double degree = std::acos(-1.0) / 180.0;
+    const float wo[3] = {static_cast<float>(std::sin(50 * degree) * std::cos(20 * degree)),
+                         static_cast<float>(std::sin(50 * degree) * std::sin(20 * degree)),
+                         static_cast<float>(std::cos(50 * degree))};
+    std::istringstream samples(drawn.out), pdfs(densities.out);
+    std::string line;
+    std::getline(samples, line);
+    EXPECT_EQ(line, "u0,u1,x,y,z,pdf");
+    int count = 0;
+    for (; std::getline(samples, line); ++count) {
+        double u0, u1, x, y, z, pdf, evaluated;
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", &u0, &u1, &x, &y, &z, &pdf), 6) << line;
+        const acdf::DirectionSample s = file.brdf().sample(wo, u0, u1);
+        EXPECT_EQ(static_cast<float>(x), s.direction[0]);
+        EXPECT_EQ(static_cast<float>(pdf), s.pdf);
+        ASSERT_TRUE(pdfs >> evaluated);
+        EXPECT_EQ(static_cast<float>(evaluated), s.pdf);
+    }
+    EXPECT_EQ(count, 40);
+    EXPECT_EQ(run_acdf({"sample", small_file(), "-n", "1"}).code, 1);
+    EXPECT_EQ(run_acdf({"sample", small_file(), "-n", "1", "--view", "90"}).code, 2);
+    EXPECT_EQ(run_acdf({"pdf", small_file(), "--normal", "0,0,1"}, "0 0 1\n").code, 1);
+}
+
+/// A BRDF of 6 x 8 x 12 x 16 (theta_o, phi_o, theta_h, phi_h): a highlight of other widths along x and y.
+std::string anisotropic_npy() {
+    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (6, 8, 12, 16), }";
+    header.resize(117, ' ');
+    header += '\n';
+    std::string bytes = std::string("\x93NUMPY\x01\x00", 8) + std::string("\x76\x00", 2) + header;
+    for (int view = 0; view < 6 * 8; ++view)
+        for (int i = 0; i < 12; ++i)
+            for (int k = 0; k < 16; ++k) {
+                const double theta = (i + 0.5) / 12 * 1.5708, phi = (k + 0.5) / 16 * 6.2832, t = std::tan(theta);
+                const double x = t * std::cos(phi) / 0.5, y = t * std::sin(phi) / 0.2;
+                const auto value = static_cast<float>(0.05 + 2.0 * std::exp(-x * x - y * y));
+                bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+            }
+    return bytes;
+}
+
+TEST(BrdfCommand, anisotropicTablesAreFollowed) {
+    const Folder folder;
+    write_text(folder / "a.npy", anisotropic_npy());
+    const Result made = run_acdf({"brdf", folder / "a.npy", "-o", folder / "a.acdf", "--views", "8x8", "--budget",
+                                  "128KiB", "--json", "-q"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Json report = Json::parse(made.out);
+    EXPECT_LT(report.at("relative_variance").get<double>(), 0.05);
+    acdf::File file;
+    ASSERT_TRUE(acdf::File::open((folder / "a.acdf").c_str(), file).ok());
+    EXPECT_EQ(file.axis(3).resolution, 8u);
+    const float up[3] = {0.0f, 0.0f, 1.0f};
+    const float along[3] = {std::sin(0.6f), 0.0f, std::cos(0.6f)},
+                across[3] = {0.0f, std::sin(0.6f), std::cos(0.6f)};
+    EXPECT_GT(file.brdf().pdf(up, along), 1.5f * file.brdf().pdf(up, across)); // the highlight is wider along x
+}
+
+TEST(BrdfCommand, sameInputGivesTheSameBytes) {
+    const Folder folder;
+    for (const char* name : {"a.acdf", "b.acdf"})
+        ASSERT_EQ(run_acdf({"brdf", "lambert", "-o", folder / name, "--cells", "64", "--views", "6"}).code, 0);
+    EXPECT_EQ(read_text(folder / "a.acdf"), read_text(folder / "b.acdf"));
+}
+
+TEST(BrdfCommand, mistakesAreToldInOneLine) {
+    const Folder folder;
+    const std::string out = folder / "out.acdf";
+    write_text(folder / "bad.binary", "not a BRDF");
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"brdf", folder / "bad.binary", "-o", out},
+          {"brdf", folder / "missing.bsdf", "-o", out},
+          {"brdf", "ggx:alpha=nothing", "-o", out},
+          {"brdf", "ggx:alpha=0.4", "-o", out, "--budget", "900"}}) {
+        const Result result = run_acdf(arguments);
+        EXPECT_EQ(result.code, 1) << arguments[1];
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+    }
+    for (const std::vector<std::string>& more : {std::vector<std::string>{"--views", "1"},
+                                                 {"--views", "8x2"},
+                                                 {"--views", "eight"},
+                                                 {"--fit", "cdf", "--budget", "64KiB"},
+                                                 {"--knots", "10x30"},
+                                                 {"--cells", "64", "--budget", "64KiB"},
+                                                 {"--diffuse-floor", "1"}}) {
+        std::vector<std::string> arguments{"brdf", "lambert", "-o", out};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_EQ(run_acdf(arguments).code, 2) << more[0] << " " << more[1];
+    }
+    EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+} // namespace

@@ -1,0 +1,309 @@
+// The acdf program from outside: exit codes, messages, and what each command prints.
+#include "tests/tools/run.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <sstream>
+
+using namespace acdf::test;
+using nlohmann::json;
+
+namespace {
+
+class Commands : public testing::Test {
+protected:
+    Folder folder;
+    std::string sky = folder / "sky.acdf";
+    void SetUp() override { write_bytes(sky, small_environment()); }
+};
+
+// What `acdf --help` lists, so that no new command goes untested.
+std::vector<std::string> command_names() {
+    std::vector<std::string> names;
+    std::istringstream lines(run_acdf({"--help"}).out);
+    for (std::string line; std::getline(lines, line);)
+        if (line.size() > 4 && line.substr(0, 2) == "  " && std::islower(static_cast<unsigned char>(line[2])))
+            names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    return names;
+}
+
+void expect_one_line_error(const Result& result, int code, const std::string& part) {
+    EXPECT_EQ(result.code, code) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+    EXPECT_EQ(result.err.rfind("acdf", 0), 0u) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+}
+
+std::vector<std::vector<double>> numbers_in(const std::string& csv, bool header) {
+    std::vector<std::vector<double>> rows;
+    std::istringstream in(csv);
+    std::string line, field;
+    if (header) std::getline(in, line);
+    while (std::getline(in, line)) {
+        rows.emplace_back();
+        for (std::istringstream fields(line); std::getline(fields, field, ',');)
+            rows.back().push_back(std::stod(field));
+    }
+    return rows;
+}
+
+// ---- the program ---------------------------------------------------------------------------------------
+
+TEST_F(Commands, HelpOfEveryCommandHasExamplesAndExitCodes) {
+    for (const std::string& name : command_names()) {
+        const Result result = run_acdf({name, "--help"});
+        EXPECT_EQ(result.code, 0) << name;
+        EXPECT_EQ(result.err, "") << name;
+        EXPECT_NE(result.out.find("Usage: acdf " + name), std::string::npos) << result.out;
+        EXPECT_NE(result.out.find("Examples:\n  "), std::string::npos) << name;
+        EXPECT_NE(result.out.find("acdf " + name + " "), std::string::npos) << name;
+        EXPECT_NE(result.out.find("Exit codes: 0 done, 1 "), std::string::npos) << name;
+        std::istringstream lines(result.out);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << name << ": " << line;
+    }
+}
+
+TEST_F(Commands, HelpOfTheProgramListsEveryCommand) {
+    const Result result = run_acdf({"--help"});
+    EXPECT_EQ(result.code, 0);
+    for (const char* name :
+         {"env", "local", "brdf", "table", "info", "validate", "measure", "sample", "pdf", "plot", "demo"})
+        EXPECT_NE(result.out.find(std::string("\n  ") + name + " "), std::string::npos) << result.out;
+}
+
+TEST_F(Commands, VersionNamesProgramAndFormat) {
+    const Result result = run_acdf({"--version"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(result.out, "acdf " ACDF_VERSION "\nformat 1.0\n");
+}
+
+TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {
+    expect_one_line_error(run_acdf({"--no-such-option"}), 2, "--no-such-option");
+    expect_one_line_error(run_acdf({"no-such-command"}), 2, "no-such-command");
+    expect_one_line_error(run_acdf({"sample", sky, "-n", "many"}), 2, "many");
+    expect_one_line_error(run_acdf({"sample", sky, "-n", "0"}), 2, "acdf sample --help");
+    expect_one_line_error(run_acdf({"sample", sky, "-n", "-1"}), 2, "acdf sample --help");
+    expect_one_line_error(run_acdf({"sample", sky}), 2, "--count");
+    expect_one_line_error(run_acdf({"sample", sky, "-n", "1", "--sequence", "halton"}), 2, "halton");
+    for (const std::string& name : command_names())
+        expect_one_line_error(run_acdf({name, "--no-such-option"}), 2, "acdf " + name + " --help");
+    for (const std::string name : {"info", "validate", "sample", "pdf"}) {
+        expect_one_line_error(run_acdf({name}), 2, "FILE");
+    }
+    const Result nothing = run_acdf({});
+    EXPECT_EQ(nothing.code, 2);
+    EXPECT_NE(nothing.err.find("Usage: acdf"), std::string::npos);
+}
+
+TEST_F(Commands, UnreadableInputIsExitCode1AndOneLine) {
+    const std::string missing = folder / "missing.acdf", text = folder / "text.acdf";
+    write_text(text, "no acdf file at all, but long enough to hold a header of sixty-four bytes\n");
+    const std::vector<std::vector<std::string>> commands = {
+        {"info", missing}, {"validate", missing}, {"sample", missing, "-n", "1"}, {"pdf", missing}};
+    for (const auto& command : commands) expect_one_line_error(run_acdf(command), 1, missing + ": ");
+    for (auto command : commands) {
+        if (command[0] == "validate") continue;
+        command[1] = text;
+        expect_one_line_error(run_acdf(command), 1, text + ": ");
+    }
+    for (auto command : commands) {
+        command[1] = folder / ".";
+        expect_one_line_error(run_acdf(command), 1, "is a folder");
+    }
+}
+
+TEST_F(Commands, FullDiskIsAnError) {
+    if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "this system has no /dev/full";
+    const Result result = run_acdf({"sample", sky, "-n", "10", "-o", "/dev/full"});
+    expect_one_line_error(result, 1, "No space left");
+    EXPECT_EQ(wait_for(start_acdf({"info", sky}, "/dev/null", "/dev/full", "/dev/null")), 1);
+}
+
+// ---- info ----------------------------------------------------------------------------------------------
+
+TEST_F(Commands, InfoAsJson) {
+    const Result result = run_acdf({"info", "--json", sky});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const json report = json::parse(result.out);
+    EXPECT_EQ(report["kind"], "environment");
+    EXPECT_EQ(report["version"], "1.0");
+    EXPECT_EQ(report["bytes"], small_environment().size());
+    EXPECT_EQ(report["bins"], 1);
+    EXPECT_EQ(report["cells"], 3);
+    EXPECT_EQ(report["curves"], 2);
+    EXPECT_EQ(report["fit"], "variance");
+    EXPECT_EQ(report["filter"], "nearest");
+    EXPECT_EQ(report["parameterization"], "latlong");
+    EXPECT_EQ(report["total"], 2.5);
+    EXPECT_EQ(report["channel_weights"], (json{0.2126, 0.7152, 0.0722}));
+    ASSERT_EQ(report["axes"].size(), 2u);
+    EXPECT_EQ(report["axes"][0]["resolution"], 8);
+    EXPECT_EQ(report["axes"][0]["role"], "sampled");
+    EXPECT_EQ(report["axes"][1]["resolution"], 4);
+    EXPECT_EQ(report["axes"][1]["measure"], "cosine");
+    EXPECT_EQ(report["source"]["name"], "sky.exr");
+    EXPECT_EQ(report["tool"], "acdf test");
+    EXPECT_EQ(report["options"], "--cells 3");
+    EXPECT_EQ(report["accuracy"]["relative_variance"], 0.125);
+    std::set<std::string> types;
+    for (const json& chunk : report["chunks"]) {
+        types.insert(chunk["type"]);
+        EXPECT_EQ(chunk["offset"].get<int>() % 64, 0);
+        EXPECT_EQ(chunk["stored"], chunk["raw"]);
+    }
+    EXPECT_EQ(types, (std::set<std::string>{"DESC", "BINS", "TREE", "META"}));
+}
+
+TEST_F(Commands, InfoOfSeveralFilesIsAnArrayAndABadOneIsTold) {
+    const Result good = run_acdf({"info", sky, sky, "--json"});
+    EXPECT_EQ(good.code, 0);
+    EXPECT_EQ(json::parse(good.out).size(), 2u);
+    const Result mixed = run_acdf({"info", sky, folder / "missing", "--json"});
+    EXPECT_EQ(mixed.code, 1);
+    EXPECT_EQ(lines_in(mixed.err), 1u);
+    EXPECT_EQ(json::parse(mixed.out).size(), 1u);
+}
+
+TEST_F(Commands, InfoForPeopleAndFromStdin) {
+    const std::string bytes = read_text(sky);
+    const Result result = run_acdf({"info", "-"}, bytes);
+    ASSERT_EQ(result.code, 0) << result.err;
+    for (const char* part :
+         {"environment", "format 1.0", "3 cells in 2 curves", "sky.exr", "relative_variance", "0.125"})
+        EXPECT_NE(result.out.find(part), std::string::npos) << part << " in:\n" << result.out;
+}
+
+// ---- validate ------------------------------------------------------------------------------------------
+
+TEST_F(Commands, ValidateAcceptsAndRefuses) {
+    const Result good = run_acdf({"validate", sky});
+    EXPECT_EQ(good.code, 0) << good.out << good.err;
+    EXPECT_EQ(good.out, sky + ": valid\n");
+    EXPECT_EQ(run_acdf({"validate", "--quiet", sky}).out, "");
+
+    std::string bytes = read_text(sky);
+    bytes[44] = static_cast<char>(bytes[44] ^ 1); // header.reserved: breaks the checksum and the reserved rule
+    bytes.back() = 1;                             // padding
+    write_text(folder / "bad.acdf", bytes);
+    const Result bad = run_acdf({"validate", folder / "bad.acdf"});
+    EXPECT_EQ(bad.code, 3);
+    EXPECT_NE(bad.out.find("error 2004"), std::string::npos) << bad.out;
+    EXPECT_NE(bad.out.find("error 2008"), std::string::npos) << bad.out;
+
+    const Result report = run_acdf({"validate", "--json", folder / "bad.acdf"});
+    EXPECT_EQ(report.code, 3);
+    const json parsed = json::parse(report.out);
+    EXPECT_EQ(parsed["valid"], false);
+    EXPECT_EQ(parsed["errors"], parsed["findings"].size());
+    std::set<int> rules;
+    for (const json& finding : parsed["findings"]) {
+        rules.insert(finding["rule"].get<int>());
+        EXPECT_EQ(finding["severity"], "error");
+        EXPECT_LT(finding["offset"].get<std::size_t>(), bytes.size());
+        EXPECT_FALSE(finding["detail"].get<std::string>().empty());
+    }
+    EXPECT_TRUE(rules.count(2004) && rules.count(2008)) << report.out;
+}
+
+TEST_F(Commands, ValidateTellsFaultsFromUnreadableFiles) {
+    write_text(folder / "empty", "");
+    EXPECT_EQ(run_acdf({"validate", sky, folder / "empty"}).code, 3);
+    EXPECT_EQ(run_acdf({"validate", folder / "empty", folder / "missing"}).code, 1);
+}
+
+// ---- sample --------------------------------------------------------------------------------------------
+
+TEST_F(Commands, SampleWritesUnitDirectionsInEverySequence) {
+    for (const std::string sequence : {"random", "stratified", "sobol"}) {
+        const Result result = run_acdf({"sample", sky, "-n", "100", "--sequence", sequence});
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(result.out.rfind("u0,u1,x,y,z,pdf\n", 0), 0u);
+        const auto rows = numbers_in(result.out, true);
+        ASSERT_EQ(rows.size(), 100u);
+        int upper = 0;
+        for (const auto& row : rows) {
+            ASSERT_EQ(row.size(), 6u);
+            EXPECT_TRUE(row[0] >= 0 && row[0] < 1 && row[1] >= 0 && row[1] < 1);
+            EXPECT_NEAR(std::hypot(row[2], row[3], row[4]), 1.0, 1e-6);
+            EXPECT_GT(row[5], 0.0);
+            upper += row[4] > 0;
+        }
+        // 75 expected: stratified and sobol points cannot stray, random ones by 4 standard deviations.
+        EXPECT_NEAR(upper, 75, sequence == "random" ? 18 : 2) << sequence;
+    }
+}
+
+TEST_F(Commands, SampleIsTheSameOnEveryMachine) {
+    const auto head = [this](std::vector<std::string> more) {
+        std::vector<std::string> arguments = {"sample", sky, "-n", "2"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return numbers_in(run_acdf(arguments).out, true);
+    };
+    // The first outputs of std::mt19937_64(1), as the standard fixes them, times 2^-64 to 53 bits.
+    const auto random = head({"--seed", "1"});
+    ASSERT_EQ(random.size(), 2u);
+    EXPECT_EQ(random[0][0], static_cast<double>(2469588189546311528u >> 11) * 0x1p-53);
+    EXPECT_EQ(random[0][1], static_cast<double>(2516265689700432462u >> 11) * 0x1p-53);
+    EXPECT_NE(head({"--seed", "2"}), random);
+    const auto sobol = head({"--sequence", "sobol"});
+    EXPECT_EQ(sobol[0][0], 0.0);
+    EXPECT_EQ(sobol[1][0], 0.5);
+    EXPECT_EQ(sobol[1][1], 0.5);
+    EXPECT_NE(head({"--sequence", "sobol", "--seed", "1"}), sobol);
+}
+
+// ---- pdf -----------------------------------------------------------------------------------------------
+
+TEST_F(Commands, PdfOfSamplesIsTheirDensity) {
+    const Result samples = run_acdf({"sample", sky, "-n", "200", "--seed", "7"});
+    const Result densities = run_acdf({"pdf", sky}, samples.out);
+    ASSERT_EQ(densities.code, 0) << densities.err;
+    const auto rows = numbers_in(samples.out, true), pdfs = numbers_in(densities.out, false);
+    ASSERT_EQ(pdfs.size(), rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_NEAR(pdfs[i][0], rows[i][5], 1e-6 * rows[i][5]) << i;
+
+    write_text(folder / "samples.csv", samples.out);
+    EXPECT_EQ(run_acdf({"pdf", sky, folder / "samples.csv"}).out, densities.out);
+}
+
+TEST_F(Commands, PdfReadsWhatPeopleWrite) {
+    // By hand: 2/3 of 3/4 over the quarter sphere of phi < 0, 1/3 of it over phi > 0, 1/4 over the lower half.
+    const std::string text = "# directions\n 0.6 -0.8 0 # trailing\n\n0.6,0.8,0\r\n+0\t0.6 -8e-1\n2 0 1\nnan 0 1\n";
+    const Result result = run_acdf({"pdf", sky}, text);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto pdfs = numbers_in(result.out, false);
+    ASSERT_EQ(pdfs.size(), 5u);
+    const double pi = 3.14159265358979323846;
+    EXPECT_NEAR(pdfs[2][0], 0.25 / (2 * pi), 1e-4);
+    EXPECT_EQ(pdfs[3][0], 0.0);
+    EXPECT_EQ(pdfs[4][0], 0.0);
+    const auto upper = numbers_in(run_acdf({"pdf", sky, "--normalize"}, "6 -8 1\n6 8 1\n0 0 0\n").out, false);
+    EXPECT_NEAR(upper[0][0], 0.5 / pi, 1e-4);
+    EXPECT_NEAR(upper[1][0], 0.25 / pi, 1e-4);
+    EXPECT_EQ(upper[2][0], 0.0);
+}
+
+TEST_F(Commands, PdfFindsColumnsByName) {
+    const Result plain = run_acdf({"pdf", sky}, "0.6 -0.8 0\n");
+    const Result named = run_acdf({"pdf", sky}, "z,weight,x,y\n0,9,0.6,-0.8\n");
+    EXPECT_EQ(named.code, 0) << named.err;
+    EXPECT_EQ(named.out, plain.out);
+    const Result csv = run_acdf({"pdf", sky, "--csv"}, "0.6 -0.8 0\n");
+    EXPECT_EQ(csv.out.rfind("x,y,z,pdf\n0.600000024,-0.800000012,0,", 0), 0u) << csv.out;
+}
+
+TEST_F(Commands, PdfRefusesMalformedLinesByNumber) {
+    for (const std::string line : {"1 2", "1 2 three", "1,2,", "1 2 3 4", "1;2;3", "1 2 +-3"}) {
+        const Result result = run_acdf({"pdf", sky, "-o", folder / "out.txt"}, "0 0 1\n# note\n" + line + "\n");
+        expect_one_line_error(result, 1, "stdin: line 3: ");
+        EXPECT_FALSE(std::filesystem::exists(folder / "out.txt"));
+    }
+    expect_one_line_error(run_acdf({"pdf", "-"}), 2, "stdin");
+    expect_one_line_error(run_acdf({"pdf", sky, folder / "missing.csv"}), 1, "missing.csv: cannot open");
+}
+
+} // namespace

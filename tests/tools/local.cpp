@@ -1,0 +1,137 @@
+// acdf local and acdf measure of what it makes, as a user runs them.
+#include "tests/inputs/synthetic.h"
+#include "tests/tools/plot/files.h"
+#include "tests/tools/run.h"
+
+#include <acdf/reader.h>
+
+#include <nlohmann/json.hpp>
+
+namespace acdf::test {
+namespace {
+
+using nlohmann::json;
+
+class LocalCommand : public testing::Test {
+protected:
+    Folder folder;
+    const std::string probe = folder / "probe.exr", output = folder / "probe.acdf";
+
+    void SetUp() override {
+        write_probe(probe, [](double phi, double z) {
+            return std::hypot(phi - 0.6, z - 0.4) < 0.06 ? 300.0 : acdf_test::smooth_sky(phi, z);
+        });
+    }
+
+    static void write_probe(const std::string& path, const std::function<double(double, double)>& light) {
+        std::vector<float> rgb;
+        for (std::uint32_t r = 0; r < 32; ++r)
+            for (std::uint32_t c = 0; c < 64; ++c)
+                rgb.insert(rgb.end(), 3,
+                           static_cast<float>(light(acdf_test::centre_phi(c, 64), acdf_test::centre_z(r, 32))));
+        write_rgb(path, 64, 32, rgb);
+    }
+
+    json made(std::vector<std::string> options, const std::string& source = "") {
+        options.insert(options.begin(),
+                       {"local", source.empty() ? probe : source, "-o", output, "--force", "--json"});
+        const Result result = run_acdf(options);
+        EXPECT_EQ(result.code, 0) << result.err;
+        messages = result.err;
+        return result.code == 0 ? json::parse(result.out) : json();
+    }
+    std::string messages;
+
+    void expect_usage(std::vector<std::string> options, const std::string& part) {
+        options.insert(options.begin(), {"local", probe, "-o", output});
+        const Result result = run_acdf(options);
+        EXPECT_EQ(result.code, 2) << result.err;
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        EXPECT_FALSE(std::filesystem::exists(output));
+    }
+};
+
+TEST_F(LocalCommand, TellsWhatMeasureTells) {
+    const json report = made({"--budget", "40kB"});
+    EXPECT_LE(report["bytes"], 40000);
+    EXPECT_EQ(report["bytes"], std::filesystem::file_size(output));
+    EXPECT_EQ(report["support_violations"], 0);
+    const Result measured = run_acdf({"measure", output, "--against", probe, "--json", "--rivals"});
+    ASSERT_EQ(measured.code, 0) << measured.err;
+    const json accuracy = json::parse(measured.out);
+    for (const char* key : {"relative_variance", "relative_variance_full_cdf", "share_above_horizon", "gain"})
+        EXPECT_EQ(report[key], accuracy[key]) << key;
+    for (const char* rival : {"full_cdf", "resampling_32", "tiling_512", "cosine"})
+        EXPECT_GT(accuracy["rivals"][rival]["relative_variance"], accuracy["relative_variance"]) << rival;
+    EXPECT_NEAR(accuracy["rivals"]["full_cdf"]["relative_variance"].get<double>(),
+                accuracy["relative_variance_full_cdf"].get<double>(), 1e-6);
+}
+
+TEST_F(LocalCommand, TheSameBytesForAnyNumberOfThreads) {
+    made({"--budget", "40kB", "--threads", "1"});
+    const std::string one = read_text(output);
+    for (const char* threads : {"2", "7"}) {
+        made({"--budget", "40kB", "--threads", threads});
+        EXPECT_EQ(read_text(output), one) << threads;
+    }
+}
+
+TEST_F(LocalCommand, ScenesAreRead) {
+    write_text(folder / "normals.txt", "0 0 1\n0.1 0 1 3\n# a remark\n");
+    const json all = made({"--budget", "40kB"}),
+               scene = made({"--budget", "40kB", "--scene", folder / "normals.txt"});
+    EXPECT_NE(messages.find("a list with 2 different normals"), std::string::npos) << messages;
+    EXPECT_LT(scene["relative_variance"], all["relative_variance"]);
+    const Result missing = run_acdf({"local", probe, "-o", folder / "x.acdf", "--scene", folder / "none.obj"});
+    EXPECT_EQ(missing.code, 1);
+    EXPECT_EQ(lines_in(missing.err), 1u) << missing.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.acdf"));
+}
+
+TEST_F(LocalCommand, SaysWhereTheNormalGainsNothing) {
+    made({"--budget", "40kB"});
+    EXPECT_EQ(messages.find("acdf env"), std::string::npos) << messages;
+    // One light straight above a floor: its own CDF is as good.
+    write_probe(folder / "lamp.exr", [](double, double z) { return z > 0.95 ? 1.0 : 0.0; });
+    write_text(folder / "floor.txt", "0 0 1\n");
+    const json report =
+        made({"--budget", "40kB", "--scene", folder / "floor.txt", "--cosine-share", "0.5"}, folder / "lamp.exr");
+    EXPECT_LT(report["gain"], 1.5);
+    EXPECT_NE(messages.find("`acdf env` would do about as well"), std::string::npos) << messages;
+}
+
+TEST_F(LocalCommand, TreesOfTheirOwn) {
+    const json report = made({"--no-sharing", "--normals", "8x4", "--fit", "cdf", "--eps", "0.01"});
+    EXPECT_EQ(report["bins"], 32);
+    EXPECT_EQ(report["tiles"], 0);
+    EXPECT_EQ(report["support_violations"], 0);
+    EXPECT_EQ(made({"--no-sharing", "--normals", "3", "--cells", "100"})["bins"], 38);
+}
+
+TEST_F(LocalCommand, WrongUsageIsOneLine) {
+    expect_usage({"--budget", "much"}, "--budget");
+    expect_usage({"--budget", "64KiB", "--cells", "100"}, "is enough");
+    expect_usage({"--normals", "0"}, "--normals");
+    expect_usage({"--normals", "8x4"}, "--no-sharing");
+    expect_usage({"--fit", "cdf"}, "--no-sharing");
+    expect_usage({"--no-sharing", "--fit", "cdf", "--cells", "100"}, "--fit variance");
+    expect_usage({"--no-sharing", "--target-variance", "0.1"}, "--target-variance");
+    expect_usage({"--cosine-share", "1"}, "--cosine-share");
+}
+
+TEST_F(LocalCommand, GoalsOutOfReachAreToldAndLeaveNothing) {
+    for (const std::vector<std::string>& goal :
+         std::vector<std::vector<std::string>>{{"--budget", "1kB"}, {"--target-variance", "1e-7"}}) {
+        std::vector<std::string> words{"local", probe, "-o", output, "-q"};
+        words.insert(words.end(), goal.begin(), goal.end());
+        const Result result = run_acdf(words);
+        EXPECT_EQ(result.code, 1);
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find("out of reach"), std::string::npos) << result.err;
+        EXPECT_EQ(folder.entries(), 1u);
+    }
+}
+
+} // namespace
+} // namespace acdf::test

@@ -1,0 +1,226 @@
+// acdf info, validate, sample, pdf and plot of local environments, as a user runs them.
+#include "tests/inputs/local_maps.h"
+#include "tests/tools/plot/files.h"
+#include "tests/tools/run.h"
+#include "tools/plot/local.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+
+namespace acdf::test {
+namespace {
+
+using acdf_test::length;
+using nlohmann::json;
+
+const std::string shared = ACDF_TEST_DIR "/golden/v1.0/local.acdf",
+                  grid = ACDF_TEST_DIR "/golden/v1.0/local_grid.acdf",
+                  environment = ACDF_TEST_DIR "/golden/v1.0/one_texel.acdf";
+
+class LocalCommands : public testing::Test {
+protected:
+    Folder folder;
+    File file;
+
+    void SetUp() override {
+        const Status status = File::open(shared.c_str(), file);
+        ASSERT_TRUE(status.ok()) << status.message;
+    }
+
+    void expect_refused(const std::vector<std::string>& arguments, int code, const std::string& part) {
+        const Result result = run_acdf(arguments, "0 0 1\n");
+        EXPECT_EQ(result.code, code) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        EXPECT_EQ(folder.entries(), 0u);
+    }
+};
+
+std::vector<std::vector<double>> rows_of(const std::string& csv) {
+    std::vector<std::vector<double>> rows;
+    std::istringstream in(csv);
+    std::string line, field;
+    std::getline(in, line); // names
+    while (std::getline(in, line)) {
+        rows.emplace_back();
+        for (std::istringstream fields(line); std::getline(fields, field, ',');)
+            rows.back().push_back(std::stod(field));
+    }
+    return rows;
+}
+
+TEST_F(LocalCommands, InfoTellsWhatBinsShare) {
+    const json report = json::parse(run_acdf({"info", "--json", shared}).out);
+    EXPECT_EQ(report["kind"], "local");
+    EXPECT_EQ(report["bins"], 18);
+    EXPECT_EQ(report["local"], (json{{"normals", "2"},
+                                     {"bins_stored", 17},
+                                     {"tiles", 3},
+                                     {"rows", 5},
+                                     {"lights", 1},
+                                     {"cosine_share", 0.25}}));
+    ASSERT_EQ(report["axes"].size(), 3u);
+    EXPECT_EQ(report["axes"][2]["name"], "normal");
+    EXPECT_EQ(report["axes"][2]["role"], "indexed");
+    const std::string text = run_acdf({"info", shared}).out;
+    for (const char* part : {"local, format", "17 stored; 3 tiles shared by 5 rows, 1 lights; cosine share 0.25"})
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+TEST_F(LocalCommands, InfoOfBinsWithTreesOfTheirOwn) {
+    const json report = json::parse(run_acdf({"info", "--json", grid}).out);
+    EXPECT_EQ(report["local"]["normals"], "3x2");
+    EXPECT_EQ(report["local"]["bins_stored"], 5);
+    EXPECT_EQ(report["local"]["tiles"], 0);
+    EXPECT_NE(run_acdf({"info", grid}).out.find("--normals 3x2, 5 stored; a tree each"), std::string::npos);
+    EXPECT_FALSE(json::parse(run_acdf({"info", "--json", environment}).out).contains("local"));
+}
+
+TEST_F(LocalCommands, ValidateFindsWhatIsWrongWithRows) {
+    EXPECT_EQ(run_acdf({"validate", shared, grid}).code, 0);
+    std::string bytes = read_text(shared);
+    const auto* chunks = reinterpret_cast<const AcdfChunk*>(&file.header() + 1);
+    for (std::uint32_t i = 0; i < file.header().chunk_count; ++i)
+        if (chunks[i].type == ACDF_CHUNK_ROWS) bytes[chunks[i].offset + 1] = 9; // the light's tile
+    const Result result = run_acdf({"validate", "-"}, bytes);
+    EXPECT_EQ(result.code, 3);
+    EXPECT_NE(result.out.find("error 4001"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("error 7007 (light-row): light 0 in bin 0"), std::string::npos) << result.out;
+}
+
+TEST_F(LocalCommands, SamplesAreThoseOfTheReader) {
+    for (const char* sequence : {"random", "stratified", "sobol"}) {
+        const Result result =
+            run_acdf({"sample", shared, "-n", "50", "--normal", "-1,2,0.5", "--sequence", sequence});
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(result.out.rfind("u0,u1,x,y,z,pdf\n", 0), 0u);
+        const auto rows = rows_of(result.out);
+        ASSERT_EQ(rows.size(), 50u);
+        const float n[3] = {-1.0f, 2.0f, 0.5f};
+        for (const auto& row : rows) {
+            const DirectionSample s = file.local().sample(n, row[0], row[1]);
+            for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(static_cast<float>(row[2 + k]), s.direction[k]);
+            EXPECT_EQ(static_cast<float>(row[5]), s.pdf);
+        }
+    }
+}
+
+TEST_F(LocalCommands, PdfOfSamplesIsTheirDensity) {
+    const Result samples = run_acdf({"sample", shared, "-n", "40", "--normal", "0.1,0.2,0.3"});
+    const Result csv = run_acdf({"pdf", shared, "--normal", "0.1,0.2,0.3", "--csv"}, samples.out);
+    ASSERT_EQ(csv.code, 0) << csv.err;
+    EXPECT_EQ(csv.out.rfind("x,y,z,pdf\n", 0), 0u);
+    const auto drawn = rows_of(samples.out), told = rows_of(csv.out);
+    ASSERT_EQ(drawn.size(), told.size());
+    for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_EQ(drawn[i][5], told[i][3]);
+}
+
+TEST_F(LocalCommands, PdfReadsANormalFromEachLine) {
+    const Result result = run_acdf({"pdf", shared}, "0 0 1  0 0 1\n1,0,0,-2,1,1 # and a remark\n0 0 1 0 0 0\n");
+    ASSERT_EQ(result.code, 0) << result.err;
+    std::istringstream lines(result.out);
+    const float up[3] = {0, 0, 1}, x[3] = {1, 0, 0}, side[3] = {-2, 1, 1};
+    for (const float expected : {file.local().pdf(up, up), file.local().pdf(side, x), 0.0f}) {
+        std::string line;
+        ASSERT_TRUE(std::getline(lines, line));
+        EXPECT_EQ(std::stof(line), expected);
+    }
+    const Result named = run_acdf({"pdf", shared, "--csv"}, "nx,ny,nz,weight,x,y,z\n-2,1,1,7,1,0,0\n");
+    ASSERT_EQ(named.code, 0) << named.err;
+    EXPECT_EQ(named.out.rfind("x,y,z,nx,ny,nz,pdf\n1,0,0,-2,1,1,", 0), 0u) << named.out;
+    EXPECT_EQ(run_acdf({"pdf", shared, "--normalize"}, "0 0 5 0 0 1\n").out,
+              run_acdf({"pdf", shared}, "0 0 1 0 0 1\n").out);
+    const Result bad = run_acdf({"pdf", shared}, "0 0 1\n");
+    EXPECT_EQ(bad.code, 1);
+    EXPECT_NE(bad.err.find("line 1: expected 6 numbers x y z nx ny nz, found 3"), std::string::npos) << bad.err;
+}
+
+TEST_F(LocalCommands, WhatDoesNotFitIsRefused) {
+    expect_refused({"sample", shared, "-n", "1"}, 1, "--normal X,Y,Z");
+    expect_refused({"sample", shared, "-n", "1", "--normal", "0,0,0"}, 1, "zero or not finite");
+    expect_refused({"sample", shared, "-n", "1", "--normal", "nan,0,1"}, 1, "zero or not finite");
+    expect_refused({"sample", shared, "-n", "1", "--normal", "0,1"}, 2, "--normal");
+    expect_refused({"sample", shared, "-n", "1", "--normal", "0,0,1", "--at", "1"}, 1, "--at");
+    expect_refused({"sample", grid, "-n", "1", "--normal", "1,0,-0.1"}, 1, "no light reaches this normal");
+    expect_refused({"sample", environment, "-n", "1", "--normal", "0,0,1"}, 1, "no local environment");
+    expect_refused({"pdf", environment, "--normal", "0,0,1"}, 1, "no local environment");
+    expect_refused({"plot", shared, "-o", folder / "x.png"}, 1, "--normal X,Y,Z");
+    expect_refused({"plot", environment, "-o", folder / "x.png", "--normal", "0,0,1"}, 1, "no local environment");
+}
+
+// ---- plots ---------------------------------------------------------------------------------------------
+
+TEST_F(LocalCommands, PlotHoldsTheReadersDensities) {
+    const std::string exr = folder / "up.exr";
+    for (const std::string& path : {shared, grid}) {
+        const Result result = run_acdf({"plot", path, "-f", "-o", exr, "--width", "60", "--normal", "-1,2,0.5"});
+        ASSERT_EQ(result.code, 0) << result.err;
+        const LoadedImage image = load_image(exr);
+        File plotted;
+        ASSERT_TRUE(File::open(path.c_str(), plotted).ok());
+        const float n[3] = {-1.0f, 2.0f, 0.5f};
+        for (int y = 0; y < 30; ++y)
+            for (int x = 0; x < 60; ++x) {
+                float d[3];
+                latlong_direction(60, 30, x, y, d);
+                EXPECT_NEAR(image.at(x, y)[0], plotted.local().pdf(n, d), 1e-5 * image.at(x, y)[0])
+                    << x << ' ' << y;
+            }
+    }
+}
+
+TEST_F(LocalCommands, PlotDrawsTheHorizon) {
+    const std::string png = folder / "up.png";
+    const Result result =
+        run_acdf({"plot", shared, "-o", png, "--width", "64", "--no-legend", "--no-knots", "--normal", "0,0,3"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const LoadedImage image = load_image(png);
+    ASSERT_EQ(image.spec.height, 32);
+    for (int x = 0; x < 64; ++x)
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_GT(image.at(x, 15)[c], 0.95f); // the equator runs between rows 15 and 16
+            EXPECT_GT(image.at(x, 16)[c], 0.95f);
+        }
+    EXPECT_LT(image.at(5, 8)[2], 0.95f);
+}
+
+TEST(PlotLocal, HorizonIsWhereTheCosineVanishes) {
+    for (const auto layout : {build::Layout::latlong, build::Layout::angular}) {
+        const build::Map map = tools::plot_map(layout, 120);
+        const tools::Normal n = {0.5f, -1.0f, 0.7f};
+        const std::vector<float> opacity = tools::horizon_opacity(n, map);
+        int on = 0;
+        for (int y = 0; y < map.height; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                float d[3];
+                if (!tools::pixel_direction(map, x + 0.5, y + 0.5, d)) continue;
+                const double cosine = acdf_test::dot(n.data(), d) / length(n.data());
+                const float drawn = opacity[std::size_t(y * map.width + x)];
+                EXPECT_TRUE(drawn == 0.0f || std::abs(cosine) < 0.25) << x << ' ' << y;
+                EXPECT_TRUE(drawn > 0.5f || std::abs(cosine) >= 0.005) << x << ' ' << y;
+                on += drawn > 0.5f;
+            }
+        EXPECT_GT(on, 100);
+        EXPECT_LT(on, 600);
+    }
+}
+
+// Lines of cells run where the density changes.
+TEST(PlotLocal, KnotsAreTheBordersOfCells) {
+    File file;
+    ASSERT_TRUE(File::open(shared.c_str(), file).ok());
+    const build::Map map = tools::plot_map(build::Layout::latlong, 12 * 20); // twenty pixels a column, of 12 x 8
+    const auto opacity = tools::knot_opacity({file.local(), {0.0f, 0.0f, 1.0f}}, map);
+    const auto at = [&](int column, int row) { return opacity[std::size_t(row * map.width + column)]; };
+    EXPECT_GT(at(5 * 20, 7), 0.9f);       // between tile 0 and the others
+    EXPECT_GT(at(7 * 20, 7), 0.9f);       // within the light
+    EXPECT_GT(at(9 * 20 + 10, 45), 0.9f); // below it: row 3 of 8, of 120 pixels
+    EXPECT_EQ(at(9 * 20 + 10, 90), 0.0f); // tile 2 is one cell
+    EXPECT_EQ(at(9 * 20, 90), 0.0f);
+    EXPECT_GT(at(50, 30), 0.9f); // row 2: a knot of the curve in tile 0
+}
+
+} // namespace
+} // namespace acdf::test

@@ -1,0 +1,106 @@
+// Environment files and images for the tests of plots.
+#pragma once
+
+#include "tests/inputs/synthetic.h"
+
+#include "build/projection.h"
+#include "compress/fit.h"
+#include "compress/store.h"
+
+#include <OpenImageIO/imageio.h>
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace acdf::test {
+
+inline std::vector<std::uint8_t> environment_bytes(const compress::Target& target,
+                                                   const compress::FitOptions& options) {
+    compress::Description description = compress::environment_description(target.columns, target.rows);
+    description.fit = options.fit;
+    description.total = compress::integral(target);
+    return compress::store(compress::fit(target, options).tree, description);
+}
+
+/// A file in memory and the view of it.
+struct StoredEnvironment {
+    std::vector<std::uint8_t> bytes;
+    File file;
+
+    explicit StoredEnvironment(std::vector<std::uint8_t> b) : bytes(std::move(b)) {
+        const Status status = File::from_memory(bytes.data(), bytes.size(), file);
+        EXPECT_TRUE(status.ok()) << status.message;
+    }
+    StoredEnvironment(const compress::Target& target, const compress::FitOptions& options)
+        : StoredEnvironment(environment_bytes(target, options)) {}
+    EnvironmentView view() const { return file.environment(); }
+};
+
+inline compress::FitOptions fit_options(AcdfFit fit, std::uint32_t column_segments, std::uint32_t row_segments) {
+    compress::FitOptions options;
+    options.fit = fit;
+    options.column_segments = column_segments;
+    options.row_segments = row_segments;
+    options.goal.cells = column_segments * row_segments;
+    return options;
+}
+
+/// Noise of which a fifth is dark: some cells have density 0.
+inline compress::Target dark_noise() { return acdf_test::noise_target(64, 32, 7, 1.5, 0.2); }
+
+/// Direction at the centre of pixel (x, y) of a lat-long image, from the formula.
+inline void latlong_direction(int width, int height, int x, int y, float direction[3]) {
+    const double phi = acdf_test::kPi * (1.0 - 2.0 * (x + 0.5) / width),
+                 theta = acdf_test::kPi * (y + 0.5) / height;
+    acdf_test::direction_of(phi, std::cos(theta), direction);
+}
+
+/// The same of an angular map; false outside of the disc. P. Debevec, "Rendering Synthetic Objects into Real
+/// Scenes", 1998: turn the forward direction (+x, up is +z) by pi r towards (a, b). Which side +y is on is up to
+/// the convention for probes: plots are to look like them.
+inline bool angular_direction(int width, int x, int y, float direction[3]) {
+    const double a = 2.0 * (x + 0.5) / width - 1.0, b = 1.0 - 2.0 * (y + 0.5) / width, r = std::hypot(a, b);
+    if (r > 1.0) return false;
+    const double side = build::to_image({build::Layout::angular, 2, 2}, {0.0, 1.0, 0.0}).u > 0.5 ? 1.0 : -1.0;
+    const double sine = r > 0.0 ? std::sin(acdf_test::kPi * r) / r : 0.0;
+    direction[0] = static_cast<float>(std::cos(acdf_test::kPi * r));
+    direction[1] = static_cast<float>(side * sine * a);
+    direction[2] = static_cast<float>(sine * b);
+    return true;
+}
+
+struct LoadedImage {
+    OIIO::ImageSpec spec;
+    std::vector<float> pixels; ///< height x width x channels
+
+    const float* at(int x, int y) const {
+        return pixels.data() +
+               (static_cast<std::size_t>(y) * static_cast<std::size_t>(spec.width) + static_cast<std::size_t>(x)) *
+                   static_cast<std::size_t>(spec.nchannels);
+    }
+};
+
+inline LoadedImage load_image(const std::string& path) {
+    LoadedImage image;
+    const auto input = OIIO::ImageInput::open(path);
+    if (!input) throw std::runtime_error(path + ": " + OIIO::geterror()); // fails the test
+    image.spec = input->spec();
+    image.pixels.resize(image.spec.image_pixels() * static_cast<std::size_t>(image.spec.nchannels));
+    EXPECT_TRUE(input->read_image(0, 0, 0, image.spec.nchannels, OIIO::TypeFloat, image.pixels.data()));
+    return image;
+}
+
+/// Writes height x width x 3 floats.
+inline void write_rgb(const std::string& path, int width, int height, const std::vector<float>& rgb) {
+    const auto output = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(output && output->open(path, OIIO::ImageSpec(width, height, 3, OIIO::TypeFloat)) &&
+                output->write_image(OIIO::TypeFloat, rgb.data()) && output->close());
+}
+
+} // namespace acdf::test

@@ -1,0 +1,127 @@
+// `acdf render` as a user runs it.
+#include "tests/tools/render/scenes.h"
+
+#include <nlohmann/json.hpp>
+
+#include <set>
+
+namespace acdf::test {
+namespace {
+
+using Json = nlohmann::json;
+
+struct RenderCommand : testing::Test {
+    SceneFolder folder{small_scene("\"full-cdf\", \"cosine\", \"mis(full-cdf,cosine)\"")};
+
+    Result render(const std::string& output, std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{"render",        "--scene",   folder / "scene.json",
+                                           "--data",        folder / "", "-o",
+                                           folder / output, "--seeds",   "4"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_acdf(arguments);
+    }
+    std::set<std::string> files(const std::string& output) const {
+        std::set<std::string> out;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / output))
+            out.insert(entry.path().filename().string());
+        return out;
+    }
+};
+
+TEST_F(RenderCommand, WritesWhatItSays) {
+    const Result result = render("out");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(files("out"),
+              (std::set<std::string>{"render.json", "reference.exr", "reference.png", "full-cdf.exr",
+                                     "full-cdf.png", "full-cdf-variance.png", "full-cdf-above.png", "cosine.exr",
+                                     "cosine.png", "cosine-variance.png", "cosine-above.png", "cosine-gain.png",
+                                     "mis-full-cdf-cosine.exr", "mis-full-cdf-cosine.png",
+                                     "mis-full-cdf-cosine-variance.png", "mis-full-cdf-cosine-above.png",
+                                     "mis-full-cdf-cosine-gain.png"}));
+    for (const char* part : {"mis(full-cdf,cosine)", "of the sky is hidden", "nothing in the way", "Ranking"})
+        EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+    const LoadedImage image = load_image(folder / "out/reference.exr");
+    EXPECT_EQ(image.spec.width, 8);
+    EXPECT_EQ(image.spec.height, 6);
+    EXPECT_EQ(image.spec.nchannels, 3);
+    EXPECT_EQ(image.spec.format, OIIO::TypeFloat);
+    EXPECT_EQ(load_image(folder / "out/cosine.png").spec.width, 8);
+    EXPECT_GT(load_image(folder / "out/cosine-variance.png").spec.width, 384);
+}
+
+TEST_F(RenderCommand, JsonHasTheFigures) {
+    const Result result = render("out", {"--json", "--samples", "5", "--size", "7x5"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    EXPECT_EQ(json, Json::parse(read_text(folder / "out/render.json")));
+    EXPECT_EQ(json["samples"], 5);
+    EXPECT_EQ(json["seeds"], 4);
+    EXPECT_EQ(json["width"], 7);
+    EXPECT_GT(json["sky_hidden"], 0.05);
+    ASSERT_EQ(json["samplers"].size(), 3u);
+    for (const Json& all : {json["samplers"], json["nothing_hidden"]["samplers"]})
+        for (const Json& one : all) {
+            for (const char* key : {"relative_variance", "equal_samples_gain", "equal_time_gain", "nanoseconds"})
+                for (const char* part : {"value", "low", "high"})
+                    EXPECT_TRUE(one[key].contains(part)) << key << " " << one;
+            EXPECT_GT(one["relative_variance"]["value"], 0.0);
+            EXPECT_GT(one["share_above_horizon"], 0.1);
+            EXPECT_FALSE(one["ours"]);
+        }
+    EXPECT_EQ(json["samplers"][1]["sampler"], "cosine");
+    EXPECT_EQ(json["samplers"][1]["bytes"], 0);
+    EXPECT_EQ(json["ranking"].size(), 3u);
+    EXPECT_EQ(json["verdict"].size(), 2u);
+}
+
+TEST_F(RenderCommand, WritesTheSameBytesForAnyNumberOfThreads) {
+    ASSERT_EQ(render("one", {"--no-timing", "--threads", "1"}).code, 0);
+    ASSERT_EQ(render("two", {"--no-timing", "--threads", "2"}).code, 0);
+    for (const std::string& name : files("one"))
+        EXPECT_EQ(read_text(folder / ("one/" + name)), read_text(folder / ("two/" + name))) << name;
+}
+
+TEST_F(RenderCommand, OverwritesOnlyWithForce) {
+    ASSERT_EQ(render("out", {"--no-reference", "--no-timing"}).code, 0);
+    const Result again = render("out");
+    EXPECT_EQ(again.code, 1);
+    EXPECT_EQ(lines_in(again.err), 1u) << again.err;
+    EXPECT_NE(again.err.find("--force"), std::string::npos);
+    EXPECT_EQ(render("out", {"--force", "--no-reference", "--no-timing"}).code, 0);
+}
+
+TEST_F(RenderCommand, SaysWhatIsWrong) {
+    const auto refused = [&](const std::vector<std::string>& more, int code, const std::string& part) {
+        const Result result = render("never", more);
+        EXPECT_EQ(result.code, code) << result.err;
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        EXPECT_EQ(result.out, "");
+    };
+    refused({"--sampler", "nonsense"}, 2, "is none of full-cdf");
+    refused({"--size", "8"}, 2, "--size");
+    refused({"--seeds", "1"}, 2, "--seeds");
+    refused({"--sampler", "mis(full-cdf,cosine)", "--samples", "1"}, 1, "at least 2 samples");
+    refused({"--sampler", "file:none.acdf"}, 1, "none.acdf");
+    refused({"--sampler", "tiles:64x64"}, 1, "tiles:64x64");
+    write_text(folder / "scene.json", "{}");
+    refused({}, 1, "scene.json: the scene: lacks 'camera'");
+    write_text(folder / "scene.json", small_scene("\"nonsense\""));
+    refused({}, 1, "samplers: sampler 'nonsense'");
+    std::filesystem::remove(folder / "probe.exr");
+    write_text(folder / "scene.json", small_scene("\"cosine\""));
+    refused({}, 1, "probe.exr");
+}
+
+TEST_F(RenderCommand, TakesFiles) {
+    ASSERT_EQ(run_acdf({"env", folder / "probe.exr", "-o", folder / "sky.acdf", "--cells", "64", "-q"}).code, 0);
+    const Result result =
+        render("out", {"--sampler", "cosine", "--sampler", "file:sky.acdf", "--json", "--no-timing"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    EXPECT_TRUE(json["samplers"][1]["ours"]);
+    EXPECT_EQ(json["samplers"][1]["bytes"], std::filesystem::file_size(folder / "sky.acdf"));
+}
+
+} // namespace
+} // namespace acdf::test

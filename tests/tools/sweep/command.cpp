@@ -1,0 +1,126 @@
+// `acdf sweep` as a user runs it.
+#include "tests/tools/plot/files.h"
+#include "tests/tools/run.h"
+
+#include <nlohmann/json.hpp>
+
+#include <regex>
+#include <set>
+
+namespace acdf::test {
+namespace {
+
+/// 32 x 16 texels, no two alike.
+std::string tiny_probe(const Folder& folder) {
+    std::vector<float> rgb(32 * 16 * 3);
+    for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<float>(1 + (i / 3 * 37) % 523);
+    const std::string path = folder / "tiny.exr";
+    write_rgb(path, 32, 16, rgb);
+    return path;
+}
+
+const std::vector<std::string> quick = {"--budgets", "1500", "--fits", "variance", "--no-timing", "--quiet"};
+
+Result sweep(const std::string& source, const std::string& folder, std::vector<std::string> more = {}) {
+    std::vector<std::string> words = {"sweep", source, "-o", folder};
+    words.insert(words.end(), quick.begin(), quick.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return run_acdf(words);
+}
+
+TEST(SweepCommand, WritesTheSameBytesEveryTime) {
+    const Folder folder;
+    const std::string probe = tiny_probe(folder);
+    const Result first_run = sweep(probe, folder / "new/a"); // folders are made
+    ASSERT_EQ(first_run.code, 0) << first_run.err;
+    ASSERT_EQ(sweep(probe, folder / "b", {"--threads", "1"}).code, 0);
+    for (const char* name : {"sweep.csv", "sweep.json", "report.html"}) {
+        const std::string first = read_text(folder / (std::string("new/a/") + name));
+        EXPECT_FALSE(first.empty()) << name;
+        EXPECT_EQ(first, read_text(folder / (std::string("b/") + name))) << name;
+    }
+}
+
+TEST(SweepCommand, TheCommandMakesTheRecommendedFile) {
+    const Folder folder;
+    const std::string probe = tiny_probe(folder);
+    ASSERT_EQ(sweep(probe, folder / "out", {"--channel", "red"}).code, 0);
+    const auto json = nlohmann::json::parse(read_text(folder / "out/sweep.json"));
+    const std::string command = json["recommendation"]["command"];
+    EXPECT_EQ(command, "acdf env " + probe + " --channel red --budget 1500 -o tiny.acdf");
+    const std::string file = folder / "tiny.acdf";
+    const Result made =
+        run_acdf({"env", probe, "--channel", "red", "--budget", "1500", "-o", file, "--json", "--quiet"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const auto& row = json["rows"][json["recommendation"]["row"].get<std::size_t>()];
+    EXPECT_EQ(read_text(file).size(), row["bytes"]);
+    const double variance = nlohmann::json::parse(made.out)["relative_variance"];
+    EXPECT_NEAR(variance, row["relative_variance"], 1e-8 * variance);
+}
+
+TEST(SweepCommand, RefusesWhatIsThereAndWrongOptions) {
+    const Folder folder;
+    const std::string probe = tiny_probe(folder);
+    std::filesystem::create_directory(folder / "out");
+    write_text(folder / "out/report.html", "mine");
+    Result result = sweep(probe, folder / "out");
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find("report.html"), std::string::npos) << result.err;
+    EXPECT_EQ(read_text(folder / "out/report.html"), "mine");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/sweep.csv"));
+    EXPECT_EQ(sweep(probe, folder / "x", {"--kind", "nonsense"}).code, 2);
+    result = run_acdf({"sweep", "ggx:alpha=0.3", "-o", folder / "x", "--fits", "cascade"});
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.err.find("separate"), std::string::npos) << result.err; // what there is
+    EXPECT_EQ(run_acdf({"sweep", "ggx:alpha=0.3", "-o", folder / "x", "--budgets", "12 parsecs"}).code, 2);
+    EXPECT_EQ(run_acdf({"sweep", folder / "absent.exr", "-o", folder / "x"}).code, 1);
+}
+
+/// What of JSON schema docs/sweep.schema.json uses: type, properties, required, items, enum.
+void expect_valid(const nlohmann::json& schema, const nlohmann::json& value, const std::string& at) {
+    if (schema.contains("type")) {
+        const auto is = [&](const std::string& type) {
+            return type == "object"    ? value.is_object()
+                   : type == "array"   ? value.is_array()
+                   : type == "string"  ? value.is_string()
+                   : type == "integer" ? value.is_number_integer()
+                   : type == "number"  ? value.is_number()
+                   : type == "boolean" ? value.is_boolean()
+                                       : type == "null" && value.is_null();
+        };
+        bool any = false;
+        if (schema["type"].is_array())
+            for (const auto& type : schema["type"]) any |= is(type);
+        else any = is(schema["type"]);
+        EXPECT_TRUE(any) << at << ": " << value.dump() << " is not " << schema["type"].dump();
+    }
+    if (schema.contains("enum")) {
+        EXPECT_NE(std::find(schema["enum"].begin(), schema["enum"].end(), value), schema["enum"].end()) << at;
+    }
+    if (value.is_object() && schema.contains("properties")) {
+        for (const auto& [key, each] : value.items()) {
+            ASSERT_TRUE(schema["properties"].contains(key)) << at << "." << key << " is not in the schema";
+            expect_valid(schema["properties"][key], each, at + "." + key);
+        }
+        for (const auto& key : schema.value("required", nlohmann::json::array()))
+            EXPECT_TRUE(value.contains(key)) << at << " lacks " << key;
+    }
+    if (value.is_array() && schema.contains("items"))
+        for (const auto& each : value) expect_valid(schema["items"], each, at + "[]");
+}
+
+TEST(SweepCommand, JsonFollowsItsSchema) {
+    const Folder folder;
+    const std::string probe = tiny_probe(folder);
+    const auto schema = nlohmann::json::parse(read_text(std::string(ACDF_TEST_DIR) + "/../docs/sweep.schema.json"));
+    const Result result = run_acdf(
+        {"sweep", probe, "-o", folder / "out", "--budgets", "1500", "--fits", "variance", "--json", "--quiet"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_TRUE(json["timed"]);
+    expect_valid(schema, json, "sweep");
+    EXPECT_EQ(result.out, read_text(folder / "out/sweep.json"));
+}
+
+} // namespace
+} // namespace acdf::test

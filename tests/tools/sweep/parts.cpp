@@ -1,0 +1,348 @@
+// What a sweep recommends and writes, on made-up rows and on a tiny probe.
+#include "measure/full_cdf.h"
+#include "tests/inputs/synthetic.h"
+#include "tools/sweep/advice.h"
+#include "tools/sweep/irradiance.h"
+#include "tools/sweep/page.h"
+#include "tools/sweep/page_chart.h"
+#include "tools/sweep/sweep.h"
+#include "tools/sweep/text.h"
+#include "tools/sweep/timing.h"
+
+#include "measure/light_samplers.h"
+#include "measure/local_rivals.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <map>
+#include <regex>
+
+namespace acdf::tools {
+namespace {
+
+SweepRow row(const char* system, const char* fit, std::uint64_t bytes, double variance,
+             std::vector<double> sample = {}) {
+    SweepRow out;
+    out.system = system;
+    out.fit = fit;
+    out.label = *fit ? fit : system;
+    out.options = *fit ? "--budget " + std::to_string(bytes) : "";
+    out.bytes = bytes;
+    out.relative_variance = variance;
+    out.times.sample = std::move(sample);
+    return out;
+}
+
+/// Two fits, and rivals of which one wins at equal time, one loses, one is even and one is biased.
+Sweep made_up() {
+    Sweep sweep;
+    sweep.kind = SweepKind::local;
+    sweep.source = "probe.exr";
+    sweep.command = "acdf local probe.exr";
+    sweep.output = "probe.local.acdf";
+    sweep.conditions = 8;
+    sweep.rows = {row("acdf", "variance", 4096, 0.1, {100, 100, 100, 100, 100, 100}),
+                  row("acdf", "variance", 65536, 0.006, {100, 110, 90, 100, 100, 105}),
+                  row("acdf", "variance", 262144, 0.001, {100, 100, 100, 100, 100, 100}),
+                  row("acdf", "cdf", 131072, 0.005, {80, 80, 80, 80, 80, 80}),
+                  row("full_cdf", "", 8000000, 2.0, {200, 220, 180, 200, 200, 210}),
+                  row("fast", "", 9000000, 0.012, {20, 22, 18, 20, 20, 21}),
+                  row("even", "", 0, 0.006, {90, 120, 90, 110, 95, 108}),
+                  row("hole", "", 500, HUGE_VAL, {1, 1, 1, 1, 1, 1})};
+    sweep.baseline = 4;
+    return sweep;
+}
+
+TEST(SweepAdvice, TheSmallestFileWhoseNoiseCannotBeSeen) {
+    const Sweep sweep = made_up();
+    const Visibility v; // 1 % at 64 samples: at most 0.0064
+    EXPECT_DOUBLE_EQ(v.largest_variance(), 0.0064);
+    EXPECT_EQ(recommended_row(sweep.rows, v).row, 1u);
+    EXPECT_TRUE(recommended_row(sweep.rows, v).reached);
+    EXPECT_EQ(recommended_row(sweep.rows, {32, 0.01}).row, 2u);   // 0.0032
+    EXPECT_EQ(recommended_row(sweep.rows, {56, 0.01}).row, 3u);   // 0.0056: the other fit is smaller
+    EXPECT_EQ(recommended_row(sweep.rows, {2000, 0.01}).row, 0u); // 0.2
+    const Recommended none = recommended_row(sweep.rows, {1, 0.01});
+    EXPECT_EQ(none.row, 2u); // the least noisy
+    EXPECT_FALSE(none.reached);
+}
+
+TEST(SweepAdvice, SaysSoInWords) {
+    Sweep sweep = made_up();
+    Advice advice = advise(sweep);
+    EXPECT_EQ(advice.sentence, "64 KiB reaches a relative variance of 0.006, 0.97 % noise at 64 samples per pixel; "
+                               "beyond it you gain nothing visible.");
+    EXPECT_EQ(advice.command, "acdf local probe.exr --budget 65536 -o probe.local.acdf");
+    EXPECT_NE(advice.rule.find("0.0064"), std::string::npos) << advice.rule;
+    sweep.visibility.spp = 1;
+    advice = advise(sweep);
+    EXPECT_EQ(advice.sentence.rfind("No size tried gets below 1 % noise at 1 sample per pixel", 0), 0u)
+        << advice.sentence;
+    sweep = made_up();
+    sweep.rows.erase(sweep.rows.begin() + 2, sweep.rows.begin() + 4);
+    sweep.baseline = 2;
+    EXPECT_EQ(advise(sweep).sentence.rfind("64 KiB is enough", 0), 0u) << advise(sweep).sentence;
+}
+
+TEST(SweepAdvice, TellsWhichRivalsWin) {
+    const Sweep sweep = made_up();
+    const Advice advice = advise(sweep);
+    std::map<std::string, Verdict> verdicts;
+    for (const RivalComparison& c : advice.comparisons) verdicts[sweep.rows[c.row].system] = c.verdict;
+    EXPECT_EQ(verdicts["full_cdf"], Verdict::ours);
+    EXPECT_EQ(verdicts["fast"], Verdict::rival);
+    EXPECT_EQ(verdicts["even"], Verdict::even);
+    EXPECT_EQ(verdicts["hole"], Verdict::ours); // biased, however fast
+    const RivalComparison& fast = advice.comparisons[1];
+    EXPECT_NEAR(fast.variance, 2.0, 1e-12);
+    EXPECT_NEAR(fast.time.value, 0.2, 1e-12); // in each round a fifth
+    EXPECT_NEAR(fast.equal_time.value, 0.4, 1e-12);
+    std::string all;
+    for (const std::string& finding : advice.findings) all += finding + "\n";
+    EXPECT_NE(all.find("At equal time a rival wins: fast 0.4 (0.4 to 0.4) with 137 times the memory."),
+              std::string::npos)
+        << all;
+    EXPECT_NE(all.find("Too close to call at equal time: even"), std::string::npos) << all;
+    EXPECT_NE(all.find("Hole is biased here"), std::string::npos) << all;
+    EXPECT_NE(all.find("Sample for sample no rival is less noisy"), std::string::npos) << all;
+}
+
+TEST(SweepTiming, IntervalsAreThoseOfOrderStatistics) {
+    std::vector<double> values;
+    for (int i = 31; i >= 1; --i) values.push_back(i);
+    const Interval i = median_interval(values);
+    // Binomial(31, 1/2): P(fewer than 10) = 0.0147, P(fewer than 11) = 0.0354.
+    EXPECT_EQ(i.value, 16.0);
+    EXPECT_EQ(i.low, 10.0);
+    EXPECT_EQ(i.high, 22.0);
+    EXPECT_EQ(median_interval({4.0, 2.0}).value, 3.0);
+    EXPECT_EQ(median_interval({4.0, 2.0}).low, 2.0);
+    EXPECT_FALSE(median_interval({}).known());
+}
+
+TEST(SweepTiming, EverySamplerHasAllRounds) {
+    const compress::Target target = acdf_test::noise_target(32, 16, 3);
+    const auto cdf = measure::full_cdf_sampler(target), cosine = measure::cosine_sampler();
+    const std::vector<SweepTimes> times = time_samplers({{cdf.get(), true}, {cosine.get(), false}}, {{}, {}}, 5);
+    ASSERT_EQ(times.size(), 2u);
+    EXPECT_EQ(times[0].sample.size(), 5u);
+    EXPECT_EQ(times[0].pdf.size(), 5u);
+    EXPECT_EQ(times[1].sample.size(), 5u);
+    EXPECT_TRUE(times[1].pdf.empty());
+}
+
+TEST(SweepIrradiance, AgreesWithTheClosedFormsOfRivals) {
+    const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
+    const std::vector<build::Normal> normals = build::random_normals(5);
+    const measure::LocalFullCdf full(target);
+    const auto sampler = measure::full_cdf_sampler(target);
+    const std::vector<float> density = texel_densities(target, *sampler);
+    const MeanAndWorst got = irradiance_variance(target, density, 0.0, normals);
+    double mean = 0.0, worst = 0.0;
+    for (const build::Normal& n : normals) {
+        mean += full.relative_variance(n.data()) / 5.0;
+        worst = std::max(worst, full.relative_variance(n.data()));
+    }
+    EXPECT_NEAR(got.mean, mean, 1e-5 * mean);
+    EXPECT_NEAR(got.worst, worst, 1e-5 * worst);
+    const measure::CosineHemisphere cosine(target);
+    const std::vector<float> nothing(density.size(), 0.0f);
+    const double of_cosine = irradiance_variance(target, nothing, 1.0, {normals[0]}).mean;
+    EXPECT_NEAR(of_cosine, cosine.relative_variance(normals[0].data()), 1e-9 * of_cosine);
+    EXPECT_TRUE(std::isinf(irradiance_variance(target, nothing, 0.0, normals).mean));
+}
+
+/// Lines of a CSV of which no field holds a line break; fields unquoted.
+std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+    std::vector<std::vector<std::string>> out(1, std::vector<std::string>(1));
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quoted && c == '"' && text[i + 1] == '"') out.back().back() += text[++i];
+        else if (c == '"') quoted = !quoted;
+        else if (!quoted && c == ',') out.back().emplace_back();
+        else if (!quoted && c == '\n') out.emplace_back(1);
+        else out.back().back() += c;
+    }
+    out.pop_back();
+    return out;
+}
+
+/// Of all points of a chart: the attributes of its groups.
+std::vector<std::map<std::string, std::string>> points_of(const std::string& html, const std::string& chart) {
+    std::vector<std::map<std::string, std::string>> out;
+    const std::regex group("<g class=\"point [^>]*>"), attribute("data-([a-z]+)=\"([^\"]*)\"");
+    for (std::sregex_iterator g(html.begin(), html.end(), group), end; g != end; ++g) {
+        const std::string text = g->str();
+        std::map<std::string, std::string> one;
+        for (std::sregex_iterator a(text.begin(), text.end(), attribute); a != end; ++a) one[(*a)[1]] = (*a)[2];
+        if (one["chart"] == chart) out.push_back(one);
+    }
+    return out;
+}
+
+void expect_consistent(const Sweep& sweep) {
+    const auto csv = parse_csv(sweep_csv(sweep));
+    const nlohmann::ordered_json json = sweep_json(sweep);
+    const std::string html = sweep_html(sweep);
+    ASSERT_EQ(csv.size(), sweep.rows.size() + 1);
+    ASSERT_EQ(json["rows"].size(), sweep.rows.size());
+    for (std::size_t r = 0; r < sweep.rows.size(); ++r) {
+        ASSERT_EQ(csv[r + 1].size(), csv[0].size());
+        for (std::size_t c = 0; c < csv[0].size(); ++c) {
+            const auto& value = json["rows"][r][csv[0][c]];
+            const std::string& field = csv[r + 1][c];
+            if (value.is_string()) EXPECT_EQ(value.get<std::string>(), field);
+            else if (value.is_null()) EXPECT_TRUE(field.empty() || field == "inf" || field == "-inf") << field;
+            else EXPECT_EQ(value.get<double>(), std::strtod(field.c_str(), nullptr)) << csv[0][c];
+        }
+    }
+    const auto column = [&](const char* name) {
+        return std::size_t(std::find(csv[0].begin(), csv[0].end(), name) - csv[0].begin());
+    };
+    const std::map<std::string, const char*> charts = {
+        {"variance", "relative_variance"},     {"weight", "max_weight"},
+        {"sample", "ns_per_sample"},           {"pdf", "ns_per_pdf"},
+        {"equal-time", "equal_time_variance"}, {"build", "build_seconds"}};
+    for (const auto& [chart, name] : charts) {
+        std::size_t expected = 0;
+        const std::size_t at = column(name);
+        for (std::size_t r = 1; r < csv.size(); ++r) expected += at < csv[r].size() && !csv[r][at].empty();
+        const auto points = points_of(html, chart);
+        EXPECT_EQ(points.size(), expected) << chart;
+        for (auto point : points) {
+            const auto& line = csv[std::size_t(std::stoul(point["row"])) + 1];
+            EXPECT_EQ(point["system"], line[column("system")]);
+            EXPECT_EQ(point["fit"], line[column("fit")]);
+            EXPECT_EQ(point["bytes"], line[column("bytes")]);
+            EXPECT_EQ(point["variance"], line[column("relative_variance")]);
+            EXPECT_EQ(point["value"], line[at]) << chart;
+        }
+    }
+}
+
+TEST(SweepOutputs, CsvJsonAndPageHoldTheSameNumbers) {
+    Sweep sweep = made_up();
+    expect_consistent(sweep);
+    sweep.timed = false;
+    expect_consistent(sweep);
+    EXPECT_EQ(sweep_csv(sweep).find("ns_per"), std::string::npos);
+    EXPECT_EQ(sweep_html(sweep).find("chart-sample"), std::string::npos);
+}
+
+TEST(SweepOutputs, NamesAreTextWhateverTheyHold) {
+    Sweep sweep = made_up();
+    const std::string hostile = "<script>alert(1)</script>\"><img src=x onerror='y'>&amp;\x01`.exr";
+    sweep.source = hostile;
+    sweep.command = "acdf local " + shell_word(hostile);
+    sweep.output = hostile;
+    sweep.description = hostile;
+    sweep.notes = {hostile};
+    sweep.rows[0].label = hostile;
+    sweep.rows[4].system = hostile;
+    const std::string html = sweep_html(sweep);
+    EXPECT_EQ(html.find("<script"), std::string::npos);
+    EXPECT_EQ(html.find("<img src=x"), std::string::npos);
+    EXPECT_EQ(html.find('\x01'), std::string::npos);
+    EXPECT_NE(html.find("&lt;script&gt;alert(1)&lt;/script&gt;&quot;&gt;&lt;img"), std::string::npos);
+    const auto csv = parse_csv(sweep_csv(sweep));
+    ASSERT_EQ(csv.size(), sweep.rows.size() + 1);
+    EXPECT_EQ(csv[1][2], hostile);
+    EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+    EXPECT_EQ(shell_word("plain-1.0_x.exr"), "plain-1.0_x.exr");
+    EXPECT_EQ(shell_word("$(rm)"), "'$(rm)'");
+}
+
+TEST(SweepOutputs, ThePageLoadsNothing) {
+    const std::string html = sweep_html(made_up());
+    for (const char* what : {"http:", "https:", "src=\"/", "url(", "@import", "<link", "<script"})
+        EXPECT_EQ(html.find(what), std::string::npos) << what;
+    EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+}
+
+SweepOptions quick() {
+    SweepOptions options;
+    options.budgets = {1500, 2500};
+    options.timing = false;
+    options.normals = 4;
+    return options;
+}
+
+TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
+    const compress::Target target = acdf_test::noise_target(64, 32, 7);
+    Sweep sweep = sweep_environment(target, {}, quick());
+    sweep.source = "tiny.exr", sweep.command = "acdf env tiny.exr", sweep.output = "tiny.acdf";
+    std::map<std::string, int> systems, fits;
+    for (const SweepRow& r : sweep.rows) {
+        ++systems[r.system];
+        ++fits[r.fit];
+        EXPECT_GT(r.bytes, 0u);
+        EXPECT_GE(r.relative_variance, 0.0) << r.label;
+        EXPECT_GE(r.irradiance, r.system == "full_cdf" ? 0.5 : 0.0) << r.label; // half of its samples are in vain
+        if (r.fit == "variance") {
+            build::EnvironmentOptions options;
+            options.fit.goal.kind = compress::Goal::Kind::budget;
+            options.fit.goal.budget = r.options == "--budget 1500" ? 1500 : 2500;
+            const build::Environment file = build_environment(target, {}, options);
+            EXPECT_EQ(r.bytes, file.bytes.size());
+            EXPECT_EQ(r.relative_variance, file.accuracy.relative_variance);
+        }
+    }
+    EXPECT_EQ(fits["variance"], 2);
+    EXPECT_GE(fits["cdf"], 1);
+    for (const char* rival : {"full_cdf", "alias_table", "hierarchical_warp", "downsampled_cdf"})
+        EXPECT_GE(systems[rival], 1) << rival;
+    EXPECT_EQ(sweep.rows[sweep.baseline].system, "full_cdf");
+    EXPECT_EQ(sweep.rows[sweep.baseline].relative_variance, 0.0);
+    EXPECT_GE(sweep.pictures.size(), 3u);
+    expect_consistent(sweep);
+}
+
+TEST(SweepRows, LocalFilesBesideTheirRivals) {
+    const compress::Target target = acdf_test::noise_target(64, 32, 7);
+    SweepOptions options = quick();
+    options.budgets = {16384};
+    options.fits = {"variance"};
+    const Sweep sweep = sweep_local(target, {}, options);
+    std::map<std::string, const SweepRow*> by;
+    for (const SweepRow& r : sweep.rows) by[r.system] = &r;
+    ASSERT_EQ(by.size(), 8u);
+    EXPECT_LT(by["acdf"]->relative_variance, 0.2 * by["full_cdf"]->relative_variance);
+    EXPECT_NEAR(by["resampling_32"]->relative_variance, by["full_cdf"]->relative_variance / 32.0, 1e-12);
+    EXPECT_LT(by["cdf_cosine"]->relative_variance, by["full_cdf"]->relative_variance);
+    for (const SweepRow& r : sweep.rows) EXPECT_LE(r.relative_variance, r.worst) << r.label;
+}
+
+TEST(SweepRows, OfABrdf) {
+    const auto brdf = input::open_brdf("ggx:alpha=0.3");
+    SweepOptions options = quick();
+    options.budgets = {16384};
+    options.fits = {"variance"};
+    options.views = 2;
+    options.pictures = false;
+    const Sweep sweep = sweep_brdf(*brdf, options);
+    std::map<std::string, const SweepRow*> by;
+    for (const SweepRow& r : sweep.rows) by[r.system] = &r;
+    EXPECT_EQ(sweep.rows[sweep.baseline].system, "full_table");
+    EXPECT_LT(by["acdf"]->relative_variance, by["cosine"]->relative_variance);
+    EXPECT_LT(by["full_table"]->relative_variance, by["cosine"]->relative_variance);
+    EXPECT_GT(by["full_table"]->bytes, 60000000u);
+}
+
+TEST(SweepRows, WhatIsOutOfReachIsTold) {
+    const compress::Target target = acdf_test::noise_target(64, 32, 7);
+    SweepOptions options = quick();
+    options.budgets = {100, 2500};
+    options.fits = {"variance"};
+    options.pictures = false;
+    const Sweep sweep = sweep_environment(target, {}, options);
+    ASSERT_EQ(sweep.notes.size(), 1u);
+    EXPECT_NE(sweep.notes[0].find("100 bytes"), std::string::npos) << sweep.notes[0];
+    options.budgets = {100};
+    EXPECT_THROW(sweep_environment(target, {}, options), std::runtime_error);
+}
+
+} // namespace
+} // namespace acdf::tools

@@ -1,0 +1,404 @@
+// acdf batch: many sources to many files.
+#include "tools/batch/jobs.h"
+#include "tools/batch/memory.h"
+#include "tools/batch/ninja.h"
+#include "tools/batch/plan.h"
+#include "tools/batch/report.h"
+#include "tools/batch/run.h"
+#include "tools/batch/shard.h"
+#include "tools/cli/conversion.h"
+#include "tools/cli/file_input.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/output.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/sizes.h"
+#include "tools/cli/temporary.h"
+#include "tools/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <set>
+
+#include <unistd.h>
+
+namespace acdf::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BatchArguments {
+    std::vector<std::string> inputs, kinds, set;
+    std::string output, memory, shard, emit;
+    int threads = 0, jobs = 0;
+    bool dry_run = false, force = false, merge = false, json = false, quiet = false;
+};
+
+constexpr std::size_t kErrorsShown = 50;
+
+std::unique_ptr<Conversion> make_conversion(const std::string& kind) {
+    return kind == "env" ? env_conversion() : kind == "local" ? local_conversion() : brdf_conversion();
+}
+
+/// Tells errors, a line each, and throws where there are any.
+void refuse(const std::vector<std::string>& errors) {
+    if (errors.empty()) return;
+    for (std::size_t i = 0; i + 1 < std::min(errors.size(), kErrorsShown); ++i)
+        std::fprintf(stderr, "acdf: %s\n", errors[i].c_str());
+    if (errors.size() > kErrorsShown)
+        throw Failure(std::to_string(errors.size() - kErrorsShown + 1) + " more errors; nothing was started");
+    throw Failure(errors.back() + "; nothing was started");
+}
+
+// ---- what is asked for -----------------------------------------------------------------------------------
+
+/// "env.budget=64KiB" as {"env", "--budget=64KiB"}.
+std::pair<std::string, std::string> parse_setting(const std::string& text) {
+    const std::size_t dot = text.find('.');
+    if (dot == std::string::npos || !find_kind(text.substr(0, dot)) || dot + 1 == text.size() ||
+        text[dot + 1] == '-')
+        throw CLI::ValidationError("--set", "needs KIND.OPTION=VALUE, such as env.budget=64KiB, or KIND.OPTION");
+    return {text.substr(0, dot), "--" + text.substr(dot + 1)};
+}
+
+BatchDefaults defaults_of(const BatchArguments& options) {
+    BatchDefaults defaults;
+    if (!options.kinds.empty()) defaults.probe_kinds.clear();
+    for (const std::string& name : options.kinds) {
+        const JobKind* kind = find_kind(name);
+        if (std::count(defaults.probe_kinds.begin(), defaults.probe_kinds.end(), kind) == 0)
+            defaults.probe_kinds.push_back(kind);
+    }
+    for (const std::string& text : options.set) {
+        const auto [kind, option] = parse_setting(text);
+        defaults.options[kind].push_back(option);
+    }
+    for (const auto& [kind, list] : defaults.options) {
+        BatchJob job;
+        job.kind = find_kind(kind);
+        job.options = list;
+        try {
+            const JobConversion checked(job, make_conversion);
+        } catch (const CLI::ParseError& error) {
+            throw CLI::ValidationError("--set " + kind, error.what());
+        }
+    }
+    return defaults;
+}
+
+BatchLimits limits_of(const BatchArguments& options) {
+    BatchLimits limits;
+    limits.threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    limits.workers = options.jobs > 0 ? options.jobs : limits.threads;
+    if (!options.memory.empty()) {
+        const auto bytes = parse_size(options.memory);
+        if (!bytes) throw CLI::ValidationError("--memory", "needs a size such as 8GiB");
+        limits.memory = *bytes;
+        return limits;
+    }
+    const std::uint64_t available = available_memory();
+    limits.memory = available > 0 ? available / 4 * 3 : std::numeric_limits<std::uint64_t>::max();
+    return limits;
+}
+
+Shard shard_of(const BatchArguments& options) {
+    if (options.shard.empty()) return {};
+    try {
+        return parse_shard(options.shard);
+    } catch (const std::invalid_argument& error) {
+        throw CLI::ValidationError("--shard", error.what());
+    }
+}
+
+void check_usage(const BatchArguments& options) {
+    if (options.inputs.empty())
+        throw CLI::ValidationError("INPUT is missing: folders, globs, files or a manifest (*.jsonl)");
+    if (options.merge) return;
+    if (options.output.empty()) throw CLI::ValidationError("--output is missing: the folder to write to");
+    if (!options.emit.empty() && (options.dry_run || !options.shard.empty() || options.json))
+        throw CLI::ValidationError("--emit", "is not for --dry-run, --shard and --json: Ninja decides what to run");
+    std::error_code error;
+    if (fs::exists(options.output, error) && !fs::is_directory(options.output, error))
+        throw Failure(options.output + ": is no folder; give one to write to");
+}
+
+/// All jobs, checked.
+BatchJobs all_jobs(const BatchArguments& options) {
+    BatchJobs jobs = collect_jobs(options.inputs, defaults_of(options));
+    check_jobs(options.output, jobs);
+    check_options(jobs, make_conversion);
+    refuse(jobs.errors);
+    return jobs;
+}
+
+// ---- the ways to go on -----------------------------------------------------------------------------------
+
+void sweep(const BatchArguments& options, const std::vector<BatchJob>& jobs) {
+    std::set<std::string> folders;
+    for (const BatchJob& job : jobs) folders.insert((fs::path(options.output) / job.output).parent_path().string());
+    std::size_t removed = 0;
+    for (const std::string& folder : folders) removed += remove_stale_temporaries(folder);
+    if (removed > 0 && !options.quiet)
+        std::fprintf(stderr, "%s: removed %zu temporary file%s of a run that was killed\n", options.output.c_str(),
+                     removed, removed == 1 ? "" : "s");
+}
+
+void show_plan(const BatchArguments& options, const std::vector<PlannedJob>& plan) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const PlannedJob& planned : plan) {
+        const BatchJob& job = planned.job;
+        if (options.json)
+            list.push_back({{"input", job.source},
+                            {"output", job.output},
+                            {"kind", job.kind->name},
+                            {"due", planned.due},
+                            {"reason", planned.reason},
+                            {"memory", planned.due ? nlohmann::ordered_json(planned.memory) : nullptr}});
+        else if (!options.quiet)
+            std::printf("%s %s %s -> %s: %s\n", planned.due ? "make" : "skip", job.kind->name, job.source.c_str(),
+                        job.output.c_str(), planned.reason.c_str());
+    }
+    if (options.json) std::printf("%s\n", list.dump(2).c_str());
+}
+
+std::vector<JobResult> run_with_progress(const BatchArguments& options, const std::vector<PlannedJob>& plan,
+                                         const BatchLimits& limits) {
+    ProgressBar bar(options.quiet);
+    const build::Progress show = bar.callback();
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    std::size_t ended = 0, failed = 0;
+    const auto due = static_cast<std::size_t>(
+        std::count_if(plan.begin(), plan.end(), [](const PlannedJob& planned) { return planned.due; }));
+    return run_jobs(plan, options.output, limits, make_conversion, [&](double share, const JobResult* result) {
+        if (result) ++ended;
+        if (result && result->status == JobResult::Status::failed) {
+            ++failed;
+            std::fprintf(stderr, "%sacdf: %s\n", terminal ? "\r\033[K" : "", result->error.c_str());
+        }
+        const std::string text = std::to_string(ended) + " of " + std::to_string(due) + " jobs" +
+                                 (failed > 0 ? ", " + std::to_string(failed) + " failed" : "");
+        show(share, text.c_str());
+    });
+}
+
+int tell(const BatchArguments& options, const BatchReport& report) {
+    if (options.json) std::printf("%s\n", to_json(report).dump(2).c_str());
+    else if (!options.quiet) std::fputs(summary_table(report).c_str(), stdout);
+    return report.count(JobResult::Status::failed) > 0 ? exit_failed : exit_done;
+}
+
+std::vector<PlannedJob> checked_plan(const BatchArguments& options, const std::vector<BatchJob>& jobs, bool force,
+                                     const BatchLimits& limits) {
+    const auto limit = limit_threads(limits.threads);
+    std::vector<std::string> errors;
+    std::vector<PlannedJob> plan = plan_jobs(jobs, options.output, force, make_conversion, errors);
+    refuse(errors);
+    return plan;
+}
+
+int run_batch(const BatchArguments& options, const BatchJobs& all, const BatchLimits& limits) {
+    const Shard shard = shard_of(options);
+    const std::vector<BatchJob> jobs = jobs_of_shard(all.jobs, shard);
+    if (!options.dry_run) sweep(options, all.jobs);
+    const std::vector<PlannedJob> plan = checked_plan(options, jobs, options.force, limits);
+    if (options.dry_run) {
+        show_plan(options, plan);
+        return exit_done;
+    }
+    fs::create_directories(options.output);
+    return tell(options, {batch_id(all.jobs), shard, run_with_progress(options, plan, limits)});
+}
+
+/// The arguments that make the same build file once more.
+std::vector<std::string> same_command(const BatchArguments& options) {
+    std::vector<std::string> words = {"batch", "--emit", "ninja", "--quiet", "--output=" + options.output};
+    for (const std::string& kind : options.kinds) words.push_back("--kind=" + kind);
+    for (const std::string& setting : options.set) words.push_back("--set=" + setting);
+    if (!options.memory.empty()) words.push_back("--memory=" + options.memory);
+    if (options.threads > 0) words.push_back("--threads=" + std::to_string(options.threads));
+    if (options.jobs > 0) words.push_back("--jobs=" + std::to_string(options.jobs));
+    words.push_back("--");
+    words.insert(words.end(), options.inputs.begin(), options.inputs.end());
+    return words;
+}
+
+bool is_within(const fs::path& path, const fs::path& folder) {
+    const fs::path relative = path.lexically_relative(folder);
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+int emit_ninja(const BatchArguments& options, const BatchJobs& all, const BatchLimits& limits) {
+    if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 0)
+        throw CLI::ValidationError("--emit", "needs a manifest that Ninja can read again, not stdin");
+    std::vector<std::string> errors;
+    const std::vector<PlannedJob> plan = checked_plan(options, all.jobs, true, limits);
+    for (const PlannedJob& planned : plan)
+        if (planned.memory > limits.memory)
+            errors.push_back(planned.job.origin + ": needs about " + to_readable_size(planned.memory) +
+                             " of memory; raise --memory");
+    refuse(errors);
+    fs::create_directories(options.output);
+    NinjaBuild build;
+    build.program = fs::read_symlink("/proc/self/exe").string();
+    build.output = options.output;
+    build.folder = fs::current_path().string();
+    build.command = same_command(options);
+    build.memory = limits.memory;
+    build.threads = limits.workers;
+    const fs::path output = fs::canonical(options.output);
+    for (const std::vector<std::string>* list : {&all.files, &all.folders})
+        for (const std::string& path : *list) {
+            const fs::path real = fs::canonical(path);
+            if (!is_within(real, output)) build.dependencies.push_back(real.string());
+        }
+    const std::string path = (fs::path(options.output) / "build.ninja").string();
+    const std::string text = ninja_text(plan, build, make_conversion);
+    if (!options.force && fs::exists(path)) {
+        const std::vector<std::uint8_t> old = read_bytes(path);
+        const std::string start(old.begin(), old.end());
+        if (start.compare(0, std::char_traits<char>::length(ninja_mark), ninja_mark) != 0)
+            throw Failure(path + ": exists and was not made by acdf; use --force to replace it");
+    }
+    write_output(path, {text.begin(), text.end()}, true);
+    if (!options.quiet)
+        std::printf("%s: %zu jobs; run `ninja -C %s -k 0`\n", path.c_str(), plan.size(), options.output.c_str());
+    return exit_done;
+}
+
+int merge(const BatchArguments& options) {
+    std::vector<BatchReport> reports;
+    for (const std::string& path : options.inputs) {
+        const std::vector<std::uint8_t> bytes = read_bytes(path);
+        try {
+            reports.push_back(parse_report({bytes.begin(), bytes.end()}));
+        } catch (const std::invalid_argument& error) {
+            throw Failure(path + ": " + error.what());
+        }
+    }
+    MergedReport merged;
+    try {
+        merged = merge_reports(reports);
+    } catch (const std::invalid_argument& error) {
+        throw Failure(error.what());
+    }
+    for (const std::string& problem : merged.problems) std::fprintf(stderr, "acdf: %s\n", problem.c_str());
+    for (const JobResult& job : merged.report.jobs)
+        if (!job.error.empty()) std::fprintf(stderr, "acdf: %s\n", job.error.c_str());
+    const int code = tell(options, merged.report);
+    return merged.problems.empty() ? code : exit_failed;
+}
+
+int run(const BatchArguments& options) {
+    check_usage(options);
+    if (options.merge) return merge(options);
+    const BatchLimits limits = limits_of(options);
+    shard_of(options); // wrong usage is told before files are looked at
+    const BatchJobs jobs = all_jobs(options);
+    return options.emit.empty() ? run_batch(options, jobs, limits) : emit_ninja(options, jobs, limits);
+}
+
+// ---- options ---------------------------------------------------------------------------------------------
+
+void add_what(CLI::App& command, BatchArguments& options) {
+    command
+        .add_option("INPUT", options.inputs,
+                    "Folders (all probes and BRDFs in them and below), files, quoted globs, manifests of one JSON "
+                    "object a line (*.jsonl; - is stdin); with --merge-reports: reports")
+        ->type_name("")
+        ->group("Input");
+    command
+        .add_option("--kind", options.kinds, "What probes become where no manifest says it: env, local, or both")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"env", "local"}).description(""))
+        ->type_name("")
+        ->option_text("NAME,... [env]")
+        ->group("Input");
+    command
+        .add_option(
+            "--set", options.set,
+            "An option of `acdf env`, `acdf local` or `acdf brdf` for all jobs of that kind, but those with "
+            "options of their own in a manifest")
+        ->type_name("")
+        ->option_text("KIND.OPTION[=VALUE]")
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("Input");
+}
+
+void add_how(CLI::App& command, BatchArguments& options) {
+    command.add_option("-o,--output", options.output, "The folder to write to; made where it is missing")
+        ->type_name("")
+        ->option_text("DIR")
+        ->group("Output");
+    command
+        .add_flag("-f,--force", options.force,
+                  "Make all files again. Without it those are skipped that were made of the same source with the "
+                  "same options")
+        ->group("Output");
+    command.add_flag("-n,--dry-run", options.dry_run, "Only tell what would be made or skipped, and why")
+        ->group("Output");
+    add_json(command, options.json);
+    add_quiet(command, options.quiet);
+    command
+        .add_option(
+            "--memory", options.memory,
+            "Bound on the memory of all jobs at once; what a job needs is estimated from its source's header")
+        ->type_name("")
+        ->option_text("SIZE [3/4 of what is free]")
+        ->group("Resources");
+    command
+        .add_option("--threads", options.threads, "Threads in all; the files are the same for any number of them")
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N [all cores]")
+        ->group("Resources");
+    command.add_option("--jobs", options.jobs, "Jobs at once; threads that are left over help those that run")
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N [as many as threads]")
+        ->group("Resources");
+    command
+        .add_option("--shard", options.shard,
+                    "Only a part of the jobs, such as 3/8, balanced by size; slurm: that of this task of a Slurm "
+                    "array")
+        ->type_name("")
+        ->option_text("I/N|slurm")
+        ->group("Farm");
+    command
+        .add_flag("--merge-reports", options.merge,
+                  "Merge what --json told for each shard, and name shards without")
+        ->group("Farm");
+    command.add_option("--emit", options.emit, "ninja: write DIR/build.ninja instead of running")
+        ->check(CLI::IsMember({"ninja"}).description(""))
+        ->type_name("")
+        ->option_text("ninja")
+        ->group("Farm");
+}
+
+} // namespace
+
+void add_batch(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<BatchArguments>();
+    CLI::App& command = *program.add_subcommand("batch", "Compress a library of probes and BRDFs; resumes where it "
+                                                         "was ended");
+    add_what(command, *options);
+    add_how(command, *options);
+    command.footer(help_footer(
+        "Outputs are named after sources: sky.exr becomes sky.acdf, or sky.local.acdf. A line of a manifest: "
+        "{\"source\": \"sky.exr\", \"kind\": \"local\", \"options\": {\"budget\": \"256KiB\"}, \"output\": "
+        "\"skies/noon.acdf\"}; all but source may be left out. A job that fails stops no other.",
+        "acdf batch probes brdfs -o library\n"
+        "acdf batch probes -o library --kind env,local --set env.budget=64KiB --set local.filter=bilinear\n"
+        "acdf batch library.jsonl -o library --dry-run\n"
+        "acdf batch library.jsonl -o library --shard 3/8 --json > report.3.json\n"
+        "acdf batch --merge-reports report.*.json\n"
+        "acdf batch library.jsonl -o library --emit ninja && ninja -C library -k 0"));
+    command.callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,249 @@
+#include "tools/batch/jobs.h"
+
+#include "input/brdf_models.h"
+#include "tools/cli/file_input.h"
+#include "tools/commands.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+
+#include <glob.h>
+
+namespace acdf::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What folders are searched for: formats of radiance, not those of previews, which a manifest may name.
+constexpr std::array probe_extensions = {".exr", ".hdr", ".pfm", ".tif", ".tiff", ".tx"};
+constexpr std::array brdf_extensions = {".binary", ".bsdf"};
+
+std::string lower_extension(const fs::path& path) {
+    std::string text = path.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+template <std::size_t N>
+bool is_one_of(const std::array<const char*, N>& list, const std::string& text) {
+    return std::find(list.begin(), list.end(), text) != list.end();
+}
+
+class Collector {
+public:
+    explicit Collector(const BatchDefaults& defaults) : defaults_(defaults) {}
+
+    void add_input(const std::string& input) {
+        std::error_code error;
+        if (input == "-" || lower_extension(input) == ".jsonl") add_manifest(input);
+        else if (fs::is_directory(input, error)) add_folder(input);
+        else if (!fs::exists(input, error) && input.find_first_of("*?[") != std::string::npos) add_glob(input);
+        else add_file(input, input);
+    }
+
+    BatchJobs take() { return std::move(out_); }
+
+private:
+    /// A job for each kind that the source becomes by default. `stem`: of the output's name.
+    void add_source(const std::string& source, const fs::path& stem) {
+        const JobKind* brdf = find_kind("brdf");
+        if (is_one_of(brdf_extensions, lower_extension(source))) return add(source, brdf, stem);
+        for (const JobKind* kind : defaults_.probe_kinds) add(source, kind, stem);
+    }
+
+    void add(const std::string& source, const JobKind* kind, const fs::path& stem) {
+        BatchJob job;
+        job.origin = source;
+        job.kind = kind;
+        job.source = source;
+        job.options = default_options(*kind);
+        job.output = stem.string() + kind->suffix;
+        out_.jobs.push_back(std::move(job));
+    }
+
+    void add_file(const std::string& path, const std::string& origin) {
+        if (lower_extension(path) == ".npy")
+            out_.errors.push_back(origin + ": may be a BRDF or a table; name it in a manifest, with its kind");
+        else add_source(path, fs::path(path).filename().replace_extension());
+    }
+
+    void add_folder(const std::string& folder) {
+        const std::size_t before = out_.jobs.size();
+        out_.folders.push_back(folder);
+        std::vector<fs::path> found;
+        std::error_code error;
+        fs::recursive_directory_iterator i(folder, error), end;
+        for (; !error && i != end; i.increment(error)) {
+            const fs::path& path = i->path();
+            const bool hidden = path.filename().string().front() == '.', directory = i->is_directory();
+            if (directory && hidden) i.disable_recursion_pending();
+            else if (directory && !i->is_symlink()) out_.folders.push_back(path.string());
+            const std::string extension = lower_extension(path);
+            if (!directory && !hidden &&
+                (is_one_of(probe_extensions, extension) || is_one_of(brdf_extensions, extension)))
+                found.push_back(path);
+        }
+        if (error) out_.errors.push_back(folder + ": cannot be searched: " + error.message());
+        std::sort(found.begin(), found.end()); // folders have no order of their own
+        for (const fs::path& path : found)
+            add_source(path.string(), path.lexically_relative(folder).replace_extension());
+        if (!error && out_.jobs.size() == before)
+            out_.errors.push_back(folder + ": has no probe (" + list(probe_extensions) + ") and no BRDF (" +
+                                  list(brdf_extensions) + ") in it or below");
+    }
+
+    void add_glob(const std::string& pattern) {
+        glob_t matches = {};
+        const int code = glob(pattern.c_str(), 0, nullptr, &matches);
+        for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) {
+            const std::string path = matches.gl_pathv[i];
+            std::error_code error;
+            if (fs::is_directory(path, error)) add_folder(path);
+            else add_file(path, path);
+        }
+        globfree(&matches);
+        if (code != 0) out_.errors.push_back(pattern + ": matches no file; quote globs or leave them to the shell");
+    }
+
+    void add_manifest(const std::string& path) {
+        const std::string name = path == "-" ? "stdin" : path;
+        const std::vector<std::uint8_t> bytes = read_bytes(path);
+        if (path != "-") out_.files.push_back(path);
+        const Manifest manifest = parse_manifest({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        for (const ManifestError& error : manifest.errors)
+            out_.errors.push_back(name + ":" + std::to_string(error.line) + ": " + error.what);
+        const fs::path base = path == "-" ? fs::path() : fs::path(path).parent_path();
+        for (const ManifestJob& line : manifest.jobs) add_line(line, name, base);
+        if (manifest.jobs.empty() && manifest.errors.empty()) out_.errors.push_back(name + ": has no jobs");
+    }
+
+    void add_line(const ManifestJob& line, const std::string& name, const fs::path& base) {
+        BatchJob job;
+        job.origin = name + ":" + std::to_string(line.line);
+        const std::string extension = lower_extension(line.source);
+        const bool model = input::is_model(line.source);
+        if (!line.kind && extension == ".npy") {
+            out_.errors.push_back(job.origin + ": " + line.source + " is a BRDF only if 'kind' says so");
+            return;
+        }
+        job.kind = line.kind                                        ? line.kind
+                   : model || is_one_of(brdf_extensions, extension) ? find_kind("brdf")
+                                                                    : defaults_.probe_kinds.front();
+        job.source = model && job.kind == find_kind("brdf") ? line.source : (base / line.source).string();
+        job.base = base.string();
+        job.options = line.options ? *line.options : default_options(*job.kind);
+        const std::string stem =
+            model ? line.source : fs::path(line.source).filename().replace_extension().string();
+        job.output = line.output.empty() ? stem + job.kind->suffix : line.output;
+        out_.jobs.push_back(std::move(job));
+    }
+
+    std::vector<std::string> default_options(const JobKind& kind) const {
+        const auto found = defaults_.options.find(kind.name);
+        return found == defaults_.options.end() ? std::vector<std::string>() : found->second;
+    }
+
+    template <std::size_t N>
+    static std::string list(const std::array<const char*, N>& names) {
+        std::string text;
+        for (const char* name : names) text += (text.empty() ? "" : " ") + std::string(name);
+        return text;
+    }
+
+    const BatchDefaults& defaults_;
+    BatchJobs out_;
+};
+
+/// Adds the size of the source, or tells what is wrong with it.
+std::string check_source(BatchJob& job) {
+    if (find_non_utf8(job.source) != std::string::npos)
+        return "the name of the source is not UTF-8, which files tell it in; rename it";
+    if (job.kind == find_kind("brdf") && input::is_model(job.source)) return "";
+    std::error_code error;
+    const fs::file_status status = fs::status(job.source, error);
+    if (status.type() == fs::file_type::not_found) return "there is no file " + job.source;
+    if (status.type() == fs::file_type::directory) return job.source + " is a folder, not a file";
+    if (status.type() != fs::file_type::regular) return job.source + " is no regular file";
+    job.bytes = fs::file_size(job.source, error);
+    return error ? job.source + ": " + error.message() : "";
+}
+
+/// Symbolic links below the output folder could lead anywhere.
+std::string check_links(const fs::path& folder, const std::string& output) {
+    fs::path at = folder;
+    for (const fs::path& part : fs::path(output)) {
+        at /= part;
+        std::error_code error;
+        if (fs::is_symlink(fs::symlink_status(at, error)))
+            return "the output " + output + " goes through the symbolic link " + at.string();
+        if (fs::is_directory(at, error)) continue;
+        if (fs::exists(at, error) && at != folder / output)
+            return "the output " + output + " is in " + at.string() + ", which is no folder";
+        return "";
+    }
+    return "the output " + output + " is a folder already";
+}
+
+std::string check_output(const std::string& folder, BatchJob& job) {
+    if (std::string what = output_name_error(job.output); !what.empty())
+        return "the output '" + job.output + "' " + what;
+    job.output = fs::path(job.output).lexically_normal().string();
+    return check_links(folder, job.output);
+}
+
+void check_duplicates(const std::string& folder, BatchJobs& jobs) {
+    std::map<std::string, const BatchJob*> by_output;
+    for (const BatchJob& job : jobs.jobs) {
+        const auto [first, is_new] = by_output.emplace(job.output, &job);
+        if (!is_new)
+            jobs.errors.push_back(job.origin + ": writes " + job.output + ", as does " + first->second->origin +
+                                  "; give one of them another name in a manifest");
+    }
+    std::map<std::string, const BatchJob*> by_source;
+    for (const BatchJob& job : jobs.jobs) by_source.emplace(fs::absolute(job.source).lexically_normal(), &job);
+    for (const BatchJob& job : jobs.jobs) {
+        for (fs::path above = fs::path(job.output).parent_path(); !above.empty(); above = above.parent_path())
+            if (by_output.count(above.string()) > 0)
+                jobs.errors.push_back(job.origin + ": the output " + job.output + " is in a folder " +
+                                      above.string() + " that another job writes as a file");
+        const std::string target = fs::absolute(fs::path(folder) / job.output).lexically_normal();
+        if (by_source.count(target) > 0)
+            jobs.errors.push_back(job.origin + ": the output " + target + " is a source");
+    }
+}
+
+} // namespace
+
+BatchJobs collect_jobs(const std::vector<std::string>& inputs, const BatchDefaults& defaults) {
+    Collector collector(defaults);
+    for (const std::string& input : inputs) collector.add_input(input);
+    return collector.take();
+}
+
+std::string output_name_error(const std::string& name) {
+    if (name.empty()) return "is empty";
+    if (name.front() == '/') return "is an absolute path; outputs are below the output folder";
+    if (name.find('\0') != std::string::npos) return "has a NUL in it";
+    if (find_non_utf8(name) != std::string::npos) return "is not UTF-8";
+    for (const char c : name)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return "has a control character in it";
+    for (const fs::path& part : fs::path(name)) {
+        if (part == "..") return "leaves the output folder";
+        if (part.string().size() > 255) return "has a part of more than 255 bytes";
+        if (part.string().compare(0, 6, ".acdf-") == 0) return "is named like a temporary file";
+    }
+    if (fs::path(name).extension() != ".acdf" || fs::path(name).stem().empty()) return "does not end in .acdf";
+    return "";
+}
+
+void check_jobs(const std::string& folder, BatchJobs& jobs) {
+    for (BatchJob& job : jobs.jobs)
+        for (const std::string& what : {check_source(job), check_output(folder, job)})
+            if (!what.empty()) jobs.errors.push_back(job.origin + ": " + what);
+    if (jobs.errors.empty()) check_duplicates(folder, jobs);
+}
+
+} // namespace acdf::tools

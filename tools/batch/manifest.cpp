@@ -1,0 +1,165 @@
+#include "tools/batch/manifest.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+
+namespace acdf::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What is wrong with a line.
+struct LineError {
+    std::string what;
+};
+
+constexpr std::size_t longest_line = std::size_t{1} << 20;
+
+[[noreturn]] void fail(const std::string& what) { throw LineError{what}; }
+
+/// `text` is UTF-8. Throws LineError, also for keys that come twice and values in values in values.
+Json parse_line(std::string_view text) {
+    std::vector<std::set<std::string>> keys; // of the objects that are open
+    const auto watch = [&](int depth, Json::parse_event_t event, Json& value) {
+        if (depth > 8) fail("is nested too deeply");
+        if (event == Json::parse_event_t::object_start) keys.emplace_back();
+        if (event == Json::parse_event_t::object_end) keys.pop_back();
+        if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
+            fail("has '" + value.get<std::string>() + "' twice");
+        return true;
+    };
+    try {
+        return Json::parse(text.begin(), text.end(), watch);
+    } catch (const Json::parse_error& error) {
+        fail("is not JSON: error at column " + std::to_string(error.byte) +
+             "; a line is one object such as {\"source\": \"sky.exr\"}");
+    } catch (const Json::exception&) {
+        fail("has a number that is out of range");
+    }
+}
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+std::string text_of(const Json& value, const char* key) {
+    if (!value.is_string()) fail(std::string("'") + key + "' is to be a text, not " + value.type_name());
+    std::string text = value.get<std::string>();
+    if (text.empty()) fail(std::string("'") + key + "' is empty");
+    if (std::any_of(text.begin(), text.end(), is_control))
+        fail(std::string("'") + key + "' has a control character");
+    return text;
+}
+
+/// {"budget": "64KiB", "no-sharing": true} as {"--budget=64KiB", "--no-sharing"}.
+std::vector<std::string> options_of_object(const Json& object) {
+    std::vector<std::string> options;
+    for (const auto& [name, value] : object.items()) {
+        if (std::any_of(name.begin(), name.end(), is_control))
+            fail("the name of an option has a control character");
+        if (name.empty() || name[0] == '-' || name.find_first_of("= \t") != std::string::npos)
+            fail("'" + name + "' is no name of an option; write it without dashes");
+        if (value.is_string()) options.push_back("--" + name + "=" + text_of(value, name.c_str()));
+        else if (value.is_number()) options.push_back("--" + name + "=" + value.dump());
+        else if (value.is_boolean() && value.get<bool>()) options.push_back("--" + name);
+        else if (!value.is_boolean())
+            fail("the value of option '" + name + "' is to be a text, a number or true, not " + value.type_name());
+    }
+    return options;
+}
+
+std::vector<std::string> options_of(const Json& value) {
+    if (value.is_object()) return options_of_object(value);
+    if (!value.is_array())
+        fail(std::string(
+                 "'options' is to be an object such as {\"budget\": \"64KiB\"}, or an array of texts, not ") +
+             value.type_name());
+    std::vector<std::string> options;
+    for (const Json& item : value) options.push_back(text_of(item, "options"));
+    return options;
+}
+
+ManifestJob job_of(const Json& object) {
+    if (!object.is_object()) fail(std::string("is to be an object, not ") + object.type_name());
+    ManifestJob job;
+    for (const auto& [key, value] : object.items()) {
+        if (key == "source") job.source = text_of(value, "source");
+        else if (key == "output") job.output = text_of(value, "output");
+        else if (key == "options") job.options = options_of(value);
+        else if (key == "kind") {
+            const std::string name = text_of(value, "kind");
+            job.kind = find_kind(name);
+            if (!job.kind) fail("kind '" + name + "' is none of env, local and brdf");
+        } else {
+            fail("has an unknown key '" + key + "'; there are source, kind, options and output");
+        }
+    }
+    if (job.source.empty()) fail("has no 'source'");
+    return job;
+}
+
+ManifestJob read_line(std::string_view text) {
+    if (text.size() > longest_line) fail("is longer than 1 MiB");
+    if (const std::size_t at = find_non_utf8(text); at != std::string_view::npos)
+        fail("is not UTF-8 at column " + std::to_string(at + 1));
+    return job_of(parse_line(text));
+}
+
+/// The first line of `text`, which loses it.
+std::string_view take_line(std::string_view& text) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    return line;
+}
+
+/// Bytes of the UTF-8 sequence at the start of `text`; 0: it is none (Unicode 15, table 3-7).
+std::size_t sequence_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<std::uint8_t>(text[i]) : 0u; };
+    const auto tail = [&](std::size_t i) { return byte(i) >= 0x80 && byte(i) <= 0xbf; };
+    const std::uint32_t a = byte(0), b = byte(1);
+    if (a < 0x80) return 1;
+    if (a >= 0xc2 && a <= 0xdf) return tail(1) ? 2 : 0;
+    if (a >= 0xe0 && a <= 0xef)
+        return tail(1) && tail(2) && !(a == 0xe0 && b < 0xa0) && !(a == 0xed && b > 0x9f) ? 3 : 0;
+    if (a >= 0xf0 && a <= 0xf4)
+        return tail(1) && tail(2) && tail(3) && !(a == 0xf0 && b < 0x90) && !(a == 0xf4 && b > 0x8f) ? 4 : 0;
+    return 0;
+}
+
+} // namespace
+
+const JobKind* find_kind(std::string_view name) {
+    for (const JobKind& kind : job_kinds)
+        if (name == kind.name) return &kind;
+    return nullptr;
+}
+
+Manifest parse_manifest(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (text.substr(0, byte_order_mark.size()) == byte_order_mark) text.remove_prefix(byte_order_mark.size());
+    Manifest manifest;
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::string_view line = take_line(text);
+        if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+        try {
+            manifest.jobs.push_back(read_line(line));
+            manifest.jobs.back().line = number;
+        } catch (const LineError& error) {
+            manifest.errors.push_back({number, error.what});
+        }
+    }
+    return manifest;
+}
+
+std::size_t find_non_utf8(std::string_view text) {
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t n = sequence_length(text.substr(i));
+        if (n == 0) return i;
+        i += n;
+    }
+    return std::string_view::npos;
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,91 @@
+#include "tools/batch/ninja.h"
+
+#include "input/brdf_models.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace acdf::tools {
+
+const char ninja_mark[] = "# Made by `acdf batch --emit ninja`: changes here will be lost.";
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A word of a command line.
+std::string shell_quoted(const std::string& word) {
+    const auto plain = [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+               std::string_view("/._-=,:+%@").find(c) != std::string_view::npos;
+    };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+    return text + "'";
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + shell_quoted(word);
+    return text;
+}
+
+/// Text as the value of a variable.
+std::string value(const std::string& text) {
+    std::string out;
+    for (const char c : text) out += c == '$' ? "$$" : std::string(1, c);
+    return out;
+}
+
+/// A path in a list of paths.
+std::string path_text(const std::string& path) {
+    std::string out;
+    for (const char c : path) out += c == '$' || c == ' ' || c == ':' ? std::string("$") + c : std::string(1, c);
+    return out;
+}
+
+std::string absolute(const std::string& path) { return fs::absolute(path).lexically_normal().string(); }
+
+/// `folder`: where the build file lies.
+std::string edge(const PlannedJob& planned, bool large, const std::string& folder, const MakeConversion& make) {
+    const BatchJob& job = planned.job;
+    JobConversion conversion(job, make);
+    const bool model = job.kind == find_kind("brdf") && input::is_model(job.source);
+    const std::string source = model ? job.source : absolute(job.source);
+    std::string text = "build " + path_text(job.output) + ": convert" + (model ? "" : " " + path_text(source));
+    // Paths among the options are relative to their manifest.
+    const std::vector<std::string*> files = conversion->files();
+    std::string output = job.output, at;
+    for (std::size_t i = 1; i < files.size(); ++i) {
+        text += (i == 1 ? " | " : " ") + path_text(absolute(*files[i]));
+        output = absolute((fs::path(folder) / job.output).string());
+        at = "  at = cd " + value(shell_quoted(absolute(job.base.empty() ? "." : job.base))) + " &&\n";
+    }
+    std::vector<std::string> command = {job.kind->name, source, "--output=" + output, "--force", "--quiet"};
+    if (!large) command.insert(command.end(), {"--threads", "1"});
+    command.insert(command.end(), job.options.begin(), job.options.end());
+    return text + "\n" + at + "  arguments = " + value(shell_command(command)) + "\n" +
+           (large ? "  pool = large\n" : "");
+}
+
+} // namespace
+
+std::string ninja_text(const std::vector<PlannedJob>& plan, const NinjaBuild& build, const MakeConversion& make) {
+    const std::uint64_t each = build.memory / static_cast<std::uint64_t>(std::max(1, build.threads));
+    std::uint64_t most = 1;
+    for (const PlannedJob& job : plan) most = std::max(most, job.memory);
+    std::string text =
+        std::string(ninja_mark) + "\nninja_required_version = 1.5\nacdf = " + value(shell_quoted(build.program)) +
+        "\n\npool large\n  depth = " + std::to_string(std::max<std::uint64_t>(1, build.memory / most)) +
+        "\n\nrule convert\n  command = $at $acdf $arguments\n  description = $out\n\nrule plan\n"
+        "  command = cd " +
+        value(shell_quoted(build.folder)) + " && $acdf " + value(shell_command(build.command)) +
+        "\n  description = build.ninja\n  generator = 1\n\nbuild build.ninja: plan |";
+    for (const std::string& file : build.dependencies) text += " " + path_text(file);
+    text += "\n\n";
+    for (const PlannedJob& job : plan) text += edge(job, job.memory > each, build.output, make);
+    return text;
+}
+
+} // namespace acdf::tools

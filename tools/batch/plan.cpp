@@ -1,0 +1,178 @@
+#include "tools/batch/plan.h"
+
+#include "build/format_names.h"
+#include "input/image.h"
+#include "reader/check.h"
+#include "tools/cli/file_input.h"
+#include "tools/commands.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+namespace acdf::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string value_of(const File& file, const char* key) {
+    const Text text = file.metadata(key);
+    return {text.data, text.size};
+}
+
+AcdfKind file_kind(const JobKind& kind) {
+    return std::strcmp(kind.name, "env") == 0     ? ACDF_KIND_ENVIRONMENT
+           : std::strcmp(kind.name, "local") == 0 ? ACDF_KIND_LOCAL
+                                                  : ACDF_KIND_BRDF;
+}
+
+bool has_magic(const std::vector<std::uint8_t>& bytes) {
+    constexpr std::uint8_t magic[] = ACDF_MAGIC_BYTES;
+    return bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, sizeof magic) == 0;
+}
+
+std::string first_fault(const std::vector<std::uint8_t>& bytes) {
+    std::string fault;
+    validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
+        if (finding.rule->severity != Severity::error) return true;
+        fault = "rule " + std::to_string(finding.rule->number) + ": " + finding.detail;
+        return false;
+    });
+    return fault;
+}
+
+/// Whether the file was made of the job's source, which is hashed only here: it costs most.
+bool is_of_source(const File& file, const BatchJob& job) {
+    const std::string hash = value_of(file, "source.sha256");
+    const std::string name = fs::path(job.source).filename().string();
+    if (job.bytes == 0) return hash.empty() && value_of(file, "source.name") == job.source;
+    return value_of(file, "source.name") == name && hash == input::file_sha256(job.source);
+}
+
+/// The conversion of the job before, for one with the same options.
+class Conversions {
+public:
+    explicit Conversions(const MakeConversion& make) : make_(make) {}
+
+    Conversion& of(const BatchJob& job) {
+        if (!last_ || job.kind != job_.kind || job.options != job_.options || job.base != job_.base) {
+            auto next = std::make_unique<JobConversion>(job, make_);
+            text_ = (*next)->option_text(); // reads a scene
+            last_ = std::move(next);
+            job_ = job;
+        }
+        (*last_)->source = job.source;
+        return **last_;
+    }
+
+    /// Of the last conversion.
+    const std::string& option_text() const { return text_; }
+
+private:
+    const MakeConversion& make_;
+    BatchJob job_;
+    std::unique_ptr<JobConversion> last_;
+    std::string text_;
+};
+
+/// Why the output with these bytes is to be made again; empty: it is not.
+std::string why_due(const std::vector<std::uint8_t>& bytes, const BatchJob& job, const std::string& option_text,
+                    PlannedJob& planned) {
+    AcdfHeader header;
+    if (bytes.size() < sizeof header) return "its output is cut short";
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (header.version_major != ACDF_VERSION_MAJOR || header.version_minor != ACDF_VERSION_MINOR)
+        return "its output has format " + std::to_string(header.version_major) + "." +
+               std::to_string(header.version_minor);
+    if (std::string fault = first_fault(bytes); !fault.empty()) return "its output is not valid (" + fault + ")";
+    File file;
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+        return std::string("its output cannot be read (") + status.message + ")";
+    if (file.kind() != file_kind(*job.kind)) return "its output is of kind " + build::kind_name(file.kind());
+    if (const std::string had = value_of(file, "fit.options"); had != option_text)
+        return "its options changed from " + had;
+    if (!is_of_source(file, job)) return "its source changed";
+    planned.bytes = bytes.size();
+    planned.relative_variance = std::strtod(value_of(file, "accuracy.relative_variance").c_str(), nullptr);
+    return "";
+}
+
+void look_at(PlannedJob& planned, const std::string& folder, bool force, Conversions& conversions) {
+    const BatchJob& job = planned.job;
+    const std::string path = (fs::path(folder) / job.output).string();
+    const Conversion& conversion = conversions.of(job);
+    planned.reason = "new";
+    if (fs::exists(path)) {
+        planned.reason = "forced";
+        if (!force) {
+            const std::vector<std::uint8_t> bytes = read_bytes(path);
+            if (!bytes.empty() && !has_magic(bytes))
+                throw Failure("the output " + path + " exists and is no .acdf file; use --force to replace it");
+            planned.reason = why_due(bytes, job, conversions.option_text(), planned);
+        }
+    }
+    planned.due = !planned.reason.empty();
+    if (!planned.due) planned.reason = "up to date";
+    else planned.memory = conversion.memory();
+}
+
+} // namespace
+
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (c == '\n' || c == '\r') c = ' ';
+    return text;
+}
+
+JobConversion::JobConversion(const BatchJob& job, const MakeConversion& make)
+    : conversion_(make(job.kind->name)), command_("", job.kind->name) {
+    command_.set_help_flag();
+    conversion_->add_options(command_);
+    std::vector<std::string> reversed(job.options.rbegin(), job.options.rend()); // as CLI11 wants it
+    command_.parse(std::move(reversed));
+    conversion_->source = job.source;
+    for (std::string* file : conversion_->files())
+        if (file != &conversion_->source) *file = (fs::path(job.base) / *file).string();
+    conversion_->check();
+}
+
+void check_options(BatchJobs& jobs, const MakeConversion& make) {
+    std::map<std::vector<std::string>, std::string> seen; // what is wrong with them
+    for (const BatchJob& job : jobs.jobs) {
+        std::vector<std::string> key = job.options;
+        key.insert(key.end(), {job.kind->name, job.base});
+        const auto [found, is_new] = seen.emplace(std::move(key), "");
+        if (is_new) try {
+                JobConversion(job, make)->option_text(); // reads a scene
+            } catch (const CLI::ParseError& error) {
+                found->second = std::string("options of ") + job.kind->name + ": " + one_line(error.what());
+            } catch (const std::runtime_error& error) {
+                found->second = one_line(error.what());
+            }
+        if (!found->second.empty()) jobs.errors.push_back(job.origin + ": " + found->second);
+    }
+}
+
+std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::string& folder, bool force,
+                                  const MakeConversion& make, std::vector<std::string>& errors) {
+    std::vector<PlannedJob> plan(jobs.size());
+    std::vector<std::string> wrong(jobs.size());
+    tbb::enumerable_thread_specific<Conversions> conversions([&] { return Conversions(make); });
+    tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+        plan[i].job = jobs[i];
+        try {
+            look_at(plan[i], folder, force, conversions.local());
+        } catch (const std::exception& error) {
+            wrong[i] = jobs[i].origin + ": " + one_line(error.what());
+        }
+    });
+    for (std::string& line : wrong)
+        if (!line.empty()) errors.push_back(std::move(line));
+    return plan;
+}
+
+} // namespace acdf::tools

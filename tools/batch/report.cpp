@@ -1,0 +1,152 @@
+#include "tools/batch/report.h"
+
+#include "tools/cli/sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+namespace acdf::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Status = JobResult::Status;
+
+const char* to_string(Status status) {
+    return status == Status::done ? "done" : status == Status::up_to_date ? "up to date" : "failed";
+}
+
+Status parse_status(const std::string& text) {
+    for (const Status status : {Status::done, Status::up_to_date, Status::failed})
+        if (text == to_string(status)) return status;
+    throw std::invalid_argument("'" + text + "' is no status of a job");
+}
+
+Json to_json(const JobResult& job) {
+    const bool made = job.status != Status::failed, worked = job.status != Status::up_to_date;
+    Json json{{"input", job.input}, {"output", job.output}, {"kind", job.kind}, {"status", to_string(job.status)}};
+    json["bytes"] = made ? Json(job.bytes) : Json();
+    json["relative_variance"] = made ? Json(job.relative_variance) : Json(); // JSON has no infinity: null too
+    json["seconds"] = worked ? Json(job.seconds) : Json();
+    json["error"] = made ? Json() : Json(job.error);
+    json["notes"] = job.notes;
+    return json;
+}
+
+template <typename Number>
+Number number_or_zero(const Json& value) {
+    return value.is_null() ? Number{0} : value.get<Number>();
+}
+
+JobResult parse_job(const Json& json) {
+    JobResult job;
+    job.input = json.at("input").get<std::string>();
+    job.output = json.at("output").get<std::string>();
+    job.kind = json.at("kind").get<std::string>();
+    job.status = parse_status(json.at("status").get<std::string>());
+    job.bytes = number_or_zero<std::uint64_t>(json.at("bytes"));
+    job.relative_variance = number_or_zero<double>(json.at("relative_variance"));
+    job.seconds = number_or_zero<double>(json.at("seconds"));
+    if (!json.at("error").is_null()) job.error = json.at("error").get<std::string>();
+    job.notes = json.at("notes").get<std::vector<std::string>>();
+    return job;
+}
+
+/// A row of the table.
+struct Sum {
+    std::size_t jobs = 0, by_status[3] = {};
+    std::uint64_t bytes = 0;
+    double log_variance = 0.0, seconds = 0.0;
+    std::size_t measured = 0;
+
+    void add(const JobResult& job) {
+        ++jobs;
+        ++by_status[static_cast<std::size_t>(job.status)];
+        bytes += job.bytes;
+        seconds += job.seconds;
+        if (job.status == Status::failed || !(job.relative_variance > 0.0)) return;
+        log_variance += std::log(job.relative_variance);
+        ++measured;
+    }
+
+    std::string row(const std::string& name) const {
+        char variance[16] = "-", text[160];
+        if (measured > 0)
+            std::snprintf(variance, sizeof variance, "%.3g", std::exp(log_variance / double(measured)));
+        std::snprintf(text, sizeof text, "%-6s %7zu %7zu %11zu %7zu %12s %18s %9.1f\n", name.c_str(), jobs,
+                      by_status[0], by_status[1], by_status[2], to_readable_size(bytes).c_str(), variance, seconds);
+        return text;
+    }
+};
+
+} // namespace
+
+std::size_t BatchReport::count(Status status) const {
+    return static_cast<std::size_t>(
+        std::count_if(jobs.begin(), jobs.end(), [&](const JobResult& job) { return job.status == status; }));
+}
+
+nlohmann::ordered_json to_json(const BatchReport& report) {
+    Json jobs = Json::array();
+    for (const JobResult& job : report.jobs) jobs.push_back(to_json(job));
+    return {{"batch", report.batch},
+            {"shard", {{"index", report.shard.index}, {"count", report.shard.count}}},
+            {"done", report.count(Status::done)},
+            {"up_to_date", report.count(Status::up_to_date)},
+            {"failed", report.count(Status::failed)},
+            {"jobs", std::move(jobs)}};
+}
+
+BatchReport parse_report(const std::string& text) {
+    try {
+        const Json json = Json::parse(text);
+        BatchReport report;
+        report.batch = json.at("batch").get<std::string>();
+        report.shard = {json.at("shard").at("index").get<std::uint32_t>(),
+                        json.at("shard").at("count").get<std::uint32_t>()};
+        if (report.shard.index < 1 || report.shard.index > report.shard.count)
+            throw std::invalid_argument("there is no such shard");
+        for (const Json& job : json.at("jobs")) report.jobs.push_back(parse_job(job));
+        return report;
+    } catch (const Json::exception& error) {
+        throw std::invalid_argument(std::string("is no report of `acdf batch --json` (") + error.what() + ")");
+    }
+}
+
+MergedReport merge_reports(const std::vector<BatchReport>& reports) {
+    if (reports.empty()) throw std::invalid_argument("there are no reports");
+    MergedReport out;
+    out.report.batch = reports[0].batch;
+    std::map<std::uint32_t, const BatchReport*> by_shard;
+    for (const BatchReport& report : reports) {
+        if (report.batch != reports[0].batch || report.shard.count != reports[0].shard.count)
+            throw std::invalid_argument(
+                "the reports are of different batches: of other sources, options or shards");
+        by_shard[report.shard.index] = &report;
+    }
+    const std::uint32_t count = reports[0].shard.count;
+    for (std::uint32_t i = 1; i <= count && out.problems.size() < 20; ++i)
+        if (by_shard.count(i) == 0)
+            out.problems.push_back("shard " + std::to_string(i) + "/" + std::to_string(count) + " has no report");
+    for (const auto& [index, report] : by_shard)
+        out.report.jobs.insert(out.report.jobs.end(), report->jobs.begin(), report->jobs.end());
+    std::sort(out.report.jobs.begin(), out.report.jobs.end(),
+              [](const JobResult& a, const JobResult& b) { return a.output < b.output; });
+    return out;
+}
+
+std::string summary_table(const BatchReport& report) {
+    std::map<std::string, Sum> kinds;
+    Sum all;
+    for (const JobResult& job : report.jobs) {
+        kinds[job.kind].add(job);
+        all.add(job);
+    }
+    std::string text = "kind      jobs    done  up to date  failed        bytes  relative variance   seconds\n";
+    for (const auto& [name, sum] : kinds) text += sum.row(name);
+    return kinds.size() > 1 ? text + all.row("all") : text;
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,53 @@
+// What became of the jobs of a batch: as JSON, for scripts and to be merged, and as a table.
+#pragma once
+
+#include "tools/batch/plan.h"
+#include "tools/batch/shard.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// What became of a job.
+struct JobResult {
+    enum class Status { done, up_to_date, failed };
+
+    std::string input, output, kind;
+    Status status = Status::failed;
+    std::uint64_t bytes = 0;        ///< of the output; 0 where it failed
+    double relative_variance = 0.0; ///< as the output tells it
+    double seconds = 0.0;           ///< that the job took
+    std::string error;              ///< one line; empty where it did not fail
+    std::vector<std::string> notes; ///< what a user should know of the source
+};
+
+struct BatchReport {
+    std::string batch; ///< batch_id() of all shards' jobs
+    Shard shard;
+    std::vector<JobResult> jobs; ///< in the order of the batch
+
+    std::size_t count(JobResult::Status status) const;
+};
+
+nlohmann::ordered_json to_json(const BatchReport& report);
+
+/// Throws std::invalid_argument where `text` is no report.
+BatchReport parse_report(const std::string& text);
+
+struct MergedReport {
+    BatchReport report;                ///< jobs by output
+    std::vector<std::string> problems; ///< "shard 3/8 has no report": a line each
+};
+
+/// Of two reports on the same shard the later counts. Throws std::invalid_argument where they are of different
+/// batches, or there are none.
+MergedReport merge_reports(const std::vector<BatchReport>& reports);
+
+/// A line for each kind, and one for all of more than one.
+std::string summary_table(const BatchReport& report);
+
+} // namespace acdf::tools

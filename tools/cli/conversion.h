@@ -1,0 +1,80 @@
+// From one source to one file: what `acdf env`, `acdf local` and `acdf brdf` do once and `acdf batch` many times.
+#pragma once
+
+#include "tools/cli/probe_source.h"
+#include "tools/cli/progress.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace acdf::tools {
+
+struct Converted {
+    std::vector<std::uint8_t> bytes; ///< the whole file
+    double relative_variance = 0.0;  ///< as the file itself tells it
+    nlohmann::ordered_json report;   ///< for --json, but for the name of the output
+    std::string summary;             ///< a line for people: what stands behind the file's size
+};
+
+/// Whom a conversion talks to while it works.
+struct Listener {
+    build::Progress progress;
+    Note note;
+};
+
+/// A source, a kind of file and its options. Not to be copied: options are bound to its members.
+class Conversion {
+public:
+    Conversion() = default;
+    virtual ~Conversion() = default;
+    Conversion(const Conversion&) = delete;
+    Conversion& operator=(const Conversion&) = delete;
+
+    std::string source; ///< a path or, for BRDFs, a model
+
+    /// Registers the options that shape the file, once. `command` must live as long as this.
+    virtual void add_options(CLI::App& command) = 0;
+
+    /// Call once the command line is parsed, before all below. Throws CLI::ValidationError where options contradict
+    /// each other.
+    virtual void check() = 0;
+
+    /// The paths of all files that are read, `source` among them, for the caller to see and to change.
+    virtual std::vector<std::string*> files() { return {&source}; }
+
+    /// What the file will tell as `fit.options`. Reads a scene to hash it. Throws input::Error.
+    virtual std::string option_text() const = 0;
+
+    /// Bytes of memory that convert() needs, about, from the header of the source alone. 0 where it cannot be told,
+    /// as the source is missing or damaged.
+    virtual std::uint64_t memory() const = 0;
+
+    /// Deterministic for any number of threads. Throws Failure or input::Error: one line.
+    virtual Converted convert(const Listener& listener) = 0;
+};
+
+std::unique_ptr<Conversion> env_conversion();
+std::unique_ptr<Conversion> local_conversion();
+std::unique_ptr<Conversion> brdf_conversion();
+
+/// What a subcommand that converts says of itself.
+struct ConversionHelp {
+    const char* source; ///< "PROBE"
+    const char* source_text;
+    std::string footer;
+};
+
+/// Makes `command` convert: its source, -o, the options of the conversion, and those on how to run and report.
+void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, const ConversionHelp& help,
+                    int& exit_code);
+
+} // namespace acdf::tools

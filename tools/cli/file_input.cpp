@@ -1,0 +1,83 @@
+#include "tools/cli/file_input.h"
+
+#include "build/format_names.h"
+#include "tools/commands.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include <sys/stat.h>
+
+namespace acdf::tools {
+namespace {
+
+std::string shown(const std::string& path) { return path == "-" ? "stdin" : path; }
+
+struct Close {
+    void operator()(std::FILE* file) const {
+        if (file != stdin) std::fclose(file);
+    }
+};
+
+std::unique_ptr<std::FILE, Close> open_input(const std::string& path) {
+    if (path == "-") return std::unique_ptr<std::FILE, Close>(stdin);
+    std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+    if (!file)
+        throw Failure(path + ": cannot open: " + std::strerror(errno) +
+                      (errno == ENOENT ? "; check the name and the folder" : ""));
+    struct stat status = {};
+    if (fstat(fileno(file.get()), &status) == 0 && S_ISDIR(status.st_mode))
+        throw Failure(path + ": is a folder; give the name of a file in it");
+    return file;
+}
+
+} // namespace
+
+std::vector<std::uint8_t> read_bytes(const std::string& path) {
+    const auto file = open_input(path);
+    std::vector<std::uint8_t> bytes;
+    std::uint8_t buffer[65536];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof(buffer), file.get()))
+        bytes.insert(bytes.end(), buffer, buffer + n);
+    if (std::ferror(file.get())) throw Failure(shown(path) + ": cannot read: " + std::strerror(errno));
+    return bytes;
+}
+
+LoadedFile load_file(const std::string& path) {
+    LoadedFile loaded;
+    loaded.bytes = read_bytes(path);
+    const Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
+    if (status.ok()) return loaded;
+    std::string text = shown(path) + ": " + status.message;
+    if (status.code == ErrorCode::malformed) text += "; `acdf validate` lists every fault";
+    throw Failure(text);
+}
+
+void check_reads_back(const std::uint8_t* data, std::size_t size) {
+    File file;
+    if (const Status status = File::from_memory(data, size, file); !status.ok())
+        throw Failure(std::string("what was written does not read back: ") + status.message);
+}
+
+void fail_kind(const std::string& path, const File& file, const char* command, const char* wanted) {
+    throw Failure(shown(path) + ": holds a file of kind '" + build::kind_name(file.kind()) + "'; acdf " + command +
+                  " reads " + wanted);
+}
+
+LoadedFile load_environment(const std::string& path, const char* command) {
+    LoadedFile loaded = load_file(path);
+    if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT)
+        fail_kind(path, loaded.file, command, "environments, as `acdf env` makes them");
+    return loaded;
+}
+
+LoadedFile load_environment_or_table(const std::string& path, const char* command) {
+    LoadedFile loaded = load_file(path);
+    if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT && loaded.file.kind() != ACDF_KIND_TABLE)
+        fail_kind(path, loaded.file, command, "environments and tables, as `acdf env` and `acdf table` make them");
+    return loaded;
+}
+
+} // namespace acdf::tools

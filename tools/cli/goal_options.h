@@ -1,0 +1,63 @@
+// How large a fit becomes, or how accurate: --cells, --budget and --target-variance, of which one is enough.
+#pragma once
+
+#include "compress/fit.h"
+#include "tools/cli/sizes.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace acdf::tools {
+
+/// What differs from kind to kind.
+struct GoalTexts {
+    const char* cells;          ///< what --cells counts
+    const char* cells_default;  ///< "N [4096]"
+    const char* budget_default; ///< "SIZE", or with a default
+    const char* variance_of;    ///< behind "at most this relative variance"
+    std::uint32_t least_cells = 1, most_cells = 1u << 28;
+};
+
+inline void add_goal(CLI::App& command, std::uint32_t& cells, std::string& budget, double& variance,
+                     const GoalTexts& texts) {
+    const char* group = "Size and accuracy";
+    command.add_option("--cells", cells, texts.cells)
+        ->check(CLI::Range(texts.least_cells, texts.most_cells))
+        ->option_text(texts.cells_default)
+        ->group(group);
+    command
+        .add_option(
+            "--budget", budget,
+            "The most accurate file of at most this size, such as 64KiB or 20kB: for a fixed place in a cache, "
+            "or a download")
+        ->option_text(texts.budget_default)
+        ->group(group);
+    command
+        .add_option("--target-variance", variance,
+                    std::string("The smallest file whose samples have at most this relative variance") +
+                        texts.variance_of)
+        ->check(CLI::PositiveNumber)
+        ->option_text("V")
+        ->group(group);
+}
+
+/// Takes over what was given; else `goal` stays as it is. Returns how many were. Throws CLI::ValidationError where
+/// there are two, or a budget is no size.
+inline int read_goal(const CLI::App& command, const std::string& budget, compress::Goal& goal) {
+    using Kind = compress::Goal::Kind;
+    const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
+    const int goals = given("--cells") + given("--budget") + given("--target-variance");
+    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
+    if (given("--cells")) goal.kind = Kind::cells;
+    if (given("--target-variance")) goal.kind = Kind::variance;
+    if (!given("--budget")) return goals;
+    const auto bytes = parse_size(budget);
+    if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 64KiB, 2MB or 20000");
+    goal.kind = Kind::budget;
+    goal.budget = *bytes;
+    return goals;
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,51 @@
+// Options of every subcommand that reads a probe.
+#pragma once
+
+#include "input/probe.h"
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+#include <string>
+
+namespace acdf::tools {
+
+/// `name` is another where --projection means that of an output.
+inline void add_projection(CLI::App& command, input::Projection& projection, const char* name = "--projection") {
+    const std::map<std::string, input::Projection> names{
+        {"auto", input::Projection::automatic},        {"latlong", input::Projection::latlong},
+        {"angular", input::Projection::angular},       {"mirrorball", input::Projection::mirrorball},
+        {"cube-cross", input::Projection::cube_cross}, {"octahedral", input::Projection::octahedral}};
+    command
+        .add_option(name, projection,
+                    "How the probe lays out directions: auto (metadata, then shape), latlong, angular (Debevec), "
+                    "mirrorball, cube-cross, octahedral (equal-area). Set it where auto refuses")
+        ->transform(CLI::CheckedTransformer(names).description(""))
+        ->option_text("NAME [auto]")
+        ->group("Input");
+}
+
+/// What is done with values that are no radiance, and with probes without any.
+inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
+    const std::map<std::string, build::BadPixels> policies{
+        {"zero", build::BadPixels::zero}, {"clamp", build::BadPixels::clamp}, {"error", build::BadPixels::error}};
+    command
+        .add_option(
+            "--bad-pixels", options.bad_pixels,
+            "What becomes of NaN, infinite and negative values: zero; clamp (+infinity becomes the largest "
+            "finite value of its channel, the others 0); error (refuse the probe). They are counted and told")
+        ->transform(CLI::CheckedTransformer(policies).description(""))
+        ->option_text("NAME [zero]")
+        ->group("Input");
+    const std::map<std::string, bool> when_black{{"error", false}, {"uniform", true}};
+    command
+        .add_option(
+            "--on-black", options.uniform_if_black,
+            "What becomes of a probe without any light: error, or uniform (all directions are equally likely; "
+            "the total is next to 0)")
+        ->transform(CLI::CheckedTransformer(when_black).description(""))
+        ->option_text("NAME [error]")
+        ->group("Input");
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,59 @@
+#include "tools/cli/progress.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <string>
+
+#include <unistd.h>
+
+namespace acdf::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto patience = std::chrono::seconds(1);
+constexpr auto redraw_interval = std::chrono::milliseconds(100);
+constexpr int bar_width = 30;
+
+void draw(double fraction, const char* what) {
+    const int full = static_cast<int>(fraction * bar_width);
+    std::fprintf(stderr, "\r\033[K%s%s %3d%% %s", std::string(static_cast<std::size_t>(full), '#').c_str(),
+                 std::string(static_cast<std::size_t>(bar_width - full), '.').c_str(),
+                 static_cast<int>(100.0 * fraction), what);
+    std::fflush(stderr);
+}
+
+} // namespace
+
+struct ProgressBar::State {
+    std::mutex mutex;
+    Clock::time_point start = Clock::now();
+    Clock::time_point drawn = {};
+    bool visible = false;
+
+    void report(double fraction, const char* what) {
+        const std::unique_lock lock(mutex, std::try_to_lock);
+        if (!lock) return; // another thread is drawing: nobody waits for a progress bar
+        const Clock::time_point now = Clock::now();
+        if (now - start < patience || now - drawn < redraw_interval) return;
+        drawn = now;
+        visible = true;
+        draw(std::clamp(fraction, 0.0, 1.0), what);
+    }
+};
+
+ProgressBar::ProgressBar(bool quiet) {
+    if (!quiet && isatty(STDERR_FILENO)) state_ = std::make_unique<State>();
+}
+
+ProgressBar::~ProgressBar() {
+    if (state_ && state_->visible) std::fputs("\r\033[K", stderr);
+}
+
+build::Progress ProgressBar::callback() {
+    if (!state_) return [](double, const char*) {};
+    return [state = state_.get()](double fraction, const char* what) { state->report(fraction, what); };
+}
+
+} // namespace acdf::tools

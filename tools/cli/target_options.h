@@ -1,0 +1,44 @@
+// Options of every subcommand that fits a probe: whose noise counts, and how the renderer looks the probe up.
+#pragma once
+
+#include "build/option_text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+inline void add_target_options(CLI::App& command, compress::TargetOptions& target) {
+    std::vector<std::string> names;
+    for (const build::ChannelName& channel : build::channel_names) names.push_back(channel.name);
+    command
+        .add_option_function<std::string>(
+            "--channel",
+            [&target](const std::string& name) {
+                for (const build::ChannelName& channel : build::channel_names)
+                    if (name == channel.name) {
+                        target.channels = channel.channels;
+                        target.weights = channel.weights;
+                    }
+            },
+            "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
+            "coloured lights), max (the largest channel), red, green or blue alone")
+        ->check(CLI::IsMember(names).description(""))
+        ->option_text("NAME [luminance]")
+        ->group("Fit");
+    const std::map<std::string, AcdfFilter> filters{{"nearest", ACDF_FILTER_NEAREST},
+                                                    {"bilinear", ACDF_FILTER_BILINEAR}};
+    command
+        .add_option(
+            "--filter", target.filter,
+            "How your renderer looks the map up: nearest or bilinear. Set it right: a lookup that blends light "
+            "into dark texels finds light where a nearest fit has none, which is bias")
+        ->transform(CLI::CheckedTransformer(filters).description(""))
+        ->option_text("NAME [nearest]")
+        ->group("Fit");
+}
+
+} // namespace acdf::tools

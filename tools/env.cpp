@@ -1,0 +1,259 @@
+// acdf env: an environment map to an .acdf file.
+#include "build/format_names.h"
+#include "input/image_header.h"
+#include "tools/cli/conversion.h"
+#include "tools/cli/goal_options.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/probe_options.h"
+#include "tools/cli/probe_source.h"
+#include "tools/cli/sizes.h"
+#include "tools/cli/target_options.h"
+#include "tools/commands.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace acdf::tools {
+namespace {
+
+// Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
+// one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
+constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kEnvironmentMemoryOfPixel = 24;
+
+class EnvConversion : public Conversion {
+public:
+    void add_options(CLI::App& command) override;
+    void check() override;
+    std::string option_text() const override { return build::option_text(reading_text(input_), environment_); }
+    std::uint64_t memory() const override;
+    Converted convert(const Listener& listener) override;
+
+private:
+    bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
+    void set_goal();
+    void set_knots();
+    void add_fit_options(CLI::App& command);
+    nlohmann::ordered_json report(const input::Probe& probe, const build::Environment& result) const;
+
+    input::ProbeOptions input_;
+    build::EnvironmentOptions environment_;
+    std::string knots_, budget_;
+    const CLI::App* command_ = nullptr;
+};
+
+/// Which fits an option belongs to: with another it is a mistake, not something to ignore.
+struct OnlyFor {
+    const char* option;
+    bool uniform, cdf, pdf, variance;
+    const char* message;
+};
+constexpr OnlyFor only_for[] = {
+    {"--cells", false, false, false, true, "is for --fit variance; use --knots with the other fits"},
+    {"--budget", false, false, false, true, "is for --fit variance; use --knots with the other fits"},
+    {"--target-variance", false, false, false, true,
+     "is for --fit variance; use --eps or --knots with the other fits"},
+    {"--max-weight", false, false, false, true, "is for --fit variance"},
+    {"--shape", false, false, false, true, "is for --fit variance; the other fits have two levels"},
+    {"--knots", true, true, true, false, "is for --fit uniform, cdf and pdf; use --cells or --budget"},
+    {"--conditional", true, true, true, false, "is for --fit uniform, cdf and pdf"},
+    {"--eps", false, true, true, false, "is for --fit cdf and pdf; use --target-variance with --fit variance"},
+    {"--gradient", false, true, true, false, "is for --fit cdf and pdf; --fit variance needs no such help"},
+};
+
+bool allows(const OnlyFor& rule, AcdfFit fit) {
+    switch (fit) {
+    case ACDF_FIT_UNIFORM:
+        return rule.uniform;
+    case ACDF_FIT_CDF:
+        return rule.cdf;
+    case ACDF_FIT_PDF:
+        return rule.pdf;
+    default:
+        return rule.variance;
+    }
+}
+
+void EnvConversion::set_goal() {
+    compress::FitOptions& fit = environment_.fit;
+    const int goals = read_goal(*command_, budget_, fit.goal);
+    const bool only_cells = fit.shape == compress::Shape::cascade;
+    if (only_cells && goals > 0 && !given("--cells"))
+        throw CLI::ValidationError("--shape cascade", "is sized by --cells");
+    if (only_cells && given("--max-weight")) throw CLI::ValidationError("--max-weight", "is for --shape tree");
+}
+
+void EnvConversion::set_knots() {
+    compress::FitOptions& fit = environment_.fit;
+    if (given("--knots")) {
+        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
+            throw CLI::ValidationError("--knots", "needs two counts such as 64x64 (phi x theta)");
+    } else if (given("--eps")) {
+        fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
+    }
+}
+
+void EnvConversion::check() {
+    const AcdfFit fit = environment_.fit.fit;
+    for (const OnlyFor& rule : only_for)
+        if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
+    if (fit == ACDF_FIT_VARIANCE) set_goal();
+    else set_knots();
+}
+
+nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const build::Environment& result) const {
+    const build::Accuracy& a = result.accuracy;
+    return {{"source", source},
+            {"projection", input::to_string(probe.projection)},
+            {"projection_reason", probe.projection_reason},
+            {"resolution", {probe.width, probe.height}},
+            {"bad_texels",
+             {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
+            {"fit", build::fit_name(environment_.fit.fit)},
+            {"order", result.order ? build::to_string(*result.order) : "free"},
+            {"bytes", result.bytes.size()},
+            {"cells", a.cells},
+            {"total", a.total},
+            {"relative_variance", a.relative_variance},
+            {"least_variance", a.least_variance},
+            {"rms_pdf_error", a.rms_pdf_error},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"support_violations", a.support_violations}};
+}
+
+std::uint64_t EnvConversion::memory() const {
+    const std::uint64_t pixels = input::image_pixels(source);
+    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel : 0;
+}
+
+Converted EnvConversion::convert(const Listener& listener) {
+    const auto [probe, target] = load_target(source, input_, environment_.target, listener.note);
+    build::Environment result;
+    try {
+        result = build::build_environment(target, source_of(probe, input_), environment_, listener.progress);
+    } catch (const std::runtime_error& error) { // the goal is out of reach
+        throw Failure(source + ": " + error.what());
+    }
+    char summary[160];
+    std::snprintf(summary, sizeof summary, "%llu cells, relative variance %.4g (%s fit%s)",
+                  static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
+                  build::fit_name(environment_.fit.fit).c_str(),
+                  result.order ? (std::string(", ") + build::to_string(*result.order) + " first").c_str() : "");
+    nlohmann::ordered_json told = report(probe, result);
+    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
+}
+
+void EnvConversion::add_fit_options(CLI::App& command) {
+    compress::FitOptions& fit = environment_.fit;
+    const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
+                                              {"cdf", ACDF_FIT_CDF},
+                                              {"pdf", ACDF_FIT_PDF},
+                                              {"variance", ACDF_FIT_VARIANCE}};
+    command
+        .add_option(
+            "--fit", fit.fit,
+            "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
+            "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
+            "uniform (equal steps, to compare with)")
+        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->option_text("NAME [variance]")
+        ->group("Fit");
+    const std::map<std::string, compress::Shape> shapes{{"tree", compress::Shape::tree},
+                                                        {"cascade", compress::Shape::cascade}};
+    command
+        .add_option(
+            "--shape", fit.shape,
+            "What --fit variance makes: tree (refines any segment along any axis: less noise for its size) or "
+            "cascade (two levels, as in the paper: a sample takes less time)")
+        ->transform(CLI::CheckedTransformer(shapes).description(""))
+        ->option_text("NAME [tree]")
+        ->group("Fit");
+    const std::map<std::string, int> orders{{"auto", 0}, {"phi", 1}, {"z", 2}};
+    command
+        .add_option_function<int>(
+            "--order",
+            [&fit](int order) {
+                if (order != 0) fit.order = order == 1 ? compress::Order::phi : compress::Order::z;
+            },
+            "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
+            "file is "
+            "kept, in twice the time; a tree takes the axis that gains more)")
+        ->transform(CLI::CheckedTransformer(orders).description(""))
+        ->option_text("NAME [auto]")
+        ->group("Fit");
+    add_goal(command, fit.goal.cells, budget_, fit.goal.variance,
+             {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
+              ": 0.01 is a tenth of the mean as standard deviation of one sample"});
+    command
+        .add_option("--max-weight", fit.max_weight,
+                    "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "
+                    "cells. It holds for whatever size is asked for, and fails where that is too small")
+        ->check(CLI::Range(1.01, 1e9))
+        ->option_text("W")
+        ->group("Size and accuracy");
+    command
+        .add_option(
+            "--knots", knots_,
+            "Segments of a curve over phi and over theta, for --fit uniform, cdf and pdf (at most this many "
+            "with --eps)")
+        ->option_text("AxB [64x64]")
+        ->group("Size and accuracy");
+    command
+        .add_option(
+            "--eps", fit.epsilon,
+            "Stop adding knots once no curve deviates by more: from the CDF for --fit cdf, from the density "
+            "relative to its peak for --fit pdf")
+        ->check(CLI::Range(0.0, 1.0))
+        ->option_text("E")
+        ->group("Size and accuracy");
+    command
+        .add_option("--gradient", fit.gradient_knots,
+                    "Extra knots of the first curve where the map changes across it, for --fit cdf and pdf: helps "
+                    "where lights at different heights share a region (ibid., eq. 5)")
+        ->check(CLI::Range(0u, 1u << 20))
+        ->option_text("N [0]")
+        ->group("Fit");
+    const std::map<std::string, compress::Conditional> conditionals{{"energy", compress::Conditional::energy},
+                                                                    {"mean", compress::Conditional::mean}};
+    command
+        .add_option("--conditional", fit.conditional,
+                    "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "
+                    "(all alike, as ibid., eq. 4, is printed)")
+        ->transform(CLI::CheckedTransformer(conditionals).description(""))
+        ->option_text("NAME [energy]")
+        ->group("Fit");
+}
+
+void EnvConversion::add_options(CLI::App& command) {
+    command_ = &command;
+    add_projection(command, input_.projection);
+    add_repairs(command, input_);
+    add_fit_options(command);
+    add_target_options(command, environment_.target);
+    add_codec(command, environment_.codec);
+}
+
+} // namespace
+
+std::unique_ptr<Conversion> env_conversion() { return std::make_unique<EnvConversion>(); }
+
+void add_env(CLI::App& program, int& exit_code) {
+    CLI::App& command = *program.add_subcommand("env", "Compress an environment map: directions by what they emit");
+    add_conversion(
+        command, env_conversion(),
+        {"PROBE", "The environment map: any image OpenImageIO reads",
+         help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
+                     "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
+                     "acdf env probe.exr -o probe.acdf\n"
+                     "acdf env probe.hdr -o probe.acdf --budget 64KiB\n"
+                     "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
+                     "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
+                     "acdf env probe.exr -o paper.acdf --fit cdf --knots 64x64 --order z --gradient 16")},
+        exit_code);
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,283 @@
+// acdf info: what is inside a file, in a form for people or as JSON.
+#include "build/format_names.h"
+#include "tools/cli/file_input.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/sizes.h"
+#include "tools/commands.h"
+
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <cstdio>
+#include <map>
+
+namespace acdf::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char accuracy_prefix[] = "accuracy.";
+
+struct InfoArguments {
+    std::vector<std::string> files;
+    bool json = false;
+};
+
+// ---- what the tree holds -------------------------------------------------------------------------------
+
+struct TreeCounts {
+    std::uint64_t curves = 0;
+    std::uint64_t cells = 0; // segments that end; one of a shared curve counts once
+};
+
+TreeCounts count_tree(const File& file) {
+    TreeCounts counts;
+    if (const AcdfTiles* tiles = file.blend().tiles; tiles && tiles->root_count == 0) {
+        counts.cells = tiles->tile_count; // shared by all bins, and no curve divides them
+        counts.curves = 0;
+        return counts;
+    }
+    for (std::uint32_t at = 0; at < file.tree_units();) {
+        AcdfCurve curve;
+        const std::size_t next = acdf_curve_decode(file.tree(), at, &curve);
+        ++counts.curves;
+        for (std::uint32_t i = 0; i < curve.segments; ++i)
+            if (acdf_curve_link(&curve, i) == 0) ++counts.cells;
+        at = static_cast<std::uint32_t>(next);
+    }
+    return counts;
+}
+
+// ---- parts of the report -------------------------------------------------------------------------------
+
+std::string to_string(Text text) { return text.data ? std::string(text.data, text.size) : std::string(); }
+
+std::string axis_name(const AcdfAxis& axis) {
+    const char* name = reinterpret_cast<const char*>(axis.name);
+    return std::string(name, strnlen(name, sizeof(axis.name)));
+}
+
+// A number of the metadata as a number, anything else as text.
+Json metadata_value(const std::string& text) {
+    double number = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, number);
+    if (error != std::errc{} || rest != end) return text;
+    std::uint64_t integer = 0;
+    const auto [integer_rest, integer_error] = std::from_chars(text.data(), end, integer);
+    if (integer_error == std::errc{} && integer_rest == end) return integer;
+    return number;
+}
+
+Json axes_json(const File& file) {
+    Json axes = Json::array();
+    for (std::uint32_t i = 0; i < file.description().axis_count; ++i) {
+        const AcdfAxis& axis = file.axis(i);
+        axes.push_back({{"name", axis_name(axis)},
+                        {"role", build::role_name(axis.role)},
+                        {"measure", build::measure_name(axis.measure)},
+                        {"resolution", axis.resolution},
+                        {"low", axis.low},
+                        {"high", axis.high}});
+    }
+    return axes;
+}
+
+Json chunks_json(const File& file) {
+    Json chunks = Json::array();
+    const AcdfHeader& header = file.header();
+    const auto* table = reinterpret_cast<const AcdfChunk*>(&header + 1);
+    for (std::uint32_t i = 0; i < header.chunk_count; ++i)
+        chunks.push_back({{"type", build::chunk_name(table[i].type)},
+                          {"codec", build::codec_name(table[i].codec)},
+                          {"offset", table[i].offset},
+                          {"stored", table[i].stored_length},
+                          {"raw", table[i].raw_length}});
+    return chunks;
+}
+
+// Keys "accuracy.NAME" and "source.NAME" as objects, the others as they are.
+void add_metadata(const File& file, Json& report) {
+    Json source = Json::object(), accuracy = Json::object(), other = Json::object();
+    for (std::uint32_t i = 0; i < file.metadata_count(); ++i) {
+        Text key_text, value_text;
+        file.metadata(i, key_text, value_text);
+        const std::string key = to_string(key_text), value = to_string(value_text);
+        if (key.rfind("source.", 0) == 0) source[key.substr(7)] = value;
+        else if (key.rfind(accuracy_prefix, 0) == 0)
+            accuracy[key.substr(sizeof(accuracy_prefix) - 1)] = metadata_value(value);
+        else if (key != "tool" && key != "fit.options") other[key] = value;
+    }
+    report["source"] = source;
+    report["tool"] = to_string(file.metadata("tool"));
+    report["options"] = to_string(file.metadata("fit.options"));
+    report["accuracy"] = accuracy;
+    if (!other.empty()) report["metadata"] = other;
+}
+
+/// What a local environment has beside its trees.
+Json local_json(const File& file) {
+    const AcdfLocal local = file.local().data();
+    std::uint64_t stored = 0;
+    for (std::uint32_t i = 0; i < file.description().bin_count; ++i) stored += file.bin(i).root != ACDF_NO_ROOT;
+    Json report;
+    report["normals"] = local.subdivisions > 0 ? std::to_string(local.subdivisions)
+                                               : std::to_string(local.columns) + "x" + std::to_string(local.rows);
+    report["bins_stored"] = stored;
+    report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
+    report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
+    report["lights"] = local.light_count;
+    report["cosine_share"] = local.cosine_share;
+    return report;
+}
+
+Json describe(const std::string& path, const File& file) {
+    const AcdfHeader& header = file.header();
+    const AcdfDescription& description = file.description();
+    const TreeCounts counts = count_tree(file);
+    Json report;
+    report["file"] = path;
+    report["kind"] = build::kind_name(header.kind);
+    report["version"] = std::to_string(header.version_major) + "." + std::to_string(header.version_minor);
+    report["bytes"] = file.size();
+    report["bins"] = description.bin_count;
+    report["cells"] = counts.cells;
+    report["curves"] = counts.curves;
+    if (header.kind == ACDF_KIND_LOCAL) report["local"] = local_json(file);
+    report["axes"] = axes_json(file);
+    report["fit"] = build::fit_name(description.fit);
+    report["filter"] = build::filter_name(description.filter);
+    report["parameterization"] = build::parameterization_name(description.parameterization);
+    report["channel_weights"] = description.channel_weights;
+    report["total"] = description.total;
+    report["chunks"] = chunks_json(file);
+    add_metadata(file, report);
+    return report;
+}
+
+// ---- for people ----------------------------------------------------------------------------------------
+
+void line(const char* name, const std::string& value) {
+    if (!value.empty()) std::printf("  %-12s %s\n", name, value.c_str());
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.6g", value);
+    return text;
+}
+
+std::string text_of(const Json& value) {
+    return value.is_string()         ? value.get<std::string>()
+           : value.is_number_float() ? number(value.get<double>())
+                                     : value.dump();
+}
+
+std::string target_text(const Json& report) {
+    if (report["kind"] == "table") return "a table of numbers; integral " + number(report["total"]);
+    const Json& w = report["channel_weights"];
+    return number(w[0]) + " r + " + number(w[1]) + " g + " + number(w[2]) + " b, looked up " +
+           text_of(report["filter"]) + "; integral " + number(report["total"]);
+}
+
+std::string local_text(const Json& local) {
+    const std::string bins =
+        "--normals " + text_of(local["normals"]) + ", " + text_of(local["bins_stored"]) + " stored; ";
+    const std::string shared = local["tiles"] == 0
+                                   ? "a tree each"
+                                   : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
+                                         " rows, " + text_of(local["lights"]) + " lights";
+    return bins + shared + "; cosine share " + number(local["cosine_share"]);
+}
+
+std::string source_text(const Json& source) {
+    std::string text;
+    for (const auto& [key, value] : source.items()) {
+        if (!text.empty()) text += ", ";
+        text += key == "name" ? text_of(value) : key + " " + text_of(value);
+    }
+    return text;
+}
+
+void print_table(const char* name, const Json& object) {
+    for (const auto& [key, value] : object.items()) {
+        std::printf("  %-12s %-28s %s\n", name, key.c_str(), text_of(value).c_str());
+        name = "";
+    }
+}
+
+void print(const Json& report) {
+    const std::uint64_t bytes = report["bytes"];
+    std::printf("%s: %s, format %s, %llu bytes (%s)\n", text_of(report["file"]).c_str(),
+                text_of(report["kind"]).c_str(), text_of(report["version"]).c_str(),
+                static_cast<unsigned long long>(bytes), to_readable_size(bytes).c_str());
+    line("target", target_text(report));
+    line("fit", text_of(report["fit"]) + "; stored: " + text_of(report["cells"]) + " cells in " +
+                    text_of(report["curves"]) + " curves, " + text_of(report["bins"]) +
+                    (report["bins"] == 1 ? " bin" : " bins"));
+    if (report.contains("local")) line("normals", local_text(report["local"]));
+    line("source", source_text(report["source"]));
+    line("made by", text_of(report["tool"]));
+    line("options", text_of(report["options"]));
+    const char* name = "axes";
+    for (const Json& axis : report["axes"]) {
+        line(name, text_of(axis["name"]) + " (" + text_of(axis["role"]) + ", " + text_of(axis["measure"]) + "), " +
+                       text_of(axis["resolution"]) + " steps from " + number(axis["low"]) + " to " +
+                       number(axis["high"]));
+        name = "";
+    }
+    name = "chunks";
+    for (const Json& chunk : report["chunks"]) {
+        const bool packed = chunk["codec"] != "none";
+        line(name, text_of(chunk["type"]) + " at " + text_of(chunk["offset"]) + ", " + text_of(chunk["stored"]) +
+                       " bytes" +
+                       (packed ? " (" + text_of(chunk["codec"]) + ", " + text_of(chunk["raw"]) + " raw)" : ""));
+        name = "";
+    }
+    print_table("accuracy", report["accuracy"]);
+    if (report.contains("metadata")) print_table("metadata", report["metadata"]);
+}
+
+// One bad file does not hide what the others hold; it does decide the exit code.
+int run(const InfoArguments& options) {
+    Json reports = Json::array();
+    int exit_code = exit_done;
+    for (const std::string& path : options.files) {
+        try {
+            const LoadedFile loaded = load_file(path);
+            reports.push_back(describe(path, loaded.file));
+            if (options.json) continue;
+            if (reports.size() > 1) std::printf("\n");
+            print(reports.back());
+        } catch (const Failure& failure) {
+            std::fprintf(stderr, "acdf: %s\n", failure.what());
+            exit_code = exit_failed;
+        }
+    }
+    if (options.json && !reports.empty())
+        std::printf("%s\n", (options.files.size() == 1 ? reports[0] : reports).dump(2).c_str());
+    return exit_code;
+}
+
+} // namespace
+
+void add_info(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<InfoArguments>();
+    CLI::App* command = program.add_subcommand(
+        "info", "Show what is inside: size, cells, axes, source, and the accuracy measured when it was built");
+    command->add_option("FILE", options->files, "The .acdf files to describe (- is stdin)")
+        ->required()
+        ->type_name("");
+    add_json(*command, options->json);
+    command->footer(help_footer(
+        "The accuracy is that of the build, stored in the file: the source is not needed. `acdf measure` computes "
+        "it "
+        "anew. A cell is a part of the sphere of constant (or linear) density; one that bins share counts once.",
+        "acdf info sky.acdf\n"
+        "acdf info --json sky.acdf | jq .accuracy.relative_variance\n"
+        "acdf info --json *.acdf | jq -r '.[] | [.file, .bytes, .cells] | @tsv'"));
+    command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+} // namespace acdf::tools

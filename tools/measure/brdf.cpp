@@ -1,0 +1,128 @@
+#include "tools/measure/brdf.h"
+
+#include "build/brdf.h"
+#include "build/brdf_accuracy.h"
+#include "input/brdf.h"
+#include "measure/brdf_samplers.h"
+#include "measure/brdf_table.h"
+#include "tools/commands.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+namespace acdf::tools {
+namespace {
+
+/// What the file is compared with, on the same views.
+struct Rivals {
+    double table_mean = 0.0, table_centre = 0.0; ///< infinite where it has no support for some of the light
+    std::size_t table_bytes = 0;
+    double ggx_alpha = 0.0, ggx = 0.0, cosine = 0.0;
+};
+
+double variance_of(const build::ViewDensity& density, const compress::Reflected& reflected,
+                   const std::vector<compress::View>& views) {
+    return build::summary(build::measure_views(density, reflected, views)).relative_variance;
+}
+
+double table_variance(const compress::Reflected& reflected, const input::Brdf& brdf, measure::BrdfTableKind kind,
+                      const std::vector<compress::View>& views, std::size_t& bytes) {
+    const measure::TabulatedBrdf table(reflected, brdf.isotropic, kind);
+    bytes = table.bytes();
+    return variance_of([&](const double wo[3], const double wi[3]) { return table.pdf(wo, wi); }, reflected, views);
+}
+
+Rivals rivals(const compress::Reflected& reflected, const input::Brdf& brdf,
+              const std::vector<compress::View>& views) {
+    Rivals out;
+    out.table_mean = table_variance(reflected, brdf, measure::BrdfTableKind::mean, views, out.table_bytes);
+    out.table_centre = table_variance(reflected, brdf, measure::BrdfTableKind::centre, views, out.table_bytes);
+    out.ggx_alpha = measure::best_ggx(reflected, views).alpha;
+    const measure::GgxSampler ggx(out.ggx_alpha);
+    out.ggx =
+        variance_of([&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }, reflected, views);
+    out.cosine = variance_of(measure::CosineSampler::pdf, reflected, views);
+    return out;
+}
+
+double degrees(const compress::View& view) { return std::acos(view.cosine()) * (180.0 / ACDF_PI); }
+
+nlohmann::ordered_json report(const std::string& path, const File& file, const std::string& source,
+                              const build::BrdfAccuracy& a, const Rivals& r) {
+    return {{"file", path},
+            {"source", source},
+            {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"relative_variance_median", a.median},
+            {"relative_variance_worst", a.worst},
+            {"worst_theta_o", degrees(a.worst_view)},
+            {"relative_variance_full_cdf", r.table_mean},
+            {"relative_variance_full_cdf_centre", r.table_centre},
+            {"full_cdf_bytes", r.table_bytes},
+            {"relative_variance_ggx", r.ggx},
+            {"ggx_alpha", r.ggx_alpha},
+            {"relative_variance_cosine", r.cosine},
+            {"rms_pdf_error", a.rms_pdf_error},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"share_above_horizon", a.share_above_horizon},
+            {"support_violations", a.support_violations},
+            {"views", a.views},
+            {"bytes", file.size()},
+            {"cells", a.cells},
+            {"bins", file.description().bin_count},
+            {"total", file.description().total}};
+}
+
+void print_text(const std::string& path, const File& file, const std::string& source, const build::BrdfAccuracy& a,
+                const Rivals& r) {
+    std::printf("%s against %s, %u random views\n", path.c_str(), source.c_str(), a.views);
+    std::printf("  relative variance      %.6g   of one sample, mean over views; n samples have this over n\n",
+                a.relative_variance);
+    std::printf("    median over views    %.6g\n", a.median);
+    std::printf("    worst view           %.6g   at theta_o = %.1f degrees\n", a.worst, degrees(a.worst_view));
+    std::printf("    full table           %.6g   of %.0f MB, bins made for all their views\n", r.table_mean,
+                double(r.table_bytes) * 1e-6);
+    std::printf(
+        "      for bins' centres  %.6g   the same as published: biased between them where this is infinite\n",
+        r.table_centre);
+    std::printf("    best GGX lobe        %.6g   alpha = %.3g\n", r.ggx, r.ggx_alpha);
+    std::printf("    cosine               %.6g\n", r.cosine);
+    std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
+    std::printf("  RMS error of the pdf   %.6g   sr^-1\n", a.rms_pdf_error);
+    std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
+    std::printf("  samples above horizon  %.6g\n", a.share_above_horizon);
+    std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
+    std::printf("  bins, cells            %" PRIu32 ", %" PRIu64 "\n", file.description().bin_count, a.cells);
+    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+}
+
+} // namespace
+
+void measure_brdf(const std::string& path, const File& file, const std::string& source, bool json, bool quiet) {
+    const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
+    const Text hash = file.metadata("source.sha256");
+    if (hash.size > 0 && std::string(hash.data, hash.size) != brdf->sha256 && !quiet)
+        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
+                     source.c_str());
+    const AcdfDescription& d = file.description();
+    const compress::Reflected reflected =
+        build::reflected_light(*brdf, static_cast<AcdfChannels>(d.channels),
+                               {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]});
+    const std::vector<compress::View> views = build::random_views(build::kMeasuredViews, brdf->isotropic);
+    try {
+        build::BrdfAccuracy accuracy = build::summary(build::measure_views(file, reflected, views));
+        accuracy.cells = build::brdf_cells(file);
+        const Rivals r = rivals(reflected, *brdf, views);
+        if (json) std::printf("%s\n", report(path, file, source, accuracy, r).dump(2).c_str());
+        else print_text(path, file, source, accuracy, r);
+    } catch (const std::invalid_argument& error) {
+        throw Failure(source + ": " + error.what());
+    }
+}
+
+} // namespace acdf::tools

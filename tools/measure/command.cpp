@@ -1,0 +1,126 @@
+// acdf measure: how accurate a file is, by summation over its source.
+#include "measure/full_cdf.h"
+#include "tools/cli/file_input.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/probe_options.h"
+#include "tools/cli/probe_source.h"
+#include "tools/commands.h"
+#include "tools/measure/brdf.h"
+#include "tools/measure/local.h"
+#include "tools/measure/table.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace acdf::tools {
+namespace {
+
+struct MeasureArguments {
+    std::string file, source;
+    input::ProbeOptions input;
+    std::uint32_t normals = 256;
+    bool rivals = false, json = false, quiet = false;
+};
+
+nlohmann::ordered_json report(const MeasureArguments& options, const File& file, const build::Accuracy& a,
+                              double full_cdf) {
+    return {{"file", options.file},
+            {"source", options.source},
+            {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"relative_variance_full_cdf", full_cdf},
+            {"least_variance", a.least_variance},
+            {"rms_pdf_error", a.rms_pdf_error},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"support_violations", a.support_violations},
+            {"bytes", file.size()},
+            {"cells", a.cells},
+            {"bins", file.description().bin_count},
+            {"total", a.total}};
+}
+
+void print_text(const MeasureArguments& options, const File& file, const build::Accuracy& a, double full_cdf) {
+    std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
+    std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("    full-resolution CDF  %.6g\n", full_cdf);
+    if (a.least_variance > 0.0)
+        std::printf("    any texel table      %.6g   at least: several channels, or a filter\n", a.least_variance);
+    std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
+    std::printf("  RMS error of the pdf   %.6g   sr^-1\n", a.rms_pdf_error);
+    std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
+    std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
+    std::printf("  cells                  %" PRIu64 "\n", a.cells);
+    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+}
+
+void run(const MeasureArguments& options) {
+    const LoadedFile loaded = load_file(options.file);
+    switch (loaded.file.kind()) {
+    case ACDF_KIND_TABLE:
+        return measure_table(options.file, loaded.file, options.source, options.json, options.quiet);
+    case ACDF_KIND_BRDF:
+        return measure_brdf(options.file, loaded.file, options.source, options.json, options.quiet);
+    case ACDF_KIND_LOCAL:
+        return measure_local(loaded.file, {options.file, options.source, options.input, options.normals,
+                                           options.rivals, options.json, options.quiet});
+    default:
+        break;
+    }
+    if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT)
+        fail_kind(options.file, loaded.file, "measure", "files of every other kind");
+    const compress::Target target =
+        source_target(options.file, loaded.file, options.source, options.input, options.quiet);
+    const build::Accuracy accuracy = build::measure_environment(loaded.file, target);
+    const double full_cdf = measure::full_cdf_relative_variance(target);
+    if (options.json) std::printf("%s\n", report(options, loaded.file, accuracy, full_cdf).dump(2).c_str());
+    else print_text(options, loaded.file, accuracy, full_cdf);
+}
+
+} // namespace
+
+void add_measure(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<MeasureArguments>();
+    CLI::App& command =
+        *program.add_subcommand("measure", "How noisy a file's samples are, exactly, by summation over its source");
+    command.add_option("FILE", options->file, "The .acdf file (- is stdin)")
+        ->required()
+        ->type_name("")
+        ->group("Input");
+    command
+        .add_option(
+            "--against", options->source,
+            "The probe, the .npy of a table or the BRDF that it stands for: usually the one it was made from")
+        ->required()
+        ->type_name("SOURCE")
+        ->group("Input");
+    add_projection(command, options->input.projection);
+    add_repairs(command, options->input);
+    command
+        .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")
+        ->check(CLI::Range(1u, 1u << 20))
+        ->option_text("N [256]")
+        ->group("Input");
+    command
+        .add_flag(
+            "--rivals", options->rivals,
+            "Of a local environment: beside it what a renderer can do without one: resampling 32 candidates, tiles "
+            "weighted on the fly, cosine sampling")
+        ->group("Output");
+    add_json(command, options->json);
+    add_quiet(command, options->quiet);
+    command.footer(help_footer("No samples are drawn, so the figures carry no noise of their own.",
+                               "acdf measure probe.acdf --against probe.exr\n"
+                               "acdf measure probe.acdf --against probe.exr --json | jq .relative_variance"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,124 @@
+#include "tools/measure/local.h"
+
+#include "build/cells.h"
+#include "build/local_accuracy.h"
+#include "measure/local_rivals.h"
+#include "measure/tiling.h"
+#include "tools/cli/probe_source.h"
+
+#include <nlohmann/json.hpp>
+#include <tbb/parallel_for.h>
+
+#include <cinttypes>
+#include <cstdio>
+#include <functional>
+
+namespace acdf::tools {
+namespace {
+
+/// Another way to estimate irradiance: mean relative variance of a sample, and what it keeps in memory.
+struct Rival {
+    const char* key;
+    const char* text;
+    double relative_variance = 0.0;
+    std::uint64_t bytes = 0;
+};
+
+constexpr std::uint32_t kCandidates = 32;
+
+std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<build::Normal>& normals) {
+    const measure::LocalFullCdf full(target);
+    const measure::Resampling resampling(target, kCandidates);
+    const measure::TilingOnTheFly tiling(target, std::min(32u, target.columns), std::min(16u, target.rows));
+    const measure::CosineHemisphere cosine(target);
+    const auto mean = [&](const std::function<double(const float*)>& variance) {
+        std::vector<double> each(normals.size());
+        tbb::parallel_for(std::size_t{0}, normals.size(),
+                          [&](std::size_t i) { each[i] = variance(normals[i].data()); });
+        double sum = 0.0;
+        for (double v : each) sum += v;
+        return sum / double(normals.size());
+    };
+    const auto of = [&](const auto& rival) {
+        return mean([&rival](const float* n) { return rival.relative_variance(n); });
+    };
+    return {{"full_cdf", "full-resolution CDF", of(full), full.bytes()},
+            {"resampling_32", "resampling 32 candidates", of(resampling), resampling.bytes()},
+            {"tiling_512", "512 tiles x cosine on the fly", of(tiling), tiling.bytes()},
+            {"cosine", "cosine hemisphere", of(cosine), cosine.bytes()}};
+}
+
+std::uint64_t count_cells(const File& file) {
+    std::uint64_t cells = 0;
+    const auto count = [&](std::uint32_t root) {
+        if (root == ACDF_NO_ROOT) ++cells;
+        else build::for_each_cell(file, root, [&](const build::Cell&) { ++cells; });
+    };
+    const AcdfBlend& blend = file.blend();
+    if (blend.tiles)
+        for (std::uint32_t t = 0; t < blend.tiles->tile_count; ++t)
+            count(blend.roots ? blend.roots[t] : ACDF_NO_ROOT);
+    for (std::uint32_t b = 0; !blend.tiles && b < file.description().bin_count; ++b)
+        if (file.bin(b).root != ACDF_NO_ROOT) count(file.bin(b).root);
+    return cells;
+}
+
+nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
+                              const std::vector<Rival>& rivals) {
+    nlohmann::ordered_json out = {
+        {"file", options.file},
+        {"source", options.source},
+        {"normals", a.lit_normals},
+        {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+        {"relative_variance_median", a.median},
+        {"relative_variance_worst", a.worst},
+        {"relative_variance_full_cdf", a.relative_variance_full_cdf},
+        {"gain", a.relative_variance_full_cdf / a.relative_variance},
+        {"share_above_horizon", a.share_above_horizon},
+        {"share_above_horizon_least", a.least_share_above_horizon},
+        {"share_above_horizon_full_cdf", a.share_above_horizon_full_cdf},
+        {"share_above_horizon_full_cdf_least", a.least_share_above_horizon_full_cdf},
+        {"max_weight", a.max_weight},
+        {"support_violations", a.support_violations},
+        {"bytes", file.size()},
+        {"cells", count_cells(file)},
+        {"bins", file.description().bin_count},
+        {"total", file.description().total}};
+    for (const Rival& rival : rivals)
+        out["rivals"][rival.key] = {{"relative_variance", rival.relative_variance}, {"bytes", rival.bytes}};
+    return out;
+}
+
+void print_text(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
+                const std::vector<Rival>& rivals) {
+    std::printf("%s against %s, %u random normals\n", options.file.c_str(), options.source.c_str(), a.lit_normals);
+    std::printf("  relative variance      %.6g   of one sample of the irradiance, mean over normals\n",
+                a.relative_variance);
+    std::printf("    median, worst        %.6g, %.6g\n", a.median, a.worst);
+    std::printf("    full-resolution CDF  %.6g   %.4g times as much\n", a.relative_variance_full_cdf,
+                a.relative_variance_full_cdf / a.relative_variance);
+    std::printf("  above the horizon      %.2f %%   of samples; %.2f %% for the worst normal\n",
+                100.0 * a.share_above_horizon, 100.0 * a.least_share_above_horizon);
+    std::printf("    full-resolution CDF  %.2f %%; %.2f %%\n", 100.0 * a.share_above_horizon_full_cdf,
+                100.0 * a.least_share_above_horizon_full_cdf);
+    std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
+    std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
+    std::printf("  cells                  %" PRIu64 "\n", count_cells(file));
+    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+    for (const Rival& rival : rivals)
+        std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", rival.text, rival.relative_variance,
+                    rival.bytes);
+}
+
+} // namespace
+
+void measure_local(const File& file, const LocalMeasureOptions& options) {
+    const compress::Target target = source_target(options.file, file, options.source, options.input, options.quiet);
+    const std::vector<build::Normal> normals = build::random_normals(options.normals);
+    const build::LocalAccuracy accuracy = build::summary(build::measure_normals(file, target, normals));
+    const std::vector<Rival> rivals = options.rivals ? rivals_of(target, normals) : std::vector<Rival>{};
+    if (options.json) std::printf("%s\n", report(file, options, accuracy, rivals).dump(2).c_str());
+    else print_text(file, options, accuracy, rivals);
+}
+
+} // namespace acdf::tools

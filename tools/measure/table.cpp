@@ -1,0 +1,97 @@
+#include "tools/measure/table.h"
+
+#include "build/table.h"
+#include "input/image.h"
+#include "input/npy.h"
+#include "tools/commands.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cinttypes>
+#include <cstdio>
+
+namespace acdf::tools {
+namespace {
+
+/// Index on each indexed axis, last one fastest.
+std::vector<std::uint32_t> index_of(const File& file, std::uint32_t bin) {
+    std::vector<std::uint32_t> index(file.table().indexed_count());
+    for (std::size_t axis = index.size(); axis-- > 0;) {
+        const std::uint32_t length = file.axis(static_cast<std::uint32_t>(axis)).resolution;
+        index[axis] = bin % length;
+        bin /= length;
+    }
+    return index;
+}
+
+std::string joined(const std::vector<std::uint32_t>& numbers, const char* separator) {
+    std::string text;
+    for (const std::uint32_t number : numbers) text += (text.empty() ? "" : separator) + std::to_string(number);
+    return text;
+}
+
+nlohmann::ordered_json report(const std::string& path, const File& file, const std::string& source,
+                              const build::TableAccuracy& a) {
+    return {{"file", path},
+            {"source", source},
+            {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"relative_variance_median", a.median},
+            {"relative_variance_worst", a.worst},
+            {"worst_bin", index_of(file, a.worst_bin)},
+            {"rms_pdf_error", a.rms_pdf_error},
+            {"kl_divergence", a.kl_divergence},
+            {"max_weight", a.max_weight},
+            {"support_violations", a.support_violations},
+            {"bytes", file.size()},
+            {"cells", a.cells},
+            {"bins", file.description().bin_count},
+            {"bins_with_energy", a.lit_bins},
+            {"total", file.description().total}};
+}
+
+void print_text(const std::string& path, const File& file, const std::string& source,
+                const build::TableAccuracy& a) {
+    std::printf("%s against %s\n", path.c_str(), source.c_str());
+    std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    if (file.description().bin_count > 1) {
+        std::printf("    median over bins     %.6g\n", a.median);
+        std::printf("    worst bin            %.6g   --at %s\n", a.worst,
+                    joined(index_of(file, a.worst_bin), ",").c_str());
+    }
+    std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
+    std::printf("  RMS error of the pdf   %.6g   where a uniform density is 1\n", a.rms_pdf_error);
+    std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
+    std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
+    std::printf("  bins                   %" PRIu32 "   of %" PRIu32 " have energy\n", a.lit_bins,
+                file.description().bin_count);
+    std::printf("  cells                  %" PRIu64 "\n", a.cells);
+    std::printf("  bytes                  %" PRIu64 "\n", file.size());
+}
+
+} // namespace
+
+void measure_table(const std::string& path, const File& file, const std::string& source, bool json, bool quiet) {
+    input::NpyOptions options;
+    options.bad_values = input::BadValuePolicy::zero; // as the file was made, or `acdf table` had refused them
+    const input::NpyArray array = input::read_npy(source, options);
+    std::vector<std::uint32_t> shape;
+    for (std::uint32_t axis = 0; axis < file.description().axis_count; ++axis)
+        shape.push_back(file.axis(axis).resolution);
+    if (shape != array.shape)
+        throw Failure(source + ": its shape is " + joined(array.shape, "x") + ", but " + path + " was made from " +
+                      joined(shape, "x") + "; measure against the array it was made from");
+    const Text hash = file.metadata("source.sha256");
+    if (hash.size > 0 && std::string(hash.data, hash.size) != input::file_sha256(source) && !quiet)
+        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
+                     source.c_str());
+    const std::vector<compress::Grid> bins = build::table_grids(array, file.table().indexed_count());
+    try {
+        const build::TableAccuracy accuracy = build::summary(build::measure_bins(file, bins));
+        if (json) std::printf("%s\n", report(path, file, source, accuracy).dump(2).c_str());
+        else print_text(path, file, source, accuracy);
+    } catch (const std::invalid_argument& error) {
+        throw Failure(source + ": " + error.what());
+    }
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,31 @@
+// False colours for densities.
+#pragma once
+
+#include "tools/plot/density.h"
+#include "tools/plot/range.h"
+
+#include <OpenImageIO/imagebuf.h>
+
+#include <array>
+
+namespace acdf::tools {
+
+/// sRGB, in [0, 1] as it is displayed.
+using Colour = std::array<float, 3>;
+
+/// Density 0: no sample ever falls there. A neutral grey that the colour map does not contain.
+constexpr Colour zero_colour = {0.25f, 0.25f, 0.25f};
+/// Outside of the disc, and around the picture.
+constexpr Colour background = {1.0f, 1.0f, 1.0f};
+
+enum class ColourMap {
+    rainbow,  ///< violet (low) over green to red (high)
+    diverging ///< blue over a light grey, in the middle of the range, to red: for ratios
+};
+
+/// RGB floats as displayed: the logarithm of the density from range.low to range.high, zero_colour where it is 0,
+/// background where nothing is shown.
+OIIO::ImageBuf false_colour(const DensityImage& image, const DensityRange& range,
+                            ColourMap map = ColourMap::rainbow);
+
+} // namespace acdf::tools

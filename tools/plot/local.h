@@ -1,0 +1,32 @@
+// The density of a local environment for one normal, and its horizon.
+#pragma once
+
+#include "tools/cli/normal_option.h"
+#include "tools/plot/density.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <acdf/reader.h>
+
+#include <vector>
+
+namespace acdf::tools {
+
+struct PlottedNormal {
+    LocalEnvironmentView local;
+    Normal normal;
+};
+
+/// The stored density, exactly. The view's File must outlive the result.
+Density density_of(const PlottedNormal& plotted);
+
+/// The borders of cells, as of environments.
+std::vector<float> knot_opacity(const PlottedNormal& plotted, const build::Map& map,
+                                const build::Progress& progress = {});
+
+/// How opaque the horizon is at each pixel of `map`, in [0, 1]: a line about two pixels wide.
+std::vector<float> horizon_opacity(const Normal& normal, const build::Map& map);
+
+/// Blends it into `picture` (RGB floats as displayed, as large as `map`), white.
+void draw_horizon(OIIO::ImageBuf& picture, const std::vector<float>& opacity);
+
+} // namespace acdf::tools

@@ -1,0 +1,312 @@
+// acdf render: direct lighting of a scene with several samplers.
+#include "tools/cli/file_input.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/output.h"
+#include "tools/commands.h"
+#include "tools/plot/image.h"
+#include "tools/render/images.h"
+#include "tools/render/report.h"
+#include "tools/render/run.h"
+#include "tools/render/sampler_build.h"
+
+#include <CLI/CLI.hpp>
+#include <OpenImageIO/imagebuf.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+namespace acdf::tools {
+namespace {
+
+struct RenderArguments {
+    std::string scene, output, data = ".", size;
+    std::vector<std::string> samplers;
+    std::uint32_t samples = 0; ///< 0: the scene's
+    ComparisonOptions comparison;
+    int threads = 0;
+    bool no_reference = false, no_timing = false, json = false, quiet = false, force = false;
+};
+
+SceneFile read_scene(const RenderArguments& options) {
+    const std::vector<std::uint8_t> bytes = read_bytes(options.scene);
+    try {
+        return parse_scene({bytes.begin(), bytes.end()});
+    } catch (const SceneError& error) {
+        throw Failure(options.scene + ": " + error.what());
+    }
+}
+
+void apply_options(const RenderArguments& options, SceneFile& scene) {
+    if (!options.samplers.empty()) scene.samplers = options.samplers;
+    if (options.samples > 0) scene.samples = options.samples;
+    if (!options.size.empty() && !parse_pair(options.size, 4096, scene.width, scene.height))
+        throw CLI::ValidationError("--size", "needs two counts such as 96x72");
+}
+
+std::vector<SamplerSpec> specs(const RenderArguments& options, const SceneFile& scene) {
+    std::vector<SamplerSpec> out;
+    for (const std::string& text : scene.samplers) {
+        try {
+            out.push_back(parse_sampler(text));
+        } catch (const SpecError& error) {
+            if (!options.samplers.empty()) throw CLI::ValidationError("--sampler", error.what());
+            throw Failure(options.scene + ": samplers: " + error.what());
+        }
+    }
+    return out;
+}
+
+/// Files of a folder, each written whole or not at all.
+class Folder {
+public:
+    Folder(std::string path, bool force) : path_(std::move(path)), force_(force) {}
+
+    void create() const {
+        std::error_code error;
+        std::filesystem::create_directories(path_, error);
+        if (!std::filesystem::is_directory(path_)) throw Failure(path_ + ": cannot make this folder");
+    }
+    /// Before any long work.
+    void refuse_existing(const std::string& name) const {
+        if (!force_ && std::filesystem::exists(at(name)))
+            throw Failure(at(name) + ": exists already; --force replaces it");
+    }
+    void write(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
+        write_output(at(name), bytes, force_);
+    }
+    std::string at(const std::string& name) const { return (std::filesystem::path(path_) / name).string(); }
+
+private:
+    std::string path_;
+    bool force_;
+};
+
+/// Distinct ones, in the order of the samplers.
+std::vector<std::string> stems(const std::vector<SamplerSpec>& samplers) {
+    std::vector<std::string> out;
+    std::set<std::string> used{"reference", "render"};
+    for (const SamplerSpec& spec : samplers) {
+        std::string stem = file_stem(spec);
+        for (int i = 2; !used.insert(stem).second; ++i) stem = file_stem(spec) + "-" + std::to_string(i);
+        out.push_back(stem);
+    }
+    return out;
+}
+
+class PictureWriter {
+public:
+    PictureWriter(const Folder& folder, const LoadedScene& scene, const RenderRun& run)
+        : folder_(folder), scene_(scene), run_(run), exposure_(exposure(run.comparison.reference)) {}
+
+    void picture(const std::string& stem, const std::vector<measure::Rgb>& values, const std::string& what) const {
+        const OIIO::ImageBuf linear = scene_picture(scene_.scene, scene_.points, values);
+        folder_.write(stem + ".exr", encode_rgb_exr(linear, notes(what)));
+        folder_.write(stem + ".png", encode_png(displayed(linear, exposure_), notes(what)));
+    }
+    void figure(const std::string& name, const std::vector<double>& values, const FigureImage& figure) const {
+        folder_.write(name + ".png",
+                      encode_png(figure_picture(scene_.scene, scene_.points, values, figure), notes(figure.title)));
+    }
+    void all(const std::vector<std::string>& stems) const {
+        picture("reference", run_.comparison.reference, "reference");
+        const std::vector<Compared>& samplers = run_.comparison.samplers;
+        std::vector<double> variances;
+        for (const Compared& one : samplers)
+            variances.insert(variances.end(), one.relative_variance_of_points.begin(),
+                             one.relative_variance_of_points.end());
+        const DensityRange range = figure_range(variances);
+        for (std::size_t i = 0; i < samplers.size(); ++i) {
+            const std::string& name = samplers[i].spec.text;
+            picture(stems[i], samplers[i].rendering.first, name);
+            figure(stems[i] + "-variance", samplers[i].relative_variance_of_points,
+                   {"relative variance, " + name, range, ColourMap::rainbow, true});
+            figure(stems[i] + "-above", samplers[i].rendering.share_above,
+                   {"share above the horizon, " + name, {0.01, 1.0}, ColourMap::rainbow, true});
+            if (i > 0) efficiency(stems[i] + "-gain", samplers[i], samplers.front());
+        }
+    }
+
+private:
+    /// Ratio of variances: above 1 the sampler is better than the baseline.
+    void efficiency(const std::string& name, const Compared& one, const Compared& base) const {
+        std::vector<double> gain;
+        for (std::size_t i = 0; i < one.rendering.variance.size(); ++i) {
+            const double a = base.rendering.variance[i], b = one.rendering.variance[i];
+            gain.push_back(a == b ? 1.0 : std::clamp(a / b, 1e-3, 1e3));
+        }
+        const DensityRange ends = figure_range(gain);
+        const double most = std::max({ends.high, 1.0 / ends.low, 8.0});
+        figure(name, gain,
+               {one.spec.text + " over " + base.spec.text, {1.0 / most, most}, ColourMap::diverging, false});
+    }
+    ImageNotes notes(const std::string& what) const { return {"acdf " ACDF_VERSION, what}; }
+
+    const Folder& folder_;
+    const LoadedScene& scene_;
+    const RenderRun& run_;
+    double exposure_;
+};
+
+std::vector<const input::Brdf*> brdfs_of(const LoadedScene& scene) {
+    std::vector<const input::Brdf*> out;
+    for (const auto& brdf : scene.brdfs) out.push_back(brdf.get());
+    return out;
+}
+
+compress::Target light_target(const RenderArguments& options, const input::Probe& probe) {
+    compress::Target target =
+        compress::environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
+                                     static_cast<std::uint32_t>(probe.height), compress::TargetOptions());
+    if (!(target.total > 0.0)) throw Failure(options.scene + ": light: the probe is black");
+    return target;
+}
+
+RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, std::vector<SamplerSpec> samplers) {
+    RenderRun run;
+    run.scene = std::filesystem::path(options.scene).filename().string();
+    run.options = options.comparison;
+    run.options.samplers = std::move(samplers);
+    run.options.samples = scene.file.samples;
+    run.options.reference = !options.no_reference;
+    run.options.timing = !options.no_timing;
+    const compress::Target target = light_target(options, scene.probe);
+    SamplerBuilder builder(target, brdfs_of(scene), options.data);
+    ProgressBar bar(options.quiet);
+    const build::Progress progress = bar.callback();
+    run.comparison = compare(scene.scene, scene.points.points, builder, run.options, progress);
+    bool occluders = false;
+    for (const measure::Object& object : scene.scene.geometry.objects) occluders |= !object.seen;
+    if (!occluders) return run;
+    std::vector<measure::ScenePoint> open;
+    for (const measure::ScenePoint& point : scene.points.points) open.push_back(point.in_the_open());
+    run.in_the_open = compare(scene.scene, open, builder, run.options, progress);
+    return run;
+}
+
+void remark(const RenderArguments& options, const LoadedScene& scene) {
+    if (options.quiet) return;
+    for (const std::string& warning : scene.probe.warnings)
+        std::fprintf(stderr, "%s: %s\n", scene.file.probe.c_str(), warning.c_str());
+    for (std::size_t i = 0; i < scene.brdfs.size(); ++i)
+        for (const std::string& note : scene.brdfs[i]->notes)
+            std::fprintf(stderr, "%s: %s\n", scene.file.materials[i].brdf.c_str(), note.c_str());
+}
+
+void run(const RenderArguments& options) {
+    const auto limit = limit_threads(options.threads);
+    SceneFile file = read_scene(options);
+    apply_options(options, file);
+    std::vector<SamplerSpec> samplers = specs(options, file);
+    const Folder folder(options.output, options.force);
+    folder.refuse_existing("render.json");
+    for (const std::string& stem : stems(samplers)) folder.refuse_existing(stem + ".exr");
+    folder.create();
+
+    std::unique_ptr<LoadedScene> scene;
+    RenderRun done;
+    try {
+        scene = load_scene(file, options.data);
+        remark(options, *scene);
+        done = render_all(options, *scene, std::move(samplers));
+    } catch (const SpecError& error) {
+        throw Failure(options.scene + ": " + error.what());
+    }
+    PictureWriter(folder, *scene, done).all(stems(done.options.samplers));
+    const std::string json = render_json(*scene, done).dump(2) + "\n";
+    folder.write("render.json", {json.begin(), json.end()});
+    if (options.json) std::fputs(json.c_str(), stdout);
+    else std::fputs(render_table(*scene, done).c_str(), stdout);
+}
+
+void add_measurement_options(CLI::App& command, RenderArguments& options) {
+    command
+        .add_option("--seeds", options.comparison.render.seeds,
+                    "Independent pictures of each sampler: what variances and their confidence come from")
+        ->check(CLI::Range(2, 4096))
+        ->option_text("N [16]")
+        ->group("Measurement");
+    command.add_option("--seed", options.comparison.render.seed, "Of the random numbers")
+        ->option_text("N [1]")
+        ->group("Measurement");
+    command
+        .add_flag("--no-reference", options.no_reference,
+                  "Compare with the mean of all pictures, not with the exact sum over all texels: faster, blind to "
+                  "bias")
+        ->group("Measurement");
+    command
+        .add_flag("--no-timing", options.no_timing,
+                  "Leave out equal-time figures: then everything written is the same on each run")
+        ->group("Measurement");
+    command
+        .add_option("--shadow-ray-ns", options.comparison.shadow_ray_ns,
+                    "Nanoseconds that a shadow ray costs in your renderer beyond what it does in these simple "
+                    "scenes: added in equal-time figures")
+        ->check(CLI::Range(0.0, 1e9))
+        ->option_text("X [0]")
+        ->group("Measurement");
+}
+
+void add_scene_options(CLI::App& command, RenderArguments& options) {
+    command.add_option("--scene", options.scene, "The scene, as JSON (docs/scene.schema.json)")
+        ->required()
+        ->type_name("FILE")
+        ->group("Input");
+    command.add_option("--data", options.data, "The folder that probes and BRDFs are named from")
+        ->option_text("DIR [.]")
+        ->group("Input");
+    command
+        .add_option("--sampler", options.samplers,
+                    "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
+                    "tiles:32x16, env:64KiB, local:1MB, brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
+                    "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
+                    "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...)")
+        ->option_text("TEXT ...")
+        ->expected(1)
+        ->take_all()
+        ->group("Input");
+    command.add_option("--samples", options.samples, "Samples of each estimate, instead of the scene's")
+        ->check(CLI::Range(1, 65536))
+        ->option_text("N")
+        ->group("Input");
+    command.add_option("--size", options.size, "Pixels, instead of the scene's")
+        ->option_text("WxH")
+        ->group("Input");
+}
+
+} // namespace
+
+void add_render(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<RenderArguments>();
+    CLI::App& command =
+        *program.add_subcommand("render", "Light a simple scene with several samplers, and compare");
+    add_scene_options(command, *options);
+    add_measurement_options(command, *options);
+    command.add_option("-o,--output", options->output, "The folder to write pictures and render.json to")
+        ->required()
+        ->type_name("DIR")
+        ->group("Output");
+    command.add_flag("-f,--force", options->force, "Replace existing files of the folder")->group("Output");
+    add_threads(command, options->threads);
+    add_json(command, options->json);
+    add_quiet(command, options->quiet);
+    command.footer(help_footer(
+        "Writes the exact picture, and of each sampler a picture (EXR, PNG), its relative variance, its share of "
+        "samples above the horizon and its gain over the first sampler, pixel by pixel. The table has the relative "
+        "variance of an estimate with its 95 % confidence interval, and the gain over the first sampler by equal "
+        "samples and by equal time; it says where a rival wins. Where a scene has objects that the camera does not "
+        "see, all is done again without anything in the way of light.",
+        "acdf render --scene tools/render/scenes/demo.json -o out\n"
+        "acdf render --scene tools/render/scenes/e4-grace.json --data ~/probes -o out --size 160x120\n"
+        "acdf render --scene my.json -o out --sampler full-cdf --sampler 'mis(local:1MB,cosine)'\n"
+        "acdf render --scene my.json -o out --shadow-ray-ns 500 --json"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,199 @@
+#include "tools/render/sampler_build.h"
+
+#include "build/brdf.h"
+#include "build/environment.h"
+#include "build/local.h"
+#include "measure/estimators.h"
+#include "measure/light_samplers.h"
+#include "measure/stratified_map.h"
+#include "tools/cli/file_input.h"
+#include "tools/commands.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <set>
+
+namespace acdf::tools {
+namespace {
+
+using measure::LightSamplerPtr;
+
+/// A sampler and what it refers to.
+struct Table {
+    std::shared_ptr<const void> keep;
+    LightSamplerPtr sampler;
+};
+
+Table file_table(std::vector<std::uint8_t> bytes) {
+    auto loaded = std::make_shared<LoadedFile>();
+    loaded->bytes = std::move(bytes);
+    const Status status = File::from_memory(loaded->bytes.data(), loaded->bytes.size(), loaded->file);
+    if (!status.ok()) throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+    LightSamplerPtr sampler = measure::file_sampler(loaded->file);
+    return {loaded, std::move(sampler)};
+}
+
+compress::Goal budget(std::uint64_t bytes) { return {compress::Goal::Kind::budget, 0, bytes, 0.0}; }
+
+Table env_table(const compress::Target& target, std::uint64_t bytes) {
+    build::EnvironmentOptions options;
+    options.fit.goal = budget(bytes);
+    return file_table(build::build_environment(target, {}, options).bytes);
+}
+
+Table local_table(const compress::Target& target, std::uint64_t bytes) {
+    build::LocalOptions options;
+    options.goal = budget(bytes);
+    return file_table(build::build_local(target, {}, options).bytes);
+}
+
+Table brdf_table(const input::Brdf& brdf, std::uint64_t bytes) {
+    build::BrdfFileOptions options;
+    options.fit.goal = budget(bytes);
+    return file_table(build::build_brdf(brdf, options).bytes);
+}
+
+Table full_brdf_table(const input::Brdf& brdf, bool centre) {
+    const auto kind = centre ? measure::BrdfTableKind::centre : measure::BrdfTableKind::mean;
+    const auto table = std::make_shared<const measure::TabulatedBrdf>(
+        build::reflected_light(brdf, ACDF_CHANNELS_WEIGHTED, {}), brdf.isotropic, kind);
+    return {table, measure::tabulated_brdf_sampler(*table)};
+}
+
+Table given_file(const std::string& path) {
+    auto loaded = std::make_shared<LoadedFile>(load_file(path));
+    LightSamplerPtr sampler = measure::file_sampler(loaded->file);
+    return {loaded, std::move(sampler)};
+}
+
+bool knows_brdf(const SamplerSpec& spec) {
+    return spec.kind == SamplerKind::brdf || spec.kind == SamplerKind::brdf_table;
+}
+
+bool is_ours(const SamplerSpec& spec) {
+    if (spec.kind == SamplerKind::mis) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
+    return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
+           spec.kind == SamplerKind::file;
+}
+
+} // namespace
+
+struct SamplerBuilder::Store {
+    const compress::Target& target;
+    std::vector<const input::Brdf*> brdfs;
+    std::string data;
+    std::map<std::string, Table> tables; ///< by text, and the material where that matters
+    std::map<std::string, std::unique_ptr<const measure::StratifiedMap>> maps;
+    std::vector<std::unique_ptr<measure::Estimator>> estimators;
+
+    Table make(const SamplerSpec& spec, std::size_t material) const {
+        switch (spec.kind) {
+        case SamplerKind::full_cdf:
+        case SamplerKind::ris:
+            return {nullptr, measure::full_cdf_sampler(target)};
+        case SamplerKind::cosine:
+            return {nullptr, measure::cosine_sampler()};
+        case SamplerKind::tiles:
+            return {nullptr, measure::tiling_sampler(target, spec.columns, spec.rows)};
+        case SamplerKind::ggx:
+            return {nullptr, measure::ggx_sampler(spec.alpha)};
+        case SamplerKind::env:
+            return env_table(target, spec.bytes);
+        case SamplerKind::local:
+            return local_table(target, spec.bytes);
+        case SamplerKind::brdf:
+            return brdf_table(*brdfs[material], spec.bytes);
+        case SamplerKind::brdf_table:
+            return full_brdf_table(*brdfs[material], spec.centre);
+        case SamplerKind::file:
+            return given_file((std::filesystem::path(data) / spec.path).string());
+        case SamplerKind::alias:
+            return {nullptr, measure::alias_sampler(target)};
+        case SamplerKind::hierarchical:
+            return {nullptr, measure::hierarchical_sampler(target)};
+        case SamplerKind::downsampled:
+            return {nullptr, measure::downsampled_cdf_sampler(target, spec.columns, spec.rows)};
+        case SamplerKind::compensated:
+            return {nullptr, measure::compensated_sampler(target)};
+        case SamplerKind::strata:
+        case SamplerKind::mis:
+            break;
+        }
+        throw std::logic_error("is no sampler of single directions");
+    }
+    const measure::LightSampler& sampler(const SamplerSpec& spec, std::size_t material) {
+        const std::string text = spec.kind == SamplerKind::ris ? "full-cdf" : spec.text;
+        const std::string key = knows_brdf(spec) ? text + "@" + std::to_string(material) : text;
+        auto found = tables.find(key);
+        if (found == tables.end()) found = tables.emplace(key, make(spec, material)).first;
+        return *found->second.sampler;
+    }
+    const measure::StratifiedMap& stratified(const SamplerSpec& spec, std::uint32_t strata) {
+        auto& map = maps[spec.text + "/" + std::to_string(strata)];
+        if (!map)
+            map = std::make_unique<measure::StratifiedMap>(
+                target, strata, spec.by_radiance ? measure::Jitter::radiance : measure::Jitter::solid_angle);
+        return *map;
+    }
+    std::unique_ptr<measure::Estimator> estimator(const SamplerSpec& spec, std::size_t material,
+                                                  std::uint32_t samples) {
+        if (spec.kind == SamplerKind::ris)
+            return std::make_unique<measure::ResamplingEstimator>(sampler(spec, material), spec.candidates,
+                                                                  samples);
+        if (spec.kind == SamplerKind::strata)
+            return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
+        if (spec.kind != SamplerKind::mis)
+            return std::make_unique<measure::SingleEstimator>(sampler(spec, material), samples);
+        const std::vector<std::uint32_t> counts = divided(samples, spec);
+        std::vector<measure::Share> shares;
+        for (std::size_t i = 0; i < counts.size(); ++i)
+            shares.push_back({&sampler(spec.parts[i], material), counts[i]});
+        return std::make_unique<measure::MisEstimator>(shares, spec.power ? measure::Heuristic::power
+                                                                          : measure::Heuristic::balance);
+    }
+    /// All tables of a sampler, each once.
+    std::uint64_t bytes(const SamplerSpec& spec) {
+        const std::vector<SamplerSpec> alone{spec};
+        std::set<const measure::LightSampler*> used;
+        for (const SamplerSpec& part : spec.kind == SamplerKind::mis ? spec.parts : alone)
+            for (std::size_t material = 0; material < brdfs.size(); ++material)
+                used.insert(&sampler(part, material));
+        std::uint64_t sum = 0;
+        for (const measure::LightSampler* one : used) sum += one->bytes();
+        return sum;
+    }
+};
+
+SamplerBuilder::SamplerBuilder(const compress::Target& target, std::vector<const input::Brdf*> brdfs,
+                               std::string data)
+    : store_(new Store{target, std::move(brdfs), std::move(data), {}, {}, {}}) {}
+
+SamplerBuilder::~SamplerBuilder() = default;
+
+BuiltSampler SamplerBuilder::build(const SamplerSpec& spec, std::uint32_t samples) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begin = Clock::now();
+    BuiltSampler out;
+    try {
+        for (std::size_t material = 0; material < store_->brdfs.size(); ++material) {
+            store_->estimators.push_back(store_->estimator(spec, material, samples));
+            out.of_material.push_back(store_->estimators.back().get());
+        }
+        out.bytes = spec.kind == SamplerKind::strata ? out.of_material.front()->bytes() : store_->bytes(spec);
+    } catch (const Failure&) {
+        throw; // names its file
+    } catch (const SpecError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw SpecError("sampler '" + spec.text + "': " + error.what());
+    }
+    out.build_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    out.ours = is_ours(spec);
+    return out;
+}
+
+} // namespace acdf::tools

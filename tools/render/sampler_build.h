@@ -1,0 +1,39 @@
+// From the texts of samplers to estimators, all tables built once.
+#pragma once
+
+#include "compress/target.h"
+#include "input/brdf.h"
+#include "measure/estimator.h"
+#include "tools/render/sampler_spec.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// Estimators of a scene, one a material each.
+struct BuiltSampler {
+    std::vector<const measure::Estimator*> of_material;
+    std::uint64_t bytes = 0;    ///< all that its samples read, of all materials
+    double build_seconds = 0.0; ///< 0 for what was built before
+    bool ours = false;          ///< samples from an .acdf file, alone or combined
+};
+
+class SamplerBuilder {
+public:
+    /// `brdfs`: one a material. All are referred to and must outlive the builder; files are relative to `data`.
+    SamplerBuilder(const compress::Target& target, std::vector<const input::Brdf*> brdfs, std::string data);
+    ~SamplerBuilder();
+    SamplerBuilder(const SamplerBuilder&) = delete;
+    SamplerBuilder& operator=(const SamplerBuilder&) = delete;
+
+    /// Valid as long as the builder. Throws SpecError, Failure or std::exception, which name the sampler.
+    BuiltSampler build(const SamplerSpec& spec, std::uint32_t samples);
+
+private:
+    struct Store;
+    std::unique_ptr<Store> store_;
+};
+
+} // namespace acdf::tools

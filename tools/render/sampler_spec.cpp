@@ -1,0 +1,206 @@
+#include "tools/render/sampler_spec.h"
+
+#include "tools/cli/options.h"
+#include "tools/cli/sizes.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace acdf::tools {
+namespace {
+
+constexpr std::size_t kMostParts = 8, kMostText = 4096;
+constexpr std::uint32_t kMostCells = 4096, kMostCandidates = 65536;
+
+[[noreturn]] void fail(const std::string& text, const std::string& what) {
+    throw SpecError("sampler '" + text + "': " + what);
+}
+
+struct Name {
+    const char* name;
+    SamplerKind kind;
+    const char* argument; ///< what its default is, or null: it takes none
+};
+
+constexpr Name names[] = {
+    {"full-cdf", SamplerKind::full_cdf, nullptr},
+    {"cosine", SamplerKind::cosine, nullptr},
+    {"tiles", SamplerKind::tiles, "32x16"},
+    {"env", SamplerKind::env, "64KiB"},
+    {"local", SamplerKind::local, "1MB"},
+    {"brdf", SamplerKind::brdf, "64KiB"},
+    {"brdf-table", SamplerKind::brdf_table, "mean"},
+    {"ggx", SamplerKind::ggx, "0.1"},
+    {"alias", SamplerKind::alias, nullptr},
+    {"hierarchical", SamplerKind::hierarchical, nullptr},
+    {"downsampled", SamplerKind::downsampled, "64x32"},
+    {"compensated", SamplerKind::compensated, nullptr},
+    {"strata", SamplerKind::strata, "solid-angle"},
+    {"ris", SamplerKind::ris, "32"},
+    {"file", SamplerKind::file, ""},
+};
+
+/// A whole text as a number.
+bool parse_number(const std::string& text, double& value) {
+    int end = 0;
+    return !text.empty() && std::sscanf(text.c_str(), "%lf%n", &value, &end) == 1 &&
+           static_cast<std::size_t>(end) == text.size() && std::isfinite(value) &&
+           !std::isspace(static_cast<unsigned char>(text.front()));
+}
+
+void read_size(const std::string& argument, SamplerSpec& spec) {
+    const auto bytes = parse_size(argument);
+    if (!bytes || *bytes == 0) fail(spec.text, "'" + argument + "' is no size, such as 64KiB");
+    spec.bytes = *bytes;
+}
+
+void read_grid(const std::string& argument, SamplerSpec& spec) {
+    if (!parse_pair(argument, kMostCells, spec.columns, spec.rows))
+        fail(spec.text, "'" + argument + "' is no grid, such as 32x16");
+}
+
+void read_argument(const std::string& argument, SamplerSpec& spec) {
+    double number = 0.0;
+    switch (spec.kind) {
+    case SamplerKind::env:
+    case SamplerKind::local:
+    case SamplerKind::brdf:
+        return read_size(argument, spec);
+    case SamplerKind::tiles:
+    case SamplerKind::downsampled:
+        return read_grid(argument, spec);
+    case SamplerKind::brdf_table:
+        spec.centre = argument == "centre";
+        if (!spec.centre && argument != "mean") fail(spec.text, "is brdf-table:mean or brdf-table:centre");
+        return;
+    case SamplerKind::strata:
+        spec.by_radiance = argument == "radiance";
+        if (!spec.by_radiance && argument != "solid-angle") fail(spec.text, "is strata or strata:radiance");
+        return;
+    case SamplerKind::ggx:
+        if (!parse_number(argument, spec.alpha) || spec.alpha < 0.001 || spec.alpha > 2.0)
+            fail(spec.text, "alpha is a number from 0.001 to 2");
+        return;
+    case SamplerKind::ris:
+        if (!parse_number(argument, number) || number != std::floor(number) || number < 1.0 ||
+            number > kMostCandidates)
+            fail(spec.text, "candidates are counted from 1 to " + std::to_string(kMostCandidates));
+        spec.candidates = static_cast<std::uint32_t>(number);
+        return;
+    case SamplerKind::file:
+        if (argument.empty()) fail(spec.text, "needs a file, file:my.acdf");
+        spec.path = argument;
+        return;
+    default:
+        return;
+    }
+}
+
+SamplerSpec parse_single(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const std::string name = text.substr(0, colon);
+    const auto* found =
+        std::find_if(std::begin(names), std::end(names), [&](const Name& n) { return name == n.name; });
+    if (found == std::end(names)) {
+        std::string all;
+        for (const Name& n : names) all += std::string(n.name) + ", ";
+        fail(text, "is none of " + all + "mis(...), mis-power(...), mis-compensated");
+    }
+    SamplerSpec spec;
+    spec.kind = found->kind;
+    spec.text = text;
+    if (colon != std::string::npos && !found->argument) fail(text, "takes no argument");
+    if (found->argument) read_argument(colon == std::string::npos ? found->argument : text.substr(colon + 1), spec);
+    return spec;
+}
+
+/// The texts between commas that are in no parentheses.
+std::vector<std::string> split(const std::string& whole, const std::string& inside) {
+    std::vector<std::string> out(1);
+    int open = 0;
+    for (const char c : inside) {
+        open += c == '(' ? 1 : c == ')' ? -1 : 0;
+        if (open < 0) fail(whole, "has a ')' too many");
+        if (c == ',' && open == 0) out.emplace_back();
+        else out.back() += c;
+    }
+    if (open != 0) fail(whole, "has a '(' too many");
+    return out;
+}
+
+SamplerSpec parse_mis(const std::string& text, std::size_t begin) {
+    SamplerSpec spec;
+    spec.kind = SamplerKind::mis;
+    spec.text = text;
+    spec.power = text.compare(0, 9, "mis-power") == 0;
+    for (const std::string& part : split(text, text.substr(begin, text.size() - begin - 1))) {
+        const std::size_t star = part.find('*');
+        double share = 1.0;
+        const bool weighted = star != std::string::npos && parse_number(part.substr(0, star), share);
+        if (!(share >= 1e-6 && share <= 1e6)) fail(text, "shares are from 1e-6 to 1e6");
+        spec.parts.push_back(parse_single(weighted ? part.substr(star + 1) : part));
+        const SamplerSpec& last = spec.parts.back();
+        if (last.kind == SamplerKind::ris || last.kind == SamplerKind::strata)
+            fail(text, "'" + last.text + "' has no density by itself that others could be weighed with");
+        spec.shares.push_back(share);
+    }
+    if (spec.parts.size() < 2 || spec.parts.size() > kMostParts)
+        fail(text, "combines from 2 to " + std::to_string(kMostParts) + " samplers");
+    const double sum = std::accumulate(spec.shares.begin(), spec.shares.end(), 0.0);
+    for (double& share : spec.shares) share /= sum;
+    return spec;
+}
+
+} // namespace
+
+SamplerSpec parse_sampler(const std::string& text) {
+    if (text.size() > kMostText) fail(text.substr(0, 40), "is longer than " + std::to_string(kMostText) + " bytes");
+    for (const std::string prefix : {"mis(", "mis-power("})
+        if (text.compare(0, prefix.size(), prefix) == 0 && text.back() == ')')
+            return parse_mis(text, prefix.size());
+    if (text == "mis-compensated") {
+        SamplerSpec spec = parse_sampler("mis(compensated,cosine)");
+        spec.text = text;
+        return spec;
+    }
+    SamplerSpec spec = parse_single(text);
+    if (spec.kind == SamplerKind::compensated)
+        fail(text, "has no support where little light is: mis(compensated,cosine), which is mis-compensated");
+    return spec;
+}
+
+std::string file_stem(const SamplerSpec& spec) {
+    std::string out;
+    for (const char c : spec.text) {
+        const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (plain || c == '.') out += plain ? c : '_';
+        else if (!out.empty() && out.back() != '-') out += '-';
+    }
+    while (!out.empty() && out.back() == '-') out.pop_back();
+    return out.substr(0, 80);
+}
+
+std::vector<std::uint32_t> divided(std::uint32_t samples, const SamplerSpec& spec) {
+    const std::size_t parts = spec.shares.size();
+    if (samples < parts) fail(spec.text, "needs at least " + std::to_string(parts) + " samples");
+    std::vector<std::uint32_t> out(parts, 1);
+    const auto given = [&] { return std::accumulate(out.begin(), out.end(), std::uint32_t{0}); };
+    for (std::size_t i = 0; i < parts; ++i)
+        out[i] = std::max(1u, static_cast<std::uint32_t>(std::floor(spec.shares[i] * samples)));
+    const auto lacking = [&](std::size_t i) { return spec.shares[i] * samples - out[i]; };
+    while (given() != samples) {
+        const bool more = given() < samples;
+        std::size_t best = parts;
+        for (std::size_t i = 0; i < parts; ++i) {
+            if (!more && out[i] == 1) continue;
+            if (best == parts || (more ? lacking(i) > lacking(best) : lacking(i) < lacking(best))) best = i;
+        }
+        out[best] += more ? 1u : -1u;
+    }
+    return out;
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,145 @@
+#include "tools/render/scene_file.h"
+
+#include "tools/render/scene_json.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace acdf::tools {
+namespace {
+
+using measure::cross;
+using measure::dot;
+using measure::operator-;
+
+constexpr double kFar = 1e6; ///< where shadow rays still begin above their surface
+constexpr std::uint32_t kMostPixels = 4096, kMostSamples = 65536;
+constexpr std::size_t kMostObjects = 1000, kMostSamplers = 64;
+
+measure::Vec3 point(const JsonValue& value) { return value.triple(-kFar, kFar); }
+
+measure::Camera read_camera(const JsonValue& value) {
+    JsonObject object(value);
+    measure::Camera camera;
+    camera.from = point(object.at("from"));
+    camera.to = point(object.at("to"));
+    camera.fov = object.at("fov").number(0.01, 170.0);
+    object.if_has("up", [&](const JsonValue& up) { camera.up = point(up); });
+    object.finish();
+    constexpr double least = 1e-6; // of lengths, and of the angle to `up`
+    const measure::Vec3 forward = camera.to - camera.from;
+    const double distance = std::sqrt(dot(forward, forward)), length = std::sqrt(dot(camera.up, camera.up));
+    const measure::Vec3 across = cross(forward, camera.up);
+    if (!(distance > least && length > least && std::sqrt(dot(across, across)) > least * distance * length))
+        value.fail("looks nowhere, or along its 'up'");
+    return camera;
+}
+
+measure::Shape read_sphere(const JsonValue& value) {
+    JsonObject object(value);
+    measure::Sphere sphere;
+    sphere.centre = point(object.at("centre"));
+    sphere.radius = object.at("radius").number(1e-3, kFar);
+    object.finish();
+    return sphere;
+}
+
+measure::Shape read_plane(const JsonValue& value) {
+    JsonObject object(value);
+    measure::Plane plane;
+    plane.z = object.at("z").number(-kFar, kFar);
+    object.if_has("extent", [&](const JsonValue& extent) { plane.extent = extent.number(1e-3, kFar); });
+    object.finish();
+    return plane;
+}
+
+measure::Shape read_box(const JsonValue& value) {
+    JsonObject object(value);
+    const measure::Box3 box{point(object.at("low")), point(object.at("high"))};
+    object.finish();
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!(box.low[k] < box.high[k])) value.fail("has a side whose 'low' is not below its 'high'");
+    return box;
+}
+
+measure::Shape read_shape(const JsonValue& value, JsonObject& object) {
+    struct Kind {
+        const char* key;
+        measure::Shape (*read)(const JsonValue&);
+    };
+    constexpr Kind kinds[] = {{"sphere", read_sphere}, {"plane", read_plane}, {"box", read_box}};
+    std::vector<measure::Shape> shapes;
+    for (const Kind& kind : kinds)
+        object.if_has(kind.key, [&](const JsonValue& shape) { shapes.push_back(kind.read(shape)); });
+    if (shapes.size() != 1) value.fail("needs one of 'sphere', 'plane' and 'box'");
+    return shapes.front();
+}
+
+void read_object(const JsonValue& value, SceneFile& scene) {
+    JsonObject object(value);
+    measure::Object out;
+    out.shape = read_shape(value, object);
+    object.if_has("seen", [&](const JsonValue& seen) { out.seen = seen.truth(); });
+    SceneMaterial material;
+    object.if_has("brdf", [&](const JsonValue& brdf) { material.brdf = brdf.text(); });
+    object.if_has("tint", [&](const JsonValue& tint) { material.tint = tint.triple(0.0, 1.0); });
+    object.finish();
+    if (!out.seen && material.brdf.empty()) material.brdf = "lambert";
+    if (material.brdf.empty()) value.fail("lacks 'brdf', such as \"lambert\"");
+    if (out.seen) {
+        const auto same = std::find(scene.materials.begin(), scene.materials.end(), material);
+        out.material = static_cast<std::uint32_t>(same - scene.materials.begin());
+        if (same == scene.materials.end()) scene.materials.push_back(material);
+    }
+    scene.geometry.objects.push_back(out);
+}
+
+input::Projection projection(const JsonValue& value) {
+    using input::Projection;
+    const std::string text = value.text();
+    for (const Projection p : {Projection::automatic, Projection::latlong, Projection::angular,
+                               Projection::mirrorball, Projection::cube_cross, Projection::octahedral})
+        if (text == input::to_string(p)) return p;
+    value.fail("is no projection: auto, latlong, angular, mirrorball, cube-cross, octahedral");
+}
+
+void read_light(const JsonValue& value, SceneFile& scene) {
+    JsonObject object(value);
+    object.if_has("probe", [&](const JsonValue& probe) { scene.probe = probe.text(); });
+    object.if_has("built_in", [&](const JsonValue& name) { scene.built_in = name.text(); });
+    object.if_has("projection", [&](const JsonValue& p) { scene.projection = projection(p); });
+    object.finish();
+    if (scene.probe.empty() == scene.built_in.empty()) value.fail("needs one of 'probe' and 'built_in'");
+}
+
+void read_image(const JsonValue& value, SceneFile& scene) {
+    JsonObject object(value);
+    scene.width = object.at("width").count(kMostPixels);
+    scene.height = object.at("height").count(kMostPixels);
+    object.finish();
+}
+
+} // namespace
+
+SceneFile parse_scene(const std::string& text) {
+    const Json json = parse_strict(text);
+    const JsonValue root(json, "");
+    JsonObject object(root);
+    SceneFile scene;
+    object.has("$schema");
+    object.if_has("description", [&](const JsonValue& value) { scene.description = value.text(); });
+    scene.camera = read_camera(object.at("camera"));
+    object.if_has("image", [&](const JsonValue& value) { read_image(value, scene); });
+    read_light(object.at("light"), scene);
+    const JsonValue objects = object.at("objects");
+    objects.each(kMostObjects, [&](const JsonValue& value) { read_object(value, scene); });
+    if (scene.materials.empty()) objects.fail("has nothing that is seen");
+    scene.samples = object.at("samples").count(kMostSamples);
+    object.at("samplers").each(kMostSamplers, [&](const JsonValue& value) {
+        scene.samplers.push_back(value.text());
+    });
+    object.finish();
+    return scene;
+}
+
+} // namespace acdf::tools

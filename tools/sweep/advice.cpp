@@ -1,0 +1,220 @@
+#include "tools/sweep/advice.h"
+
+#include "tools/cli/sizes.h"
+#include "tools/commands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace acdf::tools {
+namespace {
+
+std::string capital(std::string text) {
+    if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+    return text;
+}
+
+/// "1.4 (1.3 to 1.5)".
+std::string interval_text(const Interval& i) {
+    return short_number(i.value) + " (" + short_number(i.low) + " to " + short_number(i.high) + ")";
+}
+
+std::string spp_text(const Visibility& v) {
+    return std::to_string(v.spp) + (v.spp == 1 ? " sample per pixel" : " samples per pixel");
+}
+
+std::string percent(double share) { return short_number(100.0 * share) + " %"; }
+
+/// Beyond the recommended file: whether more was tried.
+bool tried_larger(const Sweep& sweep, const SweepRow& best) {
+    return std::any_of(sweep.rows.begin(), sweep.rows.end(),
+                       [&](const SweepRow& row) { return row.ours() && row.bytes > best.bytes; });
+}
+
+std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
+    const SweepRow& best = sweep.rows[recommended.row];
+    const Visibility& v = sweep.visibility;
+    const std::string size = to_readable_size(best.bytes);
+    const std::string has = "a relative variance of " + short_number(best.relative_variance) + ", " +
+                            noise_text(best.relative_variance, v.spp) + " noise at " + spp_text(v);
+    if (!recommended.reached)
+        return "No size tried gets below " + percent(v.threshold) + " noise at " + spp_text(v) + ": the best, " +
+               size + ", has " + has + ". Larger --budgets, or more samples, would.";
+    if (!tried_larger(sweep, best)) return size + " is enough: it reaches " + has + ".";
+    return size + " reaches " + has + "; beyond it you gain nothing visible.";
+}
+
+std::string rule_of(const Visibility& v) {
+    std::string text =
+        "Rule: the smallest file tried whose noise, the standard deviation sqrt(relative variance / " +
+        std::to_string(v.spp) + ") of a pixel, is at most " + percent(v.threshold) + " of its value";
+    if (v.threshold == 0.01) text += ": about half a step of 8-bit sRGB at middle grey";
+    return text + ". In numbers: a relative variance of at most " + short_number(v.largest_variance()) + ".";
+}
+
+RivalComparison compare(const SweepRow& rival, std::size_t index, const SweepRow& best) {
+    RivalComparison out;
+    out.row = index;
+    out.bytes = static_cast<double>(rival.bytes) / static_cast<double>(best.bytes);
+    out.variance = rival.shaded() / best.shaded();
+    out.time = ratio_interval(rival.times.sample, best.times.sample);
+    if (std::isinf(rival.shaded())) {
+        out.verdict = Verdict::ours; // biased, however fast
+        return out;
+    }
+    if (!out.time.known() || !(best.shaded() > 0.0)) return out;
+    out.equal_time = {out.time.value * out.variance, out.time.low * out.variance, out.time.high * out.variance};
+    out.verdict = out.equal_time.low > 1.0    ? Verdict::ours
+                  : out.equal_time.high < 1.0 ? Verdict::rival
+                                              : Verdict::even;
+    return out;
+}
+
+/// Those with a verdict, each with its variance at equal time: "alias table 1.3 (1.2 to 1.4); ...".
+std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
+    std::string names;
+    for (const RivalComparison& c : advice.comparisons) {
+        if (c.verdict != verdict || !c.equal_time.known()) continue;
+        names += (names.empty() ? "" : "; ") + sweep.rows[c.row].label + " " + interval_text(c.equal_time);
+        if (verdict == Verdict::rival && c.bytes > 1.0)
+            names += " with " + short_number(c.bytes) + " times the memory";
+    }
+    return names;
+}
+
+/// Who wins at equal time; a sentence for each way it can end.
+void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best) {
+    const std::string than = " Figures are the rival's variance over that of the " + to_readable_size(best.bytes) +
+                             " file after the same time of sampling.";
+    const std::string rivals = named(sweep, advice, Verdict::rival), even = named(sweep, advice, Verdict::even),
+                      ours = named(sweep, advice, Verdict::ours);
+    if (!rivals.empty()) advice.findings.push_back("At equal time a rival wins: " + rivals + "." + than);
+    else if (!even.empty() || !ours.empty()) advice.findings.push_back("At equal time no rival wins." + than);
+    if (!even.empty()) advice.findings.push_back("Too close to call at equal time: " + even + ".");
+    if (!ours.empty()) advice.findings.push_back("At equal time the file wins against: " + ours + ".");
+    for (const RivalComparison& c : advice.comparisons)
+        if (std::isinf(sweep.rows[c.row].shaded()))
+            advice.findings.push_back(capital(sweep.rows[c.row].label) +
+                                      " is biased here: it has no density where there is light.");
+}
+
+/// Who wins sample for sample, whatever the time.
+std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
+    std::string names;
+    for (const SweepRow& rival : sweep.rows)
+        if (!rival.ours() && rival.relative_variance < best.relative_variance)
+            names += (names.empty() ? "" : "; ") + rival.label + " (" + short_number(rival.relative_variance) +
+                     ", " + to_readable_size(rival.bytes) + ")";
+    if (names.empty())
+        return "Sample for sample no rival is less noisy than this file (" + short_number(best.relative_variance) +
+               ").";
+    return "Sample for sample these are less noisy than this file (" + short_number(best.relative_variance) +
+           "): " + names + ".";
+}
+
+std::string surface_finding(const Sweep& sweep, const SweepRow& best) {
+    const SweepRow& full = sweep.rows[sweep.baseline];
+    return "On a diffuse surface, where the horizon and the cosine come on top, a sample of this file has a "
+           "relative "
+           "variance of " +
+           short_number(best.irradiance) + " in the mean over " + std::to_string(sweep.conditions) +
+           " normals, and one of the " + full.label + " " + short_number(full.irradiance) +
+           ": what is left is not the file's. Files that know the normal lower it: `acdf sweep --kind local`.";
+}
+
+/// Another file of acdf's that is not visibly noisy either, and better at equal time.
+void add_own_finding(const Sweep& sweep, Advice& advice) {
+    const SweepRow& best = sweep.rows[advice.recommended.row];
+    RivalComparison fastest;
+    for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
+        const SweepRow& row = sweep.rows[i];
+        if (!row.ours() || !(row.relative_variance <= sweep.visibility.largest_variance())) continue;
+        const RivalComparison c = compare(row, i, best);
+        const bool better = !fastest.equal_time.known() || c.equal_time.value < fastest.equal_time.value;
+        if (c.verdict == Verdict::rival && better) fastest = c;
+    }
+    if (!fastest.equal_time.known()) return;
+    const SweepRow& row = sweep.rows[fastest.row];
+    advice.findings.push_back("Where time counts more than size: " + row.label + ", `" + row.options + "`, " +
+                              to_readable_size(row.bytes) + ", has " + interval_text(fastest.equal_time) +
+                              " times the variance of the recommended file at equal time.");
+}
+
+void add_findings(const Sweep& sweep, Advice& advice) {
+    const SweepRow& best = sweep.rows[advice.recommended.row];
+    advice.findings.push_back(sample_finding(sweep, best));
+    add_time_findings(sweep, advice, best);
+    add_own_finding(sweep, advice);
+    if (best.irradiance == best.irradiance) advice.findings.push_back(surface_finding(sweep, best));
+    advice.findings.push_back(
+        sweep.kind == SweepKind::brdf
+            ? "All of this is under light that is the same from everywhere. Under other light mix with samples of "
+              "the "
+              "light, by the exact densities that each file tells; `acdf render` shows it on scenes."
+            : "All of this is without occluders. Where what is brightest is hidden, samplers that follow the light "
+              "closely lose most of their lead over a plain CDF: mix with cosine or BRDF samples there, by the "
+              "exact "
+              "densities that each file tells; `acdf render` shows it on scenes.");
+}
+
+} // namespace
+
+std::string short_number(double value) {
+    if (std::isinf(value)) return "infinite";
+    if (!(value == value)) return "unknown";
+    char text[32];
+    std::snprintf(text, sizeof text, std::abs(value) >= 999.5 || value == 0.0 ? "%.0f" : "%.3g", value);
+    if (const char* exponent = std::strstr(text, "e-0")) // "1e-05"
+        return std::string(text, static_cast<std::size_t>(exponent - text)) + "e-" + (exponent + 3);
+    return text;
+}
+
+std::string noise_text(double variance, std::uint32_t spp) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100.0 * std::sqrt(variance / spp));
+    return text;
+}
+
+std::string shell_word(const std::string& word) {
+    const bool plain =
+        !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                "0123456789._-/+:=,@%") == std::string::npos;
+    if (plain) return word;
+    std::string out = "'";
+    for (char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility& visibility) {
+    Recommended out;
+    bool found = false;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!rows[i].ours() || !(rows[i].relative_variance == rows[i].relative_variance)) continue;
+        const bool reached = rows[i].relative_variance <= visibility.largest_variance();
+        const SweepRow& best = rows[out.row];
+        const bool better = !found || (reached != out.reached ? reached
+                                       : reached              ? rows[i].bytes < best.bytes
+                                                              : rows[i].relative_variance < best.relative_variance);
+        if (better) out = {i, reached};
+        found = true;
+    }
+    if (!found) throw Failure("none of the files has a known variance");
+    return out;
+}
+
+Advice advise(const Sweep& sweep) {
+    Advice out;
+    out.recommended = recommended_row(sweep.rows, sweep.visibility);
+    const SweepRow& best = sweep.rows[out.recommended.row];
+    out.sentence = sentence_of(sweep, out.recommended);
+    out.rule = rule_of(sweep.visibility);
+    out.command = sweep.command + " " + best.options + " -o " + shell_word(sweep.output);
+    for (std::size_t i = 0; i < sweep.rows.size(); ++i)
+        if (!sweep.rows[i].ours()) out.comparisons.push_back(compare(sweep.rows[i], i, best));
+    add_findings(sweep, out);
+    return out;
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,184 @@
+// The sweep of BRDF files.
+#include "build/brdf.h"
+#include "input/rgl_brdf.h"
+#include "measure/brdf_table.h"
+#include "measure/light_samplers.h"
+#include "measure/point_samplers.h"
+#include "measure/rgl_sampler.h"
+#include "tools/plot/brdf.h"
+#include "tools/plot/density.h"
+#include "tools/plot/knots.h"
+#include "tools/sweep/advice.h"
+#include "tools/sweep/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace acdf::tools {
+namespace {
+
+using measure::ShadingPoint;
+
+build::BrdfFileOptions options_of(const Step& step, bool isotropic, const SweepOptions& sweep) {
+    build::BrdfFileOptions out;
+    out.channels = sweep.target.channels;
+    out.weights = sweep.target.weights;
+    out.fit.goal = {compress::Goal::Kind::budget, 0, step.budget, 0.0};
+    out.fit.sharing = step.fit == "variance";
+    if (step.fit != "cdf" && step.fit != "uniform") return out;
+    out.fit.fit = step.fit == "cdf" ? ACDF_FIT_CDF : ACDF_FIT_UNIFORM;
+    // Three segments in theta_h for one in phi_h, as in Lawrence et al. 2005, §6.2.
+    const double bins = isotropic ? 32.0 : 32.0 * 16.0, cells = double(cells_in(step.budget)) / bins;
+    out.fit.phi_segments = static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(cells / 3.0))));
+    out.fit.theta_segments = static_cast<std::uint32_t>(std::max(2.0, std::round(cells / out.fit.phi_segments)));
+    return out;
+}
+
+std::string text_of(const Step& step, const build::BrdfFileOptions& o) {
+    if (step.fit == "variance") return "--budget " + budget_text(step.budget);
+    if (step.fit == "separate") return "--no-sharing --budget " + budget_text(step.budget);
+    return "--fit " + step.fit + " " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
+}
+
+const char* label_of(const std::string& fit) {
+    return fit == "variance"   ? "shared cells (default)"
+           : fit == "separate" ? "a tree for each view"
+           : fit == "cdf"      ? "cdf fit (the paper's)"
+                               : "uniform knots";
+}
+
+/// In double precision, for any view.
+class RglPoint final : public measure::PointSampler {
+public:
+    explicit RglPoint(const measure::RglSampler& rgl) : rgl_(rgl) {}
+    void move_to(const ShadingPoint& point) override { std::copy_n(point.wo, 3, wo_); }
+    AcdfDirectionSample sample(double u0, double u1) const override {
+        const double u[2] = {u0, u1};
+        const measure::BrdfSample s = rgl_.sample(wo_, u);
+        AcdfDirectionSample out{};
+        for (int i = 0; i < 3; ++i) out.direction[i] = static_cast<float>(s.wi[i]);
+        out.pdf = static_cast<float>(s.pdf);
+        return out;
+    }
+    float pdf(const float wi[3]) const override {
+        const double w[3] = {wi[0], wi[1], wi[2]};
+        return static_cast<float>(rgl_.pdf(wo_, w));
+    }
+
+private:
+    const measure::RglSampler& rgl_;
+    double wo_[3] = {0.0, 0.0, 1.0};
+};
+
+void take(SweepRow& row, const build::BrdfAccuracy& a) {
+    row.cells = a.cells;
+    row.relative_variance = a.support_violations > 0 ? HUGE_VAL : a.relative_variance;
+    row.worst = a.support_violations > 0 ? HUGE_VAL : a.worst;
+    row.max_weight = a.support_violations > 0 ? HUGE_VAL : a.max_weight;
+    row.rms = a.rms_pdf_error;
+}
+
+Candidate make_file(const input::Brdf& brdf, const SweepOptions& sweep, const Step& step) {
+    const build::BrdfFileOptions options = options_of(step, brdf.isotropic, sweep);
+    build::BrdfFile made = build::build_brdf(brdf, options);
+    Candidate out = file_candidate(std::move(made.bytes));
+    out.row.label = label_of(step.fit);
+    out.row.options = text_of(step, options);
+    take(out.row, made.accuracy);
+    return out;
+}
+
+std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count) {
+    const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
+    std::vector<Candidate> out;
+    const auto add = [&](const char* system, const std::string& label,
+                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewDensity& density) {
+        out.push_back(rival_candidate(system, label, std::move(sampler)));
+        // The same sums as of files.
+        take(out.back().row, build::summary(build::measure_views(density, reflected, views, 251, 601)));
+        out.back().row.cells = 0;
+    };
+    const auto add_table = [&](const char* system, const char* label, measure::BrdfTableKind kind) {
+        const auto table = std::make_shared<const measure::TabulatedBrdf>(reflected, brdf.isotropic, kind);
+        add(system, label, measure::tabulated_brdf_sampler(*table),
+            [&](const double wo[3], const double wi[3]) { return table->pdf(wo, wi); });
+        out.back().tables = table;
+    };
+    add_table("full_table", "full table 32 x 16 x 256 x 32", measure::BrdfTableKind::mean);
+    add_table("full_table_centre", "the same table as published, for its bins' centres",
+              measure::BrdfTableKind::centre);
+    const measure::GgxSampler ggx(measure::best_ggx(reflected, views).alpha);
+    add("ggx", "best GGX lobe, alpha " + short_number(ggx.alpha()), measure::ggx_sampler(ggx.alpha()),
+        [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); });
+    add("cosine", "cosine hemisphere", measure::cosine_sampler(), measure::CosineSampler::pdf);
+    if (const auto* rgl = dynamic_cast<const input::RglBrdf*>(&brdf)) {
+        const measure::RglSampler sampler(*rgl);
+        add("rgl", "the RGL database's own sampler",
+            std::make_shared<measure::MovedToPoints<measure::RglSampler, RglPoint>>(*rgl),
+            [&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); });
+    }
+    return out;
+}
+
+void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std::vector<Candidate>& candidates) {
+    const ViewAngles angles{45.0, 0.0};
+    const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
+    float view[3];
+    PlottedView{candidates.front().file->file.brdf(), angles}.direction(view);
+    const double wo[3] = {view[0], view[1], view[2]};
+    const double x = std::sqrt(1.0 - wo[2]);
+    const build::ViewDensity uniform = [](const double*, const double*) { return 0.5 / ACDF_PI; };
+    const double albedo = build::measure_views(uniform, reflected, {{x, 0.0}}, 251, 601).front().albedo;
+    const Density own = [&](const float wi[3]) {
+        const double w[3] = {wi[0], wi[1], wi[2]};
+        return w[2] > 0.0 && albedo > 0.0 ? static_cast<float>(reflected(wo, w) / albedo) : 0.0f;
+    };
+    const DensityImage full = draw_density(map, own);
+    sweep.range = automatic_range(full);
+    add_colour_bar(sweep);
+    add_picture(
+        sweep, full, {}, {}, "The BRDF itself times cosine, seen from 45 degrees",
+        "The directions of light that are reflected to a view at 45 degrees, in false colour; the lower half "
+        "is below the surface.");
+    for (std::size_t i : pictured(candidates, sweep.visibility)) {
+        const PlottedView plotted{candidates[i].file->file.brdf(), angles};
+        add_picture(
+            sweep, draw_density(map, density_of(plotted)), knot_opacity(plotted, map), {},
+            picture_title(candidates[i].row),
+            "The density that this file has for the same view, in the same colours, with the borders of its "
+            "cells.");
+    }
+}
+
+} // namespace
+
+Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress) {
+    Sweep sweep;
+    sweep.kind = SweepKind::brdf;
+    sweep.visibility = options.visibility;
+    const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
+    const compress::Reflected reflected =
+        build::reflected_light(brdf, options.target.channels, options.target.weights);
+    sweep.conditions = build::kMeasuredViews;
+    std::vector<Candidate> candidates;
+    build_all(
+        sweep, candidates, steps_of(sweep.kind, options),
+        [&](const Step& step) { return make_file(brdf, options, step); }, part(0.0, 0.7));
+    part(0.7, 0.0)(0.0, "measuring rivals");
+    sweep.baseline = candidates.size();
+    for (Candidate& rival : rivals(brdf, reflected, options.views)) candidates.push_back(std::move(rival));
+    if (options.pictures) add_pictures(sweep, reflected, candidates);
+    std::vector<ShadingPoint> points;
+    for (const compress::View& view : build::random_views(4096, false)) {
+        double wo[3];
+        view.direction(wo);
+        points.push_back({{0.0f, 0.0f, 1.0f},
+                          {static_cast<float>(wo[0]), static_cast<float>(wo[1]), static_cast<float>(wo[2])}});
+    }
+    std::shuffle(points.begin(), points.end(), std::mt19937_64(1)); // views are ordered, and blocks see a few
+    finish_rows(sweep, std::move(candidates), points, options, part(0.9, 0.1));
+    return sweep;
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,194 @@
+#include "tools/sweep/build.h"
+
+#include "build/local_accuracy.h"
+#include "measure/light_samplers.h"
+#include "tools/cli/sizes.h"
+#include "tools/commands.h"
+#include "tools/plot/image.h"
+#include "tools/plot/knots.h"
+#include "tools/plot/local.h"
+#include "tools/sweep/advice.h"
+#include "tools/sweep/timing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace acdf::tools {
+
+const char* to_string(SweepKind kind) {
+    return kind == SweepKind::environment ? "env" : kind == SweepKind::local ? "local" : "brdf";
+}
+
+const std::vector<std::string>& fits_of(SweepKind kind) {
+    static const std::vector<std::string> environment{"variance", "cascade", "cdf", "pdf", "uniform"},
+        local{"variance", "separate", "cdf"}, brdf{"variance", "separate", "cdf", "uniform"};
+    return kind == SweepKind::environment ? environment : kind == SweepKind::local ? local : brdf;
+}
+
+std::vector<std::string> default_fits(SweepKind kind) {
+    return kind == SweepKind::local ? std::vector<std::string>{"variance", "cdf"} : fits_of(kind);
+}
+
+std::vector<std::uint64_t> default_budgets(SweepKind kind) {
+    switch (kind) {
+    case SweepKind::environment:
+        return {4096, 16384, 65536, 262144, 1000000};
+    case SweepKind::local:
+        return {16384, 65536, 262144, 1000000, 4000000};
+    default:
+        return {4096, 16384, 65536, 262144};
+    }
+}
+
+StoredFile::StoredFile(std::vector<std::uint8_t> made) : bytes(std::move(made)) {
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+}
+
+Candidate file_candidate(std::vector<std::uint8_t> bytes) {
+    Candidate out;
+    out.file = std::make_shared<StoredFile>(std::move(bytes));
+    out.sampler = measure::file_sampler(out.file->file);
+    return out;
+}
+
+Candidate rival_candidate(std::string system, std::string label,
+                          std::shared_ptr<const measure::LightSampler> sampler) {
+    Candidate out;
+    out.row.system = std::move(system);
+    out.row.label = std::move(label);
+    out.row.bytes = sampler->bytes();
+    out.sampler = std::move(sampler);
+    return out;
+}
+
+std::vector<std::uint64_t> budgets_of(SweepKind kind, const SweepOptions& options) {
+    return options.budgets.empty() ? default_budgets(kind) : options.budgets;
+}
+
+std::vector<Step> steps_of(SweepKind kind, const SweepOptions& options) {
+    std::vector<Step> out;
+    const std::vector<std::uint64_t> budgets = budgets_of(kind, options);
+    for (const std::string& fit : options.fits.empty() ? default_fits(kind) : options.fits)
+        for (std::uint64_t budget : budgets) out.push_back({fit, budget});
+    return out;
+}
+
+void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vector<Step>& steps,
+               const std::function<Candidate(const Step&)>& make, const build::Progress& progress) {
+    std::string last_failure;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (progress) progress(static_cast<double>(i) / static_cast<double>(steps.size()), "building");
+        const auto start = std::chrono::steady_clock::now();
+        Candidate made;
+        try {
+            made = make(steps[i]);
+        } catch (const std::runtime_error& error) {
+            last_failure =
+                "--fit " + steps[i].fit + " at " + to_readable_size(steps[i].budget) + ": " + error.what();
+            sweep.notes.push_back(last_failure);
+            continue;
+        }
+        made.row.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        made.row.system = "acdf";
+        made.row.fit = steps[i].fit;
+        made.row.bytes = made.file->bytes.size();
+        const bool again = !candidates.empty() && candidates.back().row.fit == made.row.fit &&
+                           candidates.back().row.bytes == made.row.bytes;
+        if (!again) candidates.push_back(std::move(made));
+    }
+    if (candidates.empty()) throw Failure("none of the sizes can be made: " + last_failure);
+}
+
+void finish_rows(Sweep& sweep, std::vector<Candidate> candidates, const std::vector<measure::ShadingPoint>& points,
+                 const SweepOptions& options, const build::Progress& progress) {
+    sweep.timed = options.timing;
+    sweep.visibility = options.visibility;
+    if (options.timing) {
+        std::vector<Timed> samplers;
+        for (const Candidate& candidate : candidates)
+            samplers.push_back({candidate.sampler.get(), candidate.has_pdf});
+        std::vector<SweepTimes> times = time_samplers(samplers, points, options.rounds, progress);
+        for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].row.times = std::move(times[i]);
+    }
+    for (Candidate& candidate : candidates) sweep.rows.push_back(std::move(candidate.row));
+}
+
+std::string knots_text(std::uint32_t columns, std::uint32_t rows) {
+    return "--knots " + std::to_string(columns) + "x" + std::to_string(rows);
+}
+
+std::string budget_text(std::uint64_t bytes) {
+    struct Unit {
+        std::uint64_t bytes;
+        const char* name;
+    };
+    for (const Unit unit : {Unit{1u << 20, "MiB"}, Unit{1000000, "MB"}, Unit{1024, "KiB"}, Unit{1000, "kB"}})
+        if (bytes > 0 && bytes % unit.bytes == 0) return std::to_string(bytes / unit.bytes) + unit.name;
+    return std::to_string(bytes);
+}
+
+std::uint32_t cells_in(std::uint64_t budget) {
+    return static_cast<std::uint32_t>(std::max(4.0, (static_cast<double>(budget) - 900.0) / 4.4));
+}
+
+std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Visibility& visibility) {
+    std::vector<SweepRow> rows;
+    for (const Candidate& candidate : candidates) {
+        rows.push_back(candidate.row);
+        rows.back().times = {};
+    }
+    const std::size_t best = recommended_row(rows, visibility).row;
+    std::size_t smallest = best, paper = rows.size();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!rows[i].ours()) continue;
+        if (rows[i].fit == rows[best].fit && rows[i].bytes < rows[smallest].bytes) smallest = i;
+        const auto miss = [&](std::size_t k) {
+            return std::abs(std::log(double(rows[k].bytes) / double(rows[best].bytes)));
+        };
+        if (rows[i].fit == "cdf" && (paper == rows.size() || miss(i) < miss(paper))) paper = i;
+    }
+    std::vector<std::size_t> out;
+    for (std::size_t i : {smallest, best, paper})
+        if (i < rows.size() && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
+    return out;
+}
+
+void add_picture(Sweep& sweep, const DensityImage& image, const std::vector<float>& knots,
+                 const std::vector<float>& horizon, std::string title, std::string description) {
+    OIIO::ImageBuf picture = false_colour(image, sweep.range);
+    if (!knots.empty()) draw_knots(picture, knots);
+    if (!horizon.empty()) draw_horizon(picture, horizon);
+    sweep.pictures.push_back({std::move(title), std::move(description), image.map.width, image.map.height,
+                              encode_png(picture, {"acdf", "density in false colour"})});
+}
+
+void add_colour_bar(Sweep& sweep) {
+    constexpr int width = 256;
+    DensityImage ramp{{build::Layout::latlong, width, 1}, {}};
+    const double decades = std::log(sweep.range.high / sweep.range.low);
+    for (int x = 0; x < width; ++x)
+        ramp.density.push_back(static_cast<float>(sweep.range.low * std::exp(decades * (x + 0.5) / width)));
+    sweep.colour_bar = encode_png(false_colour(ramp, sweep.range), {"acdf", "colours"});
+}
+
+std::string picture_title(const SweepRow& row) {
+    char text[96];
+    std::snprintf(text, sizeof text, ", relative variance %.3g", row.relative_variance);
+    return row.label + ", " + to_readable_size(row.bytes) + text;
+}
+
+build::Progress part_of(const build::Progress& progress, double begin, double width) {
+    return [&progress, begin, width](double share, const char* what) {
+        if (progress) progress(begin + width * share, what);
+    };
+}
+
+std::vector<measure::ShadingPoint> timed_points() {
+    std::vector<measure::ShadingPoint> points;
+    for (const build::Normal& n : build::random_normals(4096)) points.push_back({{n[0], n[1], n[2]}, {}});
+    return points;
+}
+
+} // namespace acdf::tools

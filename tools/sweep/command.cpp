@@ -1,0 +1,266 @@
+// acdf sweep: size against noise and time, on a user's own probe or BRDF: a table and a page.
+#include "build/format_names.h"
+#include "input/brdf.h"
+#include "tools/cli/help.h"
+#include "tools/cli/options.h"
+#include "tools/cli/output.h"
+#include "tools/cli/probe_options.h"
+#include "tools/cli/probe_source.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/sizes.h"
+#include "tools/cli/target_options.h"
+#include "tools/commands.h"
+#include "tools/sweep/advice.h"
+#include "tools/sweep/page.h"
+#include "tools/sweep/sweep.h"
+#include "tools/sweep/text.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace acdf::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SweepArguments {
+    std::string source, folder;
+    std::optional<SweepKind> kind;
+    std::vector<std::string> budgets;
+    input::ProbeOptions input;
+    SweepOptions sweep;
+    const CLI::App* command = nullptr;
+    int threads = 0;
+    bool no_timing = false, json = false, quiet = false, force = false;
+
+    bool given(const char* option) const { return command->get_option(option)->count() > 0; }
+};
+
+/// What --kind is where it is not given: files of BRDFs and what is no file but a model's name.
+SweepKind kind_of(const std::string& source) {
+    std::string extension = fs::path(source).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const char* brdf : {".binary", ".bsdf", ".pbsdf", ".npy"})
+        if (extension == brdf) return SweepKind::brdf;
+    std::error_code ignored;
+    const std::string model = source.substr(0, source.find(':'));
+    for (const char* name : {"lambert", "ggx", "cook-torrance", "blinn"})
+        if (model == name && !fs::exists(source, ignored)) return SweepKind::brdf;
+    return SweepKind::environment;
+}
+
+void check_options(SweepArguments& options, SweepKind kind) {
+    for (const std::string& text : options.budgets) {
+        const auto bytes = parse_size(text);
+        if (!bytes || *bytes == 0) throw CLI::ValidationError("--budgets", "needs sizes such as 16KiB,64KiB,1MB");
+        options.sweep.budgets.push_back(*bytes);
+    }
+    std::sort(options.sweep.budgets.begin(), options.sweep.budgets.end());
+    const std::vector<std::string>& fits = fits_of(kind);
+    for (const std::string& fit : options.sweep.fits)
+        if (std::find(fits.begin(), fits.end(), fit) == fits.end()) {
+            std::string names;
+            for (const std::string& name : fits) names += (names.empty() ? "" : ", ") + name;
+            throw CLI::ValidationError("--fits", std::string("for --kind ") + to_string(kind) + " are " + names);
+        }
+    if (kind == SweepKind::brdf)
+        for (const char* option : {"--projection", "--filter", "--bad-pixels", "--on-black"})
+            if (options.given(option)) throw CLI::ValidationError(option, "is for environment maps");
+    const compress::TargetOptions& target = options.sweep.target;
+    if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
+        throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the rivals are defined for");
+    if (kind != SweepKind::brdf && target.channels == ACDF_CHANNELS_SEPARATE)
+        throw CLI::ValidationError("--channel",
+                                   "is one channel in a sweep of probes: the rivals are defined for one");
+    options.sweep.timing = !options.no_timing;
+    options.sweep.visibility.threshold /= 100.0; // it is given in per cent
+}
+
+/// What has to be said again to the subcommand that makes a file.
+std::string command_of(const SweepArguments& options, SweepKind kind) {
+    std::string text = std::string("acdf ") + to_string(kind) + " " + shell_word(options.source);
+    const auto add = [&](const char* option, const std::string& value) {
+        if (options.given(option)) text += std::string(" ") + option + " " + value;
+    };
+    add("--projection", options.input.projection == input::Projection::automatic
+                            ? "auto"
+                            : input::to_string(options.input.projection));
+    add("--bad-pixels", options.input.bad_pixels == build::BadPixels::clamp   ? "clamp"
+                        : options.input.bad_pixels == build::BadPixels::error ? "error"
+                                                                              : "zero");
+    add("--on-black", options.input.uniform_if_black ? "uniform" : "error");
+    add("--filter", build::filter_name(options.sweep.target.filter));
+    if (options.given("--channel")) add("--channel", options.command->get_option("--channel")->as<std::string>());
+    return text;
+}
+
+std::string output_of(const std::string& source, SweepKind kind) {
+    std::error_code ignored;
+    const std::string stem =
+        fs::exists(source, ignored) ? fs::path(source).stem().string() : source.substr(0, source.find(':'));
+    return stem + (kind == SweepKind::local ? ".local.acdf" : ".acdf");
+}
+
+Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
+    input::Probe probe = load_probe(options.source, options.input, options.quiet);
+    const compress::Target target = probe_target(options.source, probe, options.sweep.target);
+    const build::Source source = source_of(probe, options.input);
+    probe.rgb = {};
+    Sweep sweep = kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
+                                           : sweep_environment(target, source, options.sweep, progress);
+    sweep.description = std::to_string(probe.width) + " x " + std::to_string(probe.height) + " lat-long";
+    if (probe.projection != input::Projection::latlong)
+        sweep.description += ", resampled from " + std::to_string(probe.source_width) + " x " +
+                             std::to_string(probe.source_height) + " " + input::to_string(probe.projection);
+    return sweep;
+}
+
+Sweep sweep_reflection(SweepArguments& options, const build::Progress& progress) {
+    const std::unique_ptr<input::Brdf> brdf = input::open_brdf(options.source);
+    Sweep sweep = sweep_brdf(*brdf, options.sweep, progress);
+    sweep.description = brdf->isotropic ? "isotropic BRDF" : "anisotropic BRDF";
+    sweep.notes.insert(sweep.notes.end(), brdf->notes.begin(), brdf->notes.end());
+    return sweep;
+}
+
+Sweep make_sweep(SweepArguments& options, SweepKind kind) {
+    ProgressBar bar(options.quiet);
+    try {
+        Sweep sweep = kind == SweepKind::brdf ? sweep_reflection(options, bar.callback())
+                                              : sweep_probe(options, kind, bar.callback());
+        sweep.source = options.source;
+        sweep.command = command_of(options, kind);
+        sweep.output = output_of(options.source, kind);
+        return sweep;
+    } catch (const std::invalid_argument& error) {
+        throw Failure(options.source + ": " + error.what());
+    }
+}
+
+void run(SweepArguments& options) {
+    const SweepKind kind = options.kind ? *options.kind : kind_of(options.source);
+    check_options(options, kind);
+    const auto limit = limit_threads(options.threads);
+    make_folder(options.folder);
+    const auto path = [&](const char* name) { return (fs::path(options.folder) / name).string(); };
+    // All refuse early, before the work.
+    Output csv(path("sweep.csv"), options.force, {options.source});
+    Output json(path("sweep.json"), options.force, {options.source});
+    Output html(path("report.html"), options.force, {options.source});
+
+    const Sweep sweep = make_sweep(options, kind);
+    using Json = nlohmann::ordered_json;
+    const std::string text = sweep_json(sweep).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    csv.write(sweep_csv(sweep));
+    json.write(text);
+    html.write(sweep_html(sweep));
+    csv.commit();
+    json.commit();
+    html.commit();
+
+    if (options.json) {
+        std::fputs(text.c_str(), stdout);
+    } else if (!options.quiet) {
+        const Advice advice = advise(sweep);
+        std::printf("%s\n  %s\n%s shows the trade; the numbers are in %s and %s\n", advice.sentence.c_str(),
+                    advice.command.c_str(), path("report.html").c_str(), path("sweep.csv").c_str(),
+                    path("sweep.json").c_str());
+    }
+}
+
+void add_sweep_options(CLI::App& command, SweepArguments& options) {
+    const std::map<std::string, SweepKind> kinds{
+        {"env", SweepKind::environment}, {"local", SweepKind::local}, {"brdf", SweepKind::brdf}};
+    command
+        .add_option_function<SweepKind>(
+            "--kind", [&options](SweepKind kind) { options.kind = kind; },
+            "Which files are compared: env, local (for every normal) or brdf; as of the subcommands that make them")
+        ->transform(CLI::CheckedTransformer(kinds).description(""))
+        ->option_text("NAME [by the source: env or brdf]")
+        ->group("Sweep");
+    command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas")
+        ->delimiter(',')
+        ->type_name("")
+        ->option_text("SIZES [4KiB,16KiB,64KiB,256KiB,1MB for env]")
+        ->group("Sweep");
+    command
+        .add_option("--fits", options.sweep.fits,
+                    "Fits to try, separated by commas. env: variance, cascade, cdf, pdf, uniform; local: variance, "
+                    "separate (a tree for each normal), cdf (the paper's); brdf: variance, separate, cdf, uniform")
+        ->delimiter(',')
+        ->type_name("")
+        ->option_text("NAMES [all of the kind; local: variance,cdf]")
+        ->group("Sweep");
+    command
+        .add_option("--spp", options.sweep.visibility.spp,
+                    "Samples per pixel of your renderings: the more, the smaller a file is enough")
+        ->check(CLI::Range(1u, 1u << 24))
+        ->option_text("N [64]")
+        ->group("Sweep");
+    options.sweep.visibility.threshold = 1.0;
+    command
+        .add_option(
+            "--visible", options.sweep.visibility.threshold,
+            "Noise in per cent of a pixel's value that is still too small to see: 1 is about half a step of "
+            "8-bit sRGB at middle grey")
+        ->check(CLI::Range(0.001, 100.0))
+        ->option_text("X [1]")
+        ->group("Sweep");
+    command
+        .add_flag("--no-timing", options.no_timing,
+                  "Leave out all times: the outputs are then the same, byte for byte, in every run")
+        ->group("Sweep");
+}
+
+} // namespace
+
+void add_sweep(CLI::App& program, int& exit_code) {
+    auto options = std::make_shared<SweepArguments>();
+    CLI::App& command = *program.add_subcommand(
+        "sweep", "Which size and fit: noise, time and rivals on your probe or BRDF, as a table and a page");
+    options->command = &command;
+    command
+        .add_option(
+            "SOURCE", options->source,
+            "An environment map, or a BRDF: MERL .binary, RGL .bsdf, .npy, or a model such as ggx:alpha=0.1")
+        ->required()
+        ->type_name("")
+        ->group("Input");
+    add_projection(command, options->input.projection);
+    add_repairs(command, options->input);
+    add_sweep_options(command, *options);
+    add_target_options(command, options->sweep.target);
+    command.add_option("-o,--output", options->folder, "The folder to write to; made where it does not exist")
+        ->required()
+        ->type_name("DIR")
+        ->group("Output");
+    command
+        .add_flag("-f,--force", options->force, "Replace sweep.csv, sweep.json and report.html of an earlier run")
+        ->group("Output");
+    add_threads(command, options->threads)
+        ->description("Threads to build with; times of samples are always of one thread");
+    add_json(command, options->json);
+    add_quiet(command, options->quiet);
+    command.footer(help_footer(
+        "Writes report.html, one page without network or scripts: plots, pictures, what to choose and the command "
+        "that makes it, and where a rival is better. sweep.csv and sweep.json have the same numbers. All files "
+        "that "
+        "are compared are made in memory.",
+        "acdf sweep probe.exr -o out\n"
+        "acdf sweep probe.exr -o out --kind local --budgets 64KiB,256KiB,1MB\n"
+        "acdf sweep nickel.binary -o out --spp 16\n"
+        "acdf sweep ggx:alpha=0.1 -o out --fits variance,cdf --no-timing"));
+    command.callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools

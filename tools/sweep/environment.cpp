@@ -1,0 +1,106 @@
+// The sweep of environment files.
+#include "build/environment.h"
+#include "build/local_accuracy.h"
+#include "measure/full_cdf.h"
+#include "tools/plot/density.h"
+#include "tools/plot/knots.h"
+#include "tools/sweep/build.h"
+#include "tools/sweep/irradiance.h"
+#include "tools/sweep/rivals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace acdf::tools {
+namespace {
+
+build::EnvironmentOptions options_of(const Step& step, const compress::Target& target, const SweepOptions& sweep) {
+    build::EnvironmentOptions out;
+    out.target = sweep.target;
+    const std::uint32_t cells = cells_in(step.budget);
+    if (step.fit == "variance") {
+        out.fit.goal.kind = compress::Goal::Kind::budget;
+        out.fit.goal.budget = step.budget;
+    } else if (step.fit == "cascade") {
+        out.fit.shape = compress::Shape::cascade;
+        out.fit.goal.cells = cells;
+    } else {
+        out.fit.fit = step.fit == "cdf" ? ACDF_FIT_CDF : step.fit == "pdf" ? ACDF_FIT_PDF : ACDF_FIT_UNIFORM;
+        const auto side = static_cast<std::uint32_t>(std::max(2.0, std::sqrt(cells)));
+        out.fit.column_segments = std::min(side, target.columns);
+        out.fit.row_segments = std::min(side, target.rows);
+    }
+    return out;
+}
+
+std::string text_of(const Step& step, const build::EnvironmentOptions& o) {
+    if (step.fit == "variance") return "--budget " + budget_text(step.budget);
+    if (step.fit == "cascade") return "--shape cascade --cells " + std::to_string(o.fit.goal.cells);
+    return "--fit " + step.fit + " " + knots_text(o.fit.column_segments, o.fit.row_segments);
+}
+
+const char* label_of(const std::string& fit) {
+    return fit == "variance"  ? "variance fit (default)"
+           : fit == "cascade" ? "variance fit, two levels"
+           : fit == "cdf"     ? "cdf fit (the paper's)"
+           : fit == "pdf"     ? "pdf fit"
+                              : "uniform knots";
+}
+
+Candidate make_file(const compress::Target& target, const build::Source& source, const SweepOptions& sweep,
+                    const Step& step) {
+    const build::EnvironmentOptions options = options_of(step, target, sweep);
+    build::Environment made = build::build_environment(target, source, options);
+    Candidate out = file_candidate(std::move(made.bytes));
+    out.row.label = label_of(step.fit);
+    out.row.options = text_of(step, options);
+    out.row.cells = made.accuracy.cells;
+    out.row.relative_variance = made.accuracy.support_violations > 0 ? HUGE_VAL : made.accuracy.relative_variance;
+    out.row.max_weight = made.accuracy.max_weight;
+    out.row.rms = made.accuracy.rms_pdf_error;
+    return out;
+}
+
+void add_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
+    const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
+    const DensityImage full = draw_density(map, density_of(target));
+    sweep.range = automatic_range(full);
+    add_colour_bar(sweep);
+    add_picture(sweep, full, {}, {}, "The probe itself, full resolution",
+                "The probe's own density in false colour, latitude and longitude.");
+    for (std::size_t i : pictured(candidates, sweep.visibility)) {
+        const EnvironmentView view = candidates[i].file->file.environment();
+        add_picture(sweep, draw_density(map, density_of(view)), knot_opacity(view, map), {},
+                    picture_title(candidates[i].row),
+                    "The density that this file stores, in the same colours, with the borders of its cells.");
+    }
+}
+
+} // namespace
+
+Sweep sweep_environment(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+                        const build::Progress& progress) {
+    Sweep sweep;
+    sweep.kind = SweepKind::environment;
+    sweep.visibility = options.visibility;
+    const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
+    std::vector<Candidate> candidates;
+    build_all(
+        sweep, candidates, steps_of(sweep.kind, options),
+        [&](const Step& step) { return make_file(target, source, options, step); }, part(0.0, 0.7));
+
+    sweep.baseline = candidates.size();
+    for (Candidate& rival : environment_rivals(target, options)) candidates.push_back(std::move(rival));
+    const std::vector<build::Normal> normals = build::random_normals(options.normals);
+    sweep.conditions = static_cast<std::uint32_t>(normals.size());
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        part(0.7, 0.2)(static_cast<double>(i) / static_cast<double>(candidates.size()), "measuring");
+        candidates[i].row.irradiance =
+            irradiance_variance(target, texel_densities(target, *candidates[i].sampler), 0.0, normals).mean;
+    }
+    if (options.pictures) add_pictures(sweep, target, candidates);
+    finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));
+    return sweep;
+}
+
+} // namespace acdf::tools

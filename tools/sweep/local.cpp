@@ -1,0 +1,122 @@
+// The sweep of local environment files.
+#include "build/local.h"
+#include "build/texel_cosines.h"
+#include "compress/sum.h"
+#include "tools/plot/density.h"
+#include "tools/plot/local.h"
+#include "tools/sweep/build.h"
+#include "tools/sweep/irradiance.h"
+#include "tools/sweep/rivals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace acdf::tools {
+namespace {
+
+/// The paper's bins of normals (Lawrence et al. 2005, §7.1).
+constexpr std::uint32_t kPaperColumns = 25, kPaperRows = 10;
+
+build::LocalOptions options_of(const Step& step, const SweepOptions& sweep) {
+    build::LocalOptions out;
+    out.target = sweep.target;
+    out.goal = {compress::Goal::Kind::budget, 0, step.budget, 0.0};
+    out.sharing = step.fit == "variance";
+    if (step.fit != "cdf") return out;
+    out.columns = kPaperColumns, out.rows = kPaperRows;
+    out.fit.fit = ACDF_FIT_CDF;
+    out.fit.order = compress::Order::z;
+    const double cells = double(cells_in(step.budget)) / (kPaperColumns * kPaperRows);
+    out.fit.column_segments = out.fit.row_segments =
+        static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(cells))));
+    return out;
+}
+
+std::string text_of(const Step& step, const build::LocalOptions& o) {
+    if (step.fit == "variance") return "--budget " + budget_text(step.budget);
+    if (step.fit == "separate") return "--no-sharing --budget " + budget_text(step.budget);
+    return "--no-sharing --normals 25x10 --fit cdf " + knots_text(o.fit.column_segments, o.fit.row_segments);
+}
+
+const char* label_of(const std::string& fit) {
+    return fit == "variance"   ? "shared tiles (default)"
+           : fit == "separate" ? "a tree for each normal"
+                               : "the paper's: 25 x 10 normals, cdf fit";
+}
+
+Candidate make_file(const compress::Target& target, const build::Source& source, const SweepOptions& sweep,
+                    const std::vector<build::Normal>& normals, const Step& step) {
+    const build::LocalOptions options = options_of(step, sweep);
+    build::Local made = build::build_local(target, source, options);
+    Candidate out = file_candidate(std::move(made.bytes));
+    const build::LocalAccuracy accuracy = build::summary(build::measure_normals(out.file->file, target, normals));
+    out.row.label = label_of(step.fit);
+    out.row.options = text_of(step, options);
+    out.row.cells = 0;
+    out.row.relative_variance = accuracy.support_violations > 0 ? HUGE_VAL : accuracy.relative_variance;
+    out.row.worst = accuracy.support_violations > 0 ? HUGE_VAL : accuracy.worst;
+    out.row.max_weight = accuracy.max_weight;
+    return out;
+}
+
+/// What a surface sees of the target, at full resolution: the density that all samplers approach.
+Density reflected_density(const compress::Target& target, const Normal& n) {
+    const Density light = density_of(target);
+    const double length = std::hypot(double{n[0]}, double{n[1]}, double{n[2]});
+    compress::Sum sum;
+    const build::TexelCosines cosines(target.columns, target.rows);
+    const float unit[3] = {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
+                           static_cast<float>(n[2] / length)};
+    const double flux = compress::integral(target);
+    for (std::uint32_t r = 0; r < target.rows; ++r)
+        cosines.for_each_above(unit, r, [&](std::uint32_t c, double cosine) {
+            sum.add(double{target.row(r)[c]} / flux * cosine * target.column_measure[c] * target.row_measure[r]);
+        });
+    const double scale = sum.value() > 0.0 ? 1.0 / sum.value() : 0.0;
+    return [light, scale, unit = std::array<float, 3>{unit[0], unit[1], unit[2]}](const float d[3]) {
+        const float cosine = unit[0] * d[0] + unit[1] * d[1] + unit[2] * d[2];
+        return static_cast<float>(double{light(d)} * std::max(0.0f, cosine) * scale);
+    };
+}
+
+void add_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
+    const Normal normal = {1.0f, 0.0f, 1.0f};
+    const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
+    const DensityImage full = draw_density(map, reflected_density(target, normal));
+    sweep.range = automatic_range(full);
+    add_colour_bar(sweep);
+    const std::vector<float> horizon = horizon_opacity(normal, map);
+    add_picture(sweep, full, {}, horizon, "Light times cosine, full resolution, for a normal half-way up (1, 0, 1)",
+                "What a diffuse surface reflects of the probe, in false colour; the white line is its horizon.");
+    for (std::size_t i : pictured(candidates, sweep.visibility)) {
+        const PlottedNormal plotted{candidates[i].file->file.local(), normal};
+        add_picture(sweep, draw_density(map, density_of(plotted)), knot_opacity(plotted, map), horizon,
+                    picture_title(candidates[i].row),
+                    "The density that this file has for the same normal, in the same colours, with the borders of "
+                    "its cells.");
+    }
+}
+
+} // namespace
+
+Sweep sweep_local(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+                  const build::Progress& progress) {
+    Sweep sweep;
+    sweep.kind = SweepKind::local;
+    sweep.visibility = options.visibility;
+    const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
+    const std::vector<build::Normal> normals = build::random_normals(options.normals);
+    sweep.conditions = static_cast<std::uint32_t>(normals.size());
+    std::vector<Candidate> candidates;
+    build_all(
+        sweep, candidates, steps_of(sweep.kind, options),
+        [&](const Step& step) { return make_file(target, source, options, normals, step); }, part(0.0, 0.8));
+    part(0.8, 0.0)(0.0, "measuring rivals");
+    sweep.baseline = candidates.size();
+    for (Candidate& rival : local_rivals(target, normals)) candidates.push_back(std::move(rival));
+    if (options.pictures) add_pictures(sweep, target, candidates);
+    finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));
+    return sweep;
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,304 @@
+#include "tools/sweep/page.h"
+
+#include "tools/cli/sizes.h"
+#include "tools/sweep/advice.h"
+#include "tools/sweep/page_chart.h"
+#include "tools/sweep/page_style.h"
+#include "tools/sweep/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace acdf::tools {
+namespace {
+
+std::string base64(const std::vector<std::uint8_t>& bytes) {
+    constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t word = 0;
+        for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < left ? bytes[i + k] : 0u);
+        for (std::size_t k = 0; k < 4; ++k) out += k <= left ? digits[word >> (18 - 6 * k) & 63] : '=';
+    }
+    return out;
+}
+
+std::string image(const std::vector<std::uint8_t>& png, int width, int height, const std::string& alternative) {
+    return "<img width=\"" + std::to_string(width) + "\" height=\"" + std::to_string(height) + "\" alt=\"" +
+           escaped(alternative) + "\" src=\"data:image/png;base64," + base64(png) + "\">";
+}
+
+std::string element(const std::string& open, const std::string& text) {
+    return "<" + open + ">" + escaped(text) + "</" + open.substr(0, open.find(' ')) + ">";
+}
+
+std::string interval_text(const Interval& i) {
+    if (!i.known()) return "";
+    return short_number(i.value) + " <small>" + short_number(i.low) + " to " + short_number(i.high) + "</small>";
+}
+
+/// What is between backticks is code.
+std::string prose(const std::string& text) {
+    std::string out;
+    bool code = false;
+    for (const char c : escaped(text)) {
+        if (c != '`') out += c;
+        else out += (code = !code) ? "<code>" : "</code>";
+    }
+    return out + (code ? "</code>" : "");
+}
+
+const char* kind_text(SweepKind kind) {
+    return kind == SweepKind::environment ? "environment map"
+           : kind == SweepKind::local     ? "environment map for every normal"
+                                          : "BRDF";
+}
+
+std::string fact(const std::string& name, const std::string& value, const std::string& small) {
+    return "<div>" + element("dt", name) + "<dd>" + escaped(value) + "<small>" + escaped(small) +
+           "</small></dd></div>\n";
+}
+
+std::string facts_html(const Sweep& sweep, const Advice& advice) {
+    const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.baseline];
+    const std::string of_base = "of the " + base.label + ", which takes ";
+    std::string out = "<dl class=\"facts\">\n";
+    out += fact("Size", to_readable_size(best.bytes),
+                "1/" + short_number(double(base.bytes) / double(best.bytes)) + " " + of_base +
+                    to_readable_size(base.bytes));
+    out += fact("Noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel",
+                noise_text(best.relative_variance, sweep.visibility.spp),
+                "relative variance of a sample " + short_number(best.relative_variance));
+    if (base.relative_variance > 0.0 && !std::isinf(base.relative_variance))
+        out += fact("Variance", "1/" + short_number(base.relative_variance / best.relative_variance),
+                    of_base.substr(0, of_base.find(", which")) + ", sample for sample");
+    if (const Interval time = ratio_interval(best.times.sample, base.times.sample); time.known())
+        out += fact("Time a sample", short_number(time.value) + " \xC3\x97",
+                    "the time of the " + base.label + "; 95 % confidence " + short_number(time.low) + " to " +
+                        short_number(time.high));
+    return out + "</dl>\n";
+}
+
+std::string advice_html(const Sweep& sweep, const Advice& advice) {
+    return "<section class=\"advice\" aria-label=\"Recommendation\">\n<p class=\"lead\" id=\"recommendation\">" +
+           escaped(advice.sentence) + "</p>\n" + facts_html(sweep, advice) +
+           "<p>This makes that file:</p>\n<pre><code id=\"command\">" + escaped(advice.command) +
+           "</code></pre>\n<p class=\"rule\">" + escaped(advice.rule) + "</p>\n</section>\n";
+}
+
+Interval only(double value) { return {value, kUnknown, kUnknown}; }
+
+/// In the order of the page. Times come last, so that a page without them just ends earlier.
+std::vector<Chart> charts_of(const Sweep& sweep) {
+    const std::string base = sweep.rows[sweep.baseline].label;
+    const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
+                       : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
+                                                        : "of what is reflected to a view, mean over views";
+    std::vector<Chart> out;
+    out.push_back({"variance", "Noise",
+                   std::string("Relative variance of one sample ") + what + ": lower is better.",
+                   "relative variance", [](const Sweep&, const SweepRow& r) { return only(r.relative_variance); },
+                   sweep.visibility.largest_variance(),
+                   short_number(100.0 * sweep.visibility.threshold) + " % noise at " +
+                       std::to_string(sweep.visibility.spp) + " spp"});
+    out.push_back(
+        {"weight", "Fireflies",
+         "The largest weight f/p that a sample can have, over the mean: what a single pixel may flash by.",
+         "largest weight", [](const Sweep&, const SweepRow& r) { return only(r.max_weight); }});
+    if (!sweep.timed) return out;
+    out.push_back({"sample", "Time of a sample",
+                   "Median, and the interval that holds it with 95 % confidence. One thread.", "ns a sample",
+                   [](const Sweep&, const SweepRow& r) { return median_interval(r.times.sample); }});
+    out.push_back(
+        {"equal-time", "Noise at equal time",
+         "Variance times time, in units of one sample of the " + base + ". " +
+             (sweep.kind == SweepKind::environment ? "Of irradiance on a diffuse surface. " : "") +
+             "Counts sampling alone; whatever a sample costs besides, such as a shadow ray, brings samplers "
+             "closer to the plot of noise.",
+         "variance at equal time", [](const Sweep& s, const SweepRow& r) {
+             const Interval t = ratio_interval(r.times.sample, s.rows[s.baseline].times.sample);
+             return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
+         }});
+    out.push_back({"pdf", "Time of a density",
+                   "What multiple importance sampling asks for; samplers without a density are missing.",
+                   "ns a density", [](const Sweep&, const SweepRow& r) { return median_interval(r.times.pdf); }});
+    out.push_back({"build", "Time to build a file", "All cores, once; accuracy measured.", "seconds",
+                   [](const Sweep&, const SweepRow& r) { return only(r.build_seconds); }});
+    return out;
+}
+
+std::string legend_html(const Sweep& sweep) {
+    std::string out = "<ul class=\"legend\" aria-label=\"Legend\">\n";
+    for (const ReportSeries& series : series_of(sweep))
+        out += "<li>" + series_mark(series) + element("span", series.label) + "</li>\n";
+    return out + "</ul>\n";
+}
+
+std::string charts_html(const Sweep& sweep, const Advice& advice) {
+    std::string out =
+        "<section>\n<h2>Size, noise and time</h2>\n<p class=\"soft\">Lines are files of acdf; letters "
+        "are what renderers use without it; the ring is the recommended file. Point at anything for "
+        "its numbers.</p>\n" +
+        legend_html(sweep) + "<div class=\"grid\">\n";
+    for (const Chart& chart : charts_of(sweep)) {
+        const std::string svg = chart_svg(sweep, chart, advice.recommended.row);
+        if (svg.empty()) continue;
+        out += "<figure>" + element("h3", chart.title) + element("figcaption", chart.about) + svg + "</figure>\n";
+    }
+    return out + "</div>\n</section>\n";
+}
+
+std::string pictures_html(const Sweep& sweep) {
+    if (sweep.pictures.empty()) return "";
+    std::string out =
+        "<section>\n<h2>What is stored</h2>\n<p class=\"soft\">Density per steradian, on a logarithmic "
+        "scale; lines are the borders of cells, where those are large enough to see.</p>\n"
+        "<div class=\"grid pictures\">\n";
+    for (const SweepPicture& picture : sweep.pictures)
+        out += "<figure>" + element("h3", picture.title) +
+               image(picture.png, picture.width, picture.height, picture.title + ". " + picture.description) +
+               "</figure>\n";
+    out += "</div>\n<p class=\"scale\"><span>" + escaped(short_number(sweep.range.low)) + "</span>" +
+           image(sweep.colour_bar, 256, 1, "Colours from violet over green to red") + "<span>" +
+           escaped(short_number(sweep.range.high)) + " per steradian</span></p>\n";
+    return out + "</section>\n";
+}
+
+std::string verdict_html(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::ours:
+        return "<span class=\"won\">the file</span>";
+    case Verdict::rival:
+        return "<span class=\"lost\">the rival</span>";
+    case Verdict::even:
+        return "too close to call";
+    default:
+        return "";
+    }
+}
+
+std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
+    std::string out = "<section>\n<h2>Beside what renderers use today</h2>\n<ul class=\"say\">\n";
+    for (const std::string& finding : advice.findings) out += "<li>" + prose(finding) + "</li>\n";
+    out +=
+        "</ul>\n<p class=\"soft\">Each rival over the recommended file: more than 1 speaks for the file. Ratios of "
+        "times have the interval that holds the median with 95 % confidence; variances are exact.</p>\n"
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Rivals\"><table id=\"rivals\">\n"
+        "<thead><tr><th>rival</th><th>memory</th><th>variance</th>";
+    if (sweep.timed) out += "<th>time a sample</th><th>variance at equal time</th><th class=\"text\">better</th>";
+    out += "</tr></thead>\n<tbody>\n";
+    for (const RivalComparison& c : advice.comparisons) {
+        const SweepRow& row = sweep.rows[c.row];
+        out += "<tr>" + element("td class=\"left\"", row.label) + element("td", short_number(c.bytes)) +
+               element("td", short_number(c.variance));
+        if (sweep.timed)
+            out += "<td>" + interval_text(c.time) + "</td><td>" + interval_text(c.equal_time) +
+                   "</td><td class=\"text\">" + verdict_html(c.verdict) + "</td>";
+        out += "</tr>\n";
+    }
+    return out + "</tbody></table></div>\n</section>\n";
+}
+
+std::string cell_html(const SweepColumn& column, const Sweep& sweep, const SweepRow& row) {
+    const SweepValue value = column.value(sweep, row);
+    const std::string exact = " data-exact=\"" + escaped(exact_text(value)) + "\"";
+    const std::string name = column.name;
+    if (name == "label") return "<td class=\"left\"" + exact + ">" + escaped(row.label) + "</td>";
+    if (name == "options") return "<td class=\"text\"" + exact + "><code>" + escaped(row.options) + "</code></td>";
+    if (name == "bytes") return "<td" + exact + ">" + escaped(to_readable_size(row.bytes)) + "</td>";
+    if (name == "noise")
+        return "<td" + exact + ">" +
+               (std::isfinite(row.relative_variance) ? noise_text(row.relative_variance, sweep.visibility.spp)
+                                                     : "") +
+               "</td>";
+    if (const auto* count = std::get_if<std::uint64_t>(&value))
+        return "<td" + exact + ">" + std::to_string(*count) + "</td>";
+    const double number = std::get<double>(value);
+    return "<td" + exact + ">" + (number == number ? short_number(number) : "") + "</td>";
+}
+
+/// Columns of which no row knows anything are left out.
+std::vector<SweepColumn> shown_columns(const Sweep& sweep) {
+    std::vector<SweepColumn> out;
+    for (const SweepColumn& column : columns_of(sweep))
+        if (column.heading && std::any_of(sweep.rows.begin(), sweep.rows.end(), [&](const SweepRow& row) {
+                return !exact_text(column.value(sweep, row)).empty();
+            }))
+            out.push_back(column);
+    return out;
+}
+
+std::string rows_html(const Sweep& sweep, const Advice& advice) {
+    const std::vector<SweepColumn> columns = shown_columns(sweep);
+    std::string out =
+        "<section>\n<h2>All rows</h2>\n<p class=\"soft\">The same, with all digits, is in sweep.csv and "
+        "sweep.json.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"All "
+        "rows\"><table id=\"rows\">\n<thead><tr>";
+    for (const SweepColumn& column : columns) {
+        const std::string name = column.name;
+        const bool noise = name == "noise";
+        out += std::string("<th") + (name == "options" ? " class=\"text\"" : "") + ">" +
+               escaped(noise ? "noise, " + std::to_string(sweep.visibility.spp) + " spp" : column.heading) +
+               "</th>";
+    }
+    out += "</tr></thead>\n<tbody>\n";
+    for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
+        out += "<tr data-row=\"" + std::to_string(i) + "\"" +
+               (i == advice.recommended.row ? " class=\"best\"" : "") + ">";
+        for (const SweepColumn& column : columns) out += cell_html(column, sweep, sweep.rows[i]);
+        out += "</tr>\n";
+    }
+    return out + "</tbody></table></div>\n</section>\n";
+}
+
+std::string method_html(const Sweep& sweep) {
+    std::vector<std::string> lines;
+    const std::string conditions = std::to_string(sweep.conditions);
+    lines.push_back(
+        "Relative variance is that of one sample of the estimator over its squared mean; n samples have it "
+        "over n. It is summed over the whole source, not estimated: it has no noise of its own.");
+    if (sweep.kind == SweepKind::environment)
+        lines.push_back(
+            "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean "
+            "over " +
+            conditions + " random normals.");
+    else
+        lines.push_back(std::string("Means are over ") + conditions + " random " +
+                        (sweep.kind == SweepKind::local ? "normals" : "views") +
+                        ", none chosen for what a file stores.");
+    if (sweep.timed)
+        lines.push_back(
+            "Times: one thread, all samplers in turn within each of many rounds, so that what slows the "
+            "machine slows all; sixteen samples (or densities) at each shading point, what a sampler does "
+            "once a point included; tables are as warm as that leaves them. Intervals hold the median "
+            "with 95 % confidence (order statistics); ratios are taken within rounds. They are of this "
+            "machine; --no-timing leaves them out.");
+    lines.push_back("A sampler is called biased where there is light but no density: no number of samples mends "
+                    "that.");
+    for (const std::string& note : sweep.notes) lines.push_back(note);
+    std::string out = "<section>\n<h2>How this was measured</h2>\n<ul class=\"say soft\">\n";
+    for (const std::string& text : lines) out += element("li", text) + "\n";
+    return out + "</ul>\n</section>\n";
+}
+
+} // namespace
+
+std::string sweep_html(const Sweep& sweep) {
+    const Advice advice = advise(sweep);
+    const std::string name = sweep.source.substr(sweep.source.find_last_of('/') + 1);
+    std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+                      "style-src 'unsafe-inline'\">\n"
+                      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
+                      element("title", "acdf sweep: " + name) + "\n<style>" + report_style +
+                      "</style>\n</head>\n<body>\n<header>\n<p class=\"kicker\">acdf sweep, " +
+                      kind_text(sweep.kind) + "</p>\n<h1><bdi>" + escaped(name) + "</bdi></h1>\n" +
+                      element("p class=\"soft\"", sweep.description) + "\n</header>\n<main>\n";
+    out += advice_html(sweep, advice) + charts_html(sweep, advice) + pictures_html(sweep) +
+           comparisons_html(sweep, advice) + rows_html(sweep, advice) + method_html(sweep);
+    return out + "</main>\n<footer>Made by acdf. This page is one file: it loads nothing and runs no "
+                 "scripts.</footer>\n</body>\n</html>\n";
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,115 @@
+// The trade of size against noise and time on a user's own probe or BRDF: every fit at several sizes, beside what
+// renderers use without acdf.
+#pragma once
+
+#include "build/environment.h"
+#include "compress/target.h"
+#include "input/brdf.h"
+#include "tools/cli/progress.h"
+#include "tools/plot/range.h"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+enum class SweepKind { environment, local, brdf };
+
+/// The subcommand that makes such files: "env", "local", "brdf".
+const char* to_string(SweepKind kind);
+/// All fits of a kind, in the order of the report; the first is the default of its subcommand.
+const std::vector<std::string>& fits_of(SweepKind kind);
+/// All but a tree for each normal, which takes minutes.
+std::vector<std::string> default_fits(SweepKind kind);
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// 4 KiB to 1 MB; local files from 16 KiB to 4 MB, files of BRDFs up to 256 KiB.
+std::vector<std::uint64_t> default_budgets(SweepKind kind);
+
+/// Times of one sampler in rounds that it shared with all others, so that ratios within a round mean something.
+struct SweepTimes {
+    std::vector<double> sample; ///< ns a sample, one a round; empty: not timed
+    std::vector<double> pdf;    ///< ns a density; empty: not timed, or the sampler has none
+};
+
+/// One file, or one rival. kUnknown where something does not apply.
+struct SweepRow {
+    std::string system;      ///< "acdf", or a rival's name for programs: "full_cdf"
+    std::string fit;         ///< of acdf
+    std::string label;       ///< for people
+    std::string options;     ///< of acdf: what makes the file, in the words of the command line
+    std::uint64_t bytes = 0; ///< of the file; of a rival what sampling reads
+    std::uint64_t cells = 0; ///< of acdf
+    /// Of one sample over the squared mean, exact. Infinite: biased, light without density. Environment: of the
+    /// light itself; local and BRDF: of what a surface reflects, mean over normals or views.
+    double relative_variance = kUnknown;
+    double worst = kUnknown;      ///< the same for the worst normal or view
+    double irradiance = kUnknown; ///< environment: the same of a diffuse surface, mean over normals
+    double max_weight = kUnknown; ///< largest f/p over its mean
+    double rms = kUnknown;        ///< of the density's error, sr^-1
+    double build_seconds = kUnknown;
+    SweepTimes times;
+
+    bool ours() const { return system == "acdf"; }
+    /// What counts at equal time: with a surface, where that is known.
+    double shaded() const { return irradiance == irradiance ? irradiance : relative_variance; }
+};
+
+/// A density in false colour, knots overlaid.
+struct SweepPicture {
+    std::string title, description;
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> png;
+};
+
+/// When noise is too small to see: its standard deviation in a pixel, of `spp` samples, over the pixel's value.
+struct Visibility {
+    std::uint32_t spp = 64;
+    double threshold = 0.01;
+
+    double largest_variance() const { return threshold * threshold * spp; }
+};
+
+struct Sweep {
+    SweepKind kind = SweepKind::environment;
+    std::string source;      ///< as the user named it
+    std::string description; ///< for people: "1024 x 512, lat-long"
+    std::string command;     ///< "acdf env 'my probe.exr' --channel rgb", to which a row's options and -o are added
+    std::string output;      ///< a name for the recommended file
+    Visibility visibility;
+    std::vector<SweepRow> rows;
+    std::size_t baseline = 0;       ///< row with which times are compared
+    std::uint32_t conditions = 0;   ///< normals or views that means are over
+    std::vector<std::string> notes; ///< what a reader of the figures should know
+    std::vector<SweepPicture> pictures;
+    DensityRange range;                   ///< of their colours
+    std::vector<std::uint8_t> colour_bar; ///< PNG, low to high
+    bool timed = true;
+};
+
+struct SweepOptions {
+    std::vector<std::uint64_t> budgets; ///< empty: default_budgets
+    std::vector<std::string> fits;      ///< empty: default_fits
+    Visibility visibility;
+    compress::TargetOptions target;
+    bool timing = true;
+    bool pictures = true;
+    std::uint32_t normals = 64; ///< environment and local
+    std::uint32_t views = 64;   ///< BRDF: of rivals; files are measured over build_brdf's own
+    std::uint32_t rounds = 31;  ///< of timing
+};
+
+/// A probe's rows, rivals included, and pictures. Source, command and output are the caller's to fill in. Goals
+/// that are out of reach are noted and left out. Throws Failure where none is left.
+Sweep sweep_environment(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+                        const build::Progress& progress = {});
+/// The same for files that know the normal.
+Sweep sweep_local(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+                  const build::Progress& progress = {});
+/// The same of a BRDF.
+Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress = {});
+
+} // namespace acdf::tools

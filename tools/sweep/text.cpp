@@ -1,0 +1,154 @@
+#include "tools/sweep/text.h"
+
+#include "tools/sweep/advice.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace acdf::tools {
+namespace {
+
+double rounded(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", value);
+    return std::strtod(text, nullptr);
+}
+
+const SweepTimes& baseline(const Sweep& sweep) { return sweep.rows[sweep.baseline].times; }
+
+Interval sample_ratio(const Sweep& sweep, const SweepRow& row) {
+    return ratio_interval(row.times.sample, baseline(sweep).sample);
+}
+
+using S = const Sweep&;
+using R = const SweepRow&;
+
+constexpr SweepColumn columns[] = {
+    {"system", nullptr, false, [](S, R r) -> SweepValue { return r.system; }},
+    {"fit", nullptr, false, [](S, R r) -> SweepValue { return r.fit; }},
+    {"label", "what", false, [](S, R r) -> SweepValue { return r.label; }},
+    {"options", "options", false, [](S, R r) -> SweepValue { return r.options; }},
+    {"bytes", "size", false, [](S, R r) -> SweepValue { return r.bytes; }},
+    {"cells", "cells", false,
+     [](S, R r) -> SweepValue { return r.cells > 0 ? SweepValue(r.cells) : SweepValue(kUnknown); }},
+    {"relative_variance", "relative variance", false, [](S, R r) -> SweepValue { return r.relative_variance; }},
+    {"noise", "noise", false,
+     [](S s, R r) -> SweepValue { return std::sqrt(r.relative_variance / s.visibility.spp); }},
+    {"worst", "worst", false, [](S, R r) -> SweepValue { return r.worst; }},
+    {"irradiance_variance", "on a diffuse surface", false, [](S, R r) -> SweepValue { return r.irradiance; }},
+    {"max_weight", "largest weight", false, [](S, R r) -> SweepValue { return r.max_weight; }},
+    {"rms_pdf_error", "RMS error of pdf", false, [](S, R r) -> SweepValue { return r.rms; }},
+    {"build_seconds", "build, s", true, [](S, R r) -> SweepValue { return r.build_seconds; }},
+    {"ns_per_sample", "ns a sample", true,
+     [](S, R r) -> SweepValue { return median_interval(r.times.sample).value; }},
+    {"ns_per_sample_low", nullptr, true, [](S, R r) -> SweepValue { return median_interval(r.times.sample).low; }},
+    {"ns_per_sample_high", nullptr, true,
+     [](S, R r) -> SweepValue { return median_interval(r.times.sample).high; }},
+    {"ns_per_pdf", "ns a pdf", true, [](S, R r) -> SweepValue { return median_interval(r.times.pdf).value; }},
+    {"ns_per_pdf_low", nullptr, true, [](S, R r) -> SweepValue { return median_interval(r.times.pdf).low; }},
+    {"ns_per_pdf_high", nullptr, true, [](S, R r) -> SweepValue { return median_interval(r.times.pdf).high; }},
+    {"time_ratio", "time ratio", true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).value; }},
+    {"time_ratio_low", nullptr, true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).low; }},
+    {"time_ratio_high", nullptr, true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).high; }},
+    {"equal_time_variance", "variance at equal time", true,
+     [](S s, R r) -> SweepValue { return r.shaded() * sample_ratio(s, r).value; }},
+};
+
+std::string csv_text(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + "\"";
+}
+
+nlohmann::ordered_json json_value(const SweepValue& value) {
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    if (const auto* count = std::get_if<std::uint64_t>(&value)) return *count;
+    const double number = std::get<double>(value);
+    return std::isfinite(number) ? nlohmann::ordered_json(rounded(number)) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json interval_json(const Interval& i) {
+    if (!i.known()) return nullptr;
+    return {rounded(i.value), rounded(i.low), rounded(i.high)};
+}
+
+nlohmann::ordered_json comparison_json(const RivalComparison& c, bool timed) {
+    constexpr const char* verdicts[] = {"acdf", "rival", "even", "unknown"};
+    nlohmann::ordered_json out = {
+        {"row", c.row}, {"bytes_ratio", json_value(c.bytes)}, {"variance_ratio", json_value(c.variance)}};
+    if (!timed) return out;
+    out["time_ratio"] = interval_json(c.time);
+    out["equal_time_variance_ratio"] = interval_json(c.equal_time);
+    out["better_at_equal_time"] = verdicts[static_cast<int>(c.verdict)];
+    return out;
+}
+
+} // namespace
+
+std::string exact_text(const SweepValue& value) {
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
+    const double number = std::get<double>(value);
+    if (std::isinf(number)) return "inf";
+    if (!(number == number)) return "";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", number);
+    return text;
+}
+
+std::vector<SweepColumn> columns_of(const Sweep& sweep) {
+    std::vector<SweepColumn> out;
+    for (const SweepColumn& column : columns)
+        if (sweep.timed || !column.timing) out.push_back(column);
+    return out;
+}
+
+std::string sweep_csv(const Sweep& sweep) {
+    std::string out;
+    const std::vector<SweepColumn> all = columns_of(sweep);
+    for (const SweepColumn& column : all) out += (out.empty() ? "" : ",") + std::string(column.name);
+    for (const SweepRow& row : sweep.rows) {
+        out += "\n";
+        for (std::size_t i = 0; i < all.size(); ++i)
+            out += (i > 0 ? "," : "") + csv_text(exact_text(all[i].value(sweep, row)));
+    }
+    return out + "\n";
+}
+
+nlohmann::ordered_json sweep_json(const Sweep& sweep) {
+    const Advice advice = advise(sweep);
+    nlohmann::ordered_json out = {{"kind", to_string(sweep.kind)},
+                                  {"source", sweep.source},
+                                  {"description", sweep.description},
+                                  {"conditions", sweep.conditions},
+                                  {"timed", sweep.timed},
+                                  {"baseline", sweep.baseline},
+                                  {"recommendation",
+                                   {{"row", advice.recommended.row},
+                                    {"reached", advice.recommended.reached},
+                                    {"spp", sweep.visibility.spp},
+                                    {"threshold", sweep.visibility.threshold},
+                                    {"sentence", advice.sentence},
+                                    {"rule", advice.rule},
+                                    {"command", advice.command}}},
+                                  {"findings", advice.findings},
+                                  {"notes", sweep.notes},
+                                  {"comparisons", nlohmann::ordered_json::array()},
+                                  {"rows", nlohmann::ordered_json::array()}};
+    for (const RivalComparison& c : advice.comparisons)
+        out["comparisons"].push_back(comparison_json(c, sweep.timed));
+    for (const SweepRow& row : sweep.rows) {
+        nlohmann::ordered_json each;
+        for (const SweepColumn& column : columns_of(sweep))
+            each[column.name] = json_value(column.value(sweep, row));
+        each["biased"] = std::isinf(row.relative_variance);
+        out["rows"].push_back(std::move(each));
+    }
+    return out;
+}
+
+} // namespace acdf::tools
