@@ -43,7 +43,7 @@ private:
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
     void add_separate(CLI::App& command);
-    nlohmann::ordered_json report(const input::Probe& probe, const build::Local& result) const;
+    nlohmann::ordered_json report(const ProbeTarget& loaded, const build::Local& result) const;
 
     std::string normals_, budget_, knots_, scene_;
     input::ProbeOptions input_;
@@ -141,12 +141,13 @@ double gain(const build::Local& result) {
     return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
 }
 
-nlohmann::ordered_json LocalConversion::report(const input::Probe& probe, const build::Local& result) const {
+nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const build::Local& result) const {
     const build::LocalAccuracy& a = result.accuracy;
     File file;
     File::from_memory(result.bytes.data(), result.bytes.size(), file);
     return {{"source", source},
-            {"resolution", {probe.width, probe.height}},
+            {"domain", build::parameterization_name(loaded.target.parameterization)},
+            {"resolution", {loaded.probe.width, loaded.probe.height}},
             {"bytes", result.bytes.size()},
             {"bins", file.description().bin_count},
             {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
@@ -177,10 +178,10 @@ std::uint64_t LocalConversion::memory() const {
 
 Converted LocalConversion::convert(const Listener& listener) {
     const build::LocalOptions local = read_scene(listener.note);
-    const auto [probe, target] = load_target(source, input_, local.target, listener.note);
+    const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
     build::Local result;
     try {
-        result = build::build_local(target, source_of(probe, input_), local, listener.progress);
+        result = build::build_local(loaded.target, source_of(loaded.probe, input_), local, listener.progress);
     } catch (const std::runtime_error& error) { // the goal is out of reach
         throw Failure(source + ": " + error.what());
     }
@@ -192,7 +193,7 @@ Converted LocalConversion::convert(const Listener& listener) {
                       gain(result));
         listener.note(text);
     }
-    nlohmann::ordered_json told = report(probe, result);
+    nlohmann::ordered_json told = report(loaded, result);
     const std::string summary = summary_of(result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
@@ -296,6 +297,7 @@ void LocalConversion::add_separate(CLI::App& command) {
 void LocalConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
+    add_domain(command, input_.domain);
     add_repairs(command, input_);
     add_bins(command);
     add_size(command);

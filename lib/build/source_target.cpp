@@ -192,34 +192,31 @@ private:
     std::vector<std::atomic<std::uint64_t>> covered_;
 };
 
-AcdfParameterization own_parameterization(Layout layout) {
-    return layout == Layout::octahedral ? ACDF_PARAM_OCTAHEDRAL : ACDF_PARAM_LATLONG;
-}
-
-bool is_own(const Map& map, const Domain& domain) {
-    return has_own_domain(map.layout) && own_parameterization(map.layout) == domain.parameterization &&
-           static_cast<std::uint32_t>(map.width) == domain.columns &&
-           static_cast<std::uint32_t>(map.height) == domain.rows;
-}
-
 } // namespace
 
-bool has_own_domain(Layout layout) { return layout == Layout::latlong || layout == Layout::octahedral; }
+std::optional<Domain> own_domain(const Map& map) {
+    const auto columns = static_cast<std::uint32_t>(map.width), rows = static_cast<std::uint32_t>(map.height);
+    if (map.layout == Layout::latlong) return Domain{ACDF_PARAM_LATLONG, columns, rows};
+    if (map.layout == Layout::octahedral) return Domain{ACDF_PARAM_OCTAHEDRAL, columns, rows};
+    return {};
+}
 
 Domain domain_for(const Map& map, AcdfParameterization parameterization) {
-    if (has_own_domain(map.layout) && own_parameterization(map.layout) == parameterization)
-        return {parameterization, static_cast<std::uint32_t>(map.width), static_cast<std::uint32_t>(map.height)};
-    const auto size = [](int width) { return static_cast<std::uint32_t>(width); };
-    if (parameterization == ACDF_PARAM_OCTAHEDRAL)
-        return {parameterization, size(octahedral_side(map)), size(octahedral_side(map))};
-    return {parameterization, size(latlong_width(map)), size(latlong_width(map) / 2)};
+    if (const auto own = own_domain(map); own && own->parameterization == parameterization) return *own;
+    if (parameterization == ACDF_PARAM_OCTAHEDRAL) {
+        const auto side = static_cast<std::uint32_t>(octahedral_side(map));
+        return {parameterization, side, side};
+    }
+    const auto width = static_cast<std::uint32_t>(latlong_width(map));
+    return {parameterization, width, width / 2};
 }
 
 SourceTarget source_target(const Map& map, const float* rgb, const Domain& domain,
                            const compress::TargetOptions& options) {
     compress::TargetOptions own = options;
     own.parameterization = domain.parameterization;
-    if (is_own(map, domain)) return {compress::environment_target(rgb, domain.columns, domain.rows, own), 0.0};
+    if (own_domain(map) == domain)
+        return {compress::environment_target(rgb, domain.columns, domain.rows, own), 0.0};
     const SourceLookup source(map, rgb, own);
     Target target = compress::empty_target(domain.columns, domain.rows, domain.parameterization);
     return Overlay(source, domain, target).run();

@@ -6,6 +6,7 @@
 #include "compress/target.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace acdf::build {
 
@@ -13,10 +14,14 @@ namespace acdf::build {
 struct Domain {
     AcdfParameterization parameterization = ACDF_PARAM_LATLONG;
     std::uint32_t columns = 0, rows = 0;
+
+    bool operator==(const Domain& other) const {
+        return parameterization == other.parameterization && columns == other.columns && rows == other.rows;
+    }
 };
 
-/// Whether a map's own texels are a grid that a file can lie on.
-bool has_own_domain(Layout layout);
+/// The grid of a map's own texels, if a file can lie on it: of lat-long and octahedral maps.
+std::optional<Domain> own_domain(const Map& map);
 
 /// The map's own grid if it is one of that parameterization; else the next power of two at which no texel on the
 /// equator is larger than the typical one of the map.

@@ -43,7 +43,7 @@ MeanAndWorst over_normals(const std::vector<build::Normal>& normals,
 
 MeanAndWorst irradiance_variance(const compress::Target& target, const std::vector<float>& density,
                                  double cosine_share, const std::vector<build::Normal>& normals) {
-    const build::TexelCosines cosines(target.columns, target.rows);
+    const build::TexelCosines cosines(target);
     return over_normals(normals, [&](const float n[3]) {
         compress::Sum irradiance, second;
         bool violated = false;
