@@ -161,13 +161,18 @@ int known_chunk(u32 type) {
     return -1;
 }
 
+bool is_printable(u32 type, int byte) {
+    const u32 c = type >> 8 * byte & 0xFF;
+    return c >= 0x20 && c <= 0x7E;
+}
+bool is_printable(u32 type) {
+    return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);
+}
+
 struct ChunkName {
     char text[5];
     explicit ChunkName(u32 type) {
-        for (int i = 0; i < 4; ++i) {
-            const char c = static_cast<char>(type >> 8 * i);
-            text[i] = c >= 32 && c < 127 ? c : '?';
-        }
+        for (int i = 0; i < 4; ++i) text[i] = is_printable(type, i) ? static_cast<char>(type >> 8 * i) : '?';
         text[4] = 0;
     }
 };
@@ -188,7 +193,9 @@ void check_type_and_flags(const Table& table, u32 i, u32 kind, Report& report) {
     const u64 at = table.offset_of(i);
     const ChunkName name(chunk.type);
     const bool critical = chunk.flags & ACDF_CHUNK_FLAG_CRITICAL;
-    if (known < 0 && critical)
+    if (!is_printable(chunk.type))
+        report.add(3014, at, "chunk %u: %08x, in the order of its bytes '%s'", i, chunk.type, name.text);
+    else if (known < 0 && critical)
         report.add(3002, at, "the critical chunk '%s' (%08x) is unknown: a newer reader is needed", name.text,
                    chunk.type);
     if (known >= 0 && !belongs(known, kind)) report.add(3013, at, "'%s' with kind %u", name.text, kind);
@@ -423,8 +430,10 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
     if (header.kind == ACDF_KIND_BRDF && !report.stopped())
         check_brdf_kind(description, payloads.of[chunk_views], report, parts);
-    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped()) check_environment(description, report, parts);
-    if (header.kind == ACDF_KIND_TABLE && !report.stopped()) check_table_kind(description, report, parts);
+    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped())
+        check_environment(description, payloads.of[chunk_bins], report, parts);
+    if (header.kind == ACDF_KIND_TABLE && !report.stopped())
+        check_table_kind(description, payloads.of[chunk_bins], report, parts);
     return report.verdict();
 }
 

@@ -194,7 +194,7 @@ ACDF_LANE Integer half_of(const View& view, const Directions& wi, Directions* ha
     half->z = view.wo.z + wi.z;
     place->length = root(half->x * half->x + half->y * half->y + half->z * half->z);
     place->dot = absolute(view.wo.x * half->x + view.wo.y * half->y + view.wo.z * half->z);
-    return of_unit_length(length2) & (place->length > 1e-30);
+    return of_unit_length(length2) & (place->length > 0.0);
 }
 
 ACDF_LANE Integer place_of(const WavefrontTable& t, const View& view, const Directions& wi, Place* place) {

@@ -150,6 +150,10 @@ struct DescriptionSpec {
         axes[1] = {"v", 0, 0, axes[1].resolution, 0.0, 1.0};
     }
 
+    void weigh_as_table() {
+        weights[0] = 1.0;
+        weights[1] = weights[2] = 0.0;
+    }
     Bytes encode() const {
         Bytes out;
         for (auto v : {parameterization, fit, filter, up_axis, handedness, static_cast<std::uint32_t>(axes.size()),
