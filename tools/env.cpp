@@ -8,6 +8,7 @@
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
+#include "tools/cli/renderer.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -47,6 +48,7 @@ private:
     nlohmann::ordered_json report(const ProbeTarget& loaded, const build::Environment& result) const;
 
     input::ProbeOptions input_;
+    const Renderer* renderer_ = nullptr;
     build::EnvironmentOptions environment_;
     std::string knots_, budget_;
     const CLI::App* command_ = nullptr;
@@ -104,6 +106,7 @@ void EnvConversion::set_knots() {
 }
 
 void EnvConversion::check() {
+    use_renderer(*command_, renderer_, input_, environment_.target);
     const AcdfFit fit = environment_.fit.fit;
     for (const OnlyFor& rule : only_for)
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
@@ -151,6 +154,7 @@ std::uint64_t EnvConversion::memory() const {
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
+    if (renderer_) listener.note(axes_text(*renderer_));
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     build::Environment result;
     try {
@@ -256,6 +260,7 @@ void EnvConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
     add_domain(command, input_.domain);
+    add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_fit_options(command);
     add_target_options(command, environment_.target);

@@ -10,6 +10,7 @@
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
+#include "tools/cli/renderer.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -48,6 +49,7 @@ private:
 
     std::string normals_, budget_, knots_, scene_;
     input::ProbeOptions input_;
+    const Renderer* renderer_ = nullptr;
     input::SceneOptions scene_input_;
     build::LocalOptions local_;
     const CLI::App* command_ = nullptr;
@@ -101,6 +103,7 @@ void LocalConversion::set_separate() {
 }
 
 void LocalConversion::check() {
+    use_renderer(*command_, renderer_, input_, local_.target);
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
@@ -179,6 +182,7 @@ std::uint64_t LocalConversion::memory() const {
 
 Converted LocalConversion::convert(const Listener& listener) {
     const build::LocalOptions local = read_scene(listener.note);
+    if (renderer_) listener.note(axes_text(*renderer_));
     const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
     build::Local result;
     try {
@@ -299,6 +303,7 @@ void LocalConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
     add_domain(command, input_.domain);
+    add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_bins(command);
     add_size(command);
