@@ -76,6 +76,8 @@ TEST_P(Extreme, CodecsChangeNoSample) {
     }
 }
 
+INSTANTIATE_TEST_SUITE_P(Octahedral, Extreme, ::testing::ValuesIn(octahedral_extremes()),
+                         [](const auto& info) { return info.param.name; });
 INSTANTIATE_TEST_SUITE_P(Probes, Extreme, ::testing::ValuesIn(extreme_targets()),
                          [](const auto& info) { return info.param.name; });
 
