@@ -22,11 +22,12 @@ extern "C" {
 ACDF_FN void acdf_octahedral_direction(double u, double v, double direction[3]) {
     const double a = fabs(2.0 * u - 1.0), b = fabs(2.0 * v - 1.0);
     const double beyond = a + b - 1.0; /* the equator; > 0: the lower hemisphere */
-    const double r = 1.0 - fabs(beyond), sine = r * sqrt(2.0 - r * r);
-    double sin_phi, cos_phi;
-    acdf_sincospi(r > 0.0 ? 0.25 * ((b - a) / r + 1.0) : 0.0, &sin_phi, &cos_phi);
-    direction[0] = u > 0.5 ? -sine * cos_phi : sine * cos_phi;
-    direction[1] = v < 0.5 ? -sine * sin_phi : sine * sin_phi;
+    const double r = 1.0 - fabs(beyond), sine = r * sqrt(1.0 - 0.5 * r * r); /* over sqrt(2) */
+    /* phi is pi / 4 and this, which is between -pi / 4 and pi / 4. */
+    const double turn = r > 0.0 ? (b - a) / r * (0.25 * ACDF_PI) : 0.0;
+    const double s = acdf_sine(turn), c = acdf_cosine(turn), x = sine * (c - s), y = sine * (c + s);
+    direction[0] = u > 0.5 ? -x : x;
+    direction[1] = v < 0.5 ? -y : y;
     direction[2] = -beyond * (1.0 + r); /* 1 - r^2, exact near the equator */
 }
 
