@@ -17,6 +17,11 @@ struct Case {
     acdf::Limits limits = {};
 };
 
+std::vector<Case> container_cases();
+std::vector<Case> plane_cases();
+std::vector<Case> description_cases();
+std::vector<Case> tree_cases();
+std::vector<Case> table_cases();
 std::vector<Case> brdf_cases();  ///< of kind 3
 std::vector<Case> local_cases(); ///< of kind 2 and of what bins share
 

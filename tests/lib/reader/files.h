@@ -117,4 +117,10 @@ inline std::function<Bytes()> zlib_metadata(std::function<void(Bytes&, Bytes&, s
     };
 }
 
+inline EnvironmentSpec compressed() {
+    EnvironmentSpec spec = complete_environment();
+    spec.zlib = true;
+    return spec;
+}
+
 } // namespace acdf_test

@@ -62,4 +62,6 @@ inline Findings findings(const Bytes& bytes, const acdf::Limits& limits = {}) {
     return out;
 }
 
+inline std::string text(acdf::Text t) { return {t.data ? t.data : "", t.size}; }
+
 } // namespace acdf_test

@@ -168,7 +168,7 @@ std::vector<Case> chunk_cases() {
 }
 
 // Rules of the tree, where tiles lead to it.
-std::vector<Case> tree_cases() {
+std::vector<Case> split_cases() {
     return {
         {6003, "axis_of_normals", field(separate_local, "TREE", 32, 2, 1 << 10 | 0x202)},
         {6007, "beyond_its_tile", curve_of_tile(0, even_curve(0, {3}))},
@@ -288,7 +288,7 @@ std::vector<Case> kind_cases() {
 
 std::vector<Case> local_cases() {
     std::vector<Case> all;
-    for (auto make : {chunk_cases, tree_cases, kind_cases})
+    for (auto make : {chunk_cases, split_cases, kind_cases})
         for (const Case& c : make()) all.push_back(c);
     return all;
 }

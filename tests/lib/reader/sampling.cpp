@@ -1,6 +1,5 @@
 // Sampling and evaluation: against the slow decoder, against itself, and at the edges.
-#include "tests/lib/reader/load.h"
-#include "tests/lib/reader/random.h"
+#include "tests/lib/reader/sampling.h"
 #include "tests/lib/reader/reference.h"
 
 #include <gtest/gtest.h>
@@ -15,44 +14,6 @@ using acdf_reference::Environment;
 extern "C" void acdf_c_sample(const AcdfEnvironment* env, double u0, double u1, AcdfDirectionSample* out);
 
 namespace {
-
-struct Loaded {
-    Bytes bytes;
-    acdf::File file;
-    acdf::EnvironmentView view;
-};
-
-// Keeps the bytes beside the file that uses them.
-std::unique_ptr<Loaded> loaded(EnvironmentSpec spec) {
-    auto out = std::unique_ptr<Loaded>(new Loaded{spec.encode(), {}, acdf::EnvironmentView({})});
-    const acdf::Status status = acdf::File::from_memory(out->bytes.data(), out->bytes.size(), out->file);
-    EXPECT_TRUE(status.ok()) << status.message;
-    if (status.ok()) out->view = out->file.environment();
-    return out;
-}
-
-// Trees of both parameterizations: the first `latlong_count` are lat-long, the others octahedral.
-constexpr std::uint32_t latlong_count = 120, tree_count = 2 * latlong_count;
-
-RandomOptions options_of(std::uint32_t seed) {
-    RandomOptions options;
-    options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 1024;
-    options.rows = seed % 2 == 0 ? 32 : 511;
-    options.depth = 2 + static_cast<int>(seed % 9);
-    options.tilts = seed % 4 != 0;
-    options.dark = seed % 5 != 0;
-    options.narrow_cells = seed % 6 == 0;
-    options.octahedral = seed >= latlong_count;
-    return options;
-}
-
-// Through memory: where GCC 12 vectorises the way back to double, it leaves the rounding out.
-float rounded(double x) {
-    volatile float stored = static_cast<float>(x);
-    return stored;
-}
-
-double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
 
 // The frame, with directions that tell all axes and signs apart: SPEC.md §6.1.
 TEST(EnvironmentFrame, quadrantsAndHemispheres) {
@@ -409,111 +370,6 @@ TEST(EnvironmentView, integratesToOne) {
         EXPECT_NEAR(probability, 1.0, 1e-12) << seed;
         EXPECT_NEAR(sum, 1.0, 1e-5) << seed;
     }
-}
-
-// ---- chi-square -----------------------------------------------------------------------------------------
-
-// Upper quantile of the normal distribution, by bisection.
-double normal_quantile(double tail) {
-    double low = 0.0, high = 20.0;
-    while (high - low > 1e-9) {
-        const double mid = (low + high) / 2;
-        (0.5 * std::erfc(mid / std::sqrt(2.0)) > tail ? low : high) = mid;
-    }
-    return low;
-}
-
-// The value chi-square exceeds with probability `tail` (Wilson and Hilferty 1931).
-double chi_square_quantile(double degrees, double tail) {
-    const double k = 2.0 / (9.0 * degrees);
-    return degrees * std::pow(1.0 - k + normal_quantile(tail) * std::sqrt(k), 3);
-}
-
-// Counts over the quarters of all cells (halved at t = 1/2 on both axes), located by the slow decoder.
-TEST(EnvironmentView, samplesFollowTheDensity) {
-    constexpr int samples = 40000;
-    // Šidák: all trees together fail by chance once in a hundred times; the seeds are fixed.
-    const double tail = 1.0 - std::pow(1.0 - 0.01, 1.0 / tree_count);
-    for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
-        const auto env = loaded(RandomTree(seed, options_of(seed)).make());
-        const Environment reference(env->bytes);
-        const auto columns = static_cast<std::size_t>(reference.columns);
-        std::vector<Cell> cells;
-        std::vector<std::uint32_t> owner(columns * static_cast<std::size_t>(reference.rows));
-        reference.each_cell([&](const Cell& cell) {
-            for (double y = cell.low[1]; y < cell.high[1]; ++y)
-                for (double x = cell.low[0]; x < cell.high[0]; ++x)
-                    owner[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)] =
-                        static_cast<std::uint32_t>(cells.size());
-            cells.push_back(cell);
-        });
-        std::vector<double> count(4 * cells.size(), 0.0);
-        std::mt19937_64 rng(seed);
-        for (int n = 0; n < samples; ++n) {
-            const auto s = env->view.sample(unit(rng), unit(rng));
-            const double d[3] = {s.direction[0], s.direction[1], s.direction[2]};
-            double square[2], t[2];
-            ASSERT_TRUE(reference.square_of(d, square));
-            const std::size_t index =
-                owner[static_cast<std::size_t>(square[1]) * columns + static_cast<std::size_t>(square[0])];
-            reference.fractions(cells[index], d, t);
-            const bool right = t[0] >= 0.5, low = t[1] >= 0.5;
-            count[4 * index + 2 * right + low] += 1;
-        }
-        double chi_square = 0.0, pooled_count = 0.0, pooled_expected = 0.0;
-        int degrees = -1;
-        for (std::size_t i = 0; i < count.size(); ++i) {
-            const Cell& cell = cells[i / 4];
-            const double half0 = i & 2 ? 0.5 + cell.tilt[0] / 4 : 0.5 - cell.tilt[0] / 4;
-            const double half1 = i & 1 ? 0.5 + cell.tilt[1] / 4 : 0.5 - cell.tilt[1] / 4;
-            const double expected = samples * cell.p * half0 * half1;
-            if (expected == 0.0) {
-                EXPECT_EQ(count[i], 0.0) << seed;
-            } // no sample where the density is 0
-            pooled_count += count[i];
-            pooled_expected += expected;
-            if (pooled_expected < 5.0) continue;
-            chi_square += (pooled_count - pooled_expected) * (pooled_count - pooled_expected) / pooled_expected;
-            pooled_count = pooled_expected = 0.0;
-            ++degrees;
-        }
-        if (degrees > 0) {
-            EXPECT_LT(chi_square, chi_square_quantile(degrees, tail))
-                << "seed " << seed << ", " << degrees << " degrees";
-        }
-    }
-}
-
-// ---- elementary functions -------------------------------------------------------------------------------
-
-TEST(ElementaryFunctions, matchTheLibrary) {
-    std::mt19937_64 rng(1);
-    for (int n = 0; n < 200000; ++n) {
-        const double x = 4 * unit(rng) - 2, y = 4 * unit(rng) - 2;
-        const double scale = std::ldexp(1.0, static_cast<int>(rng() % 60) - 50);
-        double sine, cosine;
-        acdf_sincospi(x / 2, &sine, &cosine);
-        ASSERT_NEAR(sine, std::sin(M_PI * x / 2), 1e-15) << x;
-        ASSERT_NEAR(cosine, std::cos(M_PI * x / 2), 1e-15) << x;
-        ASSERT_NEAR(acdf_atan2pi(y * scale, x), std::atan2(y * scale, x) / M_PI, 4e-16) << y << ' ' << x;
-        ASSERT_NEAR(acdf_atan2pi(y, x * scale), std::atan2(y, x * scale) / M_PI, 4e-16) << y << ' ' << x;
-    }
-    for (std::uint32_t rows : {1u, 2u, 3u, 511u, 65536u})
-        for (std::uint32_t row = 0; row <= rows; ++row) {
-            const double z = acdf_row_z(row, rows);
-            ASSERT_NEAR(z, std::cos(M_PI * row / rows), 1e-15) << row << ' ' << rows;
-            if (row > 0) {
-                ASSERT_LT(z, acdf_row_z(row - 1, rows)) << row << ' ' << rows;
-            }
-        }
-    EXPECT_EQ(acdf_row_z(0, 7), 1.0);
-    EXPECT_EQ(acdf_row_z(7, 7), -1.0);
-    EXPECT_EQ(acdf_atan2pi(0.0, 1.0), 0.0);
-    EXPECT_EQ(acdf_atan2pi(0.0, -1.0), 1.0);
-    EXPECT_EQ(acdf_atan2pi(1.0, 0.0), 0.5);
-    EXPECT_EQ(acdf_atan2pi(-1.0, 0.0), -0.5);
-    EXPECT_EQ(acdf_atan2pi(1.0, 1.0), 0.25);
-    EXPECT_EQ(acdf_atan2pi(0.0, 0.0), 0.0);
 }
 
 } // namespace
