@@ -4,6 +4,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
@@ -13,6 +14,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -23,6 +25,10 @@ namespace {
 // Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
 // one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
 constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kEnvironmentMemoryOfPixel = 24;
+// A tree takes so much on top while it is looked for: of each cell asked for (four bytes of a budget, one where
+// it is for deflated ones). A variance may ask
+// for a cell a pixel.
+constexpr std::uint64_t kMemoryOfCell = 6000, kCellBytes = 4, kDeflatedCellBytes = 1, kVarianceMemoryOfPixel = 480;
 
 class EnvConversion : public Conversion {
 public:
@@ -37,6 +43,7 @@ private:
     void set_goal();
     void set_knots();
     void add_fit_options(CLI::App& command);
+    std::uint64_t memory_of_tree(std::uint64_t pixels) const;
     nlohmann::ordered_json report(const input::Probe& probe, const build::Environment& result) const;
 
     input::ProbeOptions input_;
@@ -125,9 +132,19 @@ nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const bu
             {"support_violations", a.support_violations}};
 }
 
+std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
+    const compress::FitOptions& fit = environment_.fit;
+    if (fit.fit != ACDF_FIT_VARIANCE) return 0;
+    if (fit.goal.kind == compress::Goal::Kind::variance) return pixels * kVarianceMemoryOfPixel;
+    const std::uint64_t bytes_of_cell = environment_.codec == ACDF_CODEC_NONE ? kCellBytes : kDeflatedCellBytes;
+    const std::uint64_t cells =
+        fit.goal.kind == compress::Goal::Kind::budget ? fit.goal.budget / bytes_of_cell : fit.goal.cells;
+    return std::min(cells * kMemoryOfCell, pixels * kVarianceMemoryOfPixel);
+}
+
 std::uint64_t EnvConversion::memory() const {
     const std::uint64_t pixels = input::image_pixels(source);
-    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel : 0;
+    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel + memory_of_tree(pixels) : 0;
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
@@ -192,7 +209,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         .add_option("--max-weight", fit.max_weight,
                     "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "
                     "cells. It holds for whatever size is asked for, and fails where that is too small")
-        ->check(CLI::Range(1.01, 1e9))
+        ->check(number_range(1.01, 1e9))
         ->option_text("W")
         ->group("Size and accuracy");
     command
@@ -207,7 +224,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             "--eps", fit.epsilon,
             "Stop adding knots once no curve deviates by more: from the CDF for --fit cdf, from the density "
             "relative to its peak for --fit pdf")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group("Size and accuracy");
     command

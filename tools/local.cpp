@@ -7,6 +7,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/sizes.h"
@@ -232,7 +233,7 @@ void LocalConversion::add_bins(CLI::App& command) {
             "--cosine-share", local.cosine_share,
             "This share of samples is drawn around the normal instead, density cos/pi; sample and pdf apply "
             "the mixture. For scenes in which the brightest light is often hidden; 0.2 is a good value")
-        ->check(CLI::Range(0.0, 0.99))
+        ->check(number_range(0.0, 0.99))
         ->option_text("X [0]")
         ->group("Normals");
 }
@@ -271,7 +272,7 @@ void LocalConversion::add_separate(CLI::App& command) {
         ->option_text("AxB [64x64]")
         ->group(group);
     command.add_option("--eps", fit.epsilon, "Deviation at which a curve has knots enough: as in acdf env")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group(group);
     const std::map<std::string, compress::Order> orders{{"phi", compress::Order::phi}, {"z", compress::Order::z}};

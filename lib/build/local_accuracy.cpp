@@ -131,12 +131,11 @@ private:
             const std::size_t row = std::size_t{r} * target_.columns;
             double row_flux = 0.0, row_second = 0.0, row_above = 0.0, row_light = 0.0, row_light_second = 0.0;
             cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
-                const double p = tile.empty()
-                                     ? 0.0
-                                     : (1.0 - share) * tile[picture.tile[row + c]] * picture.density[row + c] +
-                                           share * cosine / ACDF_PI;
+                const double light_p =
+                    tile.empty() ? 0.0 : (1.0 - share) * tile[picture.tile[row + c]] * picture.density[row + c];
+                const double p = tile.empty() ? 0.0 : light_p + share * cosine / ACDF_PI;
                 const double omega = solid_angle(r, c), g = target_.row(r)[c];
-                row_above += p * omega;
+                row_above += light_p * omega;
                 if (!(g > 0.0)) return;
                 const double f = g * cosine;
                 row_flux += f * omega;
@@ -160,7 +159,8 @@ private:
         out.irradiance = e;
         out.relative_variance =
             out.support_violations > 0 ? std::numeric_limits<double>::infinity() : second.value() / e / e - 1.0;
-        out.share_above_horizon = first_above.value();
+        // What is drawn around the normal lies above its horizon, all of it.
+        out.share_above_horizon = tile.empty() ? 0.0 : std::min(first_above.value() + share, 1.0);
         out.max_weight = largest / e;
         out.relative_variance_full_cdf = total_ / e * (light_second.value() / e) - 1.0;
         out.share_above_horizon_full_cdf = light.value() / total_;

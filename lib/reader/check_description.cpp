@@ -217,16 +217,41 @@ void check_environment_axes(const Payload& payload, Report& report, const Parts&
     }
 }
 
-void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept {
+void check_environment(const Payload& payload, const Payload& bins, Report& report, const Parts& parts) noexcept {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 2)
         report.add(7001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
     else check_environment_axes(payload, report, parts);
     if (d.bin_count != 1)
         report.add(7002, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins", d.bin_count);
+    if (!parts.bins || d.bin_count != 1) return;
+    const float share = parts.bins[0].share;
+    if (std::isfinite(share) && share >= 0.0f && share != 1.0f) // else rule 6017
+        report.add(7008, bins.at(offsetof(AcdfBin, share)), "it is %g", static_cast<double>(share));
 }
 
-void check_table_kind(const Payload& payload, Report& report, const Parts& parts) noexcept {
+void check_table_shares(const Payload& bins, Report& report, const Parts& parts) {
+    double sum = 0.0;
+    for (u32 i = 0; parts.bins && i < parts.description->bin_count; ++i) {
+        if (!(parts.bins[i].share >= 0.0f)) return; // rule 6017
+        sum += static_cast<double>(parts.bins[i].share);
+    }
+    if (parts.bins && std::isfinite(sum) && !(std::fabs(sum - 1.0) <= 0x1p-20))
+        report.add(9005, bins.at(0), "their sum is %.9g", sum);
+}
+
+void check_table_weights(const Payload& payload, Report& report, const AcdfDescription& d) {
+    const double* w = d.channel_weights;
+    if (d.channels == ACDF_CHANNELS_WEIGHTED && w[0] == 1.0 && w[1] == 0.0 && w[2] == 0.0) return;
+    if (d.channels > ACDF_CHANNELS_LARGEST) return; // rule 5019
+    for (u32 i = 0; i < 3; ++i)
+        if (!std::isfinite(w[i]) || w[i] < 0.0) return; // rule 5009
+    report.add(9006, payload.at(offsetof(AcdfDescription, channels)), "channels %u, weights %g, %g, %g", d.channels,
+               w[0], w[1], w[2]);
+}
+
+void check_table_kind(const Payload& payload, const Payload& bin_records, Report& report,
+                      const Parts& parts) noexcept {
     const AcdfDescription& d = *parts.description;
     if (d.parameterization != ACDF_PARAM_TABLE) return; // rule 5016: what the axes mean is open
     u64 bins = 1;                                       // no more than 2^32: then it is wrong anyway
@@ -247,6 +272,8 @@ void check_table_kind(const Payload& payload, Report& report, const Parts& parts
             report.add(9004, at + offsetof(AcdfAxis, low), "axis %u: %u steps from %g to %g", i, axis.resolution,
                        axis.low, axis.high);
     }
+    check_table_weights(payload, report, d);
+    check_table_shares(bin_records, report, parts);
     if (bins != d.bin_count && bins != 0) // 0: rule 5014
         report.add(9003, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
                    d.bin_count, static_cast<ull>(bins));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/fit.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/sizes.h"
 
 #include <CLI/CLI.hpp>
@@ -38,7 +39,7 @@ inline void add_goal(CLI::App& command, std::uint32_t& cells, std::string& budge
         .add_option("--target-variance", variance,
                     std::string("The smallest file whose samples have at most this relative variance") +
                         texts.variance_of)
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->option_text("V")
         ->group(group);
 }

@@ -2,6 +2,7 @@
 #include "build/format_names.h"
 #include "input/brdf.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/cli/probe_options.h"
@@ -210,7 +211,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
             "--visible", options.sweep.visibility.threshold,
             "Noise in per cent of a pixel's value that is still too small to see: 1 is about half a step of "
             "8-bit sRGB at middle grey")
-        ->check(CLI::Range(0.001, 100.0))
+        ->check(number_range(0.001, 100.0))
         ->option_text("X [1]")
         ->group("Sweep");
     command

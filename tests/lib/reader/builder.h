@@ -143,6 +143,10 @@ struct DescriptionSpec {
     double total = 1.0;
     std::vector<AxisSpec> axes = {{"phi", 0, 0, 1, pi, -pi}, {"theta", 0, 1, 1, 0.0, pi}};
 
+    void weigh_as_table() {
+        weights[0] = 1.0;
+        weights[1] = weights[2] = 0.0;
+    }
     Bytes encode() const {
         Bytes out;
         for (auto v : {parameterization, fit, filter, up_axis, handedness, static_cast<std::uint32_t>(axes.size()),
