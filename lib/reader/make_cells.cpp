@@ -79,6 +79,9 @@ private:
 bool CellsMaker::gather() {
     const Cell whole = {1.0, {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows}, false};
     if (!count(environment_.root)) return false;
+    const std::size_t about = cells_ + cells_ / 16 + 64; // pieces
+    if (!(pieces_.reserve(about) && densities_.reserve(about) && numbers_.reserve(about) && keys_.reserve(about)))
+        return false;
     const bool done = remember() && walk(environment_.root, whole) && pieces_.size() <= kMostPieces;
     return done && !(pieces_.failed() || densities_.failed() || numbers_.failed() || keys_.failed());
 }
