@@ -14,7 +14,9 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h

@@ -8,6 +8,7 @@
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
+#include "tools/cli/renderer.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -44,9 +45,10 @@ private:
     void set_knots();
     void add_fit_options(CLI::App& command);
     std::uint64_t memory_of_tree(std::uint64_t pixels) const;
-    nlohmann::ordered_json report(const input::Probe& probe, const build::Environment& result) const;
+    nlohmann::ordered_json report(const ProbeTarget& loaded, const build::Environment& result) const;
 
     input::ProbeOptions input_;
+    const Renderer* renderer_ = nullptr;
     build::EnvironmentOptions environment_;
     std::string knots_, budget_;
     const CLI::App* command_ = nullptr;
@@ -104,6 +106,7 @@ void EnvConversion::set_knots() {
 }
 
 void EnvConversion::check() {
+    use_renderer(*command_, renderer_, input_, environment_.target);
     const AcdfFit fit = environment_.fit.fit;
     for (const OnlyFor& rule : only_for)
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
@@ -111,12 +114,15 @@ void EnvConversion::check() {
     else set_knots();
 }
 
-nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const build::Environment& result) const {
+nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const build::Environment& result) const {
+    const input::Probe& probe = loaded.probe;
     const build::Accuracy& a = result.accuracy;
     return {{"source", source},
             {"projection", input::to_string(probe.projection)},
             {"projection_reason", probe.projection_reason},
+            {"domain", build::parameterization_name(loaded.target.parameterization)},
             {"resolution", {probe.width, probe.height}},
+            {"resampling_error", loaded.error},
             {"bad_texels",
              {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
             {"fit", build::fit_name(environment_.fit.fit)},
@@ -148,19 +154,24 @@ std::uint64_t EnvConversion::memory() const {
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
-    const auto [probe, target] = load_target(source, input_, environment_.target, listener.note);
+    if (renderer_) listener.note(axes_text(*renderer_));
+    const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     build::Environment result;
     try {
-        result = build::build_environment(target, source_of(probe, input_), environment_, listener.progress);
+        result = build::build_environment(loaded.target, source_of(loaded.probe, input_), environment_,
+                                          listener.progress);
     } catch (const std::runtime_error& error) { // the goal is out of reach
         throw Failure(source + ": " + error.what());
     }
+    const std::string warning =
+        resampling_warning(loaded, result.accuracy.least_variance, result.accuracy.relative_variance);
+    if (!warning.empty()) listener.note(warning);
     char summary[160];
     std::snprintf(summary, sizeof summary, "%llu cells, relative variance %.4g (%s fit%s)",
                   static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
                   build::fit_name(environment_.fit.fit).c_str(),
                   result.order ? (std::string(", ") + build::to_string(*result.order) + " first").c_str() : "");
-    nlohmann::ordered_json told = report(probe, result);
+    nlohmann::ordered_json told = report(loaded, result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
 
@@ -248,6 +259,8 @@ void EnvConversion::add_fit_options(CLI::App& command) {
 void EnvConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
+    add_domain(command, input_.domain);
+    add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_fit_options(command);
     add_target_options(command, environment_.target);

@@ -10,6 +10,7 @@
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
+#include "tools/cli/renderer.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -44,10 +45,11 @@ private:
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
     void add_separate(CLI::App& command);
-    nlohmann::ordered_json report(const input::Probe& probe, const build::Local& result) const;
+    nlohmann::ordered_json report(const ProbeTarget& loaded, const build::Local& result) const;
 
     std::string normals_, budget_, knots_, scene_;
     input::ProbeOptions input_;
+    const Renderer* renderer_ = nullptr;
     input::SceneOptions scene_input_;
     build::LocalOptions local_;
     const CLI::App* command_ = nullptr;
@@ -101,6 +103,7 @@ void LocalConversion::set_separate() {
 }
 
 void LocalConversion::check() {
+    use_renderer(*command_, renderer_, input_, local_.target);
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
@@ -142,12 +145,13 @@ double gain(const build::Local& result) {
     return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
 }
 
-nlohmann::ordered_json LocalConversion::report(const input::Probe& probe, const build::Local& result) const {
+nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const build::Local& result) const {
     const build::LocalAccuracy& a = result.accuracy;
     File file;
     File::from_memory(result.bytes.data(), result.bytes.size(), file);
     return {{"source", source},
-            {"resolution", {probe.width, probe.height}},
+            {"domain", build::parameterization_name(loaded.target.parameterization)},
+            {"resolution", {loaded.probe.width, loaded.probe.height}},
             {"bytes", result.bytes.size()},
             {"bins", file.description().bin_count},
             {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
@@ -178,10 +182,11 @@ std::uint64_t LocalConversion::memory() const {
 
 Converted LocalConversion::convert(const Listener& listener) {
     const build::LocalOptions local = read_scene(listener.note);
-    const auto [probe, target] = load_target(source, input_, local.target, listener.note);
+    if (renderer_) listener.note(axes_text(*renderer_));
+    const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
     build::Local result;
     try {
-        result = build::build_local(target, source_of(probe, input_), local, listener.progress);
+        result = build::build_local(loaded.target, source_of(loaded.probe, input_), local, listener.progress);
     } catch (const std::runtime_error& error) { // the goal is out of reach
         throw Failure(source + ": " + error.what());
     }
@@ -193,7 +198,7 @@ Converted LocalConversion::convert(const Listener& listener) {
                       gain(result));
         listener.note(text);
     }
-    nlohmann::ordered_json told = report(probe, result);
+    nlohmann::ordered_json told = report(loaded, result);
     const std::string summary = summary_of(result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
@@ -297,6 +302,8 @@ void LocalConversion::add_separate(CLI::App& command) {
 void LocalConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
+    add_domain(command, input_.domain);
+    add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_bins(command);
     add_size(command);

@@ -44,7 +44,8 @@ Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::T
 /// Splits in the order `tried`, if it is one, in place of that of the options.
 Environment build_once(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
                        std::optional<Order> tried, const Progress& progress) {
-    compress::Description description = compress::environment_description(target.columns, target.rows);
+    compress::Description description =
+        compress::environment_description(target.columns, target.rows, target.parameterization);
     description.fit = options.fit.fit;
     description.total = target.total;
     description.filter = options.target.filter;

@@ -52,6 +52,9 @@ double texel_solid_angle(const Map& map, int column, int row);
 /// `map`: the next power of two, and half of it.
 int latlong_width(const Map& map);
 
+/// Side of an octahedral image of which no texel is larger than the typical texel of `map`: the next power of two.
+int octahedral_side(const Map& map);
+
 /// Faces of a cube layout in texels; 0 for other layouts.
 int cube_face_size(const Map& map);
 

@@ -24,13 +24,24 @@ public:
         probe_.projection_reason = detected.reason;
         probe_.source_width = probe_.width = image.width;
         probe_.source_height = probe_.height = image.height;
+        probe_.source_map = {detected.layout, image.width, image.height};
     }
     /// Texels of the source: counted there.
     void repair(int first, int count, float* rgb) {
         build::repair_texels(rgb, probe_.source_width, first, count, options_.bad_pixels, options_.threads,
                              probe_.bad);
     }
+    /// A map that is not lat-long. False where it is wanted as rows.
+    bool take_map(std::vector<float>& rgb) {
+        const bool black = std::all_of(rgb.begin(), rgb.end(), [](float v) { return v == 0.0f; });
+        if (!black || !options_.uniform_if_black) return rows_.take_map(probe_.source_map, rgb);
+        std::vector<float> lit(rgb.size(), std::numeric_limits<float>::min());
+        const bool taken = rows_.take_map(probe_.source_map, lit);
+        if (taken) probe_.warnings.push_back(black_warning);
+        return taken;
+    }
     void take(int first, int count, const float* rgb) {
+        has_rows_ = true;
         if (black_) {
             const std::size_t values =
                 std::size_t{3} * static_cast<std::size_t>(probe_.width) * static_cast<std::size_t>(count);
@@ -40,18 +51,19 @@ public:
     }
     /// So that what is black has a density: the smallest normal number, 0 for all that light is used for.
     void light_if_black() {
-        if (!black_ || !options_.uniform_if_black) return;
+        if (!has_rows_ || !black_ || !options_.uniform_if_black) return;
         const std::vector<float> row(std::size_t{3} * static_cast<std::size_t>(probe_.width),
                                      std::numeric_limits<float>::min());
         for (int y = 0; y < probe_.height; ++y) rows_.take(y, 1, row.data());
-        probe_.warnings.push_back("the probe is black; all directions are equally likely");
+        probe_.warnings.push_back(black_warning);
     }
 
 private:
     const ProbeOptions& options_;
     Probe& probe_;
     ProbeRows& rows_;
-    bool black_ = true;
+    bool black_ = true, has_rows_ = false;
+    static constexpr const char* black_warning = "the probe is black; all directions are equally likely";
 };
 
 /// An image that was read as a whole.
@@ -62,7 +74,8 @@ void take_whole(const std::string& path, const ProbeOptions& options, Image& ima
     repair.repair(0, image.height, image.rgb.data());
     const Detected detected = detect_layout(path, image, options.projection);
     repair.begin(detected, image);
-    const build::Map map{detected.layout, image.width, image.height};
+    const build::Map& map = probe.source_map;
+    if (detected.layout != build::Layout::latlong && repair.take_map(image.rgb)) return;
     probe.width = build::latlong_width(map);
     probe.height = detected.layout == build::Layout::latlong ? image.height : probe.width / 2;
     const std::vector<float> rgb =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "build/bad_texels.h"
+#include "build/source_target.h"
 
 #include <array>
 #include <cstdint>
@@ -21,8 +22,16 @@ enum class Projection { automatic, latlong, angular, mirrorball, cube_cross, oct
 /// "latlong", "angular", "mirrorball", "cube-cross", "octahedral", "auto".
 const char* to_string(Projection projection);
 
+/// The grid that a probe is fitted on.
+enum class Domain {
+    source,    ///< its own texels, of a lat-long or octahedral probe; else the one of the others that loses least
+    latlong,   ///< phi and theta
+    octahedral ///< u and v of the equal-area octahedral square
+};
+
 struct ProbeOptions {
     Projection projection = Projection::automatic;
+    Domain domain = Domain::source; ///< for who makes targets; read_probe alone knows lat-long maps
     build::BadPixels bad_pixels = build::BadPixels::zero;
     /// A probe without any light counts as one of the faintest constant light, so that it can be sampled.
     bool uniform_if_black = false;
@@ -38,15 +47,19 @@ struct Probe {
     std::string source_sha256; ///< of the file's bytes, hex
     int source_width = 0, source_height = 0;
     Projection projection = Projection::latlong; ///< what was used, never `automatic`
+    build::Map source_map;                       ///< the source's layout and size
     std::string projection_reason;               ///< why, for a person: "2:1 shape", "envmap attribute"
     build::BadTexels bad;
     std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
 };
 
-/// Takes a lat-long probe in bands of rows.
+/// Takes a lat-long probe in bands of rows, or a map of another layout.
 class ProbeRows {
 public:
     virtual ~ProbeRows() = default;
+    /// A map that is not lat-long, as it is: map.height x map.width x 3, finite and >= 0. False, and nothing is
+    /// kept, where it is wanted as rows of a lat-long map.
+    virtual bool take_map(const build::Map&, const std::vector<float>& /*rgb*/) { return false; }
     virtual void begin(int width, int height) = 0;
     /// `count` rows of RGB, finite and >= 0, from row `first` on. Rows that were there before are replaced.
     virtual void take(int first, int count, const float* rgb) = 0;
@@ -56,7 +69,7 @@ public:
 Probe read_probe(const std::string& path, const ProbeOptions& options = {});
 
 /// The same without keeping `rgb`: a lat-long image is read in bands of rows, and never in memory as a whole (but
-/// for BadPixels::clamp); one of another projection is, and is resampled.
+/// for BadPixels::clamp); one of another projection is, and is resampled unless `rows` takes it as it is.
 Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows& rows);
 
 } // namespace acdf::input

@@ -118,7 +118,8 @@ const Rule rules[] = {
     {6026, error, malformed, "bin-row", "The row of a bin is one of ROWS, or FFFFFFFF."},
 
     {7001, error, malformed, "environment-axes",
-     "An environment, local or not, has the two axes of §6.1 first, with resolutions of at most 65536."},
+     "An environment, local or not, has the two axes of §6.1 first, with parameterization 4 those of §6.9, with "
+     "resolutions of at most 65536."},
     {7002, error, malformed, "environment-bins", "An environment has one bin."},
     {7003, error, malformed, "normal-axes",
      "A local environment has the axes of an environment, and one or two of normals as in §6.7."},

@@ -25,7 +25,7 @@ inline void add_target_options(CLI::App& command, compress::TargetOptions& targe
                     }
             },
             "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
-            "coloured lights), max (the largest channel), red, green or blue alone")
+            "coloured lights), max (the largest channel), average (all alike), red, green or blue alone")
         ->check(CLI::IsMember(names).description(""))
         ->option_text("NAME [luminance]")
         ->group("Fit");

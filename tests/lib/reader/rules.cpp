@@ -91,6 +91,16 @@ std::function<Bytes()> rebuilt(std::function<void(FileSpec&)> change) {
         return file.encode();
     };
 }
+// The same of a file on the octahedral square.
+std::function<Bytes()> octahedral_axes(std::function<void(FileSpec&)> change) {
+    return [change] {
+        EnvironmentSpec spec = complete_environment();
+        spec.octahedral = true;
+        FileSpec file = spec.file();
+        change(file);
+        return file.encode();
+    };
+}
 std::function<Bytes()> with_tree(std::function<void(std::vector<CurveSpec>&)> change) {
     return [change] {
         EnvironmentSpec spec = complete_environment();
@@ -325,7 +335,7 @@ std::vector<Case> plane_cases() {
 std::vector<Case> description_cases() {
     return {
         {5001, "zero", payload_field("DESC", 0, 4, 0)},
-        {5001, "four", payload_field("DESC", 0, 4, 4)},
+        {5001, "five", payload_field("DESC", 0, 4, 5)},
         {5002, "zero", payload_field("DESC", 4, 4, 0)},
         {5002, "five", payload_field("DESC", 4, 4, 5)},
         {5003, "two", payload_field("DESC", 8, 4, 2)},
@@ -362,6 +372,7 @@ std::vector<Case> description_cases() {
         {5015, "nan", third_axis(32, 8, 0x7FF8000000000000)},
         {5015, "infinite", third_axis(40, 8, 0x7FF0000000000000)},
         {5016, "half_angle", payload_field("DESC", 0, 4, 2)},
+        {5016, "octahedral_table", [] { return octahedral_axes([](FileSpec& f) { f.kind = 4; })(); }},
         {5016, "environment_as_table", header_field(24, 4, 4)},
         {5017, "count", payload_field("META", 0, 4, 3)},
         {5017, "fewer", payload_field("META", 0, 4, 1)},
@@ -491,6 +502,12 @@ std::vector<Case> tree_cases() {
              return file.encode();
          }},
         {7001, "name", payload_field("DESC", 64, 1, 'P')},
+        {7001, "octahedral_with_angles", payload_field("DESC", 0, 4, 4)},
+        {7001, "angles_with_u_and_v", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 0, 4, 1); })},
+        {7001, "octahedral_name", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64, 1, 'x'); })},
+        {7001, "octahedral_measure", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64 + 68, 4, 1); })},
+        {7001, "octahedral_resolution",
+         octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64 + 24, 4, 65537); })},
         {7001, "role",
          [] {
              FileSpec file = chain(1).file();
