@@ -141,6 +141,7 @@ Json describe(const std::string& path, const File& file) {
     report["kind"] = build::kind_name(header.kind);
     report["version"] = std::to_string(header.version_major) + "." + std::to_string(header.version_minor);
     report["bytes"] = file.size();
+    report["table_bytes"] = file.table_bytes();
     report["bins"] = description.bin_count;
     report["cells"] = counts.cells;
     report["curves"] = counts.curves;
@@ -216,6 +217,8 @@ void print(const Json& report) {
     line("fit", text_of(report["fit"]) + "; stored: " + text_of(report["cells"]) + " cells in " +
                     text_of(report["curves"]) + " curves, " + text_of(report["bins"]) +
                     (report["bins"] == 1 ? " bin" : " bins"));
+    if (const std::uint64_t tables = report["table_bytes"]; tables > 0)
+        line("in memory", to_readable_size(tables) + " of tables besides, made when it is opened");
     if (report.contains("local")) line("normals", local_text(report["local"]));
     line("source", source_text(report["source"]));
     line("made by", text_of(report["tool"]));

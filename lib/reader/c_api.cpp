@@ -36,18 +36,34 @@ AcdfFile* keep(const acdf::Status& status, acdf::File& file, AcdfError* error) {
     return nullptr;
 }
 
-} // namespace
+acdf::LoadOptions plain() {
+    acdf::LoadOptions options;
+    options.tables = false;
+    return options;
+}
 
-AcdfFile* acdf_open(const char* path, AcdfError* error) {
+AcdfFile* open(const char* path, const acdf::LoadOptions& options, AcdfError* error) {
     acdf::File file;
-    const acdf::Status status = acdf::File::open(path, file);
+    const acdf::Status status = acdf::File::open(path, file, options);
     return keep(status, file, error);
 }
 
-AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error) {
+AcdfFile* from_memory(const void* data, size_t size, const acdf::LoadOptions& options, AcdfError* error) {
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(data, size, file);
+    const acdf::Status status = acdf::File::from_memory(data, size, file, options);
     return keep(status, file, error);
+}
+
+} // namespace
+
+AcdfFile* acdf_open(const char* path, AcdfError* error) { return open(path, {}, error); }
+AcdfFile* acdf_open_plain(const char* path, AcdfError* error) { return open(path, plain(), error); }
+
+AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error) {
+    return from_memory(data, size, {}, error);
+}
+AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error) {
+    return from_memory(data, size, plain(), error);
 }
 
 void acdf_close(AcdfFile* file) {
@@ -81,6 +97,7 @@ int acdf_table(const AcdfFile* file, AcdfTable* out) {
 }
 
 AcdfKind acdf_kind(const AcdfFile* file) { return file->file.kind(); }
+uint64_t acdf_table_bytes(const AcdfFile* file) { return file->file.table_bytes(); }
 uint64_t acdf_size(const AcdfFile* file) { return file->file.size(); }
 const AcdfHeader* acdf_header(const AcdfFile* file) { return &file->file.header(); }
 const AcdfDescription* acdf_description(const AcdfFile* file) { return &file->file.description(); }

@@ -57,6 +57,7 @@ public:
     AcdfCells* assemble(std::size_t most_bytes);
 
 private:
+    bool count(u32 at);
     bool walk(u32 at, const Cell& above);
     void add(const Cell& cell);
     void add_piece(const Side& azimuth, const Side& height, float pdf);
@@ -69,7 +70,7 @@ private:
     AcdfEnvironment environment_;
     Growable<double> tangents_; ///< of each column, and of each row what follows, if there are not too many of them
     Growable<Row> rows_;
-    std::size_t most_steps_, steps_ = 0;
+    std::size_t most_steps_, steps_ = 0, cells_ = 0;
     Growable<AcdfPiece> pieces_;
     Growable<float> densities_;
     Growable<KeyBox> numbers_, keys_;
@@ -77,8 +78,24 @@ private:
 
 bool CellsMaker::gather() {
     const Cell whole = {1.0, {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows}, false};
+    if (!count(environment_.root)) return false;
+    const std::size_t about = cells_ + cells_ / 16 + 64; // pieces
+    if (!(pieces_.reserve(about) && densities_.reserve(about) && numbers_.reserve(about) && keys_.reserve(about)))
+        return false;
     const bool done = remember() && walk(environment_.root, whole) && pieces_.size() <= kMostPieces;
     return done && !(pieces_.failed() || densities_.failed() || numbers_.failed() || keys_.failed());
+}
+
+// Whether the cells are few enough, in proportion to the tree, and without tilts: before any work is spent on them.
+bool CellsMaker::count(u32 at) {
+    const AcdfCurve curve = acdf_curve_at(environment_.tree, at);
+    if (curve.tilts) return false;
+    for (u32 i = 0; i < curve.segments; ++i) {
+        const u32 link = acdf_curve_link(&curve, i);
+        cells_ += link == 0;
+        if (++steps_ > most_steps_ || cells_ > kMostPieces || (link != 0 && !count(at + link))) return false;
+    }
+    return true;
 }
 
 // As acdf_tree_sample, through all segments. A path passes at most 64 curves.
@@ -86,11 +103,10 @@ bool CellsMaker::walk(u32 at, const Cell& above) {
     const AcdfCurve curve = acdf_curve_at(environment_.tree, at);
     const u32 axis = acdf_curve_axis(&curve), end = acdf_curve_maximum(&curve);
     const double maximum = end, width = above.high[axis] - above.low[axis];
-    if (curve.tilts) return false;
     u32 low = 0;
     for (u32 i = 0; i < curve.segments; ++i) {
         const u32 high = acdf_curve_cumulative(&curve, i + 1);
-        if (++steps_ > most_steps_ || pieces_.size() > kMostPieces) return false;
+        if (pieces_.size() > kMostPieces) return false;
         Cell cell = above;
         cell.dark = high == low;
         cell.probability *= static_cast<double>(high - low) / maximum;

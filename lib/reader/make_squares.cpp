@@ -13,8 +13,8 @@ using u32 = std::uint32_t;
 constexpr u32 kEmptyBlock = 0;
 constexpr u32 kEmptyEntry = kEmptyBlock; // whatever the shifts
 constexpr u32 kByteBits = 8;
-constexpr u32 kMostBits = 16;          // of the grid
-constexpr std::size_t kLookedAt = 128; // cells, to choose an axis
+constexpr u32 kMostBits = 16;         // of the grid
+constexpr std::size_t kLookedAt = 32; // cells, to choose an axis
 // Cells that a grid may look at for each that it holds, a division of a list counted once each: usual trees take 20
 // to 30.
 constexpr std::size_t kWork = 96;

@@ -1,7 +1,8 @@
 // Time of a draw and of a density of environment files, beside samplers of all texels of the same map.
 //
 //   bench_environment [COLUMNS...]            tables in Markdown; 1024 and 4096 by default
-//   bench_environment --count draw|pdf FILE N [walk]   N calls and nothing else, for callgrind
+//   bench_environment --write FILE BYTES              the file of 1024 x 512 texels
+//   bench_environment --count draw|pdf FILE N [walk]  N calls and nothing else, for callgrind
 #include "tests/bench/turns.h"
 
 #include "compress/fit.h"
@@ -17,6 +18,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <random>
 
 namespace {
@@ -206,6 +208,13 @@ int count(const char* what, const char* path, std::size_t calls, bool walk) {
 } // namespace
 
 int main(int argc, char** argv) {
+    if (argc == 4 && std::strcmp(argv[1], "--write") == 0) {
+        const Built built(sky(1024), std::strtoul(argv[3], nullptr, 10));
+        std::ofstream(argv[2], std::ios::binary)
+            .write(reinterpret_cast<const char*>(built.bytes.data()),
+                   static_cast<std::streamsize>(built.bytes.size()));
+        return 0;
+    }
     if (argc >= 5 && std::strcmp(argv[1], "--count") == 0)
         return count(argv[2], argv[3], std::strtoul(argv[4], nullptr, 10), argc > 5);
     std::vector<std::uint32_t> widths;

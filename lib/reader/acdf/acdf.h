@@ -52,6 +52,10 @@ AcdfFile* acdf_open(const char* path, AcdfError* error);
  * in place (where `data` is aligned to 8 bytes). Null on failure. */
 AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error);
 
+/* The same without runtime tables: nothing is allocated for them, and trees are walked. */
+AcdfFile* acdf_open_plain(const char* path, AcdfError* error);
+AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error);
+
 /* Ends `file` and every view and pointer taken from it. Null is allowed. */
 void acdf_close(AcdfFile* file);
 
@@ -65,7 +69,8 @@ int acdf_brdf(const AcdfFile* file, AcdfBrdf* out);
 int acdf_table(const AcdfFile* file, AcdfTable* out);
 
 AcdfKind acdf_kind(const AcdfFile* file);
-uint64_t acdf_size(const AcdfFile* file); /* bytes of the whole file */
+uint64_t acdf_size(const AcdfFile* file);        /* bytes of the whole file */
+uint64_t acdf_table_bytes(const AcdfFile* file); /* of the runtime tables; 0: there are none */
 const AcdfHeader* acdf_header(const AcdfFile* file);
 const AcdfDescription* acdf_description(const AcdfFile* file);
 const AcdfAxis* acdf_axis(const AcdfFile* file, uint32_t axis); /* null where axis >= axis_count */

@@ -105,7 +105,7 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
         const uint32_t width0 = acdf_float_bits(piece->azimuth.width),
                        width1 = acdf_float_bits(piece->height.width);
         /* 0 <= d < width by their bits; in the south for -d */
-        if (!((acdf_float_bits(d0) < width0) & ((acdf_float_bits(d1) ^ width1 << 31) < width1))) continue;
+        if (!(acdf_float_bits(d0) < width0 && (acdf_float_bits(d1) ^ width1 << 31) < width1)) continue;
         acdf_piece_direction(piece->azimuth.origin + d0 * piece->azimuth.slope,
                              piece->height.origin + d1 * piece->height.slope, width0 & 3u, width1 & 1u,
                              out->direction);
@@ -175,7 +175,7 @@ ACDF_INLINE int acdf_cells_pdf(const AcdfCells* cells, const float direction[3],
         const float width0 = -(piece->azimuth.width * piece->azimuth.slope);
         const float width1 = fabsf(piece->height.width * piece->height.slope);
         /* 0 <= d < width by their bits */
-        if (!((acdf_float_bits(d0) < acdf_float_bits(width0)) & (acdf_float_bits(d1) < acdf_float_bits(width1))))
+        if (!(acdf_float_bits(d0) < acdf_float_bits(width0) && acdf_float_bits(d1) < acdf_float_bits(width1)))
             continue;
         *pdf = ((const float*)(const void*)(tables + cells->densities))[cell];
         return 1;

@@ -292,6 +292,62 @@ TEST_P(Work, isLinearInTheBytes) {
     EXPECT_LT(much, 60 * large.size());
 }
 
+// n segments of which all but one have a probability of 2^-32: cells that no grid tells apart.
+EnvironmentSpec thin_cells(int n) {
+    EnvironmentSpec spec;
+    spec.columns = static_cast<std::uint32_t>(n);
+    CurveSpec curve;
+    curve.cumulative_bytes = 4;
+    curve.position_bytes = 4;
+    for (int i = 1; i < n; ++i) {
+        curve.cumulative.push_back(static_cast<std::uint32_t>(i));
+        curve.positions.push_back(static_cast<std::uint32_t>(i));
+    }
+    spec.tree.curves = {curve};
+    return spec;
+}
+
+// n segments that share a curve of as many: far more cells than bytes.
+EnvironmentSpec shared_cells(int n) {
+    EnvironmentSpec spec = thin_cells(n);
+    spec.rows = spec.columns;
+    CurveSpec child = spec.tree.curves[0];
+    child.axis = 1;
+    CurveSpec& root = spec.tree.curves[0];
+    root.link_bytes = 4;
+    root.children.assign(static_cast<std::size_t>(n), 1);
+    spec.tree.curves.push_back(child);
+    return spec;
+}
+
+std::uint64_t blocks_to_make_tables(const Bytes& file) {
+    const auto load = [&](bool tables) {
+        acdf::LoadOptions options;
+        options.tables = tables;
+        acdf::File loaded;
+        const std::uint64_t before = blocks;
+        EXPECT_TRUE(acdf::File::from_memory(file.data(), file.size(), loaded, options).ok());
+        EXPECT_LE(loaded.table_bytes(), 8 * file.size() + (1u << 20));
+        return blocks - before;
+    };
+    return load(true) - load(false);
+}
+
+// Whatever paths lead to, and however thin cells are. Small grids have some work of their own.
+TEST(TableWork, isLinearInTheBytes) {
+    for (EnvironmentSpec (*make)(int) : {thin_cells, shared_cells}) {
+        const Bytes small = make(300).encode(), large = make(1200).encode();
+        const std::uint64_t little = blocks_to_make_tables(small), much = blocks_to_make_tables(large);
+        const double sizes = static_cast<double>(large.size()) / static_cast<double>(small.size());
+        std::printf("%zu bytes: %.1f blocks a byte; %zu bytes: %.1f\n", small.size(),
+                    static_cast<double>(little) / static_cast<double>(small.size()), large.size(),
+                    static_cast<double>(much) / static_cast<double>(large.size()));
+        EXPECT_GT(little, 1000u);
+        EXPECT_LT(static_cast<double>(much), 1.2 * sizes * static_cast<double>(little));
+        EXPECT_LT(much, 500 * large.size());
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Files, Work,
     testing::Values(Growing{"exponentially_many_paths", [](int n) { return many_paths(n).encode(); }, 200},
