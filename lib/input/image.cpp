@@ -1,13 +1,11 @@
 #include "input/image.h"
 
+#include "images/image_file.h"
 #include "input/transfer.h"
-
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <new>
 
 namespace acdf::input {
@@ -54,12 +52,14 @@ bool is_no_colour(const std::string& name) {
 }
 
 // R, G and B of the first layer that has them ("" or "beauty."), else the only channel that is a colour. Most
-// formats name no channels (`named` false): then the first three, or with one or two the first, as grey.
-bool choose_channels(const OIIO::ImageSpec& spec, bool named, Channels& channels) {
-    const std::vector<std::string>& names = spec.channelnames;
-    if (spec.nchannels < 1) return false;
-    if (!named || names.size() != static_cast<std::size_t>(spec.nchannels)) {
-        for (int c = 0; c < 3; ++c) channels.index[c] = spec.nchannels < 3 ? 0 : c;
+// formats name no channels: then the first three, or with one or two the first, as grey.
+bool choose_channels(const images::Header& header, Channels& channels) {
+    const bool named = header.format == "openexr";
+    const std::vector<std::string>& names = header.channels;
+    const int count = header.channel_count;
+    if (count < 1) return false;
+    if (!named || names.size() != static_cast<std::size_t>(count)) {
+        for (int c = 0; c < 3; ++c) channels.index[c] = count < 3 ? 0 : c;
         return true;
     }
     for (const std::string& name : names) {
@@ -86,22 +86,15 @@ bool choose_channels(const OIIO::ImageSpec& spec, bool named, Channels& channels
 
 // ---- windows ----------------------------------------------------------------------------------------
 
-struct Window {
-    int x = 0, y = 0, width = 0, height = 0;
-    bool operator==(const Window& o) const {
-        return x == o.x && y == o.y && width == o.width && height == o.height;
-    }
-    bool contains(const Window& o) const {
-        return o.x >= x && o.y >= y && std::int64_t{o.x} + o.width <= std::int64_t{x} + width &&
-               std::int64_t{o.y} + o.height <= std::int64_t{y} + height;
-    }
-};
+using images::Window;
 
-Window data_window(const OIIO::ImageSpec& spec) { return {spec.x, spec.y, spec.width, spec.height}; }
+bool contains(const Window& w, const Window& o) {
+    return o.x >= w.x && o.y >= w.y && std::int64_t{o.x} + o.width <= std::int64_t{w.x} + w.width &&
+           std::int64_t{o.y} + o.height <= std::int64_t{w.y} + w.height;
+}
 
-Window display_window(const OIIO::ImageSpec& spec) {
-    if (spec.full_width <= 0 || spec.full_height <= 0) return data_window(spec);
-    return {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
+Window display_window(const images::Header& header) {
+    return header.display.width > 0 && header.display.height > 0 ? header.display : header.data;
 }
 
 bool overlap(const Window& a, const Window& b) {
@@ -113,17 +106,16 @@ bool overlap(const Window& a, const Window& b) {
 
 class Reader {
 public:
-    Reader(const std::string& path, int threads) : path_(path) {
-        input_ = OIIO::ImageInput::open(path);
-        if (!input_) fail("no image that can be read (" + OIIO::geterror() + "); give an .exr, .hdr, .tif or .tx");
-        input_->threads(threads);
+    Reader(const std::string& path, int threads) : path_(path), file_(path, threads) {
+        if (!file_.is_open())
+            fail("no image that can be read (" + file_.error() + "); give an .exr, .hdr, .tif or .tx");
     }
 
     Image read(const std::function<TakeRows(const Image& image)>& stream) {
         check_spec();
         Image image;
         image.tag = environment_tag();
-        const Window data = data_window(spec()), display = display_window(spec());
+        const Window data = header().data, display = display_window(header());
         image.width = display.width;
         image.height = display.height;
         const TakeRows take = stream ? stream(image) : TakeRows{};
@@ -131,7 +123,7 @@ public:
             read_bands(take, image);
         } else {
             read_windows(data, display, image);
-            linearize(image, spec());
+            linearize(image, file_);
         }
         add_warnings(image);
         if (take && !image.rgb.empty()) {
@@ -142,7 +134,7 @@ public:
     }
 
 private:
-    const OIIO::ImageSpec& spec() const { return input_->spec(); }
+    const images::Header& header() const { return file_.header(); }
 
     [[noreturn]] void fail(const std::string& what) const { throw input_error(path_, what); }
 
@@ -161,24 +153,23 @@ private:
     }
 
     void check_spec() {
-        const OIIO::ImageSpec& s = spec();
+        const images::Header& s = header();
         if (s.deep) fail("it is a deep image; flatten it (oiiotool IN --flatten -o OUT)");
         if (s.depth > 1) fail("it is a volume, not an image; give a lat-long or another projection");
-        check_size(data_window(s));
+        check_size(s.data);
         check_size(display_window(s));
-        if (s.get_int_attribute("Orientation", 1) != 1)
+        if (file_.integer("Orientation", 1) != 1)
             fail("it is stored rotated or flipped; turn it upright (oiiotool IN --reorient -o OUT)");
-        if (!overlap(data_window(s), display_window(s)))
+        if (!overlap(s.data, display_window(s)))
             fail("its data window lies outside its display window; crop it (oiiotool IN --fullpixels -o OUT)");
-        const bool named = std::string(input_->format_name()) == "openexr";
-        if (!choose_channels(s, named, channels_))
-            fail("its channels are " + list(s.channelnames) +
+        if (!choose_channels(s, channels_))
+            fail("its channels are " + list(s.channels) +
                  ", where R, G, B or a single one is needed; "
                  "rename or choose them (oiiotool IN --ch R=...,G=...,B=... -o OUT)");
     }
 
     EnvironmentTag environment_tag() const {
-        const std::string format = lower(spec().get_string_attribute("textureformat"));
+        const std::string format = lower(file_.text("textureformat"));
         if (format.find("latlong") != std::string::npos) return EnvironmentTag::latlong;
         if (format.find("cubeface") != std::string::npos) return EnvironmentTag::cube;
         return EnvironmentTag::none;
@@ -187,7 +178,7 @@ private:
     void read_windows(const Window& data, const Window& display, Image& image) {
         const std::size_t display_floats =
             std::size_t{3} * static_cast<std::size_t>(display.width) * static_cast<std::size_t>(display.height);
-        if (display.contains(data)) {
+        if (contains(display, data)) {
             // Straight into place. OpenEXR: pixels of the display window without data are black.
             image.rgb.assign(display_floats, 0.0f);
             read_channels(image.rgb.data() + offset(data.x - display.x, data.y - display.y, display.width),
@@ -217,21 +208,14 @@ private:
     static constexpr int band_rows = 256;
 
     // Reads rows [y0, y1) of the data window, counted from its top, of channels [begin, end).
-    void read_rows(int y0, int y1, int begin, int end, float* at, OIIO::stride_t pixel, OIIO::stride_t row) {
-        const OIIO::ImageSpec& s = spec();
-        const bool read = s.tile_width > 0
-                              ? input_->read_tiles(0, 0, s.x, s.x + s.width, s.y + y0, s.y + y1, s.z, s.z + 1,
-                                                   begin, end, OIIO::TypeDesc::FLOAT, at, pixel, row)
-                              : input_->read_scanlines(0, 0, s.y + y0, s.y + y1, s.z, begin, end,
-                                                       OIIO::TypeDesc::FLOAT, at, pixel, row);
-        // Some readers report what is missing, but say they succeeded.
-        if (!read || input_->has_error())
-            fail("its pixels cannot be read (" + input_->geterror() + "); the file is cut short or damaged");
+    void read_rows(int y0, int y1, int begin, int end, float* at, std::ptrdiff_t pixel, std::ptrdiff_t row) {
+        if (!file_.read({y0, y1, begin, end, pixel, row}, at))
+            fail("its pixels cannot be read (" + file_.error() + "); the file is cut short or damaged");
     }
 
     // The same of the channels that are wanted, as RGB texels with rows of `row_pixels`.
     void read_channels(int y0, int y1, float* first, int row_pixels) {
-        const OIIO::stride_t pixel = 3 * sizeof(float), row = pixel * row_pixels;
+        const std::ptrdiff_t pixel = 3 * sizeof(float), row = pixel * row_pixels;
         if (channels_.in_order())
             return read_rows(y0, y1, channels_.index[0], channels_.index[0] + 3, first, pixel, row);
         const int count = channels_.grey() ? 1 : 3;
@@ -240,14 +224,14 @@ private:
         if (!channels_.grey()) return;
         for (int y = 0; y < y1 - y0; ++y) {
             float* at = first + offset(0, y, row_pixels);
-            for (int x = 0; x < spec().width; ++x) at[3 * x + 1] = at[3 * x + 2] = at[3 * x];
+            for (int x = 0; x < header().data.width; ++x) at[3 * x + 1] = at[3 * x + 2] = at[3 * x];
         }
     }
 
     // Calls read(y0, y1) for bands of the data window that end where tiles do.
     template <class Read>
     void for_each_band(const Read& read) {
-        const int tile = std::max(spec().tile_height, 1), height = spec().height;
+        const int tile = std::max(header().tile_height, 1), height = header().data.height;
         const int rows = (std::max(band_rows, tile) + tile - 1) / tile * tile;
         for (int y = 0; y < height; y += rows) read(y, std::min(y + rows, height));
     }
@@ -260,7 +244,7 @@ private:
             band.rgb.assign(offset(0, band.height, band.width), 0.0f);
             read_channels(y0, y1, band.rgb.data(), band.width);
             band.warnings.clear();
-            linearize(band, spec());
+            linearize(band, file_);
             if (y0 == 0) image.warnings = band.warnings;
             take(y0, band.height, band.rgb.data());
         });
@@ -273,17 +257,16 @@ private:
     }
 
     void add_warnings(Image& image) {
-        if (image.tag == EnvironmentTag::latlong && spec().get_int_attribute("oiio:sampleborder") != 0)
+        if (image.tag == EnvironmentTag::latlong && file_.integer("oiio:sampleborder", 0) != 0)
             image.warnings.push_back(
                 "OpenEXR puts texel centres on the poles and the seam; texels are read as areas, "
                 "at most half a texel off");
-        if (input_->seek_subimage(1, 0)) image.warnings.push_back("the file has several parts; the first is used");
-        input_->geterror(); // a missing second part is no error
-        input_->seek_subimage(0, 0);
+        if (file_.seek(1)) image.warnings.push_back("the file has several parts; the first is used");
+        file_.seek(0);
     }
 
     std::string path_;
-    std::unique_ptr<OIIO::ImageInput> input_;
+    images::ImageFile file_;
     Channels channels_;
 };
 

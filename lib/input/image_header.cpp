@@ -1,20 +1,19 @@
 #include "input/image_header.h"
 
-#include <OpenImageIO/imageio.h>
+#include "images/image_file.h"
 
 #include <algorithm>
 
 namespace acdf::input {
 
 std::uint64_t image_pixels(const std::string& path) {
-    const auto input = OIIO::ImageInput::open(path);
-    OIIO::geterror(); // what is wrong is told when the image is read
-    if (!input) return 0;
-    const OIIO::ImageSpec& spec = input->spec();
+    const images::ImageFile file(path);
+    if (!file.is_open()) return 0; // what is wrong is told when the image is read
     const auto pixels = [](int width, int height) {
         return static_cast<std::uint64_t>(std::max(width, 0)) * static_cast<std::uint64_t>(std::max(height, 0));
     };
-    return std::max(pixels(spec.width, spec.height), pixels(spec.full_width, spec.full_height));
+    const images::Window &data = file.header().data, &display = file.header().display;
+    return std::max(pixels(data.width, data.height), pixels(display.width, display.height));
 }
 
 } // namespace acdf::input

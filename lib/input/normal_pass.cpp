@@ -1,11 +1,9 @@
+#include "images/image_file.h"
 #include "input/image.h"
 #include "input/scene_sources.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 
 namespace acdf::input {
@@ -59,51 +57,49 @@ std::optional<Channels> find_normals(std::vector<std::string> names, bool rgb) {
 
 class PassReader {
 public:
-    explicit PassReader(const std::string& path) : path_(path), input_(OIIO::ImageInput::open(path)) {
-        if (!input_)
+    explicit PassReader(const std::string& path) : path_(path), file_(path, 1) {
+        if (!file_.is_open())
             fail(
                 "neither a mesh (.obj, .ply), nor a list of normals (.txt, .csv), nor an image that can be read (" +
-                OIIO::geterror() + ")");
-        input_->threads(1);
+                file_.error() + ")");
     }
 
     void add(bool rgb, NormalHistogram& histogram) {
         const Channels channels = seek_normals(rgb);
         check_spec();
-        const OIIO::ImageSpec& s = spec();
-        const int rows = s.tile_height > 0 ? s.tile_height : std::min(s.height, 64);
-        for (int y = 0; y < s.height; y += rows) add_rows(y, std::min(y + rows, s.height), channels, histogram);
+        const int height = header().data.height;
+        const int rows = header().tile_height > 0 ? header().tile_height : std::min(height, 64);
+        for (int y = 0; y < height; y += rows) add_rows(y, std::min(y + rows, height), channels, histogram);
     }
 
 private:
     [[noreturn]] void fail(const std::string& what) const { throw input_error(path_, what); }
-    const OIIO::ImageSpec& spec() const { return input_->spec(); }
+    const images::Header& header() const { return file_.header(); }
 
     /// Goes to the first part that has normals.
     Channels seek_normals(bool rgb) {
         std::string names;
-        for (part_ = 0; input_->seek_subimage(part_, 0); ++part_) {
-            if (const auto found = find_normals(spec().channelnames, rgb)) return *found;
-            for (const std::string& name : spec().channelnames)
+        for (int part = 0; file_.seek(part); ++part) {
+            if (const auto found = find_normals(header().channels, rgb)) return *found;
+            for (const std::string& name : header().channels)
                 if (names.size() < 200) names += (names.empty() ? "" : ", ") + name;
         }
-        input_->geterror(); // there being no further part is no error
         fail("its channels are " + names +
              ", and none are N.X, N.Y, N.Z or the like; rename them (oiiotool IN --ch N.X=R,N.Y=G,N.Z=B -o "
              "OUT.exr)");
     }
 
     void check_spec() const {
-        const OIIO::ImageSpec& s = spec();
+        const images::Header& s = header();
         if (s.deep || s.depth > 1)
             fail("it is a deep image or a volume; flatten it (oiiotool IN --flatten -o OUT)");
-        if (s.format.basetype != OIIO::TypeDesc::HALF && s.format.basetype != OIIO::TypeDesc::FLOAT &&
-            s.format.basetype != OIIO::TypeDesc::DOUBLE)
+        if (!s.floating)
             fail(
                 "it holds integers, which cannot be normals from -1 to 1; write the pass as a floating-point .exr");
-        if (s.width <= 0 || s.height <= 0 || s.width > kMaxSide || s.height > kMaxSide ||
-            s.tile_height > kMaxSide || std::int64_t{s.width} * s.height > kMaxPixels)
-            fail("its size " + std::to_string(s.width) + "x" + std::to_string(s.height) +
+        const int width = s.data.width, height = s.data.height;
+        if (width <= 0 || height <= 0 || width > kMaxSide || height > kMaxSide || s.tile_height > kMaxSide ||
+            std::int64_t{width} * height > kMaxPixels)
+            fail("its size " + std::to_string(width) + "x" + std::to_string(height) +
                  " is not that of an image that can be read; at most 2^30 pixels");
     }
 
@@ -111,8 +107,8 @@ private:
     void add_rows(int begin, int end, const Channels& channels, NormalHistogram& histogram) {
         const auto [first, last] = std::minmax_element(channels.begin(), channels.end());
         const int low = *first, high = *last + 1, count = high - low;
-        const OIIO::ImageSpec& s = spec();
-        const std::size_t pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(end - begin);
+        const std::size_t pixels =
+            static_cast<std::size_t>(header().data.width) * static_cast<std::size_t>(end - begin);
         const bool far_apart = count > 16; // among very many channels each is read on its own
         buffer_.resize(pixels * (far_apart ? 3 : static_cast<std::size_t>(count)));
         std::array<std::size_t, 3> at{};
@@ -131,21 +127,13 @@ private:
     }
 
     void read(int begin, int end, int channel0, int channel1, float* at, int stride) {
-        const OIIO::ImageSpec& s = spec();
-        const auto pixel = static_cast<OIIO::stride_t>(sizeof(float)) * stride;
-        const bool ok = s.tile_width > 0
-                            ? input_->read_tiles(part_, 0, s.x, s.x + s.width, s.y + begin, s.y + end, s.z, s.z + 1,
-                                                 channel0, channel1, OIIO::TypeDesc::FLOAT, at, pixel)
-                            : input_->read_scanlines(part_, 0, s.y + begin, s.y + end, s.z, channel0, channel1,
-                                                     OIIO::TypeDesc::FLOAT, at, pixel);
-        // Some readers report what is missing, but say they succeeded.
-        if (!ok || input_->has_error())
-            fail("its pixels cannot be read (" + input_->geterror() + "); the file is cut short or damaged");
+        const auto pixel = static_cast<std::ptrdiff_t>(sizeof(float)) * stride;
+        if (!file_.read({begin, end, channel0, channel1, pixel, pixel * header().data.width}, at))
+            fail("its pixels cannot be read (" + file_.error() + "); the file is cut short or damaged");
     }
 
     std::string path_;
-    std::unique_ptr<OIIO::ImageInput> input_;
-    int part_ = 0;
+    images::ImageFile file_;
     std::vector<float> buffer_;
 };
 

@@ -7,8 +7,8 @@ namespace acdf::input {
 namespace {
 
 // 0: sRGB; 1: linear; else a power law.
-double declared_gamma(const OIIO::ImageSpec& spec, bool& declared) {
-    std::string space = spec.get_string_attribute("oiio:ColorSpace");
+double declared_gamma(const images::ImageFile& file, bool& declared) {
+    std::string space = file.text("oiio:ColorSpace");
     for (char& c : space)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     declared = true;
@@ -17,7 +17,7 @@ double declared_gamma(const OIIO::ImageSpec& spec, bool& declared) {
     if (space.rfind("gamma", 0) == 0) {
         const double gamma = std::strtod(space.c_str() + 5, nullptr); // also "gammacorrected2.2": see below
         if (gamma > 0.1 && gamma < 10.0) return gamma;
-        const double attribute = spec.get_float_attribute("oiio:Gamma", 0.0f);
+        const double attribute = file.real("oiio:Gamma", 0.0f);
         if (attribute > 0.1 && attribute < 10.0) return attribute;
     }
     declared = false;
@@ -29,12 +29,10 @@ double srgb_to_linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v 
 
 } // namespace
 
-void linearize(Image& image, const OIIO::ImageSpec& spec) {
-    const bool integer = spec.format.basetype != OIIO::TypeDesc::HALF &&
-                         spec.format.basetype != OIIO::TypeDesc::FLOAT &&
-                         spec.format.basetype != OIIO::TypeDesc::DOUBLE;
+void linearize(Image& image, const images::ImageFile& file) {
+    const bool integer = !file.header().floating;
     bool declared = false;
-    double gamma = declared_gamma(spec, declared);
+    double gamma = declared_gamma(file, declared);
     if (integer && !declared) gamma = 0.0;
     const std::string curve = gamma == 0.0   ? "the sRGB curve undone"
                               : gamma == 1.0 ? "taken as linear"

@@ -1,23 +1,22 @@
 // Writes the sky that the program in docs/guide.md looks up, as a lat-long map: make_guide_sky OUT.exr
-#include <OpenImageIO/imageio.h>
+#include "images/image_file.h"
 
 #include <cmath>
-#include <vector>
+#include <cstdio>
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
     constexpr int width = 256, height = 128;
     constexpr double pi = 3.14159265358979323846;
-    std::vector<float> rgb;
+    acdf::images::Picture sky(width, height);
     for (int r = 0; r < height; ++r)
         for (int c = 0; c < width; ++c) {
             const double theta = pi * (r + 0.5) / height, phi = pi * (1.0 - 2.0 * (c + 0.5) / width);
             const double value = theta < 0.5 * pi ? 1.0 + std::sin(theta) * std::cos(phi) : 0.1;
-            rgb.insert(rgb.end(), 3, static_cast<float>(value));
+            for (int i = 0; i < 3; ++i) sky.at(c, r)[i] = static_cast<float>(value);
         }
-    const auto out = OIIO::ImageOutput::create(argv[1]);
-    const OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
-    return out && out->open(argv[1], spec) && out->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) && out->close()
-               ? 0
-               : 1;
+    const auto bytes = acdf::images::encode(sky, {argv[1], false, {}, {}});
+    std::FILE* file = std::fopen(argv[1], "wb");
+    return file && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fclose(file) == 0 ? 0
+                                                                                                              : 1;
 }

@@ -177,7 +177,7 @@ TEST_F(LocalCommands, PlotDrawsTheHorizon) {
         run_acdf({"plot", shared, "-o", png, "--width", "64", "--no-legend", "--no-knots", "--normal", "0,0,3"});
     ASSERT_EQ(result.code, 0) << result.err;
     const LoadedImage image = load_image(png);
-    ASSERT_EQ(image.spec.height, 32);
+    ASSERT_EQ(image.height, 32);
     for (int x = 0; x < 64; ++x)
         for (int c = 0; c < 3; ++c) {
             EXPECT_GT(image.at(x, 15)[c], 0.95f); // the equator runs between rows 15 and 16

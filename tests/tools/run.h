@@ -60,9 +60,10 @@ struct Result {
     std::string out, err;
 };
 
-/// Starts `acdf arguments...` with the given files as stdin, stdout and stderr.
+/// Starts `acdf arguments...` (or a copy of it that lies elsewhere) with the given files as stdin, stdout and
+/// stderr.
 inline pid_t start_acdf(std::vector<std::string> arguments, const std::string& in, const std::string& out,
-                        const std::string& err) {
+                        const std::string& err, const std::string& program = ACDF_PROGRAM) {
     arguments.insert(arguments.begin(), "acdf");
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -73,7 +74,7 @@ inline pid_t start_acdf(std::vector<std::string> arguments, const std::string& i
     posix_spawn_file_actions_addopen(&files, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&files, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     pid_t pid = -1;
-    if (posix_spawn(&pid, ACDF_PROGRAM, &files, nullptr, argv.data(), environ) != 0) pid = -1;
+    if (posix_spawn(&pid, program.c_str(), &files, nullptr, argv.data(), environ) != 0) pid = -1;
     posix_spawn_file_actions_destroy(&files);
     return pid;
 }
@@ -84,11 +85,12 @@ inline int wait_for(pid_t pid) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-inline Result run_acdf(const std::vector<std::string>& arguments, const std::string& input = "") {
+inline Result run_acdf(const std::vector<std::string>& arguments, const std::string& input = "",
+                       const std::string& program = ACDF_PROGRAM) {
     const Folder folder;
     write_text(folder / "in", input);
     Result result;
-    result.code = wait_for(start_acdf(arguments, folder / "in", folder / "out", folder / "err"));
+    result.code = wait_for(start_acdf(arguments, folder / "in", folder / "out", folder / "err", program));
     result.out = read_text(folder / "out");
     result.err = read_text(folder / "err");
     return result;

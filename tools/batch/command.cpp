@@ -188,11 +188,11 @@ int tell(const BatchArguments& options, const BatchReport& report) {
     return report.count(JobResult::Status::failed) > 0 ? exit_failed : exit_done;
 }
 
-std::vector<PlannedJob> checked_plan(const BatchArguments& options, const std::vector<BatchJob>& jobs, bool force,
-                                     const BatchLimits& limits) {
+std::vector<PlannedJob> checked_plan(const BatchArguments& options, const std::vector<BatchJob>& jobs,
+                                     const PlanOptions& planning, const BatchLimits& limits) {
     const auto limit = limit_threads(limits.threads);
     std::vector<std::string> errors;
-    std::vector<PlannedJob> plan = plan_jobs(jobs, options.output, force, make_conversion, errors);
+    std::vector<PlannedJob> plan = plan_jobs(jobs, options.output, planning, make_conversion, errors);
     refuse(errors);
     return plan;
 }
@@ -201,7 +201,8 @@ int run_batch(const BatchArguments& options, const BatchJobs& all, const BatchLi
     const Shard shard = shard_of(options);
     const std::vector<BatchJob> jobs = jobs_of_shard(all.jobs, shard);
     if (!options.dry_run) sweep(options, all.jobs);
-    const std::vector<PlannedJob> plan = checked_plan(options, jobs, options.force, limits);
+    const PlanOptions planning{options.force, !options.dry_run || options.json};
+    const std::vector<PlannedJob> plan = checked_plan(options, jobs, planning, limits);
     if (options.dry_run) {
         show_plan(options, plan);
         return exit_done;
@@ -232,7 +233,7 @@ int emit_ninja(const BatchArguments& options, const BatchJobs& all, const BatchL
     if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 0)
         throw CLI::ValidationError("--emit", "needs a manifest that Ninja can read again, not stdin");
     std::vector<std::string> errors;
-    const std::vector<PlannedJob> plan = checked_plan(options, all.jobs, true, limits);
+    const std::vector<PlannedJob> plan = checked_plan(options, all.jobs, {true, true}, limits);
     for (const PlannedJob& planned : plan)
         if (planned.memory > limits.memory)
             errors.push_back(planned.job.origin + ": needs about " + to_readable_size(planned.memory) +

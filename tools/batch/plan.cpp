@@ -101,14 +101,14 @@ std::string why_due(const std::vector<std::uint8_t>& bytes, const BatchJob& job,
     return "";
 }
 
-void look_at(PlannedJob& planned, const std::string& folder, bool force, Conversions& conversions) {
+void look_at(PlannedJob& planned, const std::string& folder, const PlanOptions& options, Conversions& conversions) {
     const BatchJob& job = planned.job;
     const std::string path = (fs::path(folder) / job.output).string();
     const Conversion& conversion = conversions.of(job);
     planned.reason = "new";
     if (fs::exists(path)) {
         planned.reason = "forced";
-        if (!force) {
+        if (!options.force) {
             const std::vector<std::uint8_t> bytes = read_bytes(path);
             if (!bytes.empty() && !has_magic(bytes))
                 throw Failure("the output " + path + " exists and is no .acdf file; use --force to replace it");
@@ -117,7 +117,7 @@ void look_at(PlannedJob& planned, const std::string& folder, bool force, Convers
     }
     planned.due = !planned.reason.empty();
     if (!planned.due) planned.reason = "up to date";
-    else planned.memory = conversion.memory();
+    else if (options.memory) planned.memory = conversion.memory();
 }
 
 } // namespace
@@ -157,15 +157,16 @@ void check_options(BatchJobs& jobs, const MakeConversion& make) {
     }
 }
 
-std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::string& folder, bool force,
-                                  const MakeConversion& make, std::vector<std::string>& errors) {
+std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::string& folder,
+                                  const PlanOptions& options, const MakeConversion& make,
+                                  std::vector<std::string>& errors) {
     std::vector<PlannedJob> plan(jobs.size());
     std::vector<std::string> wrong(jobs.size());
     tbb::enumerable_thread_specific<Conversions> conversions([&] { return Conversions(make); });
     tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
         plan[i].job = jobs[i];
         try {
-            look_at(plan[i], folder, force, conversions.local());
+            look_at(plan[i], folder, options, conversions.local());
         } catch (const std::exception& error) {
             wrong[i] = jobs[i].origin + ": " + one_line(error.what());
         }

@@ -44,10 +44,16 @@ struct PlannedJob {
 /// Checks the options of all jobs, each set of options once. Adds one line for each job whose options are wrong.
 void check_options(BatchJobs& jobs, const MakeConversion& make);
 
+struct PlanOptions {
+    bool force = false; ///< all are due, whatever there is
+    bool memory = true; ///< tell it of each job, which reads the headers of images
+};
+
 /// Looks at sources and outputs, several at once. Adds a line to `errors` for each output in the way that is no
-/// .acdf file, and would be lost. `force`: all are due, whatever there is.
-std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::string& folder, bool force,
-                                  const MakeConversion& make, std::vector<std::string>& errors);
+/// .acdf file, and would be lost.
+std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::string& folder,
+                                  const PlanOptions& options, const MakeConversion& make,
+                                  std::vector<std::string>& errors);
 
 /// For tables and logs of a line each.
 std::string one_line(std::string text);

@@ -1,13 +1,10 @@
 #include "tools/demo/probes.h"
 
+#include "images/image_file.h"
 #include "tools/cli/output.h"
-#include "tools/commands.h"
-
-#include <OpenImageIO/imageio.h>
 
 #include <array>
 #include <cmath>
-#include <memory>
 
 namespace acdf::tools {
 namespace {
@@ -76,14 +73,11 @@ std::vector<DemoProbe> demo_probes() {
 
 void write_probe(const DemoProbe& probe, const std::string& path, bool force) {
     Output output(path, force);
-    const auto file = OIIO::ImageOutput::create("exr");
-    if (!file) throw Failure(path + ": this OpenImageIO cannot write OpenEXR files");
-    OIIO::ImageSpec spec(probe.width, probe.height, 3, OIIO::TypeDesc::FLOAT);
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", ""); // else OpenImageIO writes the time of day: other bytes on every run
-    if (!file->open(output.temporary(), spec) || !file->write_image(OIIO::TypeDesc::FLOAT, probe.rgb.data()) ||
-        !file->close())
-        throw Failure(path + ": " + file->geterror());
+    images::Picture picture(probe.width, probe.height);
+    picture.values = probe.rgb;
+    const std::vector<std::uint8_t> bytes =
+        images::encode(picture, {probe.name + ".exr", false, {}, {{"compression", "zip"}}});
+    output.write(bytes.data(), bytes.size());
     output.commit();
 }
 

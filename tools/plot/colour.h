@@ -1,10 +1,9 @@
 // False colours for densities.
 #pragma once
 
+#include "images/picture.h"
 #include "tools/plot/density.h"
 #include "tools/plot/range.h"
-
-#include <OpenImageIO/imagebuf.h>
 
 #include <array>
 
@@ -25,7 +24,10 @@ enum class ColourMap {
 
 /// RGB floats as displayed: the logarithm of the density from range.low to range.high, zero_colour where it is 0,
 /// background where nothing is shown.
-OIIO::ImageBuf false_colour(const DensityImage& image, const DensityRange& range,
-                            ColourMap map = ColourMap::rainbow);
+images::Picture false_colour(const DensityImage& image, const DensityRange& range,
+                             ColourMap map = ColourMap::rainbow);
+
+/// IEC 61966-2-1, of one channel.
+float linear_to_srgb(float linear);
 
 } // namespace acdf::tools

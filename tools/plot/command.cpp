@@ -214,7 +214,7 @@ std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& 
     const Drawing drawing = draw(options, source, options.knots && !source.stored.file.empty());
     const std::vector<float>& density = drawing.image.density;
     const DensityRange range = chosen_range(options, drawing.image);
-    OIIO::ImageBuf picture = false_colour(drawing.image, range);
+    images::Picture picture = false_colour(drawing.image, range);
     if (!drawing.knots.empty()) draw_knots(picture, drawing.knots);
     if (!drawing.horizon.empty()) draw_horizon(picture, drawing.horizon);
     if (options.legend) {

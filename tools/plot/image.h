@@ -1,9 +1,8 @@
 // Plots as the bytes of image files.
 #pragma once
 
+#include "images/picture.h"
 #include "tools/plot/density.h"
-
-#include <OpenImageIO/imagebuf.h>
 
 #include <cstdint>
 #include <string>
@@ -17,10 +16,10 @@ struct ImageNotes {
 };
 
 /// RGB floats as displayed, rounded to 8 bits. Throws std::runtime_error.
-std::vector<std::uint8_t> encode_png(const OIIO::ImageBuf& picture, const ImageNotes& notes);
+std::vector<std::uint8_t> encode_png(const images::Picture& picture, const ImageNotes& notes);
 
 /// The floats of an RGB image as they are. Throws std::runtime_error.
-std::vector<std::uint8_t> encode_rgb_exr(const OIIO::ImageBuf& picture, const ImageNotes& notes);
+std::vector<std::uint8_t> encode_rgb_exr(const images::Picture& picture, const ImageNotes& notes);
 
 /// One float channel Y: the density in sr^-1, and 0 where nothing is shown. Throws std::runtime_error.
 std::vector<std::uint8_t> encode_exr(const DensityImage& image, const ImageNotes& notes);

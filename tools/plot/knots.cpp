@@ -163,8 +163,8 @@ std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, cons
     return opacity;
 }
 
-void draw_knots(OIIO::ImageBuf& picture, const std::vector<float>& opacity) {
-    auto* rgb = static_cast<float*>(picture.localpixels());
+void draw_knots(images::Picture& picture, const std::vector<float>& opacity) {
+    float* rgb = picture.values.data();
     tbb::parallel_for(std::size_t{0}, opacity.size(), [&](std::size_t i) {
         float* p = rgb + 3 * i;
         const float luma = 0.299f * p[0] + 0.587f * p[1] + 0.114f * p[2];

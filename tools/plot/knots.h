@@ -2,9 +2,9 @@
 #pragma once
 
 #include "build/projection.h"
+#include "images/picture.h"
 #include "tools/cli/progress.h"
 
-#include <OpenImageIO/imagebuf.h>
 #include <acdf/reader.h>
 
 #include <cstdint>
@@ -27,6 +27,6 @@ std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, cons
 
 /// Blends the lines into `picture` (RGB floats as displayed, as large as `map`): black over light colours, white
 /// over dark ones.
-void draw_knots(OIIO::ImageBuf& picture, const std::vector<float>& opacity);
+void draw_knots(images::Picture& picture, const std::vector<float>& opacity);
 
 } // namespace acdf::tools

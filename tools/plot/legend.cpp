@@ -1,8 +1,7 @@
 #include "tools/plot/legend.h"
 
+#include "images/module.h"
 #include "tools/plot/colour.h"
-
-#include <OpenImageIO/imagebufalgo.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +9,6 @@
 
 namespace acdf::tools {
 namespace {
-
-namespace algo = OIIO::ImageBufAlgo;
-using algo::TextAlignX;
-using algo::TextAlignY;
 
 constexpr Colour ink = {0.12f, 0.12f, 0.12f};
 
@@ -30,17 +25,16 @@ std::string to_ascii(const std::string& utf8) {
 
 class Pen {
 public:
-    Pen(OIIO::ImageBuf& image, const std::string& font) : image_(image), font_(font) {}
+    Pen(images::Picture& image, const std::string& font) : image_(image), font_(font) {}
 
     int width(const std::string& text, int size) const {
-        const OIIO::ROI roi = algo::text_size(text, size, font_);
-        return roi.defined() ? roi.xend : 0; // from the pen's position: leading space counts
+        int out = 0;
+        return images::module().text_width(text, size, font_, out) ? out : 0;
     }
 
     /// Text that begins at x; `y` is the baseline. Returns where it ends.
     int write(int x, int y, const std::string& text, int size) const {
-        algo::render_text(image_, x, y, text, size, font_, OIIO::cspan<float>(ink.data(), 3), TextAlignX::Left,
-                          TextAlignY::Baseline);
+        images::module().draw_text(image_, x, y, text, size, font_, ink.data());
         return x + width(text, size);
     }
 
@@ -52,16 +46,22 @@ public:
     }
 
 private:
-    OIIO::ImageBuf& image_;
+    images::Picture& image_;
     const std::string& font_;
 };
 
-void fill(OIIO::ImageBuf& image, const Box& box, const Colour& colour) {
-    algo::fill(image, OIIO::cspan<float>(colour.data(), 3),
-               OIIO::ROI(box.x, box.x + box.width, box.y, box.y + box.height, 0, 1, 0, 3));
+void fill(images::Picture& image, const Box& box, const Colour& colour) {
+    for (int y = std::max(box.y, 0); y < std::min(box.y + box.height, image.height); ++y)
+        for (int x = std::max(box.x, 0); x < std::min(box.x + box.width, image.width); ++x)
+            std::copy(colour.begin(), colour.end(), image.at(x, y));
 }
 
-void draw_bar(OIIO::ImageBuf& image, const Legend& legend, const LegendLayout& layout) {
+/// Copies `part` to where its top left is at (x, y); all of it lies in the image.
+void paste(images::Picture& image, int x, int y, const images::Picture& part) {
+    for (int row = 0; row < part.height; ++row) std::copy_n(part.at(0, row), 3 * part.width, image.at(x, y + row));
+}
+
+void draw_bar(images::Picture& image, const Legend& legend, const LegendLayout& layout) {
     const Box& bar = layout.bar;
     DensityImage ramp{{build::Layout::latlong, 1, bar.height}, {}};
     for (int y = 0; y < bar.height; ++y) {
@@ -69,8 +69,8 @@ void draw_bar(OIIO::ImageBuf& image, const Legend& legend, const LegendLayout& l
         const double density = legend.range.low * std::pow(legend.range.high / legend.range.low, t);
         ramp.density.push_back(static_cast<float>(density));
     }
-    const OIIO::ImageBuf colours = false_colour(ramp, legend.range, legend.colours);
-    for (int x = 0; x < bar.width; ++x) algo::paste(image, bar.x + x, bar.y, 0, 0, colours);
+    const images::Picture colours = false_colour(ramp, legend.range, legend.colours);
+    for (int x = 0; x < bar.width; ++x) paste(image, bar.x + x, bar.y, colours);
 }
 
 // 10^-3 where all labels are powers of ten, 0.002 else.
@@ -81,7 +81,7 @@ void write_label(const Pen& pen, int x, int y, const Tick& tick, const DensityRa
     pen.write(x, y, text, size);
 }
 
-void draw_ticks(OIIO::ImageBuf& image, const Legend& legend, const LegendLayout& layout, const Pen* pen) {
+void draw_ticks(images::Picture& image, const Legend& legend, const LegendLayout& layout, const Pen* pen) {
     const int edge = layout.bar.x + layout.bar.width, size = layout.font_size;
     const double rows_a_decade = layout.bar.height / std::log10(legend.range.high / legend.range.low);
     int free_row = layout.height; // labels are written upwards; above this row there is room for one
@@ -135,15 +135,15 @@ int LegendLayout::row_of(double density, const DensityRange& range) const {
 
 std::string find_font() {
     for (const char* name : {"DejaVuSans", "LiberationSans-Regular", "NotoSans-Regular", "FreeSans", "Arial"})
-        if (algo::text_size("0", 16, name).defined()) return name;
+        if (int width = 0; images::module().text_width("0", 16, name, width)) return name;
     return {};
 }
 
-OIIO::ImageBuf add_legend(const OIIO::ImageBuf& picture, const Legend& legend, const std::string& font) {
-    const LegendLayout layout = legend_layout(picture.spec().width, picture.spec().height);
-    OIIO::ImageBuf image(OIIO::ImageSpec(layout.width, layout.height, 3, OIIO::TypeFloat));
+images::Picture add_legend(const images::Picture& picture, const Legend& legend, const std::string& font) {
+    const LegendLayout layout = legend_layout(picture.width, picture.height);
+    images::Picture image(layout.width, layout.height);
     fill(image, {0, 0, layout.width, layout.height}, background);
-    algo::paste(image, layout.picture.x, layout.picture.y, 0, 0, picture);
+    paste(image, layout.picture.x, layout.picture.y, picture);
     draw_bar(image, legend, layout);
     if (legend.shows_zero) fill(image, layout.zero, zero_colour);
 

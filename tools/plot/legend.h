@@ -4,8 +4,6 @@
 #include "tools/plot/colour.h"
 #include "tools/plot/range.h"
 
-#include <OpenImageIO/imagebuf.h>
-
 #include <string>
 #include <vector>
 
@@ -38,11 +36,11 @@ struct Legend {
     ColourMap colours = ColourMap::rainbow;
 };
 
-/// A font that OpenImageIO can draw with, by name; empty where the system has none.
+/// A font that the module of images can draw with, by name; empty where the system has none.
 std::string find_font();
 
 /// `picture` (RGB floats as displayed) with a title and a colour bar: a tick at each power of ten, small ticks
 /// between. `font` as find_font gives it; without one there is no text.
-OIIO::ImageBuf add_legend(const OIIO::ImageBuf& picture, const Legend& legend, const std::string& font);
+images::Picture add_legend(const images::Picture& picture, const Legend& legend, const std::string& font);
 
 } // namespace acdf::tools

@@ -55,8 +55,8 @@ std::vector<float> horizon_opacity(const Normal& normal, const build::Map& map) 
     return out;
 }
 
-void draw_horizon(OIIO::ImageBuf& picture, const std::vector<float>& opacity) {
-    auto* rgb = static_cast<float*>(picture.localpixels());
+void draw_horizon(images::Picture& picture, const std::vector<float>& opacity) {
+    float* rgb = picture.values.data();
     for (std::size_t i = 0; i < opacity.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] += opacity[i] * (1.0f - rgb[3 * i + c]);
 }

@@ -1,10 +1,10 @@
 // The density of a local environment for one normal, and its horizon.
 #pragma once
 
+#include "images/picture.h"
 #include "tools/cli/normal_option.h"
 #include "tools/plot/density.h"
 
-#include <OpenImageIO/imagebuf.h>
 #include <acdf/reader.h>
 
 #include <vector>
@@ -27,6 +27,6 @@ std::vector<float> knot_opacity(const PlottedNormal& plotted, const build::Map& 
 std::vector<float> horizon_opacity(const Normal& normal, const build::Map& map);
 
 /// Blends it into `picture` (RGB floats as displayed, as large as `map`), white.
-void draw_horizon(OIIO::ImageBuf& picture, const std::vector<float>& opacity);
+void draw_horizon(images::Picture& picture, const std::vector<float>& opacity);
 
 } // namespace acdf::tools

@@ -12,7 +12,6 @@
 #include "tools/render/sampler_build.h"
 
 #include <CLI/CLI.hpp>
-#include <OpenImageIO/imagebuf.h>
 
 #include <cmath>
 #include <cstdio>
@@ -104,7 +103,7 @@ public:
         : folder_(folder), scene_(scene), run_(run), exposure_(exposure(run.comparison.reference)) {}
 
     void picture(const std::string& stem, const std::vector<measure::Rgb>& values, const std::string& what) const {
-        const OIIO::ImageBuf linear = scene_picture(scene_.scene, scene_.points, values);
+        const images::Picture linear = scene_picture(scene_.scene, scene_.points, values);
         folder_.write(stem + ".exr", encode_rgb_exr(linear, notes(what)));
         folder_.write(stem + ".png", encode_png(displayed(linear, exposure_), notes(what)));
     }

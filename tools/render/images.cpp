@@ -2,8 +2,6 @@
 
 #include "tools/plot/legend.h"
 
-#include <OpenImageIO/color.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -25,11 +23,10 @@ double round_number(double value, bool upwards) {
 
 } // namespace
 
-OIIO::ImageBuf scene_picture(const measure::Scene& scene, const measure::ScenePoints& points,
-                             const std::vector<measure::Rgb>& values) {
-    OIIO::ImageBuf image(
-        OIIO::ImageSpec(static_cast<int>(scene.width), static_cast<int>(scene.height), 3, OIIO::TypeFloat));
-    auto* out = static_cast<float*>(image.localpixels());
+images::Picture scene_picture(const measure::Scene& scene, const measure::ScenePoints& points,
+                              const std::vector<measure::Rgb>& values) {
+    images::Picture image(static_cast<int>(scene.width), static_cast<int>(scene.height));
+    float* out = image.values.data();
     for (std::uint32_t y = 0; y < scene.height; ++y)
         for (std::uint32_t x = 0; x < scene.width; ++x) {
             const std::uint32_t point = points.of_pixel[std::size_t{y} * scene.width + x];
@@ -57,17 +54,15 @@ double exposure(const std::vector<measure::Rgb>& values) {
     return luminances[at] > 0.0 ? headroom * luminances[at] : 1.0;
 }
 
-OIIO::ImageBuf displayed(const OIIO::ImageBuf& linear, double exposure) {
-    OIIO::ImageBuf image = linear;
-    auto* values = static_cast<float*>(image.localpixels());
-    const std::size_t count = image.spec().image_pixels() * 3;
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = OIIO::linear_to_sRGB(std::clamp(values[i] / static_cast<float>(exposure), 0.0f, 1.0f));
+images::Picture displayed(const images::Picture& linear, double exposure) {
+    images::Picture image = linear;
+    for (float& value : image.values)
+        value = linear_to_srgb(std::clamp(value / static_cast<float>(exposure), 0.0f, 1.0f));
     return image;
 }
 
-OIIO::ImageBuf figure_picture(const measure::Scene& scene, const measure::ScenePoints& points,
-                              const std::vector<double>& values, const FigureImage& figure) {
+images::Picture figure_picture(const measure::Scene& scene, const measure::ScenePoints& points,
+                               const std::vector<double>& values, const FigureImage& figure) {
     const int times =
         std::max(1, (kLeastWidth + static_cast<int>(scene.width) - 1) / static_cast<int>(scene.width));
     DensityImage image;

@@ -1,11 +1,10 @@
 // What `acdf render` shows: pictures, and figures of each pixel in false colour.
 #pragma once
 
+#include "images/picture.h"
 #include "measure/scene_points.h"
 #include "tools/plot/colour.h"
 #include "tools/plot/range.h"
-
-#include <OpenImageIO/imagebuf.h>
 
 #include <string>
 #include <vector>
@@ -13,14 +12,14 @@
 namespace acdf::tools {
 
 /// Linear RGB: a value a point, the probe where nothing is seen.
-OIIO::ImageBuf scene_picture(const measure::Scene& scene, const measure::ScenePoints& points,
-                             const std::vector<measure::Rgb>& values);
+images::Picture scene_picture(const measure::Scene& scene, const measure::ScenePoints& points,
+                              const std::vector<measure::Rgb>& values);
 
 /// What luminance is divided by for display: a half more than what 98 % of points stay below.
 double exposure(const std::vector<measure::Rgb>& values);
 
 /// As displayed: exposed, clamped, sRGB.
-OIIO::ImageBuf displayed(const OIIO::ImageBuf& linear, double exposure);
+images::Picture displayed(const images::Picture& linear, double exposure);
 
 /// A positive figure a point in false colour with a legend, on a logarithmic scale.
 struct FigureImage {
@@ -29,8 +28,8 @@ struct FigureImage {
     ColourMap colours = ColourMap::rainbow;
     bool shows_zero = false;
 };
-OIIO::ImageBuf figure_picture(const measure::Scene& scene, const measure::ScenePoints& points,
-                              const std::vector<double>& values, const FigureImage& figure);
+images::Picture figure_picture(const measure::Scene& scene, const measure::ScenePoints& points,
+                               const std::vector<double>& values, const FigureImage& figure);
 
 /// Round ends that leave out 1 % of the positive values at each, at most eight decades.
 DensityRange figure_range(std::vector<double> values);

@@ -157,7 +157,7 @@ std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, cons
 
 void add_picture(Sweep& sweep, const DensityImage& image, const std::vector<float>& knots,
                  const std::vector<float>& horizon, std::string title, std::string description) {
-    OIIO::ImageBuf picture = false_colour(image, sweep.range);
+    images::Picture picture = false_colour(image, sweep.range);
     if (!knots.empty()) draw_knots(picture, knots);
     if (!horizon.empty()) draw_horizon(picture, horizon);
     sweep.pictures.push_back({std::move(title), std::move(description), image.map.width, image.map.height,

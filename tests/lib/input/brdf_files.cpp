@@ -1,7 +1,7 @@
 // Opening BRDFs by name: what each file is told apart by, tables of numbers, and real measurements.
 #include "input/brdf_npy.h"
 #include "tests/lib/input/brdf.h"
-#include "tests/lib/input/write.h"
+#include "tests/lib/input/folder.h"
 
 #include <filesystem>
 

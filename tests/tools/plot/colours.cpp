@@ -14,8 +14,7 @@ using tools::DensityRange;
 
 std::vector<Colour> colours_of(const std::vector<float>& densities, const DensityRange& range) {
     const tools::DensityImage image{{build::Layout::latlong, static_cast<int>(densities.size()), 1}, densities};
-    const OIIO::ImageBuf buffer = tools::false_colour(image, range);
-    const auto* rgb = static_cast<const float*>(buffer.localpixels());
+    const std::vector<float> rgb = tools::false_colour(image, range).values;
     std::vector<Colour> out(densities.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]};
     return out;

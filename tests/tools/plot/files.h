@@ -6,14 +6,14 @@
 #include "build/projection.h"
 #include "compress/fit.h"
 #include "compress/store.h"
+#include "images/image_file.h"
 
-#include <OpenImageIO/imageio.h>
 #include <acdf/reader.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -75,32 +75,37 @@ inline bool angular_direction(int width, int x, int y, float direction[3]) {
     return true;
 }
 
-struct LoadedImage {
-    OIIO::ImageSpec spec;
-    std::vector<float> pixels; ///< height x width x channels
-
-    const float* at(int x, int y) const {
-        return pixels.data() +
-               (static_cast<std::size_t>(y) * static_cast<std::size_t>(spec.width) + static_cast<std::size_t>(x)) *
-                   static_cast<std::size_t>(spec.nchannels);
-    }
+/// All channels of an image file.
+struct LoadedImage : images::Picture {
+    std::string description, date;
+    bool floating = false;
+    int sample_bytes = 0;
 };
 
 inline LoadedImage load_image(const std::string& path) {
+    images::ImageFile file(path);
+    if (!file.is_open()) throw std::runtime_error(path + ": " + file.error()); // fails the test
+    const images::Header& header = file.header();
     LoadedImage image;
-    const auto input = OIIO::ImageInput::open(path);
-    if (!input) throw std::runtime_error(path + ": " + OIIO::geterror()); // fails the test
-    image.spec = input->spec();
-    image.pixels.resize(image.spec.image_pixels() * static_cast<std::size_t>(image.spec.nchannels));
-    EXPECT_TRUE(input->read_image(0, 0, 0, image.spec.nchannels, OIIO::TypeFloat, image.pixels.data()));
+    static_cast<images::Picture&>(image) = {header.data.width, header.data.height, header.channel_count};
+    image.description = file.text("ImageDescription");
+    image.date = file.text("DateTime");
+    image.floating = header.floating;
+    image.sample_bytes = header.sample_bytes;
+    const std::ptrdiff_t pixel = header.channel_count * static_cast<std::ptrdiff_t>(sizeof(float));
+    EXPECT_TRUE(
+        file.read({0, image.height, 0, header.channel_count, pixel, pixel * image.width}, image.values.data()))
+        << path << ": " << file.error();
     return image;
 }
 
 /// Writes height x width x 3 floats.
 inline void write_rgb(const std::string& path, int width, int height, const std::vector<float>& rgb) {
-    const auto output = OIIO::ImageOutput::create(path);
-    ASSERT_TRUE(output && output->open(path, OIIO::ImageSpec(width, height, 3, OIIO::TypeFloat)) &&
-                output->write_image(OIIO::TypeFloat, rgb.data()) && output->close());
+    images::Picture picture(width, height);
+    picture.values = rgb;
+    const std::vector<std::uint8_t> bytes = images::encode(picture, {path, false, {}, {}});
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 } // namespace acdf::test

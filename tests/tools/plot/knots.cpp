@@ -98,8 +98,8 @@ TEST(PlotKnots, OfASingleCellAreNone) {
 }
 
 TEST(PlotKnots, ContrastWithWhatTheyCross) {
-    OIIO::ImageBuf picture(OIIO::ImageSpec(3, 1, 3, OIIO::TypeFloat));
-    auto* rgb = static_cast<float*>(picture.localpixels());
+    images::Picture picture(3, 1);
+    float* rgb = picture.values.data();
     const float before[9] = {0.1f, 0.1f, 0.3f, 0.9f, 0.9f, 0.2f, 0.5f, 0.6f, 0.7f};
     std::copy(before, before + 9, rgb);
     tools::draw_knots(picture, {1.0f, 1.0f, 0.0f});

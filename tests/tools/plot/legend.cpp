@@ -18,17 +18,16 @@ constexpr DensityRange range{1e-3, 1e2};
 
 struct Drawn {
     LegendLayout layout;
-    OIIO::ImageBuf image;
+    images::Picture image;
 
     Drawn(int width, int height, const std::vector<std::string>& title, bool zero, const std::string& font)
         : layout(tools::legend_layout(width, height)) {
-        OIIO::ImageBuf picture(OIIO::ImageSpec(width, height, 3, OIIO::TypeFloat)); // black
+        images::Picture picture(width, height); // black
         image = tools::add_legend(picture, {title, range, zero}, font);
     }
 
     bool blank(int x, int y) const {
-        float rgb[3];
-        image.getpixel(x, y, rgb);
+        const float* rgb = image.at(x, y);
         return rgb[0] == 1.0f && rgb[1] == 1.0f && rgb[2] == 1.0f;
     }
     bool blank(const Box& box) const {
@@ -41,15 +40,14 @@ struct Drawn {
 
 TEST(PlotLegend, KeepsThePictureWhole) {
     const Drawn drawn(400, 200, {"sky"}, false, "");
-    EXPECT_EQ(drawn.image.spec().width, drawn.layout.width);
-    EXPECT_EQ(drawn.image.spec().height, drawn.layout.height);
+    EXPECT_EQ(drawn.image.width, drawn.layout.width);
+    EXPECT_EQ(drawn.image.height, drawn.layout.height);
     const Box& p = drawn.layout.picture;
     EXPECT_EQ(p.width, 400);
     EXPECT_EQ(p.height, 200);
     for (int y = 0; y < 200; ++y)
         for (int x = 0; x < 400; ++x) {
-            float rgb[3];
-            drawn.image.getpixel(p.x + x, p.y + y, rgb);
+            const float* rgb = drawn.image.at(p.x + x, p.y + y);
             ASSERT_EQ(rgb[0] + rgb[1] + rgb[2], 0.0f);
         }
     EXPECT_TRUE(drawn.blank({p.x + p.width, 0, drawn.layout.bar.x - p.x - p.width, drawn.layout.height}));
@@ -72,18 +70,16 @@ TEST(PlotLegend, BarShowsTheColourOfEachDensity) {
     const Box& bar = drawn.layout.bar;
     for (const double density : {1e-3, 1e-2, 0.5, 3.0, 100.0}) {
         const tools::DensityImage pixel{{build::Layout::latlong, 1, 1}, {static_cast<float>(density)}};
-        float expected[3], shown[3];
-        tools::false_colour(pixel, range).getpixel(0, 0, expected);
-        drawn.image.getpixel(bar.x + bar.width / 2, drawn.layout.row_of(density, range), shown);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], expected[c], 0.02f) << density;
+        const std::vector<float> expected = tools::false_colour(pixel, range).values;
+        const float* shown = drawn.image.at(bar.x + bar.width / 2, drawn.layout.row_of(density, range));
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], expected[c], 0.02f) << density;
     }
 }
 
 TEST(PlotLegend, ExplainsZeroOnlyWhereItIsShown) {
     EXPECT_TRUE(Drawn(300, 300, {}, false, "").blank(tools::legend_layout(300, 300).zero));
     const Drawn with(300, 300, {}, true, "");
-    float rgb[3];
-    with.image.getpixel(with.layout.zero.x + 2, with.layout.zero.y + 2, rgb);
+    const float* rgb = with.image.at(with.layout.zero.x + 2, with.layout.zero.y + 2);
     for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(rgb[c], tools::zero_colour[c]);
 }
 
@@ -109,16 +105,14 @@ TEST(PlotLegend, TextLabelsEachDecadeAndStaysInItsPlace) {
 TEST(PlotLegend, LabelsKeepClearOfOneAnother) {
     const std::string font = tools::find_font();
     if (font.empty()) GTEST_SKIP() << "no font is installed";
-    OIIO::ImageBuf picture(OIIO::ImageSpec(64, 100, 3, OIIO::TypeFloat));
+    images::Picture picture(64, 100);
     const LegendLayout l = tools::legend_layout(64, 100);
-    const OIIO::ImageBuf image = tools::add_legend(picture, {{}, {1e-20, 1e20}, false}, font);
+    const images::Picture image = tools::add_legend(picture, {{}, {1e-20, 1e20}, false}, font);
     int runs = 0, longest = 0, run = 0; // of rows with ink, in the column of labels
     for (int y = l.bar.y - l.font_size / 4; y < l.height; ++y) {
         bool ink = false;
         for (int x = l.bar.x + l.bar.width + l.tick_length + 1; x < l.width; ++x) {
-            float rgb[3];
-            image.getpixel(x, y, rgb);
-            ink = ink || rgb[0] < 0.9f;
+            ink = ink || image.at(x, y)[0] < 0.9f;
         }
         run = ink ? run + 1 : 0;
         runs += run == 1;
@@ -134,22 +128,19 @@ TEST(PlotLegend, LongLabelsAreNotCutOff) {
     for (const int height : {64, 200, 1024})
         for (const tools::DensityRange labelled :
              {tools::DensityRange{1e-14, 1e-10}, {2e-4, 9e-4}, {2e-14, 9e-14}}) {
-            OIIO::ImageBuf picture(OIIO::ImageSpec(64, height, 3, OIIO::TypeFloat));
+            images::Picture picture(64, height);
             const LegendLayout l = tools::legend_layout(64, height);
-            const OIIO::ImageBuf image = tools::add_legend(picture, {{}, labelled, false}, font);
+            const images::Picture image = tools::add_legend(picture, {{}, labelled, false}, font);
             for (int y = 0; y < l.height; ++y)
-                for (int x = l.width - 2; x < l.width; ++x) {
-                    float rgb[3];
-                    image.getpixel(x, y, rgb);
-                    ASSERT_EQ(rgb[0], 1.0f) << height << ": " << x << "," << y;
-                }
+                for (int x = l.width - 2; x < l.width; ++x)
+                    ASSERT_EQ(image.at(x, y)[0], 1.0f) << height << ": " << x << "," << y;
         }
 }
 
 TEST(PlotLegend, SurvivesTinyPicturesAndOddNames) {
     const std::string font = tools::find_font();
     for (const int size : {1, 8, 16})
-        EXPECT_GT(Drawn(size, size, {"\xC3\xA9\xE2\x82\xAC\n\t", "x"}, true, font).image.spec().height, 8 * 12);
+        EXPECT_GT(Drawn(size, size, {"\xC3\xA9\xE2\x82\xAC\n\t", "x"}, true, font).image.height, 8 * 12);
 }
 
 } // namespace

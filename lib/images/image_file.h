@@ -1,0 +1,41 @@
+// An image file that is open for reading.
+#pragma once
+
+#include "images/module.h"
+
+#include <memory>
+#include <string>
+
+namespace acdf::images {
+
+/// One part of an image file at a time, the first at first; every format that OpenImageIO reads. Not for several
+/// threads.
+class ImageFile {
+public:
+    /// `threads` 0: all cores. Throws std::runtime_error only where the module is missing.
+    explicit ImageFile(const std::string& path, int threads = 0);
+
+    /// Whether it could be opened. If not, error() says why, and nothing else may be called.
+    bool is_open() const { return image_ != nullptr; }
+    /// What went wrong last.
+    const std::string& error() const { return error_; }
+
+    const Header& header() const { return header_; }
+    bool seek(int part) { return module_.seek(image_.get(), part, header_); }
+    bool read(const Rows& rows, float* to) { return module_.read(image_.get(), rows, to, error_); }
+
+    std::string text(const char* name) const { return module_.text(image_.get(), name); }
+    int integer(const char* name, int otherwise) const { return module_.integer(image_.get(), name, otherwise); }
+    float real(const char* name, float otherwise) const { return module_.real(image_.get(), name, otherwise); }
+
+private:
+    const Module& module_;
+    Header header_;
+    std::string error_;
+    std::unique_ptr<void, void (*)(void*)> image_;
+};
+
+/// The bytes of an image file. Throws std::runtime_error: the encoding's name, and why not.
+std::vector<std::uint8_t> encode(const Picture& picture, const Encoding& encoding);
+
+} // namespace acdf::images

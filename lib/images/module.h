@@ -1,0 +1,98 @@
+// What the program and the module that holds OpenImageIO say to each other. OpenImageIO brings some 250 shared
+// libraries, which take longer to load than most commands to run: the module is opened when the first image is.
+#pragma once
+
+#include "images/picture.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace acdf::images {
+
+/// A rectangle in pixels.
+struct Window {
+    int x = 0, y = 0, width = 0, height = 0;
+    bool operator==(const Window& o) const {
+        return x == o.x && y == o.y && width == o.width && height == o.height;
+    }
+};
+
+/// What a part of an image file says of itself; not checked.
+struct Header {
+    std::string format; ///< "openexr", "png", ...
+    Window data, display;
+    int depth = 1;       ///< of a volume
+    int tile_height = 0; ///< 0: stored in rows
+    int channel_count = 0;
+    std::vector<std::string> channels; ///< names
+    bool deep = false;
+    bool floating = false; ///< of any width; else integers
+    int sample_bytes = 0;
+};
+
+/// Rows and channels of the data window, all from a first to before a last, and the bytes between pixels and rows
+/// where they go.
+struct Rows {
+    int first_row, last_row, first_channel, last_channel;
+    std::ptrdiff_t pixel_stride, row_stride;
+};
+
+struct Attribute {
+    std::string name, text;
+    bool is_number = false; ///< then `number` counts
+    int number = 0;
+};
+
+/// How a picture is stored.
+struct Encoding {
+    std::string name;                  ///< a file name, whose extension says the format
+    bool eight_bits = false;           ///< rounded; else float
+    std::vector<std::string> channels; ///< names; empty: R, G and B
+    std::vector<Attribute> attributes;
+};
+
+/// A table of functions and plain data, no classes with virtual functions: those would need their type information
+/// to be one in program and module. Nothing of ours is thrown through it; what the standard library throws
+/// (std::bad_alloc) is.
+struct Module {
+    const char* version; ///< of acdf: a module of another version is refused
+
+    /// Null and `error` where the file cannot be read. `threads` 0: all cores.
+    void* (*open)(const std::string& path, int threads, Header& header, std::string& error);
+    void (*close)(void* image);
+    /// Goes to another part; false where there is none.
+    bool (*seek)(void* image, int part, Header& header);
+    /// To floats; false and `error` where something is missing.
+    bool (*read)(void* image, const Rows& rows, float* to, std::string& error);
+    /// Of the part: an attribute, or "" or `otherwise` where it has none.
+    std::string (*text)(const void* image, const char* name);
+    int (*integer)(const void* image, const char* name, int otherwise);
+    float (*real)(const void* image, const char* name, float otherwise);
+
+    /// An image file in memory. False and `error` where it cannot be made.
+    bool (*encode)(const Picture& picture, const Encoding& encoding, std::vector<std::uint8_t>& bytes,
+                   std::string& error);
+
+    /// One channel in [0, 1] to RGB: `knots` of evenly spaced colours, or the map called `name` where there are
+    /// none.
+    bool (*colour_map)(const Picture& positions, const std::string& name, const std::vector<float>& knots,
+                       Picture& colours, std::string& error);
+    /// Pixels from the pen's position to the end of the text; false where there is no such font.
+    bool (*text_width)(const std::string& text, int size, const std::string& font, int& width);
+    /// ASCII in one RGB colour; x is where the pen begins, y its baseline.
+    void (*draw_text)(Picture& picture, int x, int y, const std::string& text, int size, const std::string& font,
+                      const float colour[3]);
+};
+
+/// What the module exports, as extern "C".
+using GetModule = const Module* (*)();
+constexpr const char* kGetModule = "acdf_images_module";
+
+/// Opened on the first call, by any thread, and kept. The file is at ACDF_IMAGES_MODULE from the running program's
+/// folder; a program that lies elsewhere defines acdf_images_module_path (module.cpp). Throws std::runtime_error
+/// that names the file where it is missing, damaged or of another version.
+const Module& module();
+
+} // namespace acdf::images

@@ -1,0 +1,80 @@
+#include "parts.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+
+namespace acdf::images {
+namespace {
+
+OIIO::ImageInput& input_of(void* image) { return *static_cast<OIIO::ImageInput*>(image); }
+
+const OIIO::ImageSpec& spec_of(const void* image) { return static_cast<const OIIO::ImageInput*>(image)->spec(); }
+
+Header header_of(const OIIO::ImageInput& input) {
+    const OIIO::ImageSpec& s = input.spec();
+    Header header;
+    header.format = input.format_name();
+    header.data = {s.x, s.y, s.width, s.height};
+    header.display = {s.full_x, s.full_y, s.full_width, s.full_height};
+    header.depth = s.depth;
+    header.tile_height = s.tile_width > 0 ? s.tile_height : 0;
+    header.channel_count = s.nchannels;
+    header.channels = s.channelnames;
+    header.deep = s.deep;
+    header.floating = s.format.basetype == OIIO::TypeDesc::HALF || s.format.basetype == OIIO::TypeDesc::FLOAT ||
+                      s.format.basetype == OIIO::TypeDesc::DOUBLE;
+    header.sample_bytes = static_cast<int>(s.format.basesize());
+    return header;
+}
+
+} // namespace
+
+void* open_image(const std::string& path, int threads, Header& header, std::string& error) {
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+    error = OIIO::geterror();
+    if (!input) return nullptr;
+    input->threads(threads);
+    header = header_of(*input);
+    return input.release();
+}
+
+void close_image(void* image) { std::unique_ptr<OIIO::ImageInput>(static_cast<OIIO::ImageInput*>(image)); }
+
+bool seek_part(void* image, int part, Header& header) {
+    OIIO::ImageInput& input = input_of(image);
+    if (!input.seek_subimage(part, 0)) {
+        input.geterror(); // there being no such part is no error
+        return false;
+    }
+    header = header_of(input);
+    return true;
+}
+
+bool read_rows(void* image, const Rows& rows, float* to, std::string& error) {
+    OIIO::ImageInput& input = input_of(image);
+    const OIIO::ImageSpec& s = input.spec();
+    const int part = input.current_subimage(), begin = s.y + rows.first_row, end = s.y + rows.last_row;
+    const bool done =
+        s.tile_width > 0
+            ? input.read_tiles(part, 0, s.x, s.x + s.width, begin, end, s.z, s.z + 1, rows.first_channel,
+                               rows.last_channel, OIIO::TypeDesc::FLOAT, to, rows.pixel_stride, rows.row_stride)
+            : input.read_scanlines(part, 0, begin, end, s.z, rows.first_channel, rows.last_channel,
+                                   OIIO::TypeDesc::FLOAT, to, rows.pixel_stride, rows.row_stride);
+    // Some readers report what is missing, but say they succeeded.
+    if (done && !input.has_error()) return true;
+    error = input.geterror();
+    return false;
+}
+
+std::string text_of(const void* image, const char* name) { return spec_of(image).get_string_attribute(name); }
+
+int integer_of(const void* image, const char* name, int otherwise) {
+    return spec_of(image).get_int_attribute(name, otherwise);
+}
+
+float real_of(const void* image, const char* name, float otherwise) {
+    return spec_of(image).get_float_attribute(name, otherwise);
+}
+
+} // namespace acdf::images

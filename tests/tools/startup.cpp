@@ -1,0 +1,157 @@
+// What the program loads before it has anything to do: no library for images, until there is one.
+#include "tests/tools/plot/files.h"
+#include "tests/tools/run.h"
+
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+namespace acdf::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names of the shared libraries that a run of the program loads, as the dynamic linker tells them (ld.so(8)).
+std::set<std::string> loaded_by(const std::vector<std::string>& arguments) {
+    const Folder folder;
+    setenv("LD_DEBUG", "files", 1);
+    setenv("LD_DEBUG_OUTPUT", (folder / "ld").c_str(), 1); // .PID is added
+    const Result result = run_acdf(arguments, "0,0,1\n");
+    unsetenv("LD_DEBUG");
+    unsetenv("LD_DEBUG_OUTPUT");
+    EXPECT_EQ(result.code, 0) << result.err;
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder / "")) {
+        std::istringstream lines(read_text(entry.path()));
+        for (std::string line; std::getline(lines, line);) {
+            const std::size_t begin = line.find("file="), end = line.find(" [", begin);
+            if (begin == std::string::npos || end == std::string::npos ||
+                line.find("generating link map") == std::string::npos)
+                continue;
+            names.insert(fs::path(line.substr(begin + 5, end - begin - 5)).filename().string());
+        }
+    }
+    return names;
+}
+
+bool has(const std::set<std::string>& names, const std::string& beginning) {
+    const auto found = names.lower_bound(beginning);
+    return found != names.end() && found->rfind(beginning, 0) == 0;
+}
+
+class Startup : public testing::Test {
+protected:
+    Folder folder;
+    std::string sky = folder / "sky.acdf", image = folder / "sky.exr", table = folder / "table.npy";
+
+    void SetUp() override {
+        write_bytes(sky, small_environment());
+        std::string npy("\x93NUMPY\x01\x00\x76\x00", 10);
+        npy += "{'descr': '<f4', 'fortran_order': False, 'shape': (4,), }";
+        npy.resize(127, ' ');
+        write_text(table, npy + "\n" + std::string("\0\0\x80\x3F\0\0\0\x40\0\0\x40\x40\0\0\x80\x40", 16)); // 1 to 4
+    }
+    /// 32 x 16 texels; opens the module in this process.
+    void write_image() {
+        std::vector<float> rgb(32 * 16 * 3);
+        for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = 1.0f + static_cast<float>(i / 3 % 7);
+        write_rgb(image, 32, 16, rgb);
+    }
+    /// The program as it is installed, in another place.
+    std::string copied_program() {
+        fs::create_directories(folder / "moved/bin");
+        fs::copy_file(ACDF_PROGRAM, folder / "moved/bin/acdf");
+        return folder / "moved/bin/acdf";
+    }
+    /// Where that one looks for the module.
+    std::string place_of_module() {
+        const fs::path way = fs::path(ACDF_IMAGES_MODULE).lexically_relative(fs::path(ACDF_PROGRAM).parent_path());
+        const fs::path place = (fs::path(folder / "moved/bin") / way).lexically_normal();
+        fs::create_directories(place.parent_path());
+        return fs::canonical(place.parent_path()) / place.filename();
+    }
+    void expect_refused(const std::string& program, const std::string& why) {
+        const std::string module = place_of_module();
+        const std::vector<std::string> commands[] = {{"env", image, "-o", folder / "x.acdf", "-q"},
+                                                     {"plot", sky, "-o", folder / "x.png", "-q"},
+                                                     {"batch", image, "-o", folder / "out", "-q"}};
+        for (const std::vector<std::string>& command : commands) {
+            const Result result = run_acdf(command, "", program);
+            EXPECT_EQ(result.code, 1) << command[0];
+            EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+            EXPECT_NE(result.err.find(module + ": "), std::string::npos) << result.err;
+            EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
+        }
+        EXPECT_FALSE(fs::exists(folder / "x.acdf"));
+        EXPECT_FALSE(fs::exists(folder / "x.png"));
+    }
+};
+
+TEST_F(Startup, LoadsNoLibraryForImagesWhereThereIsNone) {
+    write_text(image, "never opened");
+    const std::vector<std::string> commands[] = {
+        {"--version"},
+        {"--help"},
+        {"env", "--help"},
+        {"info", sky},
+        {"validate", sky},
+        {"sample", sky, "--count", "4"},
+        {"pdf", sky},
+        {"brdf", "ggx:alpha=0.5", "-o", folder / "ggx.acdf", "--budget", "4KiB", "-q"},
+        {"table", table, "-o", folder / "table.acdf", "-q"},
+        {"batch", image, "-o", folder / "out", "--dry-run"},
+    };
+    for (const std::vector<std::string>& command : commands) {
+        const std::set<std::string> names = loaded_by(command);
+        EXPECT_TRUE(has(names, "libstdc++")) << command[0]; // the list is one
+        EXPECT_FALSE(has(names, "libOpenImageIO")) << command[0];
+        EXPECT_FALSE(has(names, "acdf_images")) << command[0];
+        EXPECT_LT(names.size(), 20u) << command[0];
+    }
+}
+
+TEST_F(Startup, LoadsThemWhereThereIs) {
+    write_image();
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"env", image, "-o", folder / "x.acdf", "-q"},
+          {"plot", sky, "-o", folder / "x.png", "-q"},
+          {"batch", image, "-o", folder / "out", "--dry-run", "--json"}}) {
+        const std::set<std::string> names = loaded_by(command);
+        EXPECT_TRUE(has(names, "libOpenImageIO")) << command[0];
+        EXPECT_TRUE(has(names, "acdf_images")) << command[0];
+    }
+}
+
+TEST_F(Startup, TheProgramAndItsModuleMayBeMovedTogether) {
+    write_image();
+    const std::string program = copied_program();
+    fs::copy_file(ACDF_IMAGES_MODULE, place_of_module());
+    const Result result = run_acdf({"env", image, "-o", folder / "x.acdf"}, "", program);
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(run_acdf({"env", image, "-o", folder / "y.acdf"}).code, 0);
+    EXPECT_EQ(read_text(folder / "x.acdf"), read_text(folder / "y.acdf"));
+}
+
+TEST_F(Startup, AMissingModuleIsNamed) {
+    write_image();
+    const std::string program = copied_program();
+    expect_refused(program, "No such file");
+    EXPECT_EQ(run_acdf({"info", sky}, "", program).code, 0);
+}
+
+TEST_F(Startup, ADamagedModuleIsNamed) {
+    write_image();
+    write_text(place_of_module(), "no library");
+    expect_refused(copied_program(), "too short");
+    write_text(place_of_module(), std::string(4096, 'x'));
+    expect_refused(folder / "moved/bin/acdf", "invalid ELF header");
+}
+
+TEST_F(Startup, AModuleOfAnotherVersionIsNamed) {
+    write_image();
+    fs::copy_file(ACDF_OTHER_MODULE, place_of_module());
+    expect_refused(copied_program(), "it is of version 0.0, not ");
+}
+
+} // namespace
+} // namespace acdf::test
