@@ -13,6 +13,19 @@
 #ifndef ACDF_FN
 #define ACDF_FN static inline
 #endif
+/* Functions that are faster as a part of what calls them, and what is rarely called from such. */
+#ifndef ACDF_INLINE
+#if defined(__CUDACC__)
+#define ACDF_INLINE static __forceinline__ __host__ __device__
+#define ACDF_OUTLINE ACDF_FN
+#elif defined(__GNUC__)
+#define ACDF_INLINE static inline __attribute__((always_inline))
+#define ACDF_OUTLINE static __attribute__((noinline, unused))
+#else
+#define ACDF_INLINE ACDF_FN
+#define ACDF_OUTLINE ACDF_FN
+#endif
+#endif
 
 #if defined(__BYTE_ORDER__) && defined(__ORDER_BIG_ENDIAN__)
 #if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__

@@ -14,6 +14,7 @@
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
 
+#include <acdf/cells.h>
 #include <acdf/grid.h>
 #include <acdf/random.h>
 
@@ -27,6 +28,7 @@ typedef struct AcdfEnvironment {
     uint32_t columns;          /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi; or u from 0 to 1 */
     uint32_t rows;             /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi; or v from 0 to 1 */
     double total;              /* integral of the target over the sphere */
+    const AcdfCells* cells;    /* runtime tables of a lat-long file; null: the tree is walked */
     uint32_t parameterization; /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
 } AcdfEnvironment;
 
@@ -38,9 +40,8 @@ ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
     return grid;
 }
 
-/* Draws a direction. u0 (phi or u) and u1 (theta or v) in [0, 1]; values outside are clamped, NaN counts as 0.
- * Monotone in each of them within a segment: strata of random numbers stay strata of directions. */
-ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
+/* acdf_environment_sample by the tree alone. */
+ACDF_OUTLINE AcdfDirectionSample acdf_environment_walk_sample(const AcdfEnvironment* env, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(env);
     double u[2], p;
     AcdfRange range[2];
@@ -49,6 +50,15 @@ ACDF_FN AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, 
     acdf_sphere_ranges(env->columns, env->rows, range);
     p = acdf_tree_sample(env->tree, env->root, u, range);
     return acdf_grid_place(&grid, range, u, p);
+}
+
+/* Draws a direction. u0 (phi or u) and u1 (theta or v) in [0, 1]; values outside are clamped, NaN counts as 0.
+ * Monotone in each of them within a segment: strata of random numbers stay strata of directions. (Inlined: what is
+ * returned by a call goes through memory, in parts that are waited for longer than the tables take.) */
+ACDF_INLINE AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
+    AcdfDirectionSample out;
+    if (env->cells && acdf_cells_sample(env->cells, u0, u1, &out)) return out;
+    return acdf_environment_walk_sample(env, u0, u1);
 }
 
 /* Where a direction falls: its cell and, if `strata` is not null, the random numbers that lead there; if that
@@ -68,14 +78,21 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     return p;
 }
 
-/* Density per steradian with which acdf_environment_sample draws `direction` (unit). 0 where none falls,
- * and for directions that are NaN or not of unit length. */
-ACDF_FN float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
+/* acdf_environment_pdf by the tree alone. */
+ACDF_OUTLINE float acdf_environment_walk_pdf(const AcdfEnvironment* env, const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(env);
     AcdfRange range[2];
     double t[2];
     const double p = acdf_environment_find(env, direction, range, t, 0);
     return p > 0.0 ? acdf_grid_pdf(&grid, range, t, p) : 0.0f;
+}
+
+/* Density per steradian with which acdf_environment_sample draws `direction` (unit). 0 where none falls,
+ * and for directions that are NaN or not of unit length. */
+ACDF_INLINE float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
+    float pdf;
+    if (env->cells && acdf_cells_pdf(env->cells, direction, &pdf)) return pdf;
+    return acdf_environment_walk_pdf(env, direction);
 }
 
 /* The random numbers u[2] for which acdf_environment_sample returns `direction`. Returns 1, or 0 (and u
