@@ -225,7 +225,8 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
 // They are only for speed: where there is no memory for them, the file is as good without.
 void File::make_tables() noexcept {
     constexpr u64 most = u64{1} << 20;
-    if (kind() != ACDF_KIND_ENVIRONMENT) return;
+    // On the octahedral square a walk needs no trigonometry; its cells are not pieces of azimuth and height.
+    if (kind() != ACDF_KIND_ENVIRONMENT || description_->parameterization != ACDF_PARAM_LATLONG) return;
     AcdfCells* const cells = make_cells(environment().data(), tree_units_, 8 * size_ + most);
     owned_[2] = cells;
     cells_ = cells;
@@ -253,8 +254,8 @@ Text File::metadata(const char* key) const noexcept {
 
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
-                            axes_[ACDF_AXIS_THETA].resolution, description_->total, cells_,
-                            description_->parameterization});
+                            axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
+                            cells_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
@@ -265,8 +266,8 @@ LocalEnvironmentView File::local() const noexcept {
                          axes_[ACDF_AXIS_PHI].resolution,
                          axes_[ACDF_AXIS_THETA].resolution,
                          description_->total,
-                         nullptr,
-                         description_->parameterization};
+                         description_->parameterization,
+                         nullptr};
     local.bins = bins_;
     local.lights = lights_;
     local.light_count = local_->light_count;

@@ -294,7 +294,6 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes) {
 } // namespace
 
 AcdfCells* make_cells(const AcdfEnvironment& environment, u32 tree_units, std::size_t most_bytes) noexcept {
-    if (environment.parameterization == ACDF_PARAM_OCTAHEDRAL) return nullptr;
     CellsMaker maker(environment, tree_units);
     return maker.gather() ? maker.assemble(most_bytes) : nullptr;
 }

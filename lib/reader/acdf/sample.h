@@ -28,8 +28,8 @@ typedef struct AcdfEnvironment {
     uint32_t columns;          /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi; or u from 0 to 1 */
     uint32_t rows;             /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi; or v from 0 to 1 */
     double total;              /* integral of the target over the sphere */
-    const AcdfCells* cells;    /* runtime tables of a lat-long file; null: the tree is walked */
     uint32_t parameterization; /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
+    const AcdfCells* cells;    /* runtime tables; null: the tree is walked */
 } AcdfEnvironment;
 
 ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
