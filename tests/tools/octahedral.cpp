@@ -1,0 +1,164 @@
+// Octahedral maps, and maps of other layouts, through the program: the grid, measures against any source, presets.
+#include "tests/inputs/synthetic.h"
+#include "tests/tools/plot/files.h"
+#include "tests/tools/run.h"
+
+#include "build/projection.h"
+#include "tools/cli/renderer.h"
+
+#include <acdf/reader.h>
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+namespace acdf::test {
+namespace {
+
+using nlohmann::json;
+
+class OctahedralCommand : public testing::Test {
+protected:
+    Folder folder;
+    const std::string square = folder / "square.exr", latlong = folder / "latlong.exr", disc = folder / "disc.exr",
+                      output = folder / "out.acdf";
+
+    void SetUp() override {
+        write_map(square, {build::Layout::octahedral, 64, 64});
+        write_map(latlong, {build::Layout::latlong, 128, 64});
+        write_map(disc, {build::Layout::angular, 96, 96});
+    }
+
+    static void write_map(const std::string& path, const build::Map& map) {
+        std::vector<float> rgb;
+        for (int y = 0; y < map.height; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                build::Direction d;
+                const bool shown = build::to_direction(map, (x + 0.5) / map.width, (y + 0.5) / map.height, d);
+                const double light = !shown ? 0.0
+                                     : d.x * 0.6 + d.z * 0.8 > 0.99
+                                         ? 300.0
+                                         : acdf_test::smooth_sky(std::atan2(d.y, d.x), d.z);
+                rgb.insert(rgb.end(), 3, static_cast<float>(light));
+            }
+        write_rgb(path, map.width, map.height, rgb);
+    }
+
+    json made(const std::string& source, std::vector<std::string> options, const char* command = "env") {
+        options.insert(options.begin(), {command, source, "-o", output, "--force", "--json"});
+        const Result result = run_acdf(options);
+        EXPECT_EQ(result.code, 0) << result.err;
+        messages = result.err;
+        return result.code == 0 ? json::parse(result.out) : json();
+    }
+    json measured(const std::string& source, std::vector<std::string> options = {}) {
+        options.insert(options.begin(), {"measure", output, "--against", source, "--json"});
+        const Result result = run_acdf(options);
+        EXPECT_EQ(result.code, 0) << result.err;
+        messages = result.err;
+        return result.code == 0 ? json::parse(result.out) : json();
+    }
+    std::uint32_t parameterization() const {
+        File file;
+        EXPECT_TRUE(File::open(output.c_str(), file).ok());
+        return file.description().parameterization;
+    }
+    std::string messages;
+};
+
+const std::vector<std::string> as_square{"--projection", "octahedral"}, as_disc{"--projection", "angular"};
+
+TEST_F(OctahedralCommand, FitsTheMapsOwnTexels) {
+    const json report = made(square, as_square);
+    EXPECT_EQ(report["domain"], "octahedral");
+    EXPECT_EQ(report["resolution"], json({64, 64}));
+    EXPECT_EQ(report["resampling_error"], 0.0);
+    EXPECT_EQ(report["support_violations"], 0);
+    EXPECT_EQ(parameterization(), std::uint32_t{ACDF_PARAM_OCTAHEDRAL});
+    EXPECT_EQ(messages.find("resampled"), std::string::npos) << messages;
+    const json told = measured(square, as_square);
+    EXPECT_EQ(told["relative_variance"], report["relative_variance"]);
+    const Result valid = run_acdf({"validate", output});
+    EXPECT_EQ(valid.code, 0) << valid.out << valid.err;
+    const Result info = run_acdf({"info", output, "--json"});
+    EXPECT_EQ(json::parse(info.out)["parameterization"], "octahedral");
+    EXPECT_EQ(json::parse(info.out)["axes"][0]["name"], "u");
+    const Result plot = run_acdf({"plot", output, "-o", folder / "out.png", "--width", "128"});
+    EXPECT_EQ(plot.code, 0) << plot.err;
+}
+
+TEST_F(OctahedralCommand, LatLongMapsKeepTheirOwn) {
+    EXPECT_EQ(made(latlong, {})["domain"], "latlong");
+    EXPECT_EQ(made(latlong, {"--domain", "octahedral"})["domain"], "octahedral");
+    EXPECT_GT(made(latlong, {"--domain", "octahedral"})["least_variance"], 0.0);
+    const json back = made(square, {"--projection", "octahedral", "--domain", "latlong"});
+    EXPECT_EQ(back["domain"], "latlong");
+    EXPECT_EQ(parameterization(), std::uint32_t{ACDF_PARAM_LATLONG});
+}
+
+// Which is measured in the end is the map that is looked up, whatever the file was made from.
+TEST_F(OctahedralCommand, IsMeasuredAgainstAnySource) {
+    made(square, as_square);
+    const double own = measured(square, as_square)["relative_variance"];
+    const json other = measured(latlong);
+    EXPECT_NE(messages.find("SHA-256"), std::string::npos) << messages;
+    EXPECT_EQ(other["support_violations"], 0);
+    EXPECT_GT(other["relative_variance"], own);
+    EXPECT_LT(other["relative_variance"], 1.0); // the same picture
+    made(latlong, {});
+    EXPECT_LT(measured(disc, as_disc)["relative_variance"], 1.0);
+    made(disc, as_disc);
+    EXPECT_LT(measured(square, as_square)["relative_variance"], 1.0);
+}
+
+TEST_F(OctahedralCommand, WarnsWhereResamplingIsTheLargerPart) {
+    made(disc, {"--projection", "angular", "--cells", "20000"});
+    EXPECT_NE(messages.find("resampling is the larger part"), std::string::npos) << messages;
+    made(square, {"--projection", "octahedral", "--cells", "20000"});
+    EXPECT_EQ(messages.find("resampling is the larger part"), std::string::npos) << messages;
+}
+
+TEST_F(OctahedralCommand, LocalFilesLieOnItToo) {
+    const json report = made(square, {"--projection", "octahedral", "--budget", "40kB"}, "local");
+    EXPECT_EQ(report["domain"], "octahedral");
+    EXPECT_EQ(report["support_violations"], 0);
+    EXPECT_EQ(parameterization(), std::uint32_t{ACDF_PARAM_OCTAHEDRAL});
+    const json told = measured(square, {"--projection", "octahedral", "--rivals"});
+    EXPECT_EQ(told["relative_variance"], report["relative_variance"]);
+    const Result plot = run_acdf({"plot", output, "-o", folder / "out.png", "--width", "128", "--normal", "0,0,1"});
+    EXPECT_EQ(plot.code, 0) << plot.err;
+}
+
+// The table of docs/conventions.md is what the program does.
+TEST_F(OctahedralCommand, PresetsAreDocumented) {
+    std::ifstream page(std::string(ACDF_TEST_DIR) + "/../docs/conventions.md");
+    std::string text((std::istreambuf_iterator<char>(page)), {});
+    for (std::size_t at; (at = text.find("\xe2\x88\x92")) != std::string::npos;) text.replace(at, 3, "-"); // U+2212
+    for (const tools::Renderer& renderer : tools::renderers) {
+        const char* domain = renderer.domain == input::Domain::octahedral ? "octahedral" : "latlong";
+        const char* filter = renderer.filter == ACDF_FILTER_BILINEAR ? "bilinear" : "nearest";
+        const std::string row = std::string("| `") + renderer.name + "` | `" + domain + "` | `" + filter + "` | `" +
+                                renderer.channel + "` | " + renderer.there + " |";
+        EXPECT_NE(text.find(row), std::string::npos) << row;
+    }
+}
+
+TEST_F(OctahedralCommand, PresetsSetDomainFilterAndChannel) {
+    const json report = made(latlong, {"--for", "pbrt-v4"});
+    EXPECT_EQ(report["domain"], "octahedral");
+    EXPECT_NE(messages.find("(-x, y, z)"), std::string::npos) << messages;
+    File file;
+    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    EXPECT_EQ(file.description().filter, std::uint32_t{ACDF_FILTER_NEAREST});
+    EXPECT_DOUBLE_EQ(file.description().channel_weights[0], 1.0 / 3.0);
+    made(latlong, {"--for", "mitsuba3", "--filter", "nearest"});
+    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    EXPECT_EQ(file.description().filter, std::uint32_t{ACDF_FILTER_NEAREST}) << "what is given by itself wins";
+    made(latlong, {"--for", "mitsuba3"});
+    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    EXPECT_EQ(file.description().filter, std::uint32_t{ACDF_FILTER_BILINEAR});
+    EXPECT_EQ(run_acdf({"env", latlong, "-o", output, "--force", "--for", "povray"}).code, 2);
+}
+
+} // namespace
+} // namespace acdf::test
