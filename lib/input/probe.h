@@ -1,7 +1,7 @@
 // Reads environment maps of any common projection into one form: lat-long radiance.
 #pragma once
 
-#include "build/bad_texels.h"
+#include "build/probe_rows.h"
 
 #include <array>
 #include <cstdint>
@@ -43,14 +43,7 @@ struct Probe {
     std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
 };
 
-/// Takes a lat-long probe in bands of rows.
-class ProbeRows {
-public:
-    virtual ~ProbeRows() = default;
-    virtual void begin(int width, int height) = 0;
-    /// `count` rows of RGB, finite and >= 0, from row `first` on. Rows that were there before are replaced.
-    virtual void take(int first, int count, const float* rgb) = 0;
-};
+using build::ProbeRows;
 
 /// Reads any image OpenImageIO reads. Throws Error.
 Probe read_probe(const std::string& path, const ProbeOptions& options = {});

@@ -1,15 +1,14 @@
 #include "tools/cli/probe_source.h"
 
-#include "build/option_text.h"
+#include "build/errors.h"
 #include "tools/commands.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
 
 namespace acdf::tools {
 
-build::Source source_of(const input::Probe& probe, const input::ProbeOptions& options) {
+builder::Source source_of(const input::Probe& probe, const input::ProbeOptions& options) {
     return {probe.source_name, probe.source_sha256, input::to_string(probe.projection), reading_text(options)};
 }
 
@@ -23,29 +22,16 @@ std::string reading_text(const input::ProbeOptions& options) {
 
 namespace {
 
-/// Rows of a probe on their way into a target.
-class TargetRows : public input::ProbeRows {
-public:
-    explicit TargetRows(const compress::TargetOptions& options) : options_(options) {}
-    void begin(int width, int height) override {
-        target_.emplace(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), options_);
-    }
-    void take(int first, int count, const float* rgb) override {
-        target_->take(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), rgb);
-    }
-    compress::Target finish() { return target_->finish(); }
-
-private:
-    compress::TargetOptions options_;
-    std::optional<compress::EnvironmentTarget> target_;
-};
-
-compress::Target lit(const std::string& path, compress::Target target) {
-    if (!(compress::integral(target) > 0.0))
+/// What `make` makes, unless it has no energy.
+template <class Make>
+builder::Target lit(const std::string& path, const Make& make) {
+    try {
+        return make();
+    } catch (const build::NoEnergy&) {
         throw Failure(path +
                       ": the probe is black in the channels asked for, so there is nothing to sample; is it the "
                       "right file or layer? (what is black in all channels is accepted with --on-black uniform)");
-    return target;
+    }
 }
 
 void tell(const input::Probe& probe, const input::ProbeOptions& options, const Note& note) {
@@ -72,10 +58,14 @@ Note notes_of(const std::string& path, bool quiet) {
 
 } // namespace
 
-compress::Target probe_target(const std::string& path, const input::Probe& probe,
-                              const compress::TargetOptions& options) {
-    return lit(path, compress::environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
-                                                  static_cast<std::uint32_t>(probe.height), options));
+builder::Target probe_target(const std::string& path, const input::Probe& probe,
+                             const builder::TargetOptions& options) {
+    return lit(path, [&] {
+        builder::TargetRows rows(options);
+        rows.begin(probe.width, probe.height);
+        rows.take(0, probe.height, probe.rgb.data());
+        return rows.finish();
+    });
 }
 
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet) {
@@ -85,28 +75,29 @@ input::Probe load_probe(const std::string& path, const input::ProbeOptions& opti
 }
 
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
-                        const compress::TargetOptions& target_options, const Note& note) {
-    TargetRows rows(target_options);
+                        const builder::TargetOptions& target_options, const Note& note) {
+    builder::TargetRows rows(target_options);
     input::Probe probe = input::read_probe(path, options, rows);
     tell(probe, options, note);
-    return {std::move(probe), lit(path, rows.finish())};
+    builder::Target target = lit(path, [&] { return rows.finish(); });
+    return {std::move(probe), std::move(target)};
 }
 
-compress::Target source_target(const std::string& path, const File& file, const std::string& source,
-                               const input::ProbeOptions& options, bool quiet) {
+builder::Target source_target(const std::string& path, const File& file, const std::string& source,
+                              const input::ProbeOptions& options, bool quiet) {
     const AcdfDescription& d = file.description();
-    auto [probe, target] = load_target(source, options,
-                                       {{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
-                                        static_cast<AcdfChannels>(d.channels),
-                                        static_cast<AcdfFilter>(d.filter)},
-                                       notes_of(source, quiet));
+    builder::TargetOptions as_stored;
+    as_stored.channels = {static_cast<AcdfChannels>(d.channels),
+                          {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]}};
+    as_stored.filter = static_cast<AcdfFilter>(d.filter);
+    auto [probe, target] = load_target(source, options, as_stored, notes_of(source, quiet));
     const Text hash = file.metadata("source.sha256");
     if (hash.size > 0 && std::string(hash.data, hash.size) != probe.source_sha256 && !quiet)
         std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
                      source.c_str());
     const AcdfAxis &phi = file.axis(ACDF_AXIS_PHI), &theta = file.axis(ACDF_AXIS_THETA);
-    if (phi.resolution != target.columns || theta.resolution != target.rows)
-        throw Failure(source + ": is " + std::to_string(target.columns) + "x" + std::to_string(target.rows) +
+    if (phi.resolution != target.columns() || theta.resolution != target.rows())
+        throw Failure(source + ": is " + std::to_string(target.columns()) + "x" + std::to_string(target.rows()) +
                       " as a lat-long map, but " + path + " was made from " + std::to_string(phi.resolution) + "x" +
                       std::to_string(theta.resolution) + "; measure against the source it was made from");
     return target;

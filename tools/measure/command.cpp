@@ -74,8 +74,9 @@ void run(const MeasureArguments& options) {
     }
     if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT)
         fail_kind(options.file, loaded.file, "measure", "files of every other kind");
-    const compress::Target target =
+    const builder::Target held =
         source_target(options.file, loaded.file, options.source, options.input, options.quiet);
+    const compress::Target& target = builder::grid_of(held);
     const build::Accuracy accuracy = build::measure_environment(loaded.file, target);
     const double full_cdf = measure::full_cdf_relative_variance(target);
     if (options.json) std::printf("%s\n", report(options, loaded.file, accuracy, full_cdf).dump(2).c_str());

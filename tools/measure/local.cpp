@@ -113,7 +113,8 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    const compress::Target target = source_target(options.file, file, options.source, options.input, options.quiet);
+    const builder::Target held = source_target(options.file, file, options.source, options.input, options.quiet);
+    const compress::Target& target = builder::grid_of(held);
     const std::vector<build::Normal> normals = build::random_normals(options.normals);
     const build::LocalAccuracy accuracy = build::summary(build::measure_normals(file, target, normals));
     const std::vector<Rival> rivals = options.rivals ? rivals_of(target, normals) : std::vector<Rival>{};

@@ -110,8 +110,8 @@ std::string output_of(const std::string& source, SweepKind kind) {
 
 Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
     input::Probe probe = load_probe(options.source, options.input, options.quiet);
-    const compress::Target target = probe_target(options.source, probe, options.sweep.target);
-    const build::Source source = source_of(probe, options.input);
+    const builder::Target target = probe_target(options.source, probe, options.sweep.target);
+    const builder::Source source = source_of(probe, options.input);
     probe.rgb = {};
     Sweep sweep = kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
                                            : sweep_environment(target, source, options.sweep, progress);
