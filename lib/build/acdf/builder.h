@@ -159,10 +159,10 @@ enum class Projection {
     octahedral,       ///< P. Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; square
 };
 
-/// Linear radiance that the caller holds, rows from the top, in the projection's own order of texels (lat-long: row 0
-/// touches +z, column 0 begins at phi = +pi and phi falls). Strides are in bytes, of any sign; 0: channels next to each
-/// other, pixels `channels` numbers apart, rows `width` pixels apart. Numbers need not be aligned, and may not overlap.
-/// At most 2^30 pixels. What is not lat-long is resampled to it, energy kept.
+/// Linear radiance that the caller holds, rows from the top, in the projection's own order of texels (lat-long: row
+/// 0 touches +z, column 0 begins at phi = +pi and phi falls). Strides are in bytes, of any sign; 0: channels next
+/// to each other, pixels `channels` numbers apart, rows `width` pixels apart. Numbers need not be aligned, and may
+/// not overlap. At most 2^30 pixels. What is not lat-long is resampled to it, energy kept.
 struct Pixels {
     const void* data = nullptr; ///< the first channel of the top left pixel
     std::uint32_t width = 0, height = 0;
@@ -306,9 +306,8 @@ struct Brdf {
     /// Fills `rgb` with finite numbers below 1e18; negative ones count as 0. Called by several threads at once. All
     /// that counts is what it returns for given arguments, which must always be the same.
     std::function<void(const double wo[3], const double wi[3], double rgb[3])> evaluate;
-    bool isotropic = true; ///< rho depends on the azimuths' difference only. false: it may turn with both
-    bool mirrored =
-        true; ///< and not on that difference's sign. Both halve the work and the file; neither is checked
+    bool isotropic = true; ///< rho depends on the difference of azimuths alone: views are stored for theta_o only
+    bool mirrored = true;  ///< and not on its sign: half of each density. Neither is checked; false is always right
 };
 
 /// Numbers that the caller holds, in 1 to 6 axes of at least 1 each. Strides in bytes, one an axis, of any sign;

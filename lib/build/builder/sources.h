@@ -3,6 +3,7 @@
 
 #include "build/array.h"
 #include "build/probe_rows.h"
+#include "build/progress.h"
 #include "build/reflectance.h"
 #include "compress/target.h"
 
@@ -10,6 +11,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace acdf::builder {
 
