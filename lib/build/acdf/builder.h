@@ -48,8 +48,7 @@
 
 namespace acdf::builder {
 
-// ---- outcomes and control
-// -----------------------------------------------------------------------------------------
+// ---- outcomes and control ----
 
 /// What kind of failure; the numbers are stable.
 enum class ErrorCode : int {
@@ -83,15 +82,14 @@ struct Control {
     Progress progress = {};
 };
 
-// ---- options
-// ------------------------------------------------------------------------------------------------------
+// ---- options ----
 
 /// How large a file is to be, or how accurate; only what `kind` names counts.
 struct Goal {
     enum class Kind { cells, budget, variance };
 
     Kind kind = Kind::cells;
-    std::uint32_t cells = 4096; ///< cells: about so many, 1 to 2^28; of what, each kind of file says
+    std::uint32_t cells = 4096; ///< cells: about so many, up to 2^28; of what, each kind of file says
     std::uint64_t budget = 0;   ///< budget: the most accurate file of at most so many bytes
     double variance = 0.0;      ///< variance: the smallest file of at most this relative variance, > 0
 
@@ -135,7 +133,8 @@ struct FitOptions {
     Conditional conditional = Conditional::energy;
 };
 
-/// Where a source came from. All of it is optional and goes into the file's metadata as it is.
+/// Where a source came from. All of it is optional, UTF-8, up to 4096 bytes each, and goes into the file's
+/// metadata.
 struct Source {
     std::string name;       ///< source.name
     std::string sha256;     ///< source.sha256, hex
@@ -143,8 +142,7 @@ struct Source {
     std::string reading;    ///< before the options in fit.options: "--projection angular "
 };
 
-// ---- light
-// --------------------------------------------------------------------------------------------------------
+// ---- light ----
 
 enum class Number { float32, float16, float64 };
 
@@ -162,7 +160,7 @@ enum class Projection {
 /// Linear radiance that the caller holds, rows from the top, in the projection's own order of texels (lat-long: row
 /// 0 touches +z, column 0 begins at phi = +pi and phi falls). Strides are in bytes, of any sign; 0: channels next
 /// to each other, pixels `channels` numbers apart, rows `width` pixels apart. Numbers need not be aligned, and may
-/// not overlap. At most 2^30 pixels. What is not lat-long is resampled to it, energy kept.
+/// not overlap. At most 2^30 pixels and 2^16 on a side. What is not lat-long is resampled to it, energy kept.
 struct Pixels {
     const void* data = nullptr; ///< the first channel of the top left pixel
     std::uint32_t width = 0, height = 0;
@@ -173,7 +171,7 @@ struct Pixels {
 };
 
 /// A lat-long map whose rows are asked for when they are needed: memory is that of the target, 4 bytes a texel for
-/// one channel and nearest lookup, and no more.
+/// one channel and nearest lookup, and a band of rows.
 struct Rows {
     std::uint32_t width = 0, height = 0;
     /// Fills `rgb` (count x width x 3) with rows first to first + count - 1. Called by one thread, from the top to
@@ -297,8 +295,7 @@ Status local(const Pixels& pixels, const LocalOptions& options, Local& result,
              const Control& control = {}) noexcept;
 Status local(const Rows& rows, const LocalOptions& options, Local& result, const Control& control = {}) noexcept;
 
-// ---- reflectance
-// --------------------------------------------------------------------------------------------------
+// ---- reflectance ----
 
 /// A BRDF rho(wo, wi) in sr^-1 without the cosine. wo (towards the viewer) and wi (towards the light) are unit
 /// vectors above the surface, z its normal. Nothing needs to be known of peaks: the fit looks for them.
@@ -327,8 +324,7 @@ Status tabulated(const Array& table, Brdf& brdf) noexcept;
 
 struct BrdfOptions {
     Channels channels;
-    Goal goal =
-        Goal::of_budget(64 << 10); ///< cells: that all views share, without sharing of each. Variance fit only
+    Goal goal = Goal::of_budget(64 << 10); ///< variance; cells: that views share, or of each, up to ACDF_MAX_TILES
     AcdfFit fit = ACDF_FIT_VARIANCE;
     bool sharing = true; ///< variance: views share cells and are interpolated; else each has a tree, nearest serves
     /// Stored views, 2 to 1024 in theta_o, and 1 or 4 to 1024 in phi_o; 0: as suits the size.
@@ -349,8 +345,7 @@ struct BrdfFile {
 /// A BRDF: a density over wi for every wo (acdf::BrdfView).
 Status brdf(const Brdf& brdf, const BrdfOptions& options, BrdfFile& result, const Control& control = {}) noexcept;
 
-// ---- tables
-// -------------------------------------------------------------------------------------------------------
+// ---- tables ----
 
 /// NaN, infinite and negative numbers; `first` is the row-major index of the first, UINT64_MAX where there is none.
 struct BadNumbers {
@@ -382,8 +377,7 @@ struct Table {
 /// that is constant on its box of the grid; numbers that float32 does not hold are scaled by a power of two.
 Status table(const Array& array, const TableOptions& options, Table& result, const Control& control = {}) noexcept;
 
-// ---- what makes a file
-// --------------------------------------------------------------------------------------------
+// ---- what makes a file ----
 
 /// What a file will tell as `fit.options`: equal texts, sources and versions of this library mean equal bytes. For
 /// caches. Empty where memory is short.

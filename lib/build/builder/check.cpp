@@ -1,8 +1,10 @@
 // What options may be, so that nothing behind has to ask.
 #include "build/builder/guard.h"
 #include "build/builder/options.h"
+#include "reader/utf8.h"
 
 #include <cmath>
+#include <string>
 
 namespace acdf::builder {
 namespace {
@@ -38,6 +40,16 @@ void check(const Goal& goal, std::uint32_t least_cells) {
             "goal.budget is 0, or above 2^40 bytes");
     require(goal.kind != Kind::variance || (goal.variance > 0.0 && std::isfinite(goal.variance)),
             "goal.variance is not a positive, finite number");
+}
+
+void check_text(const std::string& text, std::size_t most) {
+    require(text.size() <= most && is_utf8(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()),
+            "a text for the metadata, or the name of an axis, is not UTF-8 or too long");
+}
+
+void check(const Source& source) {
+    for (const std::string* text : {&source.name, &source.sha256, &source.projection, &source.reading})
+        check_text(*text, 4096);
 }
 
 void check_max_weight(double bound) {
@@ -95,6 +107,7 @@ void check(const TargetOptions& options) {
 void check(const EnvironmentOptions& options) {
     check(options.fit);
     check(options.codec);
+    check(options.source);
     if (options.fit.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, 1);
     require(options.fit.shape == Shape::tree || options.goal.kind == Goal::Kind::cells,
@@ -108,6 +121,8 @@ void check(const LocalOptions& options) {
     require(options.bin_target == BinTarget::mean || options.bin_target == BinTarget::centre,
             "bin_target is no BinTarget");
     check(options.codec);
+    check(options.source);
+    check_text(options.normals_text, 4096);
     if (!options.sharing) check(options.fit);
     if (!options.sharing && options.fit.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, options.sharing ? 16 : 1);
@@ -118,6 +133,7 @@ void check(const LocalOptions& options) {
 void check(const BrdfOptions& options) {
     check(options.channels);
     check(options.codec);
+    check(options.source);
     require(is_fit(options.fit), "fit is no AcdfFit");
     const std::uint32_t theta = options.theta_views, phi = options.phi_views;
     require(theta == 0 || (theta >= 2 && theta <= 1024), "theta_views is neither 0 nor in [2, 1024]");
@@ -135,6 +151,8 @@ void check(const TableOptions& options) {
     check(options.goal, 0);
     check_max_weight(options.max_weight);
     check(options.codec);
+    check(options.source);
+    for (const std::string& name : options.names) check_text(name, 15);
 }
 
 } // namespace acdf::builder

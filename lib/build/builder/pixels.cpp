@@ -10,6 +10,7 @@ namespace acdf::builder {
 namespace {
 
 constexpr std::uint64_t max_pixels = std::uint64_t{1} << 30;
+constexpr std::uint32_t max_steps = 1 << 16; // of a file's axis of directions, also once they are resampled
 
 struct Strides {
     std::ptrdiff_t channel, pixel, row;
@@ -31,6 +32,7 @@ Strides strides_of(const Pixels& pixels) {
 void check_size(std::uint32_t width, std::uint32_t height) {
     require(width > 0 && height > 0, "a map has no pixels: its width or height is 0");
     require(std::uint64_t{width} * height <= max_pixels, "a map has more than 2^30 pixels");
+    require(width <= max_steps && height <= max_steps, "a map has more than 65536 columns or rows");
 }
 
 } // namespace
@@ -47,7 +49,8 @@ void check(const Pixels& pixels) {
     const std::uint32_t used = pixels.channels == 1 ? 1 : 3;
     check_strides({{pixels.height, strides.row}, {pixels.width, strides.pixel}, {used, strides.channel}},
                   size_of(pixels.number));
-    require(build::has_shape({pixels.projection, static_cast<int>(pixels.width), static_cast<int>(pixels.height)}),
+    const build::Map map{pixels.projection, static_cast<int>(pixels.width), static_cast<int>(pixels.height)};
+    require(build::has_shape(map),
             "pixels do not have the shape of their projection: discs and octahedral maps are square, cubes 3:4 "
             "(vertical cross), 4:3 (horizontal cross) or 1:6 (stacked)");
 }

@@ -38,6 +38,7 @@ TEST(BuilderErrors, Pixels) {
     refused("no columns", [](Pixels& p) { p.width = 0; });
     refused("no rows", [](Pixels& p) { p.height = 0; });
     refused("too many", [](Pixels& p) { p.width = p.height = 0xFFFFFFFFu; });
+    refused("too many columns", [](Pixels& p) { p.width = 65537, p.height = 1; });
     refused("two channels", [](Pixels& p) { p.channels = 2; });
     refused("no channels", [](Pixels& p) { p.channels = 0; });
     refused("a wild number", [](Pixels& p) { p.number = static_cast<Number>(77); });
@@ -47,8 +48,8 @@ TEST(BuilderErrors, Pixels) {
     for (const std::ptrdiff_t stride : {far, -far, -far - 1, far / 30}) {
         refused("far rows", [&](Pixels& p) { p.row_stride = stride; });
         refused("far pixels", [&](Pixels& p) { p.pixel_stride = stride; });
-        refused("far channels", [&](Pixels& p) { p.channel_stride = stride; });
     }
+    refused("far channels", [](Pixels& p) { p.channel_stride = far; });
     refused("numbers counted, not bytes", [](Pixels& p) { p.row_stride = 3 * kSkyWidth; });
     refused("overlapping pixels", [](Pixels& p) { p.pixel_stride = 8; });
     refused("overlapping channels", [](Pixels& p) { p.channel_stride = 2; });
@@ -82,6 +83,8 @@ TEST(BuilderErrors, EnvironmentOptions) {
     refused("too many segments", [](EnvironmentOptions& o) { o.fit.theta_segments = 1 << 20; });
     for (const double e : {kNan, -0.1, 1.1}) refused("epsilon", [&](EnvironmentOptions& o) { o.fit.epsilon = e; });
     refused("a wild fit", [](EnvironmentOptions& o) { o.fit.fit = static_cast<AcdfFit>(0); });
+    refused("no text", [](EnvironmentOptions& o) { o.source.name = "\xE4.exr"; });
+    refused("too long a text", [](EnvironmentOptions& o) { o.source.reading.assign(5000, 'x'); });
     refused("a wild codec", [](EnvironmentOptions& o) { o.codec = static_cast<AcdfCodec>(9); });
     refused("a wild filter", [](EnvironmentOptions& o) { o.target.filter = static_cast<AcdfFilter>(9); });
     refused("no weights", [](EnvironmentOptions& o) { o.target.channels.weights = {0.0, 0.0, 0.0}; });
