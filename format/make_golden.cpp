@@ -123,6 +123,17 @@ Golden wide() {
     return golden("wide", cascade, environment_description(65536, 65536), 0.0);
 }
 
+/// On the octahedral square: parts of all eight octants, and one across both folds of the middle.
+Golden octahedral() {
+    const Cascade cascade = {{{kPhi, {3, 9, 20}, {0.125, 0.25, 0.5, 0.125}, {1, 2, -1, 3}, {}},
+                              {kTheta, {5, 16}, {0.5, 0.125, 0.375}, {}, {}},
+                              {kTheta, {10, 14}, {0.25, 0.75, 0.0}, {-1, 4, -1}, {}},
+                              {kTheta, {1, 23}, {0.375, 0.25, 0.375}, {}, {}},
+                              {kPhi, {4}, {0.25, 0.75}, {}, {}}},
+                             {0}};
+    return golden("octahedral", cascade, environment_description(24, 24, ACDF_PARAM_OCTAHEDRAL));
+}
+
 /// More segments than the short form of a count holds, and a child behind them that takes a longer link.
 Golden many_segments(const char* name, AcdfCodec codec) {
     Curve many{kPhi, {}, {}, {}, {}};
@@ -151,7 +162,7 @@ Description local_axes(Description d, const std::vector<AxisDescription>& normal
 
 /// A local environment with everything that bins can share: tiles with a curve and without, one of them a light;
 /// bin 7 is not stored.
-Golden local() {
+Golden local(const char* name, AcdfParameterization parameterization) {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
                               {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
                               {kTheta, {3}, {0.75, 0.25}, {3, -1}, {}},
@@ -168,11 +179,11 @@ Golden local() {
         rows.codes.insert(rows.codes.end(), {static_cast<std::uint8_t>(20 + 40 * r), 0}); // nothing for the light
     tree.roots.clear();
     for (std::uint32_t bin = 0; bin < 18; ++bin) tree.roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % 5);
-    Description d = local_axes(environment_description(12, 8),
+    Description d = local_axes(environment_description(12, 8, parameterization),
                                {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
     d.chunks = shared_chunks(rows);
     d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, 1, {5, 0}, {12, 3}}}));
-    return {"local", store(tree, d)};
+    return {name, store(tree, d)};
 }
 
 /// A tree for each bin of a grid of normals, some of them the same; bin 2 is not stored, bin 4 dark.
@@ -344,8 +355,9 @@ int main(int argc, char** argv) try {
     for (const Golden& golden :
          {smallest(), one_texel(), fitted("untilted", ACDF_FIT_VARIANCE, Order::z, ACDF_CODEC_NONE),
           fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB), tilted(), deep(), shared_child(), wide(),
-          many_segments("many_segments", ACDF_CODEC_NONE), many_segments("planes", ACDF_CODEC_ZLIB), local(),
-          local_grid(), brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
+          many_segments("many_segments", ACDF_CODEC_NONE), many_segments("planes", ACDF_CODEC_ZLIB), octahedral(),
+          local("local", ACDF_PARAM_LATLONG), local("octahedral_local", ACDF_PARAM_OCTAHEDRAL), local_grid(),
+          brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
           brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
           brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),
           brdf("brdf_floor", {0.25f, 0.75f}, 1, ACDF_VIEWS_MIRRORED, 0.25f), brdf_separate()}) {

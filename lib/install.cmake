@@ -13,10 +13,18 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tree.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/wavefront.h
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
 

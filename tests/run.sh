@@ -6,7 +6,17 @@
 #   3. builds optimised with warnings as errors, and compares the files that both builds make byte for byte,
 #   4. runs all tests of the optimised build, those on real data too where it is present.
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
+#
+#   tests/run.sh            all of it
+#   tests/run.sh --quick    stage 4 and what it needs: the optimised build and its tests
 set -euo pipefail
+
+quick=false
+case "${1-}" in
+    "") ;;
+    --quick) quick=true ;;
+    *) echo "usage: tests/run.sh [--quick]" >&2; exit 2 ;;
+esac
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 jobs=$(nproc)
@@ -31,9 +41,12 @@ run_fuzzers() {
     ctest --preset asan --parallel 2 --label-regex fuzz
 }
 
-run_all_builds_alike() {
+build_release() {
     cmake --preset release -DACDF_BUILD_ONCE=ON
     cmake --build --preset release --parallel "$jobs"
+}
+
+run_all_builds_alike() {
     tests/same_bytes.sh build/release/tools/acdf build/asan/tools/acdf
 }
 
@@ -45,8 +58,17 @@ run_all_tests() {
     return "$status"
 }
 
+if $quick; then
+    step "Packages"
+    tools/install_packages.sh build quick
+    step "Optimised build, in build/release"
+    build_release
+    step "Its tests"
+    run_all_tests
+    exit
+fi
 step "Packages"
-tools/install_packages.sh
+tools/install_packages.sh build quick test
 step "0. Formatting"
 check_formatting
 step "1. Tests with sanitizers, in build/asan"
@@ -54,6 +76,7 @@ run_sanitized_tests
 step "2. A minute of the fuzzers, in build/asan"
 run_fuzzers
 step "3. The same bytes from both builds, with any number of threads"
+build_release
 run_all_builds_alike
 step "4. All tests, optimised, in build/release"
 run_all_tests

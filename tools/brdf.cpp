@@ -6,6 +6,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
@@ -157,7 +158,7 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
             "--diffuse-floor", brdf_.diffuse_share,
             "Share of samples that follow the cosine instead. Not needed for what the fit has seen, which it "
             "covers; it bounds weights where a renderer's BRDF differs from the one fitted")
-        ->check(CLI::Range(0.0f, 0.99f))
+        ->check(number_range(0.0, 0.99))
         ->option_text("X [0]")
         ->group("Fit");
 }
@@ -173,7 +174,7 @@ void BrdfConversion::add_size_options(CLI::App& command) {
     command
         .add_option("--eps", brdf_.epsilon,
                     "Stop adding knots once no curve deviates by more, for --fit cdf and pdf")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group("Size and accuracy");
 }

@@ -18,7 +18,7 @@ done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 step "Packages"
-tools/install_packages.sh
+tools/install_packages.sh build
 
 step "Building the acdf program in build/release"
 cmake --preset release -DACDF_BUILD_TESTS=OFF -DACDF_BUILD_ONCE=ON

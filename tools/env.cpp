@@ -5,15 +5,18 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
+#include "tools/cli/renderer.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -24,6 +27,10 @@ namespace {
 // Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
 // one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
 constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kEnvironmentMemoryOfPixel = 24;
+// A tree takes so much on top while it is looked for: of each cell asked for (four bytes of a budget, one where
+// it is for deflated ones). A variance may ask
+// for a cell a pixel.
+constexpr std::uint64_t kMemoryOfCell = 6000, kCellBytes = 4, kDeflatedCellBytes = 1, kVarianceMemoryOfPixel = 480;
 
 class EnvConversion : public Conversion {
 public:
@@ -39,9 +46,11 @@ private:
     void set_goal();
     void set_knots();
     void add_fit_options(CLI::App& command);
-    nlohmann::ordered_json report(const input::Probe& probe, const builder::Environment& result) const;
+    std::uint64_t memory_of_tree(std::uint64_t pixels) const;
+    nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Environment& result) const;
 
     input::ProbeOptions input_;
+    const Renderer* renderer_ = nullptr;
     builder::EnvironmentOptions environment_;
     std::string knots_, budget_;
     const CLI::App* command_ = nullptr;
@@ -98,6 +107,7 @@ void EnvConversion::set_knots() {
 }
 
 void EnvConversion::check() {
+    use_renderer(*command_, renderer_, input_, environment_.target);
     const AcdfFit fit = environment_.fit.fit;
     for (const OnlyFor& rule : only_for)
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
@@ -116,12 +126,15 @@ const char* order_name(builder::Order order) {
     return order == builder::Order::best ? "free" : order == builder::Order::phi ? "phi" : "z";
 }
 
-nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const builder::Environment& result) const {
+nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const builder::Environment& result) const {
+    const input::Probe& probe = loaded.probe;
     const builder::EnvironmentAccuracy& a = result.accuracy;
     return {{"source", source},
             {"projection", input::to_string(probe.projection)},
             {"projection_reason", probe.projection_reason},
+            {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
             {"resolution", {probe.width, probe.height}},
+            {"resampling_error", loaded.error},
             {"bad_texels",
              {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
             {"fit", build::fit_name(environment_.fit.fit)},
@@ -137,17 +150,31 @@ nlohmann::ordered_json EnvConversion::report(const input::Probe& probe, const bu
             {"support_violations", a.support_violations}};
 }
 
+std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
+    const compress::FitOptions& fit = environment_.fit;
+    if (fit.fit != ACDF_FIT_VARIANCE) return 0;
+    if (fit.goal.kind == compress::Goal::Kind::variance) return pixels * kVarianceMemoryOfPixel;
+    const std::uint64_t bytes_of_cell = environment_.codec == ACDF_CODEC_NONE ? kCellBytes : kDeflatedCellBytes;
+    const std::uint64_t cells =
+        fit.goal.kind == compress::Goal::Kind::budget ? fit.goal.budget / bytes_of_cell : fit.goal.cells;
+    return std::min(cells * kMemoryOfCell, pixels * kVarianceMemoryOfPixel);
+}
+
 std::uint64_t EnvConversion::memory() const {
     const std::uint64_t pixels = input::image_pixels(source);
-    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel : 0;
+    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel + memory_of_tree(pixels) : 0;
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
-    const auto [probe, target] = load_target(source, input_, environment_.target, listener.note);
+    if (renderer_) listener.note(axes_text(*renderer_));
+    const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     builder::EnvironmentOptions options = environment_;
-    options.source = source_of(probe, input_);
+    options.source = source_of(loaded.probe, input_);
     builder::Environment result;
-    require_built(source, builder::environment(target, options, result, told(listener.progress)));
+    require_built(source, builder::environment(loaded.target, options, result, told(listener.progress)));
+    const std::string warning =
+        resampling_warning(loaded, result.accuracy.least_variance, result.accuracy.relative_variance);
+    if (!warning.empty()) listener.note(warning);
     char summary[160];
     std::snprintf(summary, sizeof summary, "%llu cells, relative variance %.4g (%s fit%s)",
                   static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
@@ -155,7 +182,7 @@ Converted EnvConversion::convert(const Listener& listener) {
                   result.order != builder::Order::best
                       ? (std::string(", ") + order_name(result.order) + " first").c_str()
                       : "");
-    nlohmann::ordered_json told = report(probe, result);
+    nlohmann::ordered_json told = report(loaded, result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
 
@@ -204,7 +231,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         .add_option("--max-weight", fit.max_weight,
                     "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "
                     "cells. It holds for whatever size is asked for, and fails where that is too small")
-        ->check(CLI::Range(1.01, 1e9))
+        ->check(number_range(1.01, 1e9))
         ->option_text("W")
         ->group("Size and accuracy");
     command
@@ -219,7 +246,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             "--eps", fit.epsilon,
             "Stop adding knots once no curve deviates by more: from the CDF for --fit cdf, from the density "
             "relative to its peak for --fit pdf")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group("Size and accuracy");
     command
@@ -243,6 +270,8 @@ void EnvConversion::add_fit_options(CLI::App& command) {
 void EnvConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
+    add_domain(command, input_.domain);
+    add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_fit_options(command);
     add_target_options(command, environment_.target);

@@ -1,23 +1,38 @@
 #!/usr/bin/env bash
-# Installs the packages of tools/packages.txt, or of the list given, that are missing (Debian 12 and its kin). Asks for
-# nothing, changes nothing where all are there. Used by tools/demo.sh, tests/run.sh and tests/tools/batch/farm.sh.
+# Installs packages that are missing (Debian 12 and its kin). Asks for nothing, changes nothing where all are there.
+# Used by tools/demo.sh, tests/run.sh and tests/tools/batch/farm.sh.
+#
+#   tools/install_packages.sh SET...     those of tools/packages.txt with such a second word
+#   tools/install_packages.sh LIST       all of another list, one a line
 set -euo pipefail
 
-list=${1:-"$(dirname "${BASH_SOURCE[0]}")/packages.txt"}
+usage() { echo "usage: tools/install_packages.sh build|quick|test... | LIST" >&2; exit 2; }
+
+(($# > 0)) || usage
+if [[ -f $1 ]]; then
+    wanted=$(grep -v '^#' "$1")
+else
+    list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
+    wanted=
+    for set in "$@"; do
+        of_set=$(awk -v set="$set" '!/^#/ && $2 == set { print $1 }' "$list")
+        [[ -n $of_set ]] || usage
+        wanted+=" $of_set"
+    done
+fi
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "This script installs packages with apt-get, which this system does not have." >&2
     echo "Install what corresponds to these Debian packages, then build with CMake:" >&2
-    grep -v '^#' "$list" >&2
+    echo $wanted >&2
     exit 1
 fi
 
 missing=()
-while read -r package; do
-    [[ -z $package || $package == \#* ]] && continue
+for package in $wanted; do
     status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
     [[ $status == installed ]] || missing+=("$package")
-done <"$list"
+done
 
 if ((${#missing[@]} == 0)); then
     echo "All needed packages are installed."

@@ -6,8 +6,10 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
+#include "tools/cli/renderer.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -42,10 +44,11 @@ private:
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
     void add_separate(CLI::App& command);
-    nlohmann::ordered_json report(const input::Probe& probe, const builder::Local& result) const;
+    nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Local& result) const;
 
     std::string normals_, budget_, knots_, scene_;
     input::ProbeOptions input_;
+    const Renderer* renderer_ = nullptr;
     input::SceneOptions scene_input_;
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
@@ -99,6 +102,7 @@ void LocalConversion::set_separate() {
 }
 
 void LocalConversion::check() {
+    use_renderer(*command_, renderer_, input_, local_.target);
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
@@ -141,12 +145,13 @@ double gain(const builder::Local& result) {
     return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
 }
 
-nlohmann::ordered_json LocalConversion::report(const input::Probe& probe, const builder::Local& result) const {
+nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const builder::Local& result) const {
     const builder::LocalAccuracy& a = result.accuracy;
     File file;
     File::from_memory(result.bytes.data(), result.bytes.size(), file);
     return {{"source", source},
-            {"resolution", {probe.width, probe.height}},
+            {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
+            {"resolution", {loaded.probe.width, loaded.probe.height}},
             {"bytes", result.bytes.size()},
             {"bins", file.description().bin_count},
             {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
@@ -177,10 +182,11 @@ std::uint64_t LocalConversion::memory() const {
 
 Converted LocalConversion::convert(const Listener& listener) {
     builder::LocalOptions local = read_scene(listener.note);
-    const auto [probe, target] = load_target(source, input_, local.target, listener.note);
-    local.source = source_of(probe, input_);
+    if (renderer_) listener.note(axes_text(*renderer_));
+    const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
+    local.source = source_of(loaded.probe, input_);
     builder::Local result;
-    require_built(source, builder::local(target, local, result, told(listener.progress)));
+    require_built(source, builder::local(loaded.target, local, result, told(listener.progress)));
     if (gain(result) < kWorthwhile) {
         char text[160];
         std::snprintf(text, sizeof text,
@@ -189,7 +195,7 @@ Converted LocalConversion::convert(const Listener& listener) {
                       gain(result));
         listener.note(text);
     }
-    nlohmann::ordered_json told = report(probe, result);
+    nlohmann::ordered_json told = report(loaded, result);
     const std::string summary = summary_of(result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
@@ -229,7 +235,7 @@ void LocalConversion::add_bins(CLI::App& command) {
             "--cosine-share", local.cosine_share,
             "This share of samples is drawn around the normal instead, density cos/pi; sample and pdf apply "
             "the mixture. For scenes in which the brightest light is often hidden; 0.2 is a good value")
-        ->check(CLI::Range(0.0, 0.99))
+        ->check(number_range(0.0, 0.99))
         ->option_text("X [0]")
         ->group("Normals");
 }
@@ -268,7 +274,7 @@ void LocalConversion::add_separate(CLI::App& command) {
         ->option_text("AxB [64x64]")
         ->group(group);
     command.add_option("--eps", fit.epsilon, "Deviation at which a curve has knots enough: as in acdf env")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group(group);
     const std::map<std::string, builder::Order> orders{{"phi", builder::Order::phi}, {"z", builder::Order::z}};
@@ -293,6 +299,8 @@ void LocalConversion::add_separate(CLI::App& command) {
 void LocalConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
+    add_domain(command, input_.domain);
+    add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_bins(command);
     add_size(command);

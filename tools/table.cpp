@@ -6,6 +6,7 @@
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/cli/progress.h"
@@ -177,7 +178,7 @@ void add_size_options(CLI::App& command, TableArguments& options) {
     command
         .add_option("--max-weight", options.table.max_weight,
                     "Bound on f/p over its mean, in every bin: no sample counts for more (no fireflies)")
-        ->check(CLI::Range(1.0, 1e30).description(""))
+        ->check(number_range(1.0, 1e30).description(""))
         ->option_text("W")
         ->group("Size and accuracy");
 }

@@ -2,13 +2,13 @@
 # method_tables.sh PROBES: the tables of docs/method.md, from the probes in a folder, as Markdown on stdout.
 # ACDF names the program (default: build/release/tools/acdf). The table of layouts comes from the program `layouts`
 # beside it in tests/bench (-DACDF_BUILD_BENCHMARKS=ON), and is left out where that is not built; LAYOUTS names it.
-# TABLES chooses some of: fits sizes options ratio layouts.
+# TABLES chooses some of: fits sizes options ratio layouts building. The last needs oiiotool, for maps of other sizes.
 set -euo pipefail
 probes=${1:?usage: docs/make/method_tables.sh PROBES}
 build=$(dirname "${BASH_SOURCE[0]}")/../../build/release
 acdf=${ACDF:-$build/tools/acdf}
 layouts=${LAYOUTS:-$build/tests/bench/layouts}
-tables=${TABLES:-fits sizes options ratio layouts}
+tables=${TABLES:-fits sizes options ratio layouts building}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -137,6 +137,33 @@ layouts() {
         done
     done
     "$layouts" "$work"/*_16KiB.acdf "$work"/*_64KiB.acdf
+}
+
+# Seconds of the processor, over all threads, and peak memory of `acdf env`, the start of the program, reading, hashing and
+# the exact measurement included. Noise is added to a map that has little else: the most that a partition can be asked for.
+building() {
+    local label map arguments spruit=$probes/spruit_sunrise_4k.exr
+    oiiotool "$spruit" --resize 8192x4096 -d half -o "$work/8k.exr"
+    oiiotool "$spruit" --resize 16384x8192 -d half --compression zip -o "$work/16k.exr"
+    oiiotool "$probes/noon_grass_1k.hdr" --resize 8192x4096 --noise:type=gaussian:mean=0:stddev=0.1 --clamp:min=0 \
+        -d half -o "$work/noise.exr"
+    echo "| map | options | seconds | memory |"
+    echo "|---|---|---|---|"
+    while IFS='|' read -r label map arguments; do
+        # shellcheck disable=SC2086
+        /usr/bin/time -f '%U %S %M' "$acdf" env "$map" $arguments -o "$work/x.acdf" --force --quiet 2>"$work/time"
+        awk -v label="$label" -v arguments="$arguments" \
+            '{ printf "| %s | `%s` | %.2f | %d MiB |\n", label, arguments, $1 + $2, $3 / 1024 }' "$work/time"
+    done <<LIST
+courtyard, 1024×512|$probes/courtyard.exr|--budget 64KiB
+courtyard, 1024×512|$probes/courtyard.exr|--budget 256KiB
+courtyard, 1024×512|$probes/courtyard.exr|--budget 1MiB
+spruit_sunrise, 4096×2048|$spruit|--budget 64KiB
+spruit_sunrise, 4096×2048|$spruit|--budget 1MiB
+spruit_sunrise, 8192×4096|$work/8k.exr|--budget 64KiB
+spruit_sunrise, 16384×8192|$work/16k.exr|--budget 64KiB
+noise, 8192×4096|$work/noise.exr|--budget 64KiB
+LIST
 }
 
 for table in $tables; do

@@ -40,7 +40,8 @@ typedef enum AcdfCodec {
 typedef enum AcdfParameterization {
     ACDF_PARAM_LATLONG = 1,    /* columns in phi, rows in theta; density uniform in z = cos(theta) */
     ACDF_PARAM_HALF_ANGLE = 2, /* reserved for BRDFs */
-    ACDF_PARAM_TABLE = 3       /* points of N-dimensional tables */
+    ACDF_PARAM_TABLE = 3,      /* points of N-dimensional tables */
+    ACDF_PARAM_OCTAHEDRAL = 4  /* columns in u, rows in v of the equal-area octahedral square */
 } AcdfParameterization;
 
 typedef enum AcdfFit { ACDF_FIT_UNIFORM = 1, ACDF_FIT_CDF = 2, ACDF_FIT_PDF = 3, ACDF_FIT_VARIANCE = 4 } AcdfFit;

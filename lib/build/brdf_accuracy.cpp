@@ -52,8 +52,9 @@ public:
         ViewAccuracy out;
         const double e = albedo_.value();
         out.albedo = e;
-        out.share_above_horizon = above_.value();
-        out.below_horizon = below_.value();
+        // Of what was summed: the sum is off by a thousandth, and no share is more than 1.
+        out.integral = above_.value() + below_.value();
+        out.share_above_horizon = out.integral > 0.0 ? above_.value() / out.integral : 0.0;
         if (!(e > 0.0)) return out;
         out.relative_variance = violations_ > 0 ? std::numeric_limits<double>::infinity()
                                                 : std::max(0.0, second_.value() / (e * e) - 1.0);

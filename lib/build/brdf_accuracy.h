@@ -21,7 +21,7 @@ struct ViewAccuracy {
     double kl_divergence = 0.0;           ///< integral of (f / albedo) ln(f / (albedo p)), nats
     double max_weight = 0.0;              ///< largest f/p over its mean
     double share_above_horizon = 0.0;     ///< of samples
-    double below_horizon = 0.0;           ///< of samples: 1 less the above, but for what the sum resolves
+    double integral = 0.0;                ///< of p over all directions: 1, but for what the sum resolves
     std::uint64_t support_violations = 0; ///< places with f > 0 and p = 0
 };
 

@@ -77,6 +77,13 @@ const Face* face_at(const CubeLayout& layout, int column, int row) {
     return nullptr;
 }
 
+Direction direction_on(const Face& face, double s, double t) {
+    const double scale = 1.0 / std::sqrt(1.0 + s * s + t * t);
+    return {scale * (face.centre.x + s * face.right.x + t * face.down.x),
+            scale * (face.centre.y + s * face.right.y + t * face.down.y),
+            scale * (face.centre.z + s * face.right.z + t * face.down.z)};
+}
+
 // Solid angle of [0, s] x [0, t] on the plane at distance 1.
 double corner_solid_angle(double s, double t) {
     return compress::pi * compress::half_turns(s * t, std::sqrt(1.0 + s * s + t * t));
@@ -124,6 +131,11 @@ ImagePoint cube_point(const Map& map, const Direction& d) {
     return {(face.column + s) / layout.columns, (face.row + t) / layout.rows, chart};
 }
 
+Direction cube_direction_beside(const Map& map, int face_column, int face_row, double s, double t) {
+    return direction_on(*face_at(layout_of(map), face_column, face_row), (2.0 * s - 1.0) * stretch(map),
+                        (2.0 * t - 1.0) * stretch(map));
+}
+
 bool cube_direction(const Map& map, double u, double v, Direction& d) {
     const CubeLayout& layout = layout_of(map);
     const int column = std::clamp(static_cast<int>(u * layout.columns), 0, layout.columns - 1);
@@ -133,10 +145,7 @@ bool cube_direction(const Map& map, double u, double v, Direction& d) {
     const double s = (2.0 * (u * layout.columns - column) - 1.0) * stretch(map);
     const double t = (2.0 * (v * layout.rows - row) - 1.0) * stretch(map);
     if (!(std::max(std::abs(s), std::abs(t)) <= 1.0 + 1e-12)) return false;
-    const double scale = 1.0 / std::sqrt(1.0 + s * s + t * t);
-    d.x = scale * (face->centre.x + s * face->right.x + t * face->down.x);
-    d.y = scale * (face->centre.y + s * face->right.y + t * face->down.y);
-    d.z = scale * (face->centre.z + s * face->right.z + t * face->down.z);
+    d = direction_on(*face, s, t);
     return true;
 }
 

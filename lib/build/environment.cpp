@@ -45,7 +45,8 @@ Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::T
 /// Splits in the order `tried`, if it is one, in place of that of the options.
 Environment build_once(const compress::Target& target, const Source& source, const EnvironmentOptions& options,
                        std::optional<Order> tried, const Progress& progress) {
-    compress::Description description = compress::environment_description(target.columns, target.rows);
+    compress::Description description =
+        compress::environment_description(target.columns, target.rows, target.parameterization);
     description.fit = options.fit.fit;
     description.total = target.total;
     description.filter = options.target.filter;
@@ -60,6 +61,7 @@ Environment build_once(const compress::Target& target, const Source& source, con
     fit.file_size = [&](const compress::EncodedTree& tree) {
         return std::uint64_t{compress::store(tree, description, options.codec).size()};
     };
+    fit.size_by_length = options.codec == ACDF_CODEC_NONE;
     fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };

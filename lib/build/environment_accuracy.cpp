@@ -143,6 +143,8 @@ Sums sum_all(const Work& work, const Target& target, double total) {
 } // namespace
 
 Accuracy measure_environment(const File& file, const Target& target) {
+    if (file.description().parameterization != target.parameterization)
+        throw std::invalid_argument("the file lies on another grid");
     if (file.axis(ACDF_AXIS_PHI).resolution != target.columns ||
         file.axis(ACDF_AXIS_THETA).resolution != target.rows)
         throw std::invalid_argument("the file was made from another resolution");

@@ -12,8 +12,8 @@ namespace acdf::build {
 
 using Accuracy = builder::EnvironmentAccuracy;
 
-/// Compares an environment file with a target of the same resolution (rows are theta, columns phi). Throws
-/// std::invalid_argument where the resolutions differ or the target has no energy.
+/// Compares an environment file with a target of the same grid (rows are theta and columns phi, or v and u). Throws
+/// std::invalid_argument where the grids differ or the target has no energy.
 Accuracy measure_environment(const File& file, const compress::Target& target);
 
 } // namespace acdf::build

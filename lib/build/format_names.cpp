@@ -22,8 +22,10 @@ constexpr Name kinds[] = {{ACDF_KIND_ENVIRONMENT, "environment"},
                           {ACDF_KIND_LOCAL, "local"},
                           {ACDF_KIND_BRDF, "brdf"},
                           {ACDF_KIND_TABLE, "table"}};
-constexpr Name parameterizations[] = {
-    {ACDF_PARAM_LATLONG, "latlong"}, {ACDF_PARAM_HALF_ANGLE, "half-angle"}, {ACDF_PARAM_TABLE, "table"}};
+constexpr Name parameterizations[] = {{ACDF_PARAM_LATLONG, "latlong"},
+                                      {ACDF_PARAM_HALF_ANGLE, "half-angle"},
+                                      {ACDF_PARAM_TABLE, "table"},
+                                      {ACDF_PARAM_OCTAHEDRAL, "octahedral"}};
 constexpr Name fits[] = {
     {ACDF_FIT_UNIFORM, "uniform"}, {ACDF_FIT_CDF, "cdf"}, {ACDF_FIT_PDF, "pdf"}, {ACDF_FIT_VARIANCE, "variance"}};
 constexpr Name filters[] = {{ACDF_FILTER_NEAREST, "nearest"}, {ACDF_FILTER_BILINEAR, "bilinear"}};

@@ -20,7 +20,8 @@ constexpr std::uint32_t kTestNormals = 256;
 
 compress::Description description_of(const compress::Target& target, const Source& source, const LocalOptions& o,
                                      const NormalBins& bins, const LocalAccuracy& accuracy) {
-    compress::Description d = compress::environment_description(target.columns, target.rows);
+    compress::Description d =
+        compress::environment_description(target.columns, target.rows, target.parameterization);
     d.kind = ACDF_KIND_LOCAL;
     d.fit = o.sharing ? ACDF_FIT_VARIANCE : o.fit.fit;
     d.filter = o.target.filter;

@@ -29,7 +29,7 @@ struct TilePicture {
 class LocalMeasure {
 public:
     LocalMeasure(const File& file, const Target& target)
-        : file_(file), target_(target), local_(file.local().data()), cosines_(target.columns, target.rows) {
+        : file_(file), target_(target), local_(file.local().data()), cosines_(target) {
         const std::size_t texels = std::size_t{target.columns} * target.rows;
         if (local_.blend.tiles) {
             find_boxes(local_.blend.tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG, whole());
@@ -79,8 +79,8 @@ private:
     void fill(const AcdfRange* range, double probability, std::uint32_t tile, TilePicture& out) const {
         if (range[0].tilt != 0.0 || range[1].tilt != 0.0)
             throw std::invalid_argument("a local environment with tilted curves");
-        const double omega = 2.0 * ACDF_PI * double(range[0].high - range[0].low) / target_.columns *
-                             (acdf_row_z(range[1].low, target_.rows) - acdf_row_z(range[1].high, target_.rows));
+        const AcdfGrid grid = acdf_environment_grid(&local_.environment);
+        const double omega = acdf_grid_solid_angle(&grid, range);
         for (std::uint32_t r = range[1].low; r < range[1].high; ++r) {
             const std::size_t row = std::size_t{r} * target_.columns;
             std::fill(out.density.begin() + std::ptrdiff_t(row + range[0].low),
@@ -131,12 +131,11 @@ private:
             const std::size_t row = std::size_t{r} * target_.columns;
             double row_flux = 0.0, row_second = 0.0, row_above = 0.0, row_light = 0.0, row_light_second = 0.0;
             cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
-                const double p = tile.empty()
-                                     ? 0.0
-                                     : (1.0 - share) * tile[picture.tile[row + c]] * picture.density[row + c] +
-                                           share * cosine / ACDF_PI;
+                const double light_p =
+                    tile.empty() ? 0.0 : (1.0 - share) * tile[picture.tile[row + c]] * picture.density[row + c];
+                const double p = tile.empty() ? 0.0 : light_p + share * cosine / ACDF_PI;
                 const double omega = solid_angle(r, c), g = target_.row(r)[c];
-                row_above += p * omega;
+                row_above += light_p * omega;
                 if (!(g > 0.0)) return;
                 const double f = g * cosine;
                 row_flux += f * omega;
@@ -160,7 +159,8 @@ private:
         out.irradiance = e;
         out.relative_variance =
             out.support_violations > 0 ? std::numeric_limits<double>::infinity() : second.value() / e / e - 1.0;
-        out.share_above_horizon = first_above.value();
+        // What is drawn around the normal lies above its horizon, all of it.
+        out.share_above_horizon = tile.empty() ? 0.0 : std::min(first_above.value() + share, 1.0);
         out.max_weight = largest / e;
         out.relative_variance_full_cdf = total_ / e * (light_second.value() / e) - 1.0;
         out.share_above_horizon_full_cdf = light.value() / total_;
@@ -181,8 +181,9 @@ private:
 std::vector<NormalAccuracy> measure_normals(const File& file, const Target& target,
                                             const std::vector<Normal>& normals) {
     const AcdfEnvironment environment = file.local().data().environment;
-    if (environment.columns != target.columns || environment.rows != target.rows)
-        throw std::invalid_argument("a target of another resolution");
+    if (environment.columns != target.columns || environment.rows != target.rows ||
+        environment.parameterization != static_cast<std::uint32_t>(target.parameterization))
+        throw std::invalid_argument("a target on another grid");
     const LocalMeasure local(file, target);
     std::vector<NormalAccuracy> out(normals.size());
     tbb::enumerable_thread_specific<TilePicture> own;

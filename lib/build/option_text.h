@@ -16,9 +16,13 @@ struct ChannelName {
     compress::ChannelWeights weights;
 };
 constexpr ChannelName channel_names[] = {
-    {"luminance", ACDF_CHANNELS_WEIGHTED, {}},          {"rgb", ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}},
-    {"max", ACDF_CHANNELS_LARGEST, {1.0, 1.0, 1.0}},    {"red", ACDF_CHANNELS_WEIGHTED, {1.0, 0.0, 0.0}},
-    {"green", ACDF_CHANNELS_WEIGHTED, {0.0, 1.0, 0.0}}, {"blue", ACDF_CHANNELS_WEIGHTED, {0.0, 0.0, 1.0}},
+    {"luminance", ACDF_CHANNELS_WEIGHTED, {}},
+    {"rgb", ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}},
+    {"max", ACDF_CHANNELS_LARGEST, {1.0, 1.0, 1.0}},
+    {"red", ACDF_CHANNELS_WEIGHTED, {1.0, 0.0, 0.0}},
+    {"green", ACDF_CHANNELS_WEIGHTED, {0.0, 1.0, 0.0}},
+    {"blue", ACDF_CHANNELS_WEIGHTED, {0.0, 0.0, 1.0}},
+    {"average", ACDF_CHANNELS_WEIGHTED, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}},
 };
 
 /// The shortest decimal number that reads back as `value`.

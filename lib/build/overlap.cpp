@@ -47,18 +47,10 @@ double area(const Polygon& polygon) {
     return 0.5 * std::abs(twice);
 }
 
-bool image_of(const Map& map, const SphereCell& cell, Polygon& quad) {
-    // A hair inside, so that corners on a border belong to this cell's side of it.
-    constexpr double hair = 1e-7;
-    const double dphi = hair * (cell.phi1 - cell.phi0), dtheta = hair * (cell.theta1 - cell.theta0);
-    const compress::SineCosine phi[2] = {compress::sine_cosine(cell.phi0 + dphi),
-                                         compress::sine_cosine(cell.phi1 - dphi)};
-    const compress::SineCosine theta[2] = {compress::sine_cosine(cell.theta0 + dtheta),
-                                           compress::sine_cosine(cell.theta1 - dtheta)};
+bool image_of(const Map& map, const std::array<Direction, 4>& corners, Polygon& quad) {
     int chart = 0;
-    for (int i = 0; i < 4; ++i) {
-        const compress::SineCosine &p = phi[i == 1 || i == 2], &t = theta[i >= 2];
-        const ImagePoint point = to_image(map, {t.sine * p.cosine, t.sine * p.sine, t.cosine});
+    for (std::size_t i = 0; i < 4; ++i) {
+        const ImagePoint point = to_image(map, corners[i]);
         if (i == 0) chart = point.chart;
         if (point.chart != chart) return false;
         quad.x[i] = point.u * map.width;

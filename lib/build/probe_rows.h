@@ -8,10 +8,13 @@
 
 namespace acdf::build {
 
-/// Takes a lat-long probe in bands of rows.
+/// Takes a lat-long probe in bands of rows, or a map of another layout.
 class ProbeRows {
 public:
     virtual ~ProbeRows() = default;
+    /// A map that is not lat-long, as it is: map.height x map.width x 3, finite and >= 0. False, and nothing is
+    /// kept, where it is wanted as rows of a lat-long map.
+    virtual bool take_map(const Map&, const std::vector<float>& /*rgb*/) { return false; }
     virtual void begin(int width, int height) = 0;
     /// `count` rows of RGB, finite and >= 0, from row `first` on. Rows that were there before are replaced.
     virtual void take(int first, int count, const float* rgb) = 0;
@@ -43,17 +46,18 @@ public:
     /// Call once, behind all rows. Whether the probe was black and is so no more.
     bool light_if_black();
 
-    int width() const { return width_; } ///< of the lat-long map
+    int width() const { return width_; } ///< of the lat-long map, or the one that was taken as it is
     int height() const { return height_; }
     const BadTexels& bad() const { return bad_; }
 
 private:
+    bool pass_on(const Map& map, const std::vector<float>& rgb);
     void pass_on(int first, int count, const float* rgb);
 
     RepairOptions options_;
     ProbeRows& rows_;
     int width_ = 0, height_ = 0;
-    bool black_ = true;
+    bool black_ = true, has_rows_ = false, lit_ = false;
     BadTexels bad_;
 };
 

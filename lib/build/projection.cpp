@@ -3,6 +3,8 @@
 #include "build/cube.h"
 #include "compress/trigonometry.h"
 
+#include <acdf/octahedral.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -103,27 +105,17 @@ double disc_solid_angle(const Map& map, int column, int row) {
 // ---- octahedral: the square of Clarberg 2008 in pbrt's frame, which is ours with x reversed ----------
 
 ImagePoint octahedral_point(const Direction& d) {
-    const double x = std::abs(d.x), y = std::abs(d.y);
-    const double r = std::sqrt((x * x + y * y) / (1.0 + std::abs(d.z))); // sqrt(1 - |z|)
-    const double turn = (x > 0.0 || y > 0.0) ? 2.0 * compress::half_turns(y, x) : 0.5;
-    double b = turn * r, a = r - b;
-    if (d.z < 0.0) { // the lower hemisphere lies outside the diamond, folded over its edges
-        const double inner = a;
-        a = 1.0 - b;
-        b = 1.0 - inner;
-    }
+    const double direction[3] = {d.x, d.y, d.z};
+    double u, v;
+    acdf_octahedral_point(direction, &u, &v);
     const int chart = (d.x > 0.0 ? 1 : 0) + (d.y < 0.0 ? 2 : 0) + (d.z < 0.0 ? 4 : 0);
-    return point(0.5 + 0.5 * (d.x > 0.0 ? -a : a), 0.5 + 0.5 * (d.y < 0.0 ? -b : b), chart);
+    return point(u, v, chart);
 }
 
 Direction octahedral_direction(double u, double v) {
-    const double a = std::abs(2.0 * u - 1.0), b = std::abs(2.0 * v - 1.0);
-    const double beyond = a + b - 1.0; // > 0: lower hemisphere
-    const double r = 1.0 - std::abs(beyond);
-    const compress::SineCosine phi = compress::sine_cosine(r > 0.0 ? 0.25 * ((b - a) / r + 1.0) : 0.0);
-    const double sine = r * std::sqrt(2.0 - r * r), z = 1.0 - r * r;
-    const double x = sine * phi.cosine, y = sine * phi.sine;
-    return {u > 0.5 ? -x : x, v < 0.5 ? -y : y, beyond > 0.0 ? -z : z};
+    double d[3];
+    acdf_octahedral_direction(u, v, d);
+    return {d[0], d[1], d[2]};
 }
 
 } // namespace
@@ -198,27 +190,40 @@ bool has_shape(const Map& map) {
     }
 }
 
-int latlong_width(const Map& map) {
-    // Texels of this size around the equator: the angular map's are largest (radially) with 2 pi / width, a
-    // cube has four faces around; the other two preserve area, and a texel is sqrt(4 pi / texels) wide.
-    double around = map.width;
+namespace {
+
+/// Texels of the typical size of `map` around the equator: the angular map's are largest (radially) with 2 pi /
+/// width, a cube has four faces around; the other two preserve area, and a texel is sqrt(4 pi / texels) wide.
+double texels_around(const Map& map) {
     switch (map.layout) {
     case Layout::latlong:
-        return map.width;
     case Layout::angular:
-        break;
+        return map.width;
     case Layout::mirrorball:
-        around = 0.5 * compress::pi * map.width;
-        break;
+        return 0.5 * compress::pi * map.width;
     case Layout::octahedral:
-        around = std::sqrt(compress::pi) * map.width;
-        break;
+        return std::sqrt(compress::pi) * map.width;
     default:
-        around = 4.0 * cube_face_size(map);
+        return 4.0 * cube_face_size(map);
     }
+}
+
+} // namespace
+
+int latlong_width(const Map& map) {
+    if (map.layout == Layout::latlong) return map.width;
+    const double around = texels_around(map);
     int width = 4;
     while (width < around) width *= 2;
     return width;
+}
+
+int octahedral_side(const Map& map) {
+    if (map.layout == Layout::octahedral) return map.width;
+    const double texels = texels_around(map) / std::sqrt(compress::pi);
+    int side = 4;
+    while (side < texels) side *= 2;
+    return side;
 }
 
 } // namespace acdf::build

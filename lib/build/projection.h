@@ -48,6 +48,8 @@ int latlong_width(const Map& map);
 
 /// Whether `map` has the shape that its layout needs: 3:4, 4:3, 1:6 or square; lat-long maps have any.
 bool has_shape(const Map& map);
+/// Side of an octahedral image of which no texel is larger than the typical texel of `map`: the next power of two.
+int octahedral_side(const Map& map);
 
 /// Faces of a cube layout in texels; 0 for other layouts.
 int cube_face_size(const Map& map);

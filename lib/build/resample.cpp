@@ -57,10 +57,11 @@ private:
 
     void add_coverage(int row) {
         for (int column = 0; column < width_; ++column)
-            for_each_overlap(map_, texel(column, row), max_halvings, [&](int x, int y, double omega) {
-                covered_[index(x, y)].fetch_add(static_cast<std::uint64_t>(omega * units),
-                                                std::memory_order_relaxed);
-            });
+            for_each_overlap(map_, texel(column, row), max_halvings,
+                             [&](int x, int y, double omega, const Polygon&) {
+                                 covered_[index(x, y)].fetch_add(static_cast<std::uint64_t>(omega * units),
+                                                                 std::memory_order_relaxed);
+                             });
     }
 
     // After this, `rgb_` times the solid angle by which lat-long texels overlap a texel is what it hands out.
@@ -77,11 +78,12 @@ private:
     void gather(int row, std::vector<float>& result) const {
         for (int column = 0; column < width_; ++column) {
             double sum[3] = {0.0, 0.0, 0.0}, total = 0.0;
-            for_each_overlap(map_, texel(column, row), max_halvings, [&](int x, int y, double omega) {
-                const float* source = rgb_.data() + 3 * index(x, y);
-                for (int c = 0; c < 3; ++c) sum[c] += omega * source[c];
-                total += omega;
-            });
+            for_each_overlap(map_, texel(column, row), max_halvings,
+                             [&](int x, int y, double omega, const Polygon&) {
+                                 const float* source = rgb_.data() + 3 * index(x, y);
+                                 for (int c = 0; c < 3; ++c) sum[c] += omega * source[c];
+                                 total += omega;
+                             });
             for (int c = 0; c < 3; ++c)
                 result[result_index(column, row) + static_cast<std::size_t>(c)] = to_float(sum[c] / total);
         }

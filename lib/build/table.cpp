@@ -184,6 +184,7 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     options.fit.file_size = [&](const compress::EncodedTree& tree) {
         return std::uint64_t{compress::store(tree, description, options.codec).size()};
     };
+    options.fit.size_by_length = options.codec == ACDF_CODEC_NONE;
     options.fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };

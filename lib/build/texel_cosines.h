@@ -1,4 +1,4 @@
-// The texels of a lat-long target that a surface sees, and their cosines: what the irradiance integrand
+// The texels of a target that a surface sees, and their cosines: what the irradiance integrand
 // L max(0, n . omega) is summed over.
 #pragma once
 
@@ -6,6 +6,7 @@
 
 #include <acdf/sample.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -13,29 +14,57 @@
 namespace acdf::build {
 
 /// Directions of the texels' centres: half of the columns' azimuths, and half of the rows' z, so that a row's
-/// centre halves its solid angle. Using them in the place of all directions of a texel is wrong by O(1/rows^2).
+/// centre halves its solid angle; or the middle in u and v. Using them in the place of all directions of a texel is
+/// wrong by O(1/rows^2).
 class TexelCosines {
 public:
-    TexelCosines(std::uint32_t columns, std::uint32_t rows) : cosine_(columns), sine_(columns), z_(rows) {
-        for (std::uint32_t c = 0; c < columns; ++c)
-            acdf_sincospi(1.0 - (2.0 * c + 1.0) / columns, &sine_[c], &cosine_[c]);
-        for (std::uint32_t r = 0; r < rows; ++r) z_[r] = 0.5 * (acdf_row_z(r, rows) + acdf_row_z(r + 1, rows));
+    explicit TexelCosines(const compress::Target& target) : columns_(target.columns) {
+        if (target.parameterization == ACDF_PARAM_OCTAHEDRAL) fill_square(target.rows);
+        else fill_latlong(target.rows);
     }
 
     /// Calls visit(column, cosine) for the texels of a row whose centre is above the horizon of unit normal n.
     template <class Visit>
     void for_each_above(const float n[3], std::uint32_t row, const Visit& visit) const {
+        if (!directions_.empty()) {
+            const std::array<float, 3>* d = directions_.data() + std::size_t{row} * columns_;
+            for (std::uint32_t c = 0; c < columns_; ++c) {
+                const double cosine = double{n[0]} * d[c][0] + double{n[1]} * d[c][1] + double{n[2]} * d[c][2];
+                if (cosine > 0.0) visit(c, cosine);
+            }
+            return;
+        }
         const double up = n[2] * z_[row], radius = std::sqrt((1.0 - z_[row]) * (1.0 + z_[row]));
         const double x = n[0] * radius, y = n[1] * radius;
-        for (std::uint32_t c = 0; c < cosine_.size(); ++c) {
+        for (std::uint32_t c = 0; c < columns_; ++c) {
             const double cosine = up + x * cosine_[c] + y * sine_[c];
             if (cosine > 0.0) visit(c, cosine);
         }
     }
 
 private:
+    void fill_latlong(std::uint32_t rows) {
+        cosine_.resize(columns_);
+        sine_.resize(columns_);
+        z_.resize(rows);
+        for (std::uint32_t c = 0; c < columns_; ++c)
+            acdf_sincospi(1.0 - (2.0 * c + 1.0) / columns_, &sine_[c], &cosine_[c]);
+        for (std::uint32_t r = 0; r < rows; ++r) z_[r] = 0.5 * (acdf_row_z(r, rows) + acdf_row_z(r + 1, rows));
+    }
+    void fill_square(std::uint32_t rows) {
+        for (std::uint32_t r = 0; r < rows; ++r)
+            for (std::uint32_t c = 0; c < columns_; ++c) {
+                double d[3];
+                acdf_octahedral_direction((c + 0.5) / columns_, (r + 0.5) / rows, d);
+                directions_.push_back(
+                    {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])});
+            }
+    }
+
+    std::uint32_t columns_;
     std::vector<double> cosine_, sine_; ///< of the columns' azimuths
     std::vector<double> z_;
+    std::vector<std::array<float, 3>> directions_; ///< of the texels of a square
 };
 
 } // namespace acdf::build

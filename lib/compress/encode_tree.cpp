@@ -1,3 +1,4 @@
+#include "compress/curve_layout.h"
 #include "compress/quantize.h"
 #include "compress/store.h"
 
@@ -54,73 +55,27 @@ std::vector<Lows> range_lows(const Cascade& cascade) {
     return lows;
 }
 
-/// A curve ready to be laid out. Codes are those of the header: SPEC.md,
-/// section 5.4.
+/// A curve ready to be laid out.
 struct Packed {
     const Curve* curve = nullptr;
     QuantizedCurve probability;
-    std::uint32_t position_code = 1;
     std::uint32_t origin = 0; ///< what positions are counted from
-    std::uint32_t link_code = 0;
 };
 
-Packed pack(const Curve& curve, const Lows& lows, double reach, double price, double most_ratio) {
+Packed pack(const Curve& curve, const Lows& lows, double reach, double price, double most_ratio,
+            CurveShape& shape) {
     if (curve.segments() > ACDF_MAX_SEGMENTS) throw std::invalid_argument("a curve of more than 1048575 segments");
-    Packed packed;
-    packed.curve = &curve;
-    packed.probability = quantize(curve.probability, reach, price, most_ratio);
-    const std::uint32_t last = curve.knots.empty() ? 0 : curve.knots.back(), low = lows[curve.axis];
-    if (curve.knots.empty() || (low != kMany && last - low <= 0xFF)) {
-        packed.position_code = 0;
-        packed.origin = low;
-    } else if (last > 0xFFFF) {
-        packed.position_code = 2;
-    }
+    Packed packed{&curve, quantize(curve.probability, reach, price, most_ratio), 0};
+    shape.segments = static_cast<std::uint32_t>(curve.segments());
+    shape.probability_code = packed.probability.code;
+    const std::uint32_t low = lows[curve.axis];
+    if (!curve.knots.empty()) shape.position_code = position_code(curve.knots.back(), low, low != kMany);
+    if (shape.position_code == 0) packed.origin = low;
     const bool refined =
         std::any_of(curve.children.begin(), curve.children.end(), [](std::int32_t c) { return c >= 0; });
-    if (refined) packed.link_code = 1;
+    if (refined) shape.link_code = 1;
+    shape.tilted = !curve.tilts.empty();
     return packed;
-}
-
-std::size_t rounded(std::size_t size, std::size_t alignment) {
-    return (size + alignment - 1) / alignment * alignment;
-}
-
-std::size_t element_size(std::uint32_t code) { return acdf_element_size(code); }
-
-/// Offset behind a curve that begins at `offset`, both in bytes.
-std::size_t end_of(const Packed& packed, std::size_t offset) {
-    const std::size_t n = packed.curve->segments();
-    const auto array = [&](std::size_t count, std::uint32_t code) {
-        offset = rounded(offset, element_size(code)) + count * element_size(code);
-    };
-    offset += n > ACDF_CURVE_SHORT_SEGMENTS ? 6 : 2;
-    array(n - 1, packed.probability.code);
-    array(n - 1, packed.position_code);
-    if (packed.link_code > 0) array(n, packed.link_code - 1);
-    if (!packed.curve->tilts.empty()) array(n, 1);
-    return rounded(offset, 2);
-}
-
-/// Byte offsets of all curves. Links start at one byte; those that do not fit
-/// become wider, which moves what follows.
-std::vector<std::size_t> place(std::vector<Packed>& packed) {
-    std::vector<std::size_t> offset(packed.size() + 1, 0);
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (std::size_t i = 0; i < packed.size(); ++i) offset[i + 1] = end_of(packed[i], offset[i]);
-        for (std::size_t i = 0; i < packed.size(); ++i) {
-            if (packed[i].link_code == 0 || packed[i].link_code == 3) continue;
-            const std::size_t most = packed[i].link_code == 1 ? 0xFF : 0xFFFF;
-            for (std::int32_t child : packed[i].curve->children)
-                if (child >= 0 && (offset[static_cast<std::size_t>(child)] - offset[i]) / 2 > most) {
-                    ++packed[i].link_code;
-                    changed = true;
-                    break;
-                }
-        }
-    }
-    return offset;
 }
 
 /// Little-endian integers at the end of a growing array.
@@ -136,14 +91,13 @@ private:
     std::vector<std::uint8_t>& bytes_;
 };
 
-void write_header(const Packed& packed, Block block) {
-    const auto segments = static_cast<std::uint32_t>(packed.curve->segments());
-    const bool many = segments > ACDF_CURVE_SHORT_SEGMENTS;
-    std::uint32_t header = packed.curve->axis | packed.probability.code << 3 | packed.position_code << 5 |
-                           packed.link_code << 7 | (many ? 0 : segments << ACDF_CURVE_SEGMENTS_SHIFT);
-    if (!packed.curve->tilts.empty()) header |= ACDF_CURVE_TILTED;
+void write_header(std::uint32_t axis, const CurveShape& shape, Block block) {
+    const bool many = shape.segments > ACDF_CURVE_SHORT_SEGMENTS;
+    std::uint32_t header = axis | shape.probability_code << 3 | shape.position_code << 5 | shape.link_code << 7 |
+                           (many ? 0 : shape.segments << ACDF_CURVE_SEGMENTS_SHIFT);
+    if (shape.tilted) header |= ACDF_CURVE_TILTED;
     block.put(header, 2);
-    if (many) block.put(segments, 4);
+    if (many) block.put(shape.segments, 4);
 }
 
 std::uint32_t stored_tilt(double tilt) {
@@ -151,16 +105,18 @@ std::uint32_t stored_tilt(double tilt) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(scaled)) & 0xFFFFu;
 }
 
-void write_curve(const Packed& packed, std::size_t at, const std::vector<std::size_t>& offset, Block block) {
+void write_curve(const Packed& packed, const CurveShape& shape, std::size_t at,
+                 const std::vector<std::size_t>& offset, Block block) {
     const auto array = [&](const auto& values, std::uint32_t code, auto stored) {
-        block.align(element_size(code));
-        for (const auto& value : values) block.put(stored(value), element_size(code));
+        const std::size_t size = acdf_element_size(code);
+        block.align(size);
+        for (const auto& value : values) block.put(stored(value), size);
     };
-    write_header(packed, block);
-    array(packed.probability.cumulative, packed.probability.code, [](std::uint32_t value) { return value; });
-    array(packed.curve->knots, packed.position_code, [&](std::uint32_t knot) { return knot - packed.origin; });
-    if (packed.link_code > 0)
-        array(packed.curve->children, packed.link_code - 1, [&](std::int32_t child) {
+    write_header(packed.curve->axis, shape, block);
+    array(packed.probability.cumulative, shape.probability_code, [](std::uint32_t value) { return value; });
+    array(packed.curve->knots, shape.position_code, [&](std::uint32_t knot) { return knot - packed.origin; });
+    if (shape.link_code > 0)
+        array(packed.curve->children, shape.link_code - 1, [&](std::int32_t child) {
             return child < 0 ? 0u : static_cast<std::uint32_t>((offset[static_cast<std::size_t>(child)] - at) / 2);
         });
     if (!packed.curve->tilts.empty()) array(packed.curve->tilts, 1, stored_tilt);
@@ -174,14 +130,20 @@ EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio)
     const std::vector<Lows> lows = range_lows(cascade);
     std::vector<Packed> packed;
     packed.reserve(cascade.curves.size());
+    std::vector<CurveShape> shapes(cascade.curves.size());
     for (std::size_t i = 0; i < cascade.curves.size(); ++i)
-        packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price, most_ratio));
-    const std::vector<std::size_t> offset = place(packed);
+        packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price, most_ratio, shapes[i]));
+    const std::vector<std::size_t> offset = place(shapes, [&](std::size_t i, const auto& test) {
+        const std::vector<std::int32_t>& children = cascade.curves[i].children;
+        return std::any_of(children.begin(), children.end(),
+                           [&](std::int32_t child) { return child >= 0 && test(std::size_t(child)); });
+    });
     if (offset.back() / 2 > 0xFFFFFFFFu) throw std::invalid_argument("a tree of more than 8 GiB");
 
     EncodedTree tree;
     tree.bytes.reserve(offset.back());
-    for (std::size_t i = 0; i < packed.size(); ++i) write_curve(packed[i], offset[i], offset, Block(tree.bytes));
+    for (std::size_t i = 0; i < packed.size(); ++i)
+        write_curve(packed[i], shapes[i], offset[i], offset, Block(tree.bytes));
     for (std::size_t i = 0; i < packed.size(); ++i)
         tree.offsets.push_back(static_cast<std::uint32_t>(offset[i] / 2));
     for (std::uint32_t root : cascade.roots) tree.roots.push_back(static_cast<std::uint32_t>(offset[root] / 2));

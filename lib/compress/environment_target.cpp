@@ -21,6 +21,7 @@ constexpr std::size_t kChannels = 3;
 struct Integrand {
     std::uint32_t columns, rows;
     const float* values; ///< planes x rows x columns
+    bool octahedral;
 
     const float* row(std::size_t plane, std::uint32_t r) const {
         return values + (plane * rows + r) * std::size_t{columns};
@@ -37,7 +38,7 @@ struct TexelMoments {
 struct RowNode {
     double height, weight;
 };
-std::array<RowNode, 6> row_nodes(std::uint32_t row, std::uint32_t rows) {
+std::array<RowNode, 6> row_nodes(const Integrand& f, std::uint32_t row) {
     constexpr double kOffset = 0.7745966692414834; // sqrt(3/5)
     const std::array<double, 3> x{0.5 - 0.5 * kOffset, 0.5, 0.5 + 0.5 * kOffset};
     const std::array<double, 3> w{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
@@ -46,8 +47,8 @@ std::array<RowNode, 6> row_nodes(std::uint32_t row, std::uint32_t rows) {
     for (std::size_t half = 0; half < 2; ++half)
         for (std::size_t k = 0; k < 3; ++k) {
             const double height = 0.5 * (double(half) + x[k]);
-            double sine, cosine;
-            acdf_sincospi((row + height) / rows, &sine, &cosine);
+            double sine = 1.0, cosine;
+            if (!f.octahedral) acdf_sincospi((row + height) / f.rows, &sine, &cosine);
             nodes[3 * half + k] = {height, w[k] * sine};
             sum += w[k] * sine;
         }
@@ -55,24 +56,45 @@ std::array<RowNode, 6> row_nodes(std::uint32_t row, std::uint32_t rows) {
     return nodes;
 }
 
-/// A row of the bilinear interpolation at a height: `low` of row a and the rest of row b.
-double blend(const float* a, const float* b, double share, std::uint32_t c) {
-    return a[c] * (1.0 - share) + b[c] * share;
+/// A row of texels with one more at each end and none missing above the first and below the last: what the probe
+/// shows on. Across the seam that is the other end of the row, at a pole the row itself; across a side of the
+/// octahedral square it is the texel that mirrors it at the middle of the side.
+struct PaddedRow {
+    const float* values;
+    float before, after;
+    bool mirrored; ///< `values` run from the last column to the first
+
+    float at(std::uint32_t column, std::uint32_t columns) const {
+        return values[mirrored ? columns - 1 - column : column];
+    }
+};
+
+PaddedRow padded_row(const Integrand& f, std::size_t plane, std::int64_t r) {
+    const std::int64_t last = std::int64_t{f.rows} - 1;
+    const bool outside = r < 0 || r > last;
+    const auto row = static_cast<std::uint32_t>(std::clamp(r, std::int64_t{0}, last));
+    const float* values = f.row(plane, row);
+    if (!f.octahedral) return {values, values[f.columns - 1], values[0], false};
+    const float* other = f.row(plane, f.rows - 1 - row);
+    const float first = other[0], end = other[f.columns - 1];
+    return outside ? PaddedRow{values, end, first, true} : PaddedRow{values, first, end, false};
 }
 
 /// Moments of bilinear interpolation over the texels of a row. Along the row they are exact: between neighbouring
 /// centres f is linear, so the mean of f^2 over half a texel from x to y is (x^2 + xy + y^2) / 3.
 void bilinear_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::vector<TexelMoments>& out) {
-    const std::uint32_t above = r > 0 ? r - 1 : r, below = r + 1 < f.rows ? r + 1 : r;
+    const PaddedRow above = padded_row(f, plane, std::int64_t{r} - 1), own = padded_row(f, plane, r),
+                    below = padded_row(f, plane, std::int64_t{r} + 1);
     out.assign(f.columns, TexelMoments{});
     const auto add = [&](double height, double weight) {
         const bool upper = height < 0.5;
-        const float *a = f.row(plane, upper ? above : r), *b = f.row(plane, upper ? r : below);
+        const PaddedRow &a = upper ? above : own, &b = upper ? own : below;
         const double share = upper ? height + 0.5 : height - 0.5;
-        double left = blend(a, b, share, f.columns - 1), centre = blend(a, b, share, 0);
-        const double first = centre;
+        const auto blend = [&](float of_a, float of_b) { return of_a * (1.0 - share) + of_b * share; };
+        const auto column = [&](std::uint32_t c) { return blend(a.at(c, f.columns), b.at(c, f.columns)); };
+        double left = blend(a.before, b.before), centre = column(0);
         for (std::uint32_t c = 0; c < f.columns; ++c) {
-            const double right = c + 1 < f.columns ? blend(a, b, share, c + 1) : first;
+            const double right = c + 1 < f.columns ? column(c + 1) : blend(a.after, b.after);
             const double x = 0.5 * (left + centre), y = 0.5 * (centre + right);
             out[c].mean += weight * (0.25 * x + 0.5 * centre + 0.25 * y);
             out[c].square +=
@@ -82,7 +104,7 @@ void bilinear_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::v
             centre = right;
         }
     };
-    for (const RowNode& node : row_nodes(r, f.rows)) add(node.height, node.weight);
+    for (const RowNode& node : row_nodes(f, r)) add(node.height, node.weight);
     for (double height : {0.0, 0.5, 1.0}) add(height, 0.0); // f is largest at a corner of a quarter of the texel
 }
 
@@ -94,51 +116,68 @@ void nearest_row(const Integrand& f, std::size_t plane, std::uint32_t r, std::ve
     }
 }
 
-/// A double as a float that is positive where the double is: rounding must not make darkness out of light.
+} // namespace
+
+std::uint32_t planes_of(const TargetOptions& options) {
+    return options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1;
+}
+
+bool take_texels(const float* rgb, std::size_t count, const TargetOptions& options, float* out,
+                 std::size_t stride) {
+    const ChannelWeights& w = options.weights;
+    bool finite = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<float, kChannels> c;
+        for (std::size_t k = 0; k < kChannels; ++k) {
+            const float v = rgb[kChannels * i + k];
+            finite = finite && std::isfinite(v);
+            c[k] = std::max(v, 0.0f);
+        }
+        if (options.channels == ACDF_CHANNELS_SEPARATE) {
+            for (std::size_t k = 0; k < kChannels; ++k) out[k * stride + i] = c[k];
+            continue;
+        }
+        out[i] = options.channels == ACDF_CHANNELS_LARGEST
+                     ? std::max({c[0], c[1], c[2]})
+                     : static_cast<float>(w.r * c[0] + w.g * c[1] + w.b * c[2]);
+        finite = finite && std::isfinite(out[i]);
+    }
+    return finite;
+}
+
 float positive_float(double value) {
     const auto rounded = static_cast<float>(value);
     return rounded > 0.0f || !(value > 0.0) ? rounded : std::numeric_limits<float>::denorm_min();
 }
 
-/// What is the same for all targets of a resolution.
-Target sphere(std::uint32_t columns, std::uint32_t rows) {
+Target empty_target(std::uint32_t columns, std::uint32_t rows, AcdfParameterization parameterization) {
     Target target;
     target.columns = columns;
     target.rows = rows;
-    target.column_axis = ACDF_AXIS_PHI;
-    target.row_axis = ACDF_AXIS_THETA;
+    target.parameterization = parameterization;
+    target.column_axis = ACDF_AXIS_PHI; // or u
+    target.row_axis = ACDF_AXIS_THETA;  // or v
+    if (parameterization == ACDF_PARAM_OCTAHEDRAL) {
+        target.column_measure.assign(columns, 2.0 * ACDF_PI / columns);
+        target.row_measure.assign(rows, 2.0 / rows);
+        return target;
+    }
     target.column_measure.assign(columns, 2.0 * ACDF_PI / columns);
     target.row_measure.resize(rows);
     for (std::uint32_t r = 0; r < rows; ++r) target.row_measure[r] = acdf_row_z(r, rows) - acdf_row_z(r + 1, rows);
     return target;
 }
 
-} // namespace
-
 EnvironmentTarget::EnvironmentTarget(std::uint32_t columns, std::uint32_t rows, const TargetOptions& options)
-    : options_(options), columns_(columns), rows_(rows),
-      planes_(options.channels == ACDF_CHANNELS_SEPARATE ? kChannels : 1),
+    : options_(options), columns_(columns), rows_(rows), planes_(planes_of(options)),
       values_(std::size_t{planes_} * columns * rows) {}
 
 void EnvironmentTarget::take(std::uint32_t first, std::uint32_t count, const float* rgb) {
     const std::size_t texels = std::size_t{columns_} * rows_, begin = std::size_t{first} * columns_;
-    const ChannelWeights& w = options_.weights;
     std::vector<std::uint8_t> finite(count, 1);
     tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t row) {
-        for (std::size_t i = std::size_t{row} * columns_; i < std::size_t{row + 1} * columns_; ++i) {
-            std::array<float, kChannels> c;
-            for (std::size_t k = 0; k < kChannels; ++k) {
-                const float v = rgb[kChannels * i + k];
-                if (!std::isfinite(v)) finite[row] = 0;
-                c[k] = std::max(v, 0.0f);
-            }
-            float* out = values_.data() + begin + i;
-            if (planes_ == kChannels)
-                for (std::size_t k = 0; k < kChannels; ++k) out[k * texels] = c[k];
-            else if (options_.channels == ACDF_CHANNELS_LARGEST) *out = std::max({c[0], c[1], c[2]});
-            else *out = static_cast<float>(w.r * c[0] + w.g * c[1] + w.b * c[2]);
-            if (planes_ == 1 && !std::isfinite(*out)) finite[row] = 0;
-        }
+        const std::size_t i = std::size_t{row} * columns_;
+        finite[row] = take_texels(rgb + kChannels * i, columns_, options_, values_.data() + begin + i, texels);
     });
     if (std::find(finite.begin(), finite.end(), 0) != finite.end())
         throw std::invalid_argument("radiance that is not finite");
@@ -152,7 +191,7 @@ Target EnvironmentTarget::finish() {
 
 /// g is f.
 Target EnvironmentTarget::nearest() {
-    Target target = sphere(columns_, rows_);
+    Target target = empty_target(columns_, rows_, options_.parameterization);
     target.values = std::move(values_);
     std::vector<double> row_total(rows_);
     tbb::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
@@ -168,8 +207,8 @@ Target EnvironmentTarget::nearest() {
 }
 
 Target EnvironmentTarget::moments() {
-    const Integrand f{columns_, rows_, values_.data()};
-    Target target = sphere(columns_, rows_);
+    const Integrand f{columns_, rows_, values_.data(), options_.parameterization == ACDF_PARAM_OCTAHEDRAL};
+    Target target = empty_target(columns_, rows_, options_.parameterization);
     const bool bilinear = options_.filter == ACDF_FILTER_BILINEAR;
     target.values.resize(std::size_t{columns_} * rows_);
     if (bilinear) target.peaks.resize(target.values.size());

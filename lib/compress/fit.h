@@ -47,6 +47,7 @@ struct FitOptions {
     Shape shape = Shape::tree;          ///< variance
     Goal goal;                          ///< variance; a cascade takes cells alone
     FileSize file_size;                 ///< needed for a budget; by default the bytes of the tree
+    bool size_by_length = false;        ///< file_size depends on nothing but the number of bytes of the tree
     double max_weight = 0.0;            ///< variance as a tree: the largest f/p over its mean; 0: no bound
     std::uint32_t column_segments = 64; ///< uniform, cdf, pdf: segments of a curve over columns (phi)
     std::uint32_t row_segments = 64;    ///< the same over rows (theta)

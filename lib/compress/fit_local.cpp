@@ -190,7 +190,7 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
     };
     if (!(integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
-    const Worth light_worth = worth(bins, irradiance(light_points(target), bins));
+    const Worth light_worth = worth(target, bins, irradiance(light_points(target), bins));
     report(0.1);
     LocalFit out;
     out.tiles = divide_tiles(target, light_worth, std::min(size.tiles, ACDF_MAX_TILES));

@@ -111,19 +111,18 @@ struct OneBin {
 OneBin target_of(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
                  std::size_t bin, BinTarget kind) {
     const BinNormals normals = normals_of(bins, bin, kind);
-    const double texel = ACDF_PI * std::hypot(0.5 / target.rows, 1.0 / target.columns); // half its diagonal
+    // Half the diagonal of a texel; on the octahedral square no point is farther from the middle than this.
+    const double texel = is_octahedral(target)
+                             ? 0.5 * ACDF_OCTAHEDRAL_SPEED * (1.0 / target.rows + 1.0 / target.columns)
+                             : ACDF_PI * std::hypot(0.5 / target.rows, 1.0 / target.columns);
     const MeanSquare square(normals, light, texel);
     OneBin out{target, square.mean_irradiance};
     out.target.peaks.clear();
     tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         float* row = out.target.values.data() + std::size_t{r} * target.columns;
-        double radius, z;
-        acdf_sincospi((r + 0.5) / target.rows, &radius, &z);
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             if (row[c] == 0.0f) continue;
-            double s, k;
-            acdf_sincospi(1.0 - (2.0 * c + 1.0) / target.columns, &s, &k);
-            const double value = row[c] * std::sqrt(square({radius * k, radius * s, z}));
+            const double value = row[c] * std::sqrt(square(direction_at(target, r + 0.5, c + 0.5)));
             row[c] = value > 0.0 ? std::max(static_cast<float>(value), std::numeric_limits<float>::min()) : 0.0f;
         }
     });

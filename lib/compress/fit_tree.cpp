@@ -8,6 +8,7 @@
 #include "compress/partition.h"
 #include "compress/polish.h"
 #include "compress/prune.h"
+#include "compress/tree_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,20 +21,29 @@
 namespace acdf::compress {
 namespace {
 
-constexpr double kNegligible = 1e-14; // of the sum of costs, which is at least 1: rounding, no gain
+constexpr std::uint64_t kCellBytes = 4;      // about
+constexpr std::uint64_t kFewParts = 1 << 16; // of a hundred bytes
+constexpr double kNegligible = 1e-14;        // of the sum of costs, which is at least 1: rounding, no gain
 
-/// The trees at one price, stored, and what they come to.
+/// The trees at one price.
+struct Trial {
+    double price = 0.0;    ///< in units of the sum of costs a byte
+    std::size_t cells = 0; ///< in all bins
+    bool beyond = false;   ///< they are larger than the goal lets them be; for a variance, as large as needed
+    SizedTree tree;        ///< where its size counts
+};
+
+/// The same, stored, and what they come to.
 struct Candidate {
-    double price = 0.0; ///< in units of the sum of costs a byte
     Fitted fitted;
-    std::size_t cells = 0;
     double variance = 0.0;   ///< relative variance of the stored density, mean over the bins
     double max_weight = 0.0; ///< the largest f/p over its mean
 };
 
 class Search {
 public:
-    Search(const std::vector<Grid>& bins, const FitOptions& options) : goal_(options.goal), options_(options) {
+    Search(const std::vector<Grid>& bins, const FitOptions& options)
+        : goal_(options.goal), options_(options), sizer_(bins.size(), most_ratio(options)) {
         dark_axis_ = bins.front().axes.front();
         for (const Grid& bin : bins) {
             const double total = integral(bin);
@@ -43,6 +53,7 @@ public:
             }
             partitions_.emplace_back(Partition(bin, total, first_split(options)));
             const Moments& whole = partitions_.back()->parts().front().moments;
+            ++lit_;
             excess_ += whole.cost() - whole.flux;
             cost_ = std::max(cost_, whole.cost());
         }
@@ -52,12 +63,12 @@ public:
     /// The fit that meets the goal. Where a bound on the weight is broken, by the rounding of probabilities or
     /// because the sum of costs is above 1, it is tightened and the search begins again.
     Fitted run() {
-        Candidate best = search();
+        Candidate best = store_trees(search());
         for (int tries = 0; options_.max_weight > 0.0 && best.max_weight > options_.max_weight; ++tries) {
             if (tries == 16)
                 throw std::runtime_error(out_of_reach("a largest weight", options_.max_weight, best.max_weight));
             heaviest_ *= 0.95 * std::min(1.0, options_.max_weight / best.max_weight);
-            best = search();
+            best = store_trees(search());
         }
         progress(1.0);
         return std::move(best.fitted);
@@ -70,107 +81,190 @@ private:
     }
 
     /// Grows the partitions until the best trees for the price of their finest divisions are beyond the goal, or
-    /// nothing is left to divide; then moves the price to where the goal is met.
-    Candidate search() {
-        Candidate candidate = grow();
+    /// nothing is left to divide; then moves the price to where the goal is met, and returns it.
+    double search() {
+        Trial grown = grow();
         progress(0.6);
-        if (beyond(candidate)) return bisect(std::move(candidate));
+        if (grown.beyond) {
+            if (forgetful()) forget(grown.price);
+            grown.tree = {}; // of other partitions
+            return bisect(std::move(grown));
+        }
         if (goal_.kind == Goal::Kind::variance)
-            throw std::runtime_error(out_of_reach("a relative variance", goal_.variance, candidate.variance));
-        return candidate;
+            throw std::runtime_error(
+                out_of_reach("a relative variance", goal_.variance, store_trees(grown.price).variance));
+        return grown.price;
     }
 
-    Candidate at(double price) const {
-        Candidate out;
-        out.price = price;
-        std::vector<Pruned> pruned;
-        for (const auto& partition : partitions_) {
-            pruned.push_back(partition ? prune(partition->parts(), price, heaviest_) : Pruned{});
-            out.cells += partition ? pruned.back().cells[0] : 1;
-        }
-        if (goal_.kind == Goal::Kind::cells && out.cells > goal_.cells) return out;
-        store_trees(pruned, out);
+    /// What pruning looks at, of the partitions as they are.
+    void look_at_partitions() {
+        sizer_.forget();
+        nodes_.clear();
+        for (const auto& partition : partitions_)
+            nodes_.push_back(partition ? prune_nodes(partition->parts(), heaviest_) : PruneNodes{});
+    }
+
+    std::vector<Pruned> pruned(double price) const {
+        std::vector<Pruned> out;
+        for (const PruneNodes& nodes : nodes_) out.push_back(prune(nodes, price));
         return out;
     }
 
-    void store_trees(const std::vector<Pruned>& pruned, Candidate& out) const {
+    /// What is not made here is made of the same trees as one of `known`.
+    Trial at(double price, const std::vector<const Trial*>& known = {}) {
+        Trial out;
+        out.price = price;
+        const std::vector<Pruned> trees = pruned(price);
+        for (const Pruned& tree : trees) out.cells += tree.cells.empty() ? 1 : tree.cells[0];
+        if (goal_.kind == Goal::Kind::cells) out.beyond = out.cells > goal_.cells;
+        else if (polished()) out.beyond = beyond(store_trees(trees, price)); // its knots are not the partition's
+        else if (goal_.kind == Goal::Kind::variance && short_of_variance(trees)) out.beyond = false;
+        else out.beyond = sized_beyond(trees, known, out);
+        return out;
+    }
+
+    /// Whether the cells alone, whatever is stored, miss the variance: rounding can only raise it.
+    bool short_of_variance(const std::vector<Pruned>& trees) const {
+        double variance = 0.0;
+        for (std::size_t bin = 0; bin < trees.size(); ++bin) {
+            if (!partitions_[bin]) continue;
+            const double cost = costs_below(nodes_[bin], trees[bin])[0];
+            variance += cost * cost - 1.0;
+        }
+        return variance > (goal_.variance * (1.0 + 1e-9) + 1e-9) * double(lit_);
+    }
+
+    bool sized_beyond(const std::vector<Pruned>& trees, const std::vector<const Trial*>& known, Trial& out) {
+        std::vector<PrunedBin> bins;
+        for (std::size_t bin = 0; bin < trees.size(); ++bin)
+            bins.push_back({partitions_[bin] ? &partitions_[bin]->parts() : nullptr, &nodes_[bin], &trees[bin]});
+        std::vector<const SizedTree*> known_trees;
+        for (const Trial* trial : known) known_trees.push_back(&trial->tree);
+        out.tree = sizer_.tree(bins, stored_price(out.price), known_trees);
+        for (const Trial* trial : known)
+            if (trial->tree == out.tree) return trial->beyond;
+        if (goal_.kind == Goal::Kind::budget && (!options_.file_size || options_.size_by_length))
+            return file_size_of_length(sizer_.bytes(out.tree)) > goal_.budget;
+        return beyond(store_trees(trees, out.price));
+    }
+
+    std::uint64_t file_size_of_length(std::uint64_t bytes) const {
+        if (!options_.file_size) return bytes;
+        EncodedTree tree;
+        tree.bytes.resize(bytes);
+        tree.roots.resize(partitions_.size());
+        return options_.file_size(tree);
+    }
+
+    /// Knots of a line are moved to better places, unless that could break a bound on weights.
+    bool polished() const {
+        return !std::isfinite(heaviest_) &&
+               std::any_of(partitions_.begin(), partitions_.end(),
+                           [](const auto& partition) { return partition && partition->grid().dimensions() == 1; });
+    }
+
+    /// E[(f/p)^2] is about the square of the sum of costs: a byte is worth twice as much in it. `reach` in
+    /// encode_tree is a mean over the bins, the price of a trial counts each of them.
+    double stored_price(double price) const { return 2.0 * price / double(partitions_.size()); }
+
+    Candidate store_trees(double price) const { return store_trees(pruned(price), price); }
+
+    Candidate store_trees(const std::vector<Pruned>& trees, double price) const {
         Flattened flat;
+        Candidate out;
         for (std::size_t bin = 0; bin < partitions_.size(); ++bin)
             if (partitions_[bin]) {
-                flatten(*partitions_[bin], pruned[bin], flat);
-                if (!std::isfinite(heaviest_))
-                    polish(*partitions_[bin], bin, flat); // moved knots could break a bound
+                flatten(*partitions_[bin], trees[bin], flat);
+                if (!std::isfinite(heaviest_)) polish(*partitions_[bin], bin, flat);
             } else {
                 flatten_nothing(dark_axis_, flat);
             }
-        // A bound on weights leaves no room for shares much below their probability.
-        const double most_ratio = options_.max_weight > 0.0 ? 1.01 : std::numeric_limits<double>::infinity();
-        // E[(f/p)^2] is about the square of the sum of costs: a byte is worth twice as much in it. `reach` in
-        // encode_tree is a mean over the bins, the price here counts each of them.
-        out.fitted.tree = encode_tree(flat.cascade, 2.0 * out.price / double(partitions_.size()), most_ratio);
-        std::size_t lit = 0;
+        out.fitted.tree = encode_tree(flat.cascade, stored_price(price), most_ratio(options_));
         for (std::size_t bin = 0; bin < partitions_.size(); ++bin) {
             if (!partitions_[bin]) continue;
             const StoredQuality quality = stored_quality(flat, bin, out.fitted.tree);
             out.variance += flat.cost[bin] * flat.cost[bin] * quality.excess - 1.0;
             out.max_weight = std::max(out.max_weight, quality.max_weight);
-            ++lit;
         }
-        if (lit > 0) out.variance /= double(lit);
+        if (lit_ > 0) out.variance /= double(lit_);
         out.fitted.cascade = std::move(flat.cascade);
+        return out;
     }
 
-    /// Whether a candidate is larger than the goal lets it be; for a variance, at least as large as needed.
+    /// A bound on weights leaves no room for shares much below their probability.
+    static double most_ratio(const FitOptions& options) {
+        return options.max_weight > 0.0 ? 1.01 : std::numeric_limits<double>::infinity();
+    }
+
     bool beyond(const Candidate& candidate) const {
-        switch (goal_.kind) {
-        case Goal::Kind::cells:
-            return candidate.cells > goal_.cells;
-        case Goal::Kind::budget:
-            return size(candidate) > goal_.budget;
-        default:
-            return candidate.variance <= goal_.variance;
-        }
+        if (goal_.kind == Goal::Kind::variance) return candidate.variance <= goal_.variance;
+        return size(candidate) > goal_.budget;
     }
 
     std::uint64_t size(const Candidate& candidate) const {
         return options_.file_size ? options_.file_size(candidate.fitted.tree) : candidate.fitted.tree.bytes.size();
     }
 
-    std::size_t parts() const {
-        std::size_t sum = 0;
-        for (const auto& partition : partitions_) sum += partition ? partition->parts().size() : 0;
-        return sum;
+    /// Forgotten parts would be divided again where a bound on weights is tightened.
+    bool forgetful() const { return !(options_.max_weight > 0.0); }
+
+    void forget(double price) {
+        for (auto& partition : partitions_)
+            if (partition) partition->forget(price);
+        look_at_partitions();
     }
 
-    Candidate grow() {
+    /// More parts than these are kept only where they may be needed: some for every step of the grid, and what the
+    /// goal asks for.
+    std::size_t most_parts(const Partition& partition) const {
+        std::size_t steps = 1;
+        for (const std::uint32_t length : partition.grid().shape) steps *= length;
+        const std::uint64_t asked = goal_.kind == Goal::Kind::cells    ? goal_.cells
+                                    : goal_.kind == Goal::Kind::budget ? goal_.budget / kCellBytes
+                                                                       : 0;
+        return steps / 16 + (kFewParts + 2 * asked) / partitions_.size();
+    }
+
+    /// Divides all partitions on; returns whether that is news to any.
+    bool refine(double finest) {
+        bool any = false;
+        for (auto& partition : partitions_) {
+            if (!partition) continue;
+            Forgetting forgetting;
+            if (forgetful()) forgetting = {finest / kLeastBytes, most_parts(*partition)};
+            any = partition->refine(finest, heaviest_, forgetting) || any;
+        }
+        look_at_partitions();
+        return any;
+    }
+
+    Trial grow() {
         double finest = excess_ / 1024.0;
-        for (std::size_t before = 0;; finest *= 0.25) {
-            for (auto& partition : partitions_)
-                if (partition) partition->refine(finest, heaviest_);
-            const bool last = finest < kNegligible;
-            if (parts() == before && !last) continue; // nothing new at this price
-            before = parts();
-            Candidate candidate = at(finest / kLeastBytes);
-            if (last || beyond(candidate)) return candidate;
+        for (bool first = true;; finest *= 0.25, first = false) {
+            const bool news = refine(finest), last = finest < kNegligible;
+            if (!news && !first && !last) continue; // nothing new at this price
+            Trial trial = at(finest / kLeastBytes);
+            if (last || trial.beyond) return trial;
         }
     }
 
     /// Halves the interval of prices, on a logarithmic scale, until the trees no longer change.
-    Candidate bisect(Candidate inside) const {
-        Candidate outside = at(std::max(cost_, inside.price)); // as few cells as there can be
-        if (beyond(outside)) return goal_.kind == Goal::Kind::variance ? std::move(outside) : fail(outside);
+    double bisect(Trial inside) {
+        Trial outside = at(std::max(cost_, inside.price)); // as few cells as there can be
+        if (outside.beyond) return goal_.kind == Goal::Kind::variance ? outside.price : fail(outside);
         for (int step = 0; step < 40 && inside.cells > outside.cells + 1; ++step) {
-            Candidate middle = at(std::sqrt(inside.price * outside.price));
-            (beyond(middle) ? inside : outside) = std::move(middle);
+            Trial middle = at(std::sqrt(inside.price * outside.price), {&inside, &outside});
+            (middle.beyond ? inside : outside) = std::move(middle);
             progress(0.6 + 0.4 * step / 40.0);
         }
-        return goal_.kind == Goal::Kind::variance ? std::move(inside) : std::move(outside);
+        return goal_.kind == Goal::Kind::variance ? inside.price : outside.price;
     }
 
-    Candidate fail(const Candidate& smallest) const {
+    double fail(const Trial& smallest) const {
         if (goal_.kind == Goal::Kind::cells)
             throw std::runtime_error(out_of_reach("a number of cells", goal_.cells, double(smallest.cells)));
-        throw std::runtime_error(out_of_reach("a size in bytes", double(goal_.budget), double(size(smallest))));
+        throw std::runtime_error(
+            out_of_reach("a size in bytes", double(goal_.budget), double(size(store_trees(smallest.price)))));
     }
 
     static std::string out_of_reach(const char* what, double wanted, double best) {
@@ -188,7 +282,10 @@ private:
     const FitOptions& options_;
     std::vector<std::optional<Partition>> partitions_; ///< one a bin, empty where it has no energy
     std::uint32_t dark_axis_ = 0;                      ///< of the curve of a bin without energy
+    std::size_t lit_ = 0;                              ///< bins that have energy
     double excess_ = 0.0, cost_ = 1.0, heaviest_ = 0.0;
+    std::vector<PruneNodes> nodes_; ///< of the partitions
+    TreeSizer sizer_;
 };
 
 } // namespace

@@ -9,13 +9,6 @@
 namespace acdf::compress {
 namespace {
 
-Direction direction_of(const Target& target, double row, double column) {
-    double s, c, z, r;
-    acdf_sincospi(1.0 - 2.0 * column / target.columns, &s, &c);
-    acdf_sincospi(row / target.rows, &r, &z);
-    return {r * c, r * s, z};
-}
-
 /// Light near the horizon of a normal is that within this sine: as far as its bins are apart.
 double horizon_band(const NormalBins& bins) { return 2.0 / bins.subdivisions; }
 
@@ -30,7 +23,17 @@ double spread_worth(double cosine) {
 
 } // namespace
 
+Direction direction_at(const Target& target, double row, double column) {
+    if (is_octahedral(target)) return octahedral_direction(target, column, row);
+    double s, c, z, r;
+    acdf_sincospi(1.0 - 2.0 * column / target.columns, &s, &c);
+    acdf_sincospi(row / target.rows, &r, &z);
+    return {r * c, r * s, z};
+}
+
 double solid_angle(const Target& target, const Box& box) {
+    if (is_octahedral(target))
+        return 4.0 * ACDF_PI * (double(box.length(0)) / target.rows) * (double(box.length(1)) / target.columns);
     return 2.0 * ACDF_PI / target.columns * box.length(1) *
            (acdf_row_z(box.begin[0], target.rows) - acdf_row_z(box.end[0], target.rows));
 }
@@ -62,14 +65,15 @@ std::vector<double> irradiance(const std::vector<LightPoint>& points, const Norm
     return out;
 }
 
-Worth worth(const NormalBins& bins, const std::vector<double>& irradiance) {
+Worth worth(const Target& target, const NormalBins& bins, const std::vector<double>& irradiance) {
     Worth out;
     Target grid;
     grid.columns = CoarseMap::columns;
     grid.rows = CoarseMap::rows;
+    grid.parameterization = target.parameterization;
     const double band = out.band = horizon_band(bins);
     tbb::parallel_for(std::size_t{0}, out.mean.values.size(), [&](std::size_t i) {
-        const Direction d = direction_of(grid, double(i / grid.columns) + 0.5, double(i % grid.columns) + 0.5);
+        const Direction d = direction_at(grid, double(i / grid.columns) + 0.5, double(i % grid.columns) + 0.5);
         for (std::size_t b = 0; b < bins.normals.size(); ++b) {
             if (!(irradiance[b] > 0.0)) continue;
             const double cosine = dot(d, bins.normals[b]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/normals.h"
+#include "compress/octahedral_boxes.h"
 #include "compress/tiles.h"
 
 #include <acdf/sample.h>
@@ -33,15 +34,18 @@ void for_each_block(const Target& target, const Box& box, double step, const Vis
         const double blocks = std::ceil(radians / step);
         return static_cast<std::uint32_t>(std::clamp(blocks, 1.0, double(box.length(axis))));
     };
-    const std::uint32_t rows = count(0, ACDF_PI * box.length(0) / target.rows);
+    // The side of the octahedral square is as long as that of one of 4 pi.
+    const bool octahedral = is_octahedral(target);
+    const double side = 2.0 * std::sqrt(ACDF_PI);
+    const std::uint32_t rows = count(0, (octahedral ? side : ACDF_PI) * box.length(0) / target.rows);
     const double whole = solid_angle(target, box);
     for (std::uint32_t i = 0; i < rows; ++i) {
         Box band = box;
         band.begin[0] = box.begin[0] + std::uint32_t(std::uint64_t{box.length(0)} * i / rows);
         band.end[0] = box.begin[0] + std::uint32_t(std::uint64_t{box.length(0)} * (i + 1) / rows);
         const double z = centre(target, band)[2];
-        const std::uint32_t columns =
-            count(1, 2.0 * ACDF_PI * box.length(1) / target.columns * std::sqrt(1.0 - z * z));
+        const double around = octahedral ? side : 2.0 * ACDF_PI * std::sqrt(1.0 - z * z);
+        const std::uint32_t columns = count(1, around * box.length(1) / target.columns);
         for (std::uint32_t k = 0; k < columns; ++k) {
             Box block = band;
             block.begin[1] = box.begin[1] + std::uint32_t(std::uint64_t{box.length(1)} * k / columns);
@@ -51,12 +55,16 @@ void for_each_block(const Target& target, const Box& box, double step, const Vis
     }
 }
 
+/// The direction at a place of the grid, in texels.
+Direction direction_at(const Target& target, double row, double column);
+
 /// The integrals of g over blocks of about a degree.
 std::vector<LightPoint> light_points(const Target& target);
 
 /// For each bin the integral of the light above its horizon times the cosine.
 std::vector<double> irradiance(const std::vector<LightPoint>& points, const NormalBins& bins);
 
-Worth worth(const NormalBins& bins, const std::vector<double>& irradiance);
+/// On a coarse grid of the target's parameterization.
+Worth worth(const Target& target, const NormalBins& bins, const std::vector<double>& irradiance);
 
 } // namespace acdf::compress

@@ -1,197 +1,219 @@
 #include "compress/partition.h"
 
-#include "compress/join.h"
-#include "compress/sum.h"
+#include "compress/division.h"
+#include "compress/prune.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <mutex>
 
 namespace acdf::compress {
 namespace {
 
-constexpr std::size_t kMostParts = 8; // of one split; deeper splits along the same axis join its curve anyway
-// A split into k parts is worth its gain per knot, but not quite: with half a knot on top, a bright spot is cut
-// out by two knots at once even where the first one alone gains little more per knot.
-constexpr double kKnotOffset = 0.5;
+constexpr std::size_t kBatch = 1024;      // parts divided at once
+constexpr std::size_t kSubtree = 1 << 16; // steps of a box that one thread divides to the end
+constexpr std::size_t kSubtreesAtOnce = 64;
 
-/// For each axis of the grid, sums over the slices of a box across it.
-using Projections = std::array<std::vector<Moments>, ACDF_MAX_AXES>;
-
-/// Calls `visit(offset, index)` for every line of the box along the last axis: where in `values` it begins, and
-/// its place on the other axes.
-template <class Visit>
-void for_each_line(const Grid& grid, const Box& box, const Visit& visit) {
-    const std::size_t last = grid.dimensions() - 1;
-    std::array<std::uint32_t, ACDF_MAX_AXES> index = box.begin;
-    for (;;) {
-        std::size_t offset = 0;
-        for (std::size_t axis = 0; axis <= last; ++axis) offset = offset * grid.shape[axis] + index[axis];
-        visit(offset, index);
-        std::size_t axis = last;
-        while (axis > 0 && ++index[axis - 1] == box.end[axis - 1]) {
-            index[axis - 1] = box.begin[axis - 1];
-            --axis;
-        }
-        if (axis == 0) return;
-    }
-}
-
-/// The measure of a box on one axis.
-double extent(const Grid& grid, const Box& box, std::size_t axis) {
-    double sum = 0.0;
-    for (std::uint32_t i = box.begin[axis]; i < box.end[axis]; ++i) sum += grid.measure[axis][i];
-    return sum;
-}
-
-void set_measures(const Grid& grid, const Box& box, Projections& out) {
-    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis) {
-        double across = 1.0;
-        for (std::size_t other = 0; other < grid.dimensions(); ++other)
-            if (other != axis) across *= extent(grid, box, other);
-        out[axis].assign(box.length(axis), Moments{});
-        for (std::uint32_t i = 0; i < box.length(axis); ++i)
-            out[axis][i].measure = across * grid.measure[axis][box.begin[axis] + i];
-    }
-}
-
-void project(const Grid& grid, double total, const Box& box, Projections& out) {
-    set_measures(grid, box, out);
-    const std::size_t last = grid.dimensions() - 1, length = box.length(last);
-    const double* measures = grid.measure[last].data() + box.begin[last];
-    Moments* along = out[last].data();
-    for_each_line(grid, box, [&](std::size_t offset, const auto& index) {
-        double weight = 1.0;
-        for (std::size_t axis = 0; axis < last; ++axis) weight *= grid.measure[axis][index[axis]];
-        const float* values = grid.values + offset;
-        const float* peaks = (grid.peaks ? grid.peaks : grid.values) + offset;
-        double line_flux = 0.0, line_energy = 0.0, line_peak = 0.0;
-        for (std::size_t i = 0; i < length; ++i) {
-            const double f = values[i] / total;
-            const double flux = f * weight * measures[i], energy = f * flux;
-            along[i].flux += flux;
-            along[i].energy += energy;
-            const double peak = peaks[i] / total;
-            along[i].peak = peak > along[i].peak ? peak : along[i].peak;
-            line_flux += flux;
-            line_energy += energy;
-            line_peak = peak > line_peak ? peak : line_peak;
-        }
-        for (std::size_t axis = 0; axis < last; ++axis) {
-            Moments& slice = out[axis][index[axis] - box.begin[axis]];
-            slice.flux += line_flux;
-            slice.energy += line_energy;
-            slice.peak = line_peak > slice.peak ? line_peak : slice.peak;
-        }
-    });
-}
-
-/// A way to divide a box along one axis: where, and how much each knot gains.
-struct Division {
-    std::vector<std::uint32_t> cuts; ///< ascending, relative to the box
-    double gain_per_knot = -1.0;
+struct Scratch {
+    Projections projections;
+    DivisionScratch division;
 };
 
-/// Joins steps bottom-up to one part, then takes the number of parts whose gain per knot is largest.
-Division divide(const std::vector<Moments>& steps, const Moments& whole) {
-    Division division;
-    if (steps.size() < 2) return division;
-    std::vector<Moments> sums = steps;
-    std::vector<double> alone(steps.size());
-    double total = 0.0;
-    for (std::size_t i = 0; i < steps.size(); ++i) total += alone[i] = steps[i].cost();
-    std::vector<std::uint32_t> borders; // in the order in which they vanish
-    std::vector<double> cost;           // the sum before that
-    join_neighbours(
-        steps.size(), steps.size() - 1,
-        [&](std::size_t a, std::size_t b) {
-            Moments sum = sums[a];
-            sum.add(sums[b]);
-            return sum.cost() - alone[a] - alone[b];
-        },
-        [&](std::size_t a, std::size_t b, double raise) {
-            borders.push_back(static_cast<std::uint32_t>(b));
-            cost.push_back(total);
-            total += raise;
-            sums[a].add(sums[b]);
-            alone[a] = sums[a].cost();
-        });
-    const double undivided = whole.cost();
-    std::size_t best = 1;
-    for (std::size_t knots = 1; knots <= std::min(borders.size(), kMostParts - 1); ++knots) {
-        const double gain = (undivided - cost[cost.size() - knots]) / (double(knots) + kKnotOffset);
-        if (gain <= division.gain_per_knot) continue;
-        division.gain_per_knot = gain;
-        best = knots;
-    }
-    division.cuts.assign(borders.end() - static_cast<std::ptrdiff_t>(best), borders.end());
-    std::sort(division.cuts.begin(), division.cuts.end());
-    return division;
-}
+struct Children {
+    std::array<Part, Division::most_parts> parts;
+    std::size_t count = 0;
+};
 
 /// The axis whose division gains most a knot, or `forced` where that one can be divided at all.
-std::size_t best_axis(const std::vector<Division>& divisions, std::int8_t forced) {
-    if (forced != Part::whole && !divisions[static_cast<std::size_t>(forced)].cuts.empty())
+std::size_t best_axis(const std::array<Division, ACDF_MAX_AXES>& divisions, std::size_t axes, std::int8_t forced) {
+    if (forced != Part::whole && divisions[static_cast<std::size_t>(forced)].knots > 0)
         return static_cast<std::size_t>(forced);
     std::size_t best = 0;
-    for (std::size_t axis = 1; axis < divisions.size(); ++axis)
+    for (std::size_t axis = 1; axis < axes; ++axis)
         if (divisions[axis].gain_per_knot > divisions[best].gain_per_knot) best = axis;
     return best;
 }
 
-/// Divides a part and returns its children.
-std::vector<Part> split_part(const Grid& grid, double total, std::int8_t forced, Part& part, Projections& scratch) {
-    project(grid, total, part.box, scratch);
-    std::vector<Division> divisions;
-    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
-        divisions.push_back(divide(scratch[axis], part.moments));
-    const std::size_t axis = best_axis(divisions, forced);
-    part.split = static_cast<std::int8_t>(axis);
-    const std::vector<std::uint32_t>& cuts = divisions[axis].cuts;
-    std::vector<Part> children;
-    for (std::size_t k = 0; k <= cuts.size(); ++k) {
-        const std::uint32_t begin = k == 0 ? 0 : cuts[k - 1];
-        const std::uint32_t end = k < cuts.size() ? cuts[k] : part.box.length(axis);
-        Part child;
-        child.box = part.box;
-        child.box.begin[axis] = part.box.begin[axis] + begin;
-        child.box.end[axis] = part.box.begin[axis] + end;
-        child.depth = static_cast<std::uint8_t>(part.depth + 1);
-        for (std::uint32_t i = begin; i < end; ++i) child.moments.add(scratch[axis][i]);
-        children.push_back(child);
+/// How far parts are divided, and how.
+struct Growth {
+    const Grid& grid;
+    double total, finest, heaviest;
+
+    bool open(const Part& part) const {
+        return part.split == Part::whole && divisible(part) &&
+               (part.excess() > finest || part.moments.weight() > heaviest);
     }
-    return children;
+
+    /// Divides a part; its children get their place later.
+    void divide(std::int8_t forced, Part& part, Children& out) const {
+        thread_local Scratch scratch; // arrays as long as an axis
+        project(grid, total, part.box, scratch.projections);
+        std::array<Division, ACDF_MAX_AXES> divisions;
+        const double cost = part.moments.cost();
+        for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
+            divisions[axis] = compress::divide(scratch.projections[axis], cost, scratch.division);
+        const std::size_t axis = best_axis(divisions, grid.dimensions(), forced);
+        const Division& division = divisions[axis];
+        part.split = static_cast<std::int8_t>(axis);
+        out.count = division.knots + 1;
+        for (std::size_t k = 0; k < out.count; ++k) {
+            const std::uint32_t begin = k == 0 ? 0 : division.cuts[k - 1];
+            const std::uint32_t end = k < division.knots ? division.cuts[k] : part.box.length(axis);
+            Part& child = out.parts[k] = Part{};
+            child.box = part.box;
+            child.box.begin[axis] = part.box.begin[axis] + begin;
+            child.box.end[axis] = part.box.begin[axis] + end;
+            child.depth = static_cast<std::uint8_t>(part.depth + 1);
+            child.moments = scratch.projections[axis].sum(begin, end, total);
+        }
+    }
+
+private:
+    bool divisible(const Part& part) const {
+        for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
+            if (part.box.length(axis) > 1) return part.depth <= ACDF_MAX_DEPTH;
+        return false;
+    }
+};
+
+std::size_t steps(const Grid& grid, const Box& box) {
+    std::size_t product = 1;
+    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis) product *= box.length(axis);
+    return product;
 }
 
-bool divisible(const Grid& grid, const Part& part) {
-    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis)
-        if (part.box.length(axis) > 1) return part.depth <= ACDF_MAX_DEPTH;
-    return false;
+void adopt(const Children& children, std::size_t parent, std::vector<Part>& parts) {
+    parts[parent].first_child = static_cast<std::uint32_t>(parts.size());
+    parts[parent].children = static_cast<std::uint32_t>(children.count);
+    parts.insert(parts.end(), children.parts.begin(), children.parts.begin() + std::ptrdiff_t(children.count));
 }
+
+/// A part and all that is to be divided below it, by one thread.
+std::vector<Part> grow_subtree(const Growth& growth, std::int8_t forced, const Part& root) {
+    std::vector<Part> parts{root};
+    Children children;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (!growth.open(parts[i])) continue;
+        growth.divide(i == 0 ? forced : Part::whole, parts[i], children);
+        adopt(children, i, parts);
+    }
+    return parts;
+}
+
+/// Copies a part's children, then all that is below each of them, without the divisions that do not pay.
+void copy_below(const std::vector<Part>& parts, const std::vector<bool>& pays, std::uint32_t from, std::size_t to,
+                std::vector<Part>& out) {
+    if (!pays[from]) {
+        out[to].split = Part::whole;
+        out[to].first_child = out[to].children = 0;
+        return;
+    }
+    const std::uint32_t first = parts[from].first_child, count = parts[from].children;
+    const std::size_t placed = out.size();
+    out[to].first_child = static_cast<std::uint32_t>(placed);
+    out.insert(out.end(), parts.begin() + first, parts.begin() + first + count);
+    for (std::uint32_t k = 0; k < count; ++k) copy_below(parts, pays, first + k, placed + k, out);
+}
+
+/// The parts without the divisions that pay at no price from `price` on. What belongs together lies together.
+std::vector<Part> without_dear(const std::vector<Part>& parts, double price) {
+    const std::vector<bool> pays = may_pay(parts, price);
+    std::size_t kept = 1; // at most
+    for (std::size_t i = 0; i < parts.size(); ++i) kept += pays[i] ? parts[i].children : 0;
+    std::vector<Part> out;
+    out.reserve(kept);
+    out.push_back(parts.front());
+    copy_below(parts, pays, 0, 0, out);
+    return out;
+}
+
+/// Puts what was divided below part `root` elsewhere, `subtree` with the part itself in front, below it.
+void graft(const std::vector<Part>& subtree, std::size_t root, std::vector<Part>& parts) {
+    const std::size_t moved = parts.size() - 1;
+    const auto place = [&](Part part) {
+        if (part.split != Part::whole) part.first_child += static_cast<std::uint32_t>(moved);
+        return part;
+    };
+    parts[root] = place(subtree.front());
+    for (std::size_t i = 1; i < subtree.size(); ++i) parts.push_back(place(subtree[i]));
+}
+
+/// Divides parts and what comes of them, level by level. Parts of a level are independent of each other.
+class Levels {
+public:
+    Levels(const Growth& growth, std::int8_t first, const Forgetting& forgetting, std::vector<Part>& parts)
+        : growth_(growth), first_(first), forgetting_(forgetting), parts_(parts), children_(kBatch) {}
+
+    /// `visit` is called for each part that is divided, from one thread at a time.
+    template <class Visit>
+    void run(const Visit& visit) {
+        std::vector<std::uint32_t> level, next;
+        for (std::uint32_t i = 0; i < parts_.size(); ++i)
+            if (growth_.open(parts_[i])) level.push_back(i);
+        for (; !level.empty(); level.swap(next)) {
+            next.clear();
+            for (std::size_t begin = 0; begin < level.size(); begin += kBatch) {
+                batch_.assign(level.begin() + std::ptrdiff_t(begin),
+                              level.begin() + std::ptrdiff_t(std::min(level.size(), begin + kBatch)));
+                if (parts_.size() > forgetting_.parts) put_small_ones_aside();
+                divide_batch(next, visit);
+            }
+        }
+        for (std::size_t begin = 0; begin < aside_.size(); begin += kSubtreesAtOnce)
+            grow_subtrees(begin, std::min(aside_.size(), begin + kSubtreesAtOnce), visit);
+    }
+
+    bool forgot() const { return !aside_.empty(); }
+
+private:
+    std::int8_t forced(std::uint32_t part) const { return part == 0 ? first_ : Part::whole; }
+
+    void put_small_ones_aside() {
+        const auto small = std::stable_partition(batch_.begin(), batch_.end(), [&](std::uint32_t i) {
+            return steps(growth_.grid, parts_[i].box) > kSubtree;
+        });
+        aside_.insert(aside_.end(), small, batch_.end());
+        batch_.erase(small, batch_.end());
+    }
+
+    template <class Visit>
+    void divide_batch(std::vector<std::uint32_t>& next, const Visit& visit) {
+        tbb::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t k) {
+            growth_.divide(forced(batch_[k]), parts_[batch_[k]], children_[k]);
+        });
+        for (std::size_t k = 0; k < batch_.size(); ++k) {
+            visit(parts_[batch_[k]]);
+            adopt(children_[k], batch_[k], parts_);
+            for (std::size_t child = parts_.size() - children_[k].count; child < parts_.size(); ++child)
+                if (growth_.open(parts_[child])) next.push_back(static_cast<std::uint32_t>(child));
+        }
+    }
+
+    template <class Visit>
+    void grow_subtrees(std::size_t begin, std::size_t end, const Visit& visit) {
+        std::vector<std::vector<Part>> kept(end - begin);
+        std::mutex visiting;
+        tbb::parallel_for(begin, end, [&](std::size_t k) {
+            const std::vector<Part> all = grow_subtree(growth_, forced(aside_[k]), parts_[aside_[k]]);
+            kept[k - begin] = without_dear(all, forgetting_.price);
+            const std::lock_guard<std::mutex> lock(visiting);
+            for (const Part& part : all)
+                if (part.split != Part::whole) visit(part);
+        });
+        for (std::size_t k = begin; k < end; ++k) graft(kept[k - begin], aside_[k], parts_);
+    }
+
+    const Growth& growth_;
+    std::int8_t first_;
+    const Forgetting& forgetting_;
+    std::vector<Part>& parts_;
+    std::vector<Children> children_;
+    std::vector<std::uint32_t> batch_, aside_;
+};
 
 } // namespace
-
-double Moments::cost() const { return std::sqrt(measure * energy); }
-
-double Moments::weight() const { return energy > 0.0 ? peak * std::sqrt(measure / energy) : 0.0; }
-
-double integral(const Grid& grid) {
-    Box all;
-    for (std::size_t axis = 0; axis < grid.dimensions(); ++axis) all.end[axis] = grid.shape[axis];
-    const std::size_t last = grid.dimensions() - 1;
-    Sum total;
-    for_each_line(grid, all, [&](std::size_t offset, const auto& index) {
-        double weight = 1.0;
-        for (std::size_t axis = 0; axis < last; ++axis) weight *= grid.measure[axis][index[axis]];
-        Sum line;
-        for (std::size_t i = 0; i < grid.shape[last]; ++i)
-            line.add(grid.values[offset + i] * grid.measure[last][i]);
-        total.add(line.value() * weight);
-    });
-    return total.value();
-}
 
 Partition::Partition(Grid grid, double total, std::int8_t first)
     : grid_(std::move(grid)), total_(total), first_(first) {
@@ -212,36 +234,24 @@ void Partition::add_first_part(const Box& box, std::uint8_t depth) {
     first.depth = depth;
     Projections projections;
     project(grid_, total_, box, projections);
-    for (const Moments& slice : projections[0]) first.moments.add(slice);
+    first.moments = projections[0].sum(0, projections[0].size(), total_);
     parts_.push_back(first);
 }
 
-void Partition::refine(double finest, double heaviest) {
-    const auto open = [&](const Part& part) {
-        const bool worth = part.moments.cost() - part.moments.flux > finest || part.moments.weight() > heaviest;
-        return part.split == Part::whole && worth && divisible(grid_, part);
-    };
-    std::vector<std::uint32_t> level; // parts of a level are independent of each other
-    for (std::uint32_t i = 0; i < parts_.size(); ++i)
-        if (open(parts_[i])) level.push_back(i);
-    tbb::enumerable_thread_specific<Projections> scratch;
-    while (!level.empty()) {
-        std::vector<std::vector<Part>> children(level.size());
-        tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t k) {
-            const std::int8_t forced = level[k] == 0 ? first_ : Part::whole;
-            children[k] = split_part(grid_, total_, forced, parts_[level[k]], scratch.local());
-        });
-        std::vector<std::uint32_t> next;
-        for (std::size_t k = 0; k < level.size(); ++k) {
-            parts_[level[k]].first_child = static_cast<std::uint32_t>(parts_.size());
-            parts_[level[k]].children = static_cast<std::uint32_t>(children[k].size());
-            for (const Part& child : children[k]) {
-                if (open(child)) next.push_back(static_cast<std::uint32_t>(parts_.size()));
-                parts_.push_back(child);
-            }
-        }
-        level = std::move(next);
-    }
+void Partition::forget(double price) {
+    parts_ = without_dear(parts_, price);
+    forgot_ = true;
+}
+
+bool Partition::refine(double finest, double heaviest, const Forgetting& forgetting) {
+    if (parts_.size() > forgetting.parts) forget(forgetting.price);
+    bool any_new = false;
+    const Growth growth{grid_, total_, finest, heaviest};
+    Levels levels(growth, first_, forgetting, parts_);
+    levels.run([&](const Part& part) { any_new = any_new || !forgot_ || !(part.excess() > finest_); });
+    forgot_ = forgot_ || levels.forgot();
+    finest_ = std::min(finest_, finest);
+    return any_new;
 }
 
 } // namespace acdf::compress

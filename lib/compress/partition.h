@@ -1,43 +1,15 @@
 // A partition of a grid into boxes by repeated splits: what the variance fit grows and prunes.
 #pragma once
 
-#include "compress/cascade.h"
 #include "compress/grid.h"
+#include "compress/projection.h"
 
-#include <acdf/layout.h>
-
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace acdf::compress {
-
-/// Steps [begin, end) on each axis of the grid; axes that the grid lacks hold [0, 1).
-struct Box {
-    std::array<std::uint32_t, ACDF_MAX_AXES> begin{}, end{};
-
-    std::uint32_t length(std::size_t axis) const { return end[axis] - begin[axis]; }
-};
-
-/// Integrals over a part of the grid.
-struct Moments {
-    double measure = 0.0;
-    double energy = 0.0; ///< of f^2
-    double flux = 0.0;   ///< of f
-    double peak = 0.0;   ///< the largest f
-
-    void add(const Moments& other) {
-        measure += other.measure;
-        energy += other.energy;
-        flux += other.flux;
-        peak = other.peak > peak ? other.peak : peak;
-    }
-    /// C: what the part adds to sqrt(E[(f/p)^2]) as one cell of the best constant density. At least `flux`,
-    /// which is what it adds however finely it is divided.
-    double cost() const;
-    /// The largest f/p of the part as one cell, relative to its best density: peak over root mean square.
-    double weight() const;
-};
 
 /// A box, and how it is divided: not at all, or along one axis into two parts or more.
 struct Part {
@@ -49,6 +21,15 @@ struct Part {
     std::uint8_t depth = 1;        ///< curves on the way to its own, itself included
     std::uint32_t first_child = 0; ///< children lie side by side
     std::uint32_t children = 0;
+
+    /// What dividing it can lower the cost by, however finely.
+    double excess() const { return moments.cost() - moments.flux; }
+};
+
+/// What a partition may forget.
+struct Forgetting {
+    double price = 0.0; ///< a byte: divisions that pay at no price from here on
+    std::size_t parts = std::numeric_limits<std::size_t>::max(); ///< where it has more parts than these
 };
 
 /// Divides a grid, normalised to an integral of 1. parts()[0] is everything; children come after their parents.
@@ -64,8 +45,13 @@ public:
 
     /// Divides on until no part is left whose cost could fall by more than `finest` or whose weight() is above
     /// `heaviest`. May be called again with smaller values; a part is divided in the same way whenever that
-    /// happens.
-    void refine(double finest, double heaviest);
+    /// happens. Returns whether any part was divided that was not before, be it that it has been forgotten since.
+    ///
+    /// With `forgetting`, memory does not grow with all that is tried: what is forgotten is divided again when
+    /// refine is called again. Not for a bound on weights.
+    bool refine(double finest, double heaviest, const Forgetting& forgetting = {});
+    /// Forgets divisions that pay at no price from `price` on.
+    void forget(double price);
     const std::vector<Part>& parts() const { return parts_; }
     const Grid& grid() const { return grid_; }
     /// The integral over the grid, to which it is normalised.
@@ -78,6 +64,8 @@ private:
     double total_;
     std::int8_t first_;
     std::vector<Part> parts_;
+    double finest_ = std::numeric_limits<double>::infinity(); ///< of the last call of refine
+    bool forgot_ = false;
 };
 
 } // namespace acdf::compress

@@ -1,5 +1,7 @@
 #include "compress/prune.h"
 
+#include "compress/outline.h"
+
 #include <acdf/sample.h>
 
 #include <algorithm>
@@ -7,107 +9,84 @@
 
 namespace acdf::compress {
 
-Pruned prune(const std::vector<Part>& parts, double price, double heaviest) {
+PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest) {
+    PruneNodes out;
+    out.reserve(parts.size());
+    for (const Part& part : parts)
+        out.push_back({part.moments.cost(), part.first_child, static_cast<std::uint16_t>(part.children), part.split,
+                       part.moments.weight() > heaviest});
+    return out;
+}
+
+Pruned prune(const PruneNodes& nodes, double price) {
     Pruned out;
-    out.divided.assign(parts.size(), false);
-    out.cells.assign(parts.size(), 1);
-    std::vector<double> value(parts.size()); // cost and price of the best tree below a part
-    for (std::size_t i = parts.size(); i-- > 0;) {
-        const Part& part = parts[i];
-        value[i] = part.moments.cost();
-        if (part.split == Part::whole) continue;
-        double divided = price * kKnotBytes * (part.children - 1);
+    out.divided.assign(nodes.size(), 0);
+    out.cells.assign(nodes.size(), 1);
+    std::vector<double> value(nodes.size()); // cost and price of the best tree below a part
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const PruneNode& node = nodes[i];
+        value[i] = node.cost;
+        if (node.split == Part::whole) continue;
+        double divided = price * kKnotBytes * (node.children - 1);
         std::uint32_t count = 0;
-        for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k) {
+        for (std::uint32_t k = node.first_child; k < node.first_child + node.children; ++k) {
             divided += value[k];
-            if (out.divided[k] && parts[k].split != part.split) divided += price * kCurveBytes;
+            if (out.divided[k] && nodes[k].split != node.split) divided += price * kCurveBytes;
             count += out.cells[k];
         }
-        if (divided >= value[i] && part.moments.weight() <= heaviest) continue;
+        if (divided >= value[i] && !node.heavy) continue;
         value[i] = divided;
-        out.divided[i] = true;
+        out.divided[i] = 1;
         out.cells[i] = count;
     }
     return out;
 }
 
-namespace {
+Pruned prune(const std::vector<Part>& parts, double price, double heaviest) {
+    return prune(prune_nodes(parts, heaviest), price);
+}
 
-class Flattener {
-public:
-    Flattener(const Partition& partition, const Pruned& pruned, Flattened& out)
-        : grid_(partition.grid()), parts_(partition.parts()), pruned_(pruned), cost_(parts_.size(), 0.0),
-          out_(out) {
-        for (std::size_t i = parts_.size(); i-- > 0;) {
-            cost_[i] = pruned.divided[i] ? 0.0 : parts_[i].moments.cost();
-            for (std::uint32_t k = 0; pruned.divided[i] && k < parts_[i].children; ++k)
-                cost_[i] += cost_[parts_[i].first_child + k];
-        }
+std::vector<bool> may_pay(const std::vector<Part>& parts, double price) {
+    constexpr double rounding = 1e-9; // of the cost: far more than sums of costs are off by
+    std::vector<bool> out(parts.size(), false);
+    std::vector<double> value(parts.size()); // at most what prune() makes of it at that price
+    for (std::size_t i = parts.size(); i-- > 0;) {
+        const Part& part = parts[i];
+        value[i] = part.moments.cost();
+        if (part.split == Part::whole) continue;
+        double divided = price * kKnotBytes * (part.children - 1);
+        for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k) divided += value[k];
+        out[i] = divided < value[i] * (1.0 + rounding);
+        value[i] = std::min(value[i], divided);
     }
-
-    void run() {
-        out_.cascade.roots.push_back(static_cast<std::uint32_t>(out_.cascade.curves.size()));
-        out_.cost.push_back(cost_[0]);
-        add_curve(0);
-    }
-
-private:
-    /// The parts that become the segments of a curve that starts at part i.
-    void collect(std::uint32_t i, std::int8_t split, std::vector<std::uint32_t>& segments) const {
-        if (!pruned_.divided[i] || parts_[i].split != split) {
-            segments.push_back(i);
-            return;
-        }
-        for (std::uint32_t k = 0; k < parts_[i].children; ++k) collect(parts_[i].first_child + k, split, segments);
-    }
-
-    std::int32_t add_curve(std::uint32_t i) {
-        const std::int8_t split = pruned_.divided[i] ? parts_[i].split : std::int8_t{0};
-        std::vector<std::uint32_t> segments;
-        collect(i, split, segments);
-        const std::size_t index = out_.cascade.curves.size();
-        out_.cascade.curves.emplace_back();
-        out_.weights.emplace_back();
-        Curve curve;
-        std::vector<float> weights;
-        const auto axis = static_cast<std::size_t>(split);
-        curve.axis = grid_.axes[axis];
-        for (std::size_t s = 0; s < segments.size(); ++s) {
-            const Part& part = parts_[segments[s]];
-            if (s > 0) curve.knots.push_back(part.box.begin[axis]);
-            curve.probability.push_back(cost_[i] > 0.0 ? cost_[segments[s]] / cost_[i] : 1.0);
-            weights.push_back(static_cast<float>(part.moments.weight()));
-        }
-        curve.children = add_children(segments);
-        out_.cascade.curves[index] = std::move(curve);
-        out_.weights[index] = std::move(weights);
-        return static_cast<std::int32_t>(index);
-    }
-
-    /// Small subtrees first: most links are then short enough for one byte.
-    std::vector<std::int32_t> add_children(const std::vector<std::uint32_t>& segments) {
-        std::vector<std::size_t> order;
-        for (std::size_t s = 0; s < segments.size(); ++s)
-            if (pruned_.divided[segments[s]] && cost_[segments[s]] > 0.0) order.push_back(s);
-        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-            return pruned_.cells[segments[a]] < pruned_.cells[segments[b]];
-        });
-        std::vector<std::int32_t> children(segments.size(), -1);
-        for (std::size_t s : order) children[s] = add_curve(segments[s]);
-        return children;
-    }
-
-    const Grid& grid_;
-    const std::vector<Part>& parts_;
-    const Pruned& pruned_;
-    std::vector<double> cost_; ///< of the cells below each part
-    Flattened& out_;
-};
-
-} // namespace
+    return out;
+}
 
 void flatten(const Partition& partition, const Pruned& pruned, Flattened& out) {
-    Flattener(partition, pruned, out).run();
+    const std::vector<Part>& parts = partition.parts();
+    const PruneNodes nodes = prune_nodes(parts, std::numeric_limits<double>::infinity());
+    const std::vector<double> cost = costs_below(nodes, pruned);
+    const Outline curves = outline(nodes, pruned, cost);
+    const auto base = static_cast<std::int32_t>(out.cascade.curves.size());
+    out.cascade.roots.push_back(static_cast<std::uint32_t>(base));
+    out.cost.push_back(cost[0]);
+    for (const Outline::Curve& from : curves.curves) {
+        Curve& curve = out.cascade.curves.emplace_back();
+        std::vector<float>& weights = out.weights.emplace_back();
+        curve.axis = partition.grid().axes[from.axis];
+        curve.knots.reserve(from.count);
+        curve.probability.reserve(from.count);
+        curve.children.reserve(from.count);
+        weights.reserve(from.count);
+        for (std::uint32_t s = 0; s < from.count; ++s) {
+            const Outline::Segment& segment = curves.begin(from)[s];
+            const Part& part = parts[segment.part];
+            if (s > 0) curve.knots.push_back(part.box.begin[from.axis]);
+            curve.probability.push_back(segment_probability(cost, from.part, segment.part));
+            curve.children.push_back(segment.child < 0 ? -1 : base + segment.child);
+            weights.push_back(static_cast<float>(part.moments.weight()));
+        }
+    }
 }
 
 void flatten_nothing(std::uint32_t axis, Flattened& out) {

@@ -15,15 +15,33 @@ constexpr double kKnotBytes = 3.0;
 constexpr double kCurveBytes = 2.0; // header, and the link that leads to it
 constexpr double kLeastBytes = 2.5; // of any division: what could gain less at a price need not be grown for it
 
+/// What pruning looks at of a part, close together: it goes through all parts for every price.
+struct PruneNode {
+    double cost;
+    std::uint32_t first_child;
+    std::uint16_t children;
+    std::int8_t split; ///< Part::whole where there are no children
+    bool heavy;        ///< a cell would hold weights above the bound
+};
+using PruneNodes = std::vector<PruneNode>;
+
+PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest);
+
 /// A partition pruned at one price.
 struct Pruned {
-    std::vector<bool> divided;        ///< one a part: whether its division stays
-    std::vector<std::uint32_t> cells; ///< below each part
+    std::vector<std::uint8_t> divided; ///< one a part: whether its division stays
+    std::vector<std::uint32_t> cells;  ///< below each part
 };
 
 /// Keeps a division where it lowers the cost by more than `price` times its bytes, or where a cell would hold
 /// weights above `heaviest` without it.
+Pruned prune(const PruneNodes& nodes, double price);
 Pruned prune(const std::vector<Part>& parts, double price, double heaviest);
+
+/// For each part, whether prune() could keep its division at a price from `price` on, without a bound on weights:
+/// divisions that a lower cost could pay if the curves below them took no bytes of their own. Then a division that
+/// does not pay pays at no higher price either.
+std::vector<bool> may_pay(const std::vector<Part>& parts, double price);
 
 /// The trees of all bins, and what belongs to their cells.
 struct Flattened {

@@ -43,37 +43,40 @@ std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std
         for (double& p : relative) p /= largest;
         return apportion(relative, maximum, smallest);
     }
-    std::vector<std::uint64_t> shares(n, 0);
+    std::vector<std::uint64_t> shares(n, 0); // those at the floor alone are above 0 at first
     // Raising small shares to the floor leaves less for the others, which may
     // then fall below it in turn.
-    std::vector<bool> at_floor(n, false);
     std::uint64_t left = maximum;
     double scale = 0.0;
     for (bool changed = true; changed;) {
         changed = false;
         double mass = 0.0;
         for (std::size_t i = 0; i < n; ++i)
-            if (!at_floor[i]) mass += probability[i];
+            if (shares[i] == 0) mass += probability[i];
         scale = mass > 0.0 ? static_cast<double>(left) / mass : 0.0;
         for (std::size_t i = 0; i < n; ++i) {
-            if (at_floor[i] || !(probability[i] > 0.0) || probability[i] * scale >= double(smallest)) continue;
+            if (shares[i] > 0 || !(probability[i] > 0.0) || probability[i] * scale >= double(smallest)) continue;
             if (left < smallest) throw std::invalid_argument("more segments than probabilities to give them");
-            at_floor[i] = true;
             shares[i] = smallest;
             left -= smallest;
             changed = true;
         }
     }
-    std::vector<std::size_t> free;
-    std::vector<double> remainder(n, 0.0);
+    struct Free {
+        double remainder;
+        std::size_t index;
+        bool operator<(const Free& other) const {
+            return remainder != other.remainder ? remainder > other.remainder : index < other.index;
+        }
+    };
+    std::vector<Free> free; // larger remainders first
     std::uint64_t given = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        if (at_floor[i] || !(probability[i] > 0.0)) continue;
+        if (shares[i] > 0 || !(probability[i] > 0.0)) continue;
         const double ideal = probability[i] * scale;
         shares[i] = std::max(smallest, static_cast<std::uint64_t>(ideal));
-        remainder[i] = ideal - static_cast<double>(shares[i]);
+        free.push_back({ideal - static_cast<double>(shares[i]), i});
         given += shares[i];
-        free.push_back(i);
     }
     // Every share is at the floor: the first of the most probable ones takes what
     // is left.
@@ -82,12 +85,11 @@ std::vector<std::uint64_t> apportion(const std::vector<double>& probability, std
                                         probability.begin())] += left;
         return shares;
     }
-    std::stable_sort(free.begin(), free.end(),
-                     [&](std::size_t a, std::size_t b) { return remainder[a] > remainder[b]; });
-    for (std::size_t k = 0; given < left; k = (k + 1) % free.size(), ++given) ++shares[free[k]];
+    std::sort(free.begin(), free.end());
+    for (std::size_t k = 0; given < left; k = (k + 1) % free.size(), ++given) ++shares[free[k].index];
     for (std::size_t k = free.size(); given > left; k = k == 0 ? free.size() : k) { // rounding of `ideal` upwards
         --k;
-        if (shares[free[k]] > smallest) --shares[free[k]], --given;
+        if (shares[free[k].index] > smallest) --shares[free[k].index], --given;
     }
     return shares;
 }
@@ -103,23 +105,17 @@ double quantization_excess(const std::vector<double>& probability, const std::ve
     return excess;
 }
 
+Rounding rounding_to(const std::vector<double>& probability, std::uint32_t code) {
+    const std::vector<std::uint64_t> shares = apportion(probability, kMaximum[code], kSmallest[code]);
+    return {quantization_excess(probability, shares), worst_ratio(probability, shares)};
+}
+
 QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price, double most_ratio) {
     const auto lit = static_cast<std::uint64_t>(
         std::count_if(probability.begin(), probability.end(), [](double p) { return p > 0.0; }));
-    const double values = static_cast<double>(probability.size() - 1);
-    QuantizedCurve best;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::uint32_t code = 0; code < 3; ++code) {
-        if (lit > kMaximum[code]) continue;
-        const double bytes = values * static_cast<double>(1u << code);
-        if (bytes * price >= least) break; // wider ones cost more even without any excess
-        const std::vector<std::uint64_t> shares = apportion(probability, kMaximum[code], kSmallest[code]);
-        const double cost = bytes * price + reach * quantization_excess(probability, shares);
-        if (cost >= least || (code < 2 && worst_ratio(probability, shares) > most_ratio)) continue;
-        least = cost;
-        best = accumulate(shares, code);
-    }
-    return best;
+    const std::uint32_t code = best_width(probability.size() - 1, lit, reach, price, most_ratio,
+                                          [&](std::uint32_t c) { return rounding_to(probability, c); });
+    return accumulate(apportion(probability, kMaximum[code], kSmallest[code]), code);
 }
 
 } // namespace acdf::compress

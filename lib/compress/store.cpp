@@ -147,8 +147,15 @@ Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
 
 } // namespace
 
-Description environment_description(std::uint32_t columns, std::uint32_t rows) {
+Description environment_description(std::uint32_t columns, std::uint32_t rows,
+                                    AcdfParameterization parameterization) {
     Description d;
+    d.parameterization = parameterization;
+    if (parameterization == ACDF_PARAM_OCTAHEDRAL) {
+        d.axes = {{"u", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, columns, 0.0, 1.0},
+                  {"v", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, rows, 0.0, 1.0}};
+        return d;
+    }
     d.axes = {{"phi", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, columns, ACDF_PI, -ACDF_PI},
               {"theta", ACDF_AXIS_SAMPLED, ACDF_MEASURE_COSINE, rows, 0.0, ACDF_PI}};
     return d;

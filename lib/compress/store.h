@@ -43,8 +43,9 @@ struct Description {
     Metadata metadata;
 };
 
-/// An environment of columns x rows texels in the lat-long parameterization.
-Description environment_description(std::uint32_t columns, std::uint32_t rows);
+/// An environment of columns x rows texels, lat-long or on the octahedral square.
+Description environment_description(std::uint32_t columns, std::uint32_t rows,
+                                    AcdfParameterization parameterization = ACDF_PARAM_LATLONG);
 
 /// The bytes of chunk TREE, and offsets in it in units of two bytes: of each root, and of each curve.
 struct EncodedTree {

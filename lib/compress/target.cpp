@@ -24,6 +24,7 @@ Target transposed(const Target& target) {
     out.row_axis = target.column_axis;
     out.total = target.total;
     out.mean_square = target.mean_square;
+    out.parameterization = target.parameterization;
     out.values.resize(target.values.size());
     const std::uint32_t blocks = (target.rows + kBlock - 1) / kBlock;
     tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {

@@ -9,7 +9,8 @@
 namespace acdf::compress {
 
 /// g on rows x columns, row-major; each axis carries the measure of its steps. For a probe the columns are
-/// azimuths and the rows elevations, so that the measure of a texel is its exact solid angle.
+/// azimuths and the rows elevations, or u and v of the octahedral square, so that the measure of a texel is its
+/// exact solid angle.
 ///
 /// g is the root mean square, over a texel and summed over channels, of the integrand f that a renderer
 /// estimates: with one channel and nearest lookup it is f itself. A density p that is constant on texels then has
@@ -26,6 +27,7 @@ struct Target {
     double total = 0.0; ///< integral of f; of several channels their sum
     /// Square of the integral of f, of several channels their sum: what E[(f/p)^2] is compared with. 0: g is f.
     double mean_square = 0.0;
+    AcdfParameterization parameterization = ACDF_PARAM_LATLONG; ///< of a probe: lat-long or octahedral
 
     const float* row(std::uint32_t r) const { return values.data() + std::size_t{r} * columns; }
 };
@@ -39,11 +41,27 @@ struct ChannelWeights {
 struct TargetOptions {
     ChannelWeights weights;
     AcdfChannels channels = ACDF_CHANNELS_WEIGHTED; ///< the weighted sum, each channel on its own, or the largest
-    AcdfFilter filter = ACDF_FILTER_NEAREST;        ///< bilinear: wraps at the seam, clamps at the poles
+    /// Bilinear wraps at the seam of a lat-long probe and clamps at its poles; at the sides of an octahedral square
+    /// it goes on where the direction does, on the other half of the side.
+    AcdfFilter filter = ACDF_FILTER_NEAREST;
+    AcdfParameterization parameterization = ACDF_PARAM_LATLONG; ///< of the probe: lat-long or octahedral
 };
 
-/// Makes the target of a lat-long probe of columns x rows RGB texels that come in bands of rows. One channel with
-/// nearest lookup takes four bytes a texel, and no more on the way.
+/// How many numbers of a texel count: three, or one.
+std::uint32_t planes_of(const TargetOptions& options);
+
+/// The numbers that count of `count` texels of RGB, negatives as 0 channel by channel: plane k of texel i becomes
+/// out[k * stride + i]. False where any is not finite.
+bool take_texels(const float* rgb, std::size_t count, const TargetOptions& options, float* out, std::size_t stride);
+
+/// A double as a float that is positive where the double is: rounding must not make darkness out of light.
+float positive_float(double value);
+
+/// A grid of directions without any light: all but the values.
+Target empty_target(std::uint32_t columns, std::uint32_t rows, AcdfParameterization parameterization);
+
+/// Makes the target of a lat-long or octahedral probe of columns x rows RGB texels that come in bands of rows. One
+/// channel with nearest lookup takes four bytes a texel, and no more on the way.
 class EnvironmentTarget {
 public:
     EnvironmentTarget(std::uint32_t columns, std::uint32_t rows, const TargetOptions& options);
@@ -63,8 +81,9 @@ private:
     std::vector<float> values_; ///< of the integrand: planes x rows x columns, one plane a channel that counts
 };
 
-/// The target of a lat-long probe of `rgb` (rows x columns x 3), negatives as 0 channel by channel, with measure
-/// dphi and dz = d cos(theta) (Lawrence et al. 2005, §3). Throws std::invalid_argument on non-finite input.
+/// The target of a probe of `rgb` (rows x columns x 3), negatives as 0 channel by channel, with measure dphi and
+/// dz = d cos(theta) (Lawrence et al. 2005, §3), of an octahedral one with equal measures. Throws
+/// std::invalid_argument on non-finite input.
 Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t rows,
                           const TargetOptions& options);
 

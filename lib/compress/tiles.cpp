@@ -1,5 +1,7 @@
 #include "compress/tiles.h"
 
+#include "compress/octahedral_boxes.h"
+
 #include <acdf/sample.h>
 
 #include <algorithm>
@@ -26,6 +28,7 @@ struct Light {
     }
 };
 
+/// Directions of the texels of a lat-long target.
 struct Sphere {
     std::vector<double> cosine, sine;  ///< of phi, one a column
     std::vector<double> z, sine_theta; ///< one a row
@@ -111,6 +114,10 @@ private:
                 const double flux =
                     values[c] * at(worth_.spread, r, c) * target_.row_measure[r] * target_.column_measure[c];
                 Light light{flux, {flux * sine * sphere_.cosine[c], flux * sine * sphere_.sine[c], flux * z}};
+                if (is_octahedral(target_)) {
+                    light.sum = octahedral_direction(target_, c + 0.5, r + 0.5);
+                    for (double& x : light.sum) x *= flux;
+                }
                 row.add(light);
                 lines_[1][c - box.begin[1]].add(light);
             }
@@ -187,6 +194,9 @@ TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t co
 }
 
 std::array<double, 3> centre(const Target& target, const Box& box) {
+    if (is_octahedral(target))
+        return octahedral_direction(target, 0.5 * (double(box.begin[1]) + box.end[1]),
+                                    0.5 * (double(box.begin[0]) + box.end[0]));
     const double z = 0.5 * (acdf_row_z(box.begin[0], target.rows) + acdf_row_z(box.end[0], target.rows));
     const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
     double s, c;
@@ -195,6 +205,7 @@ std::array<double, 3> centre(const Target& target, const Box& box) {
 }
 
 double largest_cosine(const Target& target, const Box& box, const std::array<double, 3>& n) {
+    if (is_octahedral(target)) return largest_octahedral_cosine(target, box, n);
     const double sine = std::hypot(n[0], n[1]);
     double column = target.columns * (0.5 - 0.5 * acdf_atan2pi(n[1], n[0]));
     double best = 1.0; // cosine of the difference in azimuth

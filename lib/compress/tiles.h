@@ -25,12 +25,12 @@ struct TileTree {
     std::vector<Box> tiles; ///< one more than splits
 };
 
-/// Numbers on a coarse lat-long grid.
+/// Numbers on a coarse grid of the target's parameterization.
 struct CoarseMap {
     static constexpr std::uint32_t columns = 128, rows = 64;
     std::vector<double> values = std::vector<double>(std::size_t{columns} * rows);
 
-    /// At a place given as fractions of the whole sphere's columns and rows, in [0, 1).
+    /// At a place given as fractions of all columns and rows, in [0, 1).
     double at(double column, double row) const {
         return values[std::size_t(row * rows) * columns + std::size_t(column * columns)];
     }
@@ -51,19 +51,19 @@ struct Worth {
 constexpr double kAlarm = 0.002;      ///< tiles whose light could draw more by mistake become lights
 constexpr double kLightRadius = 0.03; ///< radians; a light is no larger, and the smaller the brighter it is
 
-/// Divides a probe (rows theta, columns phi) into at most `count` tiles. Each split is the one that lowers most the
-/// sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2 with w = worth.spread: to first order,
-/// what the cosine to a normal adds to the variance within a tile. Tiles of bright light that are too large for a
-/// light come first.
+/// Divides a probe (rows theta, columns phi, or v and u) into at most `count` tiles. Each split is the one that
+/// lowers most the sum over tiles of the light's angular variance, ∫ w L |omega - mean|^2 with w = worth.spread: to
+/// first order, what the cosine to a normal adds to the variance within a tile. Tiles of bright light that are too
+/// large for a light come first.
 TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count);
 
-/// The middle of a box in phi and z, and so of its solid angle.
+/// The middle of a box in phi and z, or in u and v, and so of its solid angle.
 std::array<double, 3> centre(const Target& target, const Box& box);
 
-/// The largest cosine between a unit vector and any direction of a box.
+/// The largest cosine between a unit vector and any direction of a box; on the octahedral square a bound near it.
 double largest_cosine(const Target& target, const Box& box, const std::array<double, 3>& n);
 
-/// The largest distance of any point of a box on the unit sphere from its centre.
+/// The largest distance of any point of a box on the unit sphere from its centre; on the octahedral square a bound.
 double radius(const Target& target, const Box& box);
 
 } // namespace acdf::compress

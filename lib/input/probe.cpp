@@ -64,14 +64,15 @@ Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows
     probe.source_sha256 = file_sha256(path); // first: it tells missing files and folders apart
     probe.source_name = std::filesystem::path(path).filename().string();
     build::RepairedRows repaired({options.bad_pixels, options.uniform_if_black, options.threads}, rows);
-    const auto tell = [&](const Detected& detected) {
+    const auto tell = [&](const Detected& detected, const Image& image) {
+        probe.source_map = {detected.layout, image.width, image.height};
         probe.projection = projection_of(detected.layout);
         probe.projection_reason = detected.reason;
     };
     try {
         Image image = read_image(path, options.threads, [&](const Image& header) -> TakeRows {
             if (options.bad_pixels == build::BadPixels::clamp || !is_latlong(header, options.projection)) return {};
-            tell(detect_layout(path, header, options.projection));
+            tell(detect_layout(path, header, options.projection), header);
             repaired.begin(header.width, header.height);
             return [&](int first, int count, float* rgb) { repaired.take(first, count, rgb); };
         });
@@ -81,8 +82,8 @@ Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows
         if (!image.rgb.empty()) {
             repaired.repair_whole(image.width, image.height, image.rgb.data());
             const Detected detected = detect_layout(path, image, options.projection);
-            tell(detected);
-            repaired.take_whole({detected.layout, image.width, image.height}, std::move(image.rgb));
+            tell(detected, image);
+            repaired.take_whole(probe.source_map, std::move(image.rgb));
         }
         probe.width = repaired.width();
         probe.height = repaired.height();

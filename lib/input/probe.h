@@ -21,8 +21,12 @@ enum class Projection { automatic, latlong, angular, mirrorball, cube_cross, oct
 /// "latlong", "angular", "mirrorball", "cube-cross", "octahedral", "auto".
 const char* to_string(Projection projection);
 
+/// The grid that a probe is fitted on.
+using Domain = builder::Domain;
+
 struct ProbeOptions {
     Projection projection = Projection::automatic;
+    Domain domain = Domain::source; ///< for who makes targets; read_probe alone knows lat-long maps
     build::BadPixels bad_pixels = build::BadPixels::zero;
     /// A probe without any light counts as one of the faintest constant light, so that it can be sampled.
     bool uniform_if_black = false;
@@ -38,6 +42,7 @@ struct Probe {
     std::string source_sha256; ///< of the file's bytes, hex
     int source_width = 0, source_height = 0;
     Projection projection = Projection::latlong; ///< what was used, never `automatic`
+    build::Map source_map;                       ///< the source's layout and size
     std::string projection_reason;               ///< why, for a person: "2:1 shape", "envmap attribute"
     build::BadTexels bad;
     std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
@@ -49,7 +54,7 @@ using build::ProbeRows;
 Probe read_probe(const std::string& path, const ProbeOptions& options = {});
 
 /// The same without keeping `rgb`: a lat-long image is read in bands of rows, and never in memory as a whole (but
-/// for BadPixels::clamp); one of another projection is, and is resampled.
+/// for BadPixels::clamp); one of another projection is, and is resampled unless `rows` takes it as it is.
 Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows& rows);
 
 } // namespace acdf::input

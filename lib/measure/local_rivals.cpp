@@ -61,8 +61,7 @@ AcdfDirectionSample place_draw(std::uint32_t columns, std::uint32_t rows, const 
 }
 
 LocalFullCdf::LocalFullCdf(const Target& target)
-    : target_(checked(target)), cdf_(target), cosines_(target.columns, target.rows),
-      flux_(compress::integral(target)) {
+    : target_(checked(target)), cdf_(target), cosines_(target), flux_(compress::integral(target)) {
     if (!(flux_ > 0.0)) throw std::invalid_argument("a black probe has nothing to sample");
 }
 

@@ -90,8 +90,7 @@ private:
 /// Directions with density cos / pi: knows the surface, not the light.
 class CosineHemisphere {
 public:
-    explicit CosineHemisphere(const compress::Target& target)
-        : target_(target), cosines_(target.columns, target.rows) {}
+    explicit CosineHemisphere(const compress::Target& target) : target_(target), cosines_(target) {}
 
     /// u0, u1 in [0, 1).
     static AcdfDirectionSample sample(const float n[3], double u0, double u1);

@@ -1,4 +1,4 @@
-// The texels of a lat-long probe, as samplers of texels see them.
+// The texels of a probe, as samplers of texels see them.
 #pragma once
 
 #include "compress/target.h"
@@ -14,22 +14,24 @@ class ProbeGrid {
 public:
     /// Throws std::invalid_argument where the target is no probe of one channel and nearest lookup, or black.
     explicit ProbeGrid(const compress::Target& target)
-        : columns_(target.columns), rows_(target.rows), flux_(compress::integral(target)) {
-        if (!target.peaks.empty() || columns_ == 0 || rows_ == 0)
+        : grid_{target.columns, target.rows, static_cast<std::uint32_t>(target.parameterization)},
+          flux_(compress::integral(target)) {
+        if (!target.peaks.empty() || target.values.empty())
             throw std::invalid_argument("a sampler of texels needs a probe of one channel with nearest lookup");
         if (!(flux_ > 0.0)) throw std::invalid_argument("a black probe has nothing to sample");
     }
 
-    std::uint32_t columns() const { return columns_; }
-    std::uint32_t rows() const { return rows_; }
-    std::size_t texels() const { return std::size_t{columns_} * rows_; }
+    std::uint32_t columns() const { return grid_.columns; }
+    std::uint32_t rows() const { return grid_.rows; }
+    std::size_t texels() const { return std::size_t{grid_.columns} * grid_.rows; }
     /// Integral of the radiance over the sphere.
     double flux() const { return flux_; }
 
-    /// A direction in a box of texels, column and row ranges in `range`, at fractions u of it in azimuth and z.
+    /// A direction in a box of texels, column and row ranges in `range`, at fractions u of it in azimuth and z or
+    /// in u and v.
     AcdfDirectionSample place(const AcdfRange range[2], double u0, double u1, double pdf) const {
         const double u[2] = {u0, u1};
-        AcdfDirectionSample out = acdf_sphere_place(columns_, rows_, range, u, 1.0);
+        AcdfDirectionSample out = acdf_grid_place(&grid_, range, u, 1.0);
         out.pdf = static_cast<float>(pdf);
         return out;
     }
@@ -39,12 +41,12 @@ public:
     }
     /// The texel (column, row) of a direction; false for those that are NaN or not unit.
     bool find(const float direction[3], std::uint32_t texel[2]) const {
-        double column;
-        return acdf_sphere_square(columns_, rows_, direction, texel, &column) != 0;
+        double position[2];
+        return acdf_grid_square(&grid_, direction, texel, position) != 0;
     }
 
 private:
-    std::uint32_t columns_, rows_;
+    AcdfGrid grid_;
     double flux_;
 };
 

@@ -1,5 +1,6 @@
 #include "measure/stratification.h"
 
+#include "compress/octahedral_boxes.h"
 #include "compress/sum.h"
 #include "measure/probe_grid.h"
 
@@ -42,6 +43,9 @@ private:
     using Direction = std::array<double, 3>;
 
     Direction direction(std::uint32_t texel) const {
+        if (compress::is_octahedral(target_))
+            return compress::octahedral_direction(target_, texel % target_.columns + 0.5,
+                                                  texel / target_.columns + 0.5);
         const double z = row_[texel / target_.columns], radius = std::sqrt((1.0 - z) * (1.0 + z));
         const auto& [x, y] = column_[texel % target_.columns];
         return {radius * x, radius * y, z};

@@ -50,7 +50,7 @@ TilingOnTheFly::Borders TilingOnTheFly::borders(std::uint32_t texels, std::uint3
 
 TilingOnTheFly::TilingOnTheFly(const Target& target, std::uint32_t columns, std::uint32_t rows)
     : target_(target), columns_(borders(target.columns, columns, true)), rows_(borders(target.rows, rows, false)),
-      cosines_(target.columns, target.rows) {
+      cosines_(target) {
     for (std::uint32_t r = 0; r < rows; ++r)
         for (std::uint32_t c = 0; c < columns; ++c) {
             const Target tile = part(target, columns_.at[c], columns_.at[c + 1], rows_.at[r], rows_.at[r + 1]);

@@ -1,6 +1,5 @@
 // The file as a container: header, chunk table, payloads.
-#include "checker.h"
-#include "planes.h"
+#include "chunk_table.h"
 
 #include <zlib.h>
 
@@ -142,9 +141,6 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 
 // ---- chunk table ----------------------------------------------------------------------------------------
 
-constexpr u32 known_types[known_chunks] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS,  ACDF_CHUNK_TREE,
-                                           ACDF_CHUNK_METADATA,    ACDF_CHUNK_TILES, ACDF_CHUNK_ROWS,
-                                           ACDF_CHUNK_LOCAL,       ACDF_CHUNK_VIEWS};
 constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
 
 // Whether a known chunk has a place in files of a kind.
@@ -155,40 +151,19 @@ bool belongs(int known, u32 kind) {
     return true;
 }
 
-int known_chunk(u32 type) {
-    for (int i = 0; i < known_chunks; ++i)
-        if (known_types[i] == type) return i;
-    return -1;
+bool is_all_printable(u32 type) {
+    return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);
 }
 
-struct ChunkName {
-    char text[5];
-    explicit ChunkName(u32 type) {
-        for (int i = 0; i < 4; ++i) {
-            const char c = static_cast<char>(type >> 8 * i);
-            text[i] = c >= 32 && c < 127 ? c : '?';
-        }
-        text[4] = 0;
-    }
-};
-
-struct Table {
-    const AcdfChunk* chunks;
-    u32 count;
-    bool inside[ACDF_MAX_CHUNKS]; // the payload lies in the file, where it should
-    bool legal;                   // so do all: the gaps between them are padding
-
-    u64 offset_of(u32 i) const { return sizeof(AcdfHeader) + u64{i} * sizeof(AcdfChunk); }
-    u64 end() const { return offset_of(count); }
-};
-
-void check_type_and_flags(const Table& table, u32 i, u32 kind, Report& report) {
+void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& report) {
     const AcdfChunk& chunk = table.chunks[i];
     const int known = known_chunk(chunk.type);
     const u64 at = table.offset_of(i);
     const ChunkName name(chunk.type);
     const bool critical = chunk.flags & ACDF_CHUNK_FLAG_CRITICAL;
-    if (known < 0 && critical)
+    if (!is_all_printable(chunk.type))
+        report.add(3014, at, "chunk %u: %08x, in the order of its bytes '%s'", i, chunk.type, name.text);
+    else if (known < 0 && critical)
         report.add(3002, at, "the critical chunk '%s' (%08x) is unknown: a newer reader is needed", name.text,
                    chunk.type);
     if (known >= 0 && !belongs(known, kind)) report.add(3013, at, "'%s' with kind %u", name.text, kind);
@@ -209,7 +184,7 @@ void check_type_and_flags(const Table& table, u32 i, u32 kind, Report& report) {
 }
 
 // Returns the end of the payload; `expected` is where it must start.
-u64 check_place(Table& table, u32 i, u64 expected, u64 size, Report& report) {
+u64 check_place(ChunkTable& table, u32 i, u64 expected, u64 size, Report& report) {
     const AcdfChunk& chunk = table.chunks[i];
     const u64 at = table.offset_of(i);
     const ChunkName name(chunk.type);
@@ -231,7 +206,7 @@ u64 check_place(Table& table, u32 i, u64 expected, u64 size, Report& report) {
     return chunk.offset + chunk.stored_length;
 }
 
-void check_lengths(const Table& table, u32 i, Report& report) {
+void check_lengths(const ChunkTable& table, u32 i, Report& report) {
     const AcdfChunk& chunk = table.chunks[i];
     const u64 at = table.offset_of(i) + offsetof(AcdfChunk, raw_length);
     const ChunkName name(chunk.type);
@@ -244,7 +219,7 @@ void check_lengths(const Table& table, u32 i, Report& report) {
                    static_cast<ull>(chunk.raw_length), static_cast<ull>(chunk.stored_length));
 }
 
-void check_table(Table& table, const AcdfHeader& header, u64 size, Report& report) {
+void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& report) {
     u64 end = table.end();
     table.legal = true;
     for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
@@ -265,7 +240,7 @@ void check_table(Table& table, const AcdfHeader& header, u64 size, Report& repor
 
 // ---- payloads -------------------------------------------------------------------------------------------
 
-void check_padding(const Table& table, const u8* bytes, u64 size, Report& report) {
+void check_padding(const ChunkTable& table, const u8* bytes, u64 size, Report& report) {
     u64 begin = table.end();
     for (u32 i = 0; i <= table.count && !report.stopped(); ++i) {
         const u64 rounded = round_up(begin, ACDF_ALIGNMENT);
@@ -279,7 +254,7 @@ void check_padding(const Table& table, const u8* bytes, u64 size, Report& report
     }
 }
 
-void check_crcs(const Table& table, const u8* bytes, Report& report) {
+void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
     for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
         const AcdfChunk& chunk = table.chunks[i];
         if (!table.inside[i]) continue;
@@ -290,109 +265,6 @@ void check_crcs(const Table& table, const u8* bytes, Report& report) {
     }
 }
 
-// Inflates a whole zlib stream to at most `out_size` bytes, and sets that to how many; null, or what is wrong.
-const char* inflate_within(const u8* in, u64 in_size, u8* out, u64& out_size) {
-    constexpr u64 step = u64{1} << 30; // zlib counts in 32 bits
-    z_stream stream = {};
-    if (inflateInit(&stream) != Z_OK) return "zlib cannot start";
-    stream.next_in = const_cast<u8*>(in);
-    stream.next_out = out;
-    u64 in_left = in_size, out_left = out_size;
-    int result = Z_OK;
-    while (result == Z_OK) {
-        const uInt in_now = static_cast<uInt>(in_left < step ? in_left : step);
-        const uInt out_now = static_cast<uInt>(out_left < step ? out_left : step);
-        stream.avail_in = in_now;
-        stream.avail_out = out_now;
-        result = inflate(&stream, Z_NO_FLUSH);
-        in_left -= in_now - stream.avail_in;
-        out_left -= out_now - stream.avail_out;
-        if (result == Z_OK && stream.avail_in == in_now && stream.avail_out == out_now) break; // no progress
-    }
-    inflateEnd(&stream);
-    if (result != Z_STREAM_END) return out_left == 0 ? "it goes on after `raw_length`" : "the stream is damaged";
-    out_size -= out_left;
-    return in_left != 0 ? "bytes follow the stream" : nullptr;
-}
-
-// The same to exactly `size` bytes.
-const char* inflate_exactly(const u8* in, u64 in_size, u8* out, u64 size) {
-    u64 inflated = size;
-    const char* wrong = inflate_within(in, in_size, out, inflated);
-    if (inflated != size) return "it ends before `raw_length`";
-    return wrong;
-}
-
-// Inflates the planes of a tree of `size` bytes, and puts it together.
-void inflate_tree(const AcdfChunk& chunk, const u8* in, u8* tree, Report& report, Payload& payload) {
-    u64 size = 2 * chunk.raw_length + sizeof(AcdfPlanes); // more than those of any tree
-    auto* planes = static_cast<u8*>(std::malloc(size));
-    if (!planes) return report.add(1003, 0, "%llu bytes for planes", static_cast<ull>(size));
-    const char* wrong = inflate_within(in, chunk.stored_length, planes, size);
-    if (!wrong && !planes_to_tree(planes, size, tree, chunk.raw_length))
-        wrong = "they are not those of such a tree";
-    std::free(planes);
-    if (wrong) return report.add(4005, chunk.offset, "planes: %s", wrong);
-    payload = {tree, chunk.raw_length, chunk.offset, true};
-}
-
-bool is_compressed(const Table& table, u32 i) {
-    const AcdfChunk& chunk = table.chunks[i];
-    return table.inside[i] && known_chunk(chunk.type) >= 0 &&
-           (chunk.codec == ACDF_CODEC_ZLIB ||
-            (chunk.codec == ACDF_CODEC_PLANES && chunk.type == ACDF_CHUNK_TREE)) &&
-           chunk.raw_length / 1032 <= chunk.stored_length;
-}
-
-// Memory for all compressed chunks in one block, each part at a multiple of 64; false where there is none.
-bool allocate_inflated(const Table& table, const Limits& limits, Report& report, Parts& parts) {
-    u64 sum = 0, block = 0;
-    for (u32 i = 0; i < table.count; ++i) {
-        if (!is_compressed(table, i)) continue;
-        const u64 length = table.chunks[i].raw_length;
-        if (length > limits.max_inflated_bytes - sum) {
-            report.add(3012, table.offset_of(i) + offsetof(AcdfChunk, raw_length),
-                       "more than the limit of %llu bytes", static_cast<ull>(limits.max_inflated_bytes));
-            return false;
-        }
-        sum += length;
-        block += round_up(length, ACDF_ALIGNMENT);
-    }
-    if (block == 0) return true;
-    parts.inflated = std::aligned_alloc(ACDF_ALIGNMENT, block);
-    if (!parts.inflated) report.add(1003, 0, "%llu bytes for inflated chunks", static_cast<ull>(block));
-    return parts.inflated != nullptr;
-}
-
-void read_payloads(const Table& table, const u8* bytes, const Limits& limits, Report& report, Parts& parts,
-                   Payloads& payloads) {
-    const bool have_memory = allocate_inflated(table, limits, report, parts);
-    u8* block = static_cast<u8*>(parts.inflated);
-    for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
-        const AcdfChunk& chunk = table.chunks[i];
-        const int known = known_chunk(chunk.type);
-        if (known < 0 || !table.inside[i] || payloads.of[known].data) continue;
-        Payload payload{bytes + chunk.offset, chunk.stored_length, chunk.offset, false};
-        if (chunk.codec == ACDF_CODEC_NONE && chunk.raw_length == chunk.stored_length) payloads.of[known] = payload;
-        if (!is_compressed(table, i) || !have_memory) continue;
-        static u8 nothing; // zlib wants an address even for no bytes
-        u8* const out = chunk.raw_length ? block : &nothing;
-        u8* const after = block + round_up(chunk.raw_length, ACDF_ALIGNMENT);
-        if (chunk.codec == ACDF_CODEC_PLANES) {
-            inflate_tree(chunk, bytes + chunk.offset, out, report, payloads.of[known]);
-            block = after;
-            continue;
-        }
-        payload = {out, chunk.raw_length, chunk.offset, true};
-        if (const char* wrong = inflate_exactly(bytes + chunk.offset, chunk.stored_length, out, chunk.raw_length)) {
-            report.add(4003, chunk.offset, "'%s': %s", ChunkName(chunk.type).text, wrong);
-            continue;
-        }
-        block = after;
-        payloads.of[known] = payload;
-    }
-}
-
 } // namespace
 
 Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context,
@@ -400,7 +272,7 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     Report report(sink, context);
     if (!check_header(bytes, size, report) || report.stopped()) return report.verdict();
     const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
-    Table table = {};
+    ChunkTable table = {};
     table.chunks = reinterpret_cast<const AcdfChunk*>(bytes + sizeof(AcdfHeader));
     table.count = header.chunk_count;
     check_table(table, header, size, report);
@@ -423,8 +295,10 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
     if (header.kind == ACDF_KIND_BRDF && !report.stopped())
         check_brdf_kind(description, payloads.of[chunk_views], report, parts);
-    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped()) check_environment(description, report, parts);
-    if (header.kind == ACDF_KIND_TABLE && !report.stopped()) check_table_kind(description, report, parts);
+    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped())
+        check_environment(description, payloads.of[chunk_bins], report, parts);
+    if (header.kind == ACDF_KIND_TABLE && !report.stopped())
+        check_table_kind(description, payloads.of[chunk_bins], report, parts);
     return report.verdict();
 }
 

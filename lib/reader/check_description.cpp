@@ -63,7 +63,7 @@ struct Choice {
 };
 
 constexpr Choice choices[] = {
-    {5001, offsetof(AcdfDescription, parameterization), ACDF_PARAM_LATLONG, ACDF_PARAM_TABLE},
+    {5001, offsetof(AcdfDescription, parameterization), ACDF_PARAM_LATLONG, ACDF_PARAM_OCTAHEDRAL},
     {5002, offsetof(AcdfDescription, fit), ACDF_FIT_UNIFORM, ACDF_FIT_VARIANCE},
     {5003, offsetof(AcdfDescription, filter), ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR},
     {5019, offsetof(AcdfDescription, channels), ACDF_CHANNELS_WEIGHTED, ACDF_CHANNELS_LARGEST},
@@ -71,9 +71,10 @@ constexpr Choice choices[] = {
     {5005, offsetof(AcdfDescription, handedness), ACDF_RIGHT_HANDED, ACDF_RIGHT_HANDED},
 };
 
-u32 parameterization_of(u32 kind) {
-    if (kind == ACDF_KIND_BRDF) return ACDF_PARAM_HALF_ANGLE;
-    return kind == ACDF_KIND_TABLE ? ACDF_PARAM_TABLE : ACDF_PARAM_LATLONG;
+bool goes_with(u32 parameterization, u32 kind) {
+    if (kind == ACDF_KIND_BRDF) return parameterization == ACDF_PARAM_HALF_ANGLE;
+    if (kind == ACDF_KIND_TABLE) return parameterization == ACDF_PARAM_TABLE;
+    return parameterization == ACDF_PARAM_LATLONG || parameterization == ACDF_PARAM_OCTAHEDRAL;
 }
 
 void check_fields(const Payload& payload, const AcdfDescription& d, u32 kind, Report& report) {
@@ -84,7 +85,7 @@ void check_fields(const Payload& payload, const AcdfDescription& d, u32 kind, Re
             report.add(choice.rule, payload.at(choice.offset), "%u is unknown", value);
     }
     if (kind >= ACDF_KIND_ENVIRONMENT && kind <= ACDF_KIND_TABLE && d.parameterization >= ACDF_PARAM_LATLONG &&
-        d.parameterization <= ACDF_PARAM_TABLE && d.parameterization != parameterization_of(kind))
+        d.parameterization <= ACDF_PARAM_OCTAHEDRAL && !goes_with(d.parameterization, kind))
         report.add(5016, payload.at(0), "parameterization %u with kind %u", d.parameterization, kind);
     if (d.bin_count < 1) report.add(5007, payload.at(offsetof(AcdfDescription, bin_count)), "there is no bin");
     for (u32 i = 0; i < 3; ++i)
@@ -94,6 +95,18 @@ void check_fields(const Payload& payload, const AcdfDescription& d, u32 kind, Re
     if (!std::isfinite(d.total) || !(d.total > 0.0))
         report.add(5010, payload.at(offsetof(AcdfDescription, total)), "it is %g", d.total);
 }
+
+// What an axis of an environment must be, beside its resolution.
+struct EnvironmentAxis {
+    u8 name[16];
+    u32 measure;
+    double low, high;
+};
+
+constexpr EnvironmentAxis latlong_axes[2] = {{{'p', 'h', 'i'}, ACDF_MEASURE_LINEAR, pi, -pi},
+                                             {{'t', 'h', 'e', 't', 'a'}, ACDF_MEASURE_COSINE, 0.0, pi}};
+constexpr EnvironmentAxis octahedral_axes[2] = {{{'u'}, ACDF_MEASURE_LINEAR, 0.0, 1.0},
+                                                {{'v'}, ACDF_MEASURE_LINEAR, 0.0, 1.0}};
 
 // ---- metadata -------------------------------------------------------------------------------------------
 
@@ -179,16 +192,15 @@ void check_metadata(const Payload& payload, Report& report, Parts& parts) noexce
 }
 
 void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept {
-    static constexpr u8 names[2][16] = {{'p', 'h', 'i'}, {'t', 'h', 'e', 't', 'a'}};
-    static constexpr double low[2] = {pi, 0.0}, high[2] = {-pi, pi};
-    static constexpr u32 measures[2] = {ACDF_MEASURE_LINEAR, ACDF_MEASURE_COSINE};
+    const bool octahedral = parts.description->parameterization == ACDF_PARAM_OCTAHEDRAL;
+    const EnvironmentAxis* expected = octahedral ? octahedral_axes : latlong_axes;
     for (u32 i = 0; i < 2; ++i) {
         const AcdfAxis& axis = parts.axes[i];
         const char* fault = nullptr;
-        if (std::memcmp(axis.name, names[i], sizeof axis.name) != 0) fault = "name";
+        if (std::memcmp(axis.name, expected[i].name, sizeof axis.name) != 0) fault = "name";
         else if (axis.role != ACDF_AXIS_SAMPLED) fault = "role";
-        else if (axis.measure != measures[i]) fault = "measure";
-        else if (axis.low != low[i] || axis.high != high[i]) fault = "range";
+        else if (axis.measure != expected[i].measure) fault = "measure";
+        else if (axis.low != expected[i].low || axis.high != expected[i].high) fault = "range";
         else if (axis.resolution > max_environment_resolution) fault = "resolution";
         if (fault)
             report.add(7001, payload.at(sizeof(AcdfDescription) + i * sizeof axis), "axis %u: the %s differs", i,
@@ -196,16 +208,41 @@ void check_environment_axes(const Payload& payload, Report& report, const Parts&
     }
 }
 
-void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept {
+void check_environment(const Payload& payload, const Payload& bins, Report& report, const Parts& parts) noexcept {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 2)
         report.add(7001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
     else check_environment_axes(payload, report, parts);
     if (d.bin_count != 1)
         report.add(7002, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins", d.bin_count);
+    if (!parts.bins || d.bin_count != 1) return;
+    const float share = parts.bins[0].share;
+    if (std::isfinite(share) && share >= 0.0f && share != 1.0f) // else rule 6017
+        report.add(7008, bins.at(offsetof(AcdfBin, share)), "it is %g", static_cast<double>(share));
 }
 
-void check_table_kind(const Payload& payload, Report& report, const Parts& parts) noexcept {
+void check_table_shares(const Payload& bins, Report& report, const Parts& parts) {
+    double sum = 0.0;
+    for (u32 i = 0; parts.bins && i < parts.description->bin_count; ++i) {
+        if (!(parts.bins[i].share >= 0.0f)) return; // rule 6017
+        sum += static_cast<double>(parts.bins[i].share);
+    }
+    if (parts.bins && std::isfinite(sum) && !(std::fabs(sum - 1.0) <= 0x1p-20))
+        report.add(9005, bins.at(0), "their sum is %.9g", sum);
+}
+
+void check_table_weights(const Payload& payload, Report& report, const AcdfDescription& d) {
+    const double* w = d.channel_weights;
+    if (d.channels == ACDF_CHANNELS_WEIGHTED && w[0] == 1.0 && w[1] == 0.0 && w[2] == 0.0) return;
+    if (d.channels > ACDF_CHANNELS_LARGEST) return; // rule 5019
+    for (u32 i = 0; i < 3; ++i)
+        if (!std::isfinite(w[i]) || w[i] < 0.0) return; // rule 5009
+    report.add(9006, payload.at(offsetof(AcdfDescription, channels)), "channels %u, weights %g, %g, %g", d.channels,
+               w[0], w[1], w[2]);
+}
+
+void check_table_kind(const Payload& payload, const Payload& bin_records, Report& report,
+                      const Parts& parts) noexcept {
     const AcdfDescription& d = *parts.description;
     if (d.parameterization != ACDF_PARAM_TABLE) return; // rule 5016: what the axes mean is open
     u64 bins = 1;                                       // no more than 2^32: then it is wrong anyway
@@ -226,6 +263,8 @@ void check_table_kind(const Payload& payload, Report& report, const Parts& parts
             report.add(9004, at + offsetof(AcdfAxis, low), "axis %u: %u steps from %g to %g", i, axis.resolution,
                        axis.low, axis.high);
     }
+    check_table_weights(payload, report, d);
+    check_table_shares(bin_records, report, parts);
     if (bins != d.bin_count && bins != 0) // 0: rule 5014
         report.add(9003, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
                    d.bin_count, static_cast<ull>(bins));

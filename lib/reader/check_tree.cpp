@@ -57,11 +57,13 @@ struct Tree {
 
 /// Calls `visit(unit, box, offset, index)` wherever a tree begins: for each bin or, where bins share tiles, for
 /// each tile, with its box (null: everything), the place in the file that says so and the number of the bin or
-/// tile. In local environments and BRDFs unit 0 is one too.
+/// tile. Unit 0 is one too in local environments, and in BRDFs whose tiles have none.
 template <class Visit>
 void for_each_root(const Tree& tree, Visit visit) {
     const bool indexed = tree.kind == ACDF_KIND_LOCAL || tree.kind == ACDF_KIND_BRDF;
-    if (indexed) visit(u32{0}, static_cast<const TileBox*>(nullptr), tree.payload.at(0), u32{0});
+    const bool unused = tree.parts.tiles && tree.parts.tiles->root_count == 0;
+    if (tree.kind == ACDF_KIND_LOCAL || (tree.kind == ACDF_KIND_BRDF && unused))
+        visit(u32{0}, static_cast<const TileBox*>(nullptr), tree.payload.at(0), u32{0});
     const u32 count = tree.parts.tiles ? tree.parts.tiles->root_count : tree.parts.description->bin_count;
     for (u32 i = 0; i < count; ++i) {
         const TileBox* box = tree.tiles.of ? &tree.tiles.of[i] : nullptr;

@@ -87,12 +87,13 @@ void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, co
 /// What the kind asks of axes and bins; needs parts.description.
 /// Axes 0 and 1 must be those of an environment.
 void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
-void check_environment(const Payload& payload, Report& report, const Parts& parts) noexcept;
+void check_environment(const Payload& description, const Payload& bins, Report& report,
+                       const Parts& parts) noexcept;
 /// The same of local environments, and LOCL. Sets parts.local and parts.lights.
 void check_local_kind(const Payload& description, const Payload& local, const TileBoxes& boxes, Report& report,
                       Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
-void check_table_kind(const Payload& payload, Report& report, const Parts& parts) noexcept;
+void check_table_kind(const Payload& description, const Payload& bins, Report& report, const Parts& parts) noexcept;
 
 } // namespace acdf

@@ -1,5 +1,6 @@
 // `File`: reading, ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check.h"
+#include "make_cells.h"
 
 #include <cerrno>
 #include <cstdarg>
@@ -167,16 +168,17 @@ File& File::operator=(File&& other) noexcept {
     nodes_ = std::exchange(other.nodes_, nullptr);
     metadata_ = std::exchange(other.metadata_, nullptr);
     metadata_count_ = std::exchange(other.metadata_count_, 0);
-    for (int i = 0; i < 2; ++i) owned_[i] = std::exchange(other.owned_[i], nullptr);
+    cells_ = std::exchange(other.cells_, nullptr);
+    for (int i = 0; i < 3; ++i) owned_[i] = std::exchange(other.owned_[i], nullptr);
     return *this;
 }
 
-Status File::open(const char* path, File& file, const Limits& limits) noexcept {
+Status File::open(const char* path, File& file, const LoadOptions& options) noexcept {
     Bytes bytes;
     file = File();
     if (!path) return failure(1001, "no path is given");
-    Status status = read_path(path, limits, bytes);
-    if (status.ok()) status = from_memory(bytes.data, bytes.size, file, limits);
+    Status status = read_path(path, options.limits, bytes);
+    if (status.ok()) status = from_memory(bytes.data, bytes.size, file, options);
     if (status.ok()) {
         file.owned_[0] = bytes.data;
         return status;
@@ -186,10 +188,10 @@ Status File::open(const char* path, File& file, const Limits& limits) noexcept {
     return status;
 }
 
-Status File::from_memory(const void* data, std::size_t size, File& file, const Limits& limits) noexcept {
+Status File::from_memory(const void* data, std::size_t size, File& file, const LoadOptions& options) noexcept {
     File loaded;
     file = File();
-    if (Status status = check_limit(size, limits); !status.ok()) return status;
+    if (Status status = check_limit(size, options.limits); !status.ok()) return status;
     if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
         Bytes copy;
         if (Status status = allocate(size, copy); !status.ok()) return status;
@@ -198,7 +200,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     }
     Status status;
     Parts parts;
-    check(static_cast<const u8*>(data), size, limits, first_error, &status, parts);
+    check(static_cast<const u8*>(data), size, options.limits, first_error, &status, parts);
     loaded.owned_[1] = parts.inflated;
     if (!status.ok()) return status;
     loaded.bytes_ = static_cast<const u8*>(data);
@@ -215,8 +217,19 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
     loaded.metadata_count_ = parts.metadata_count;
+    if (options.tables) loaded.make_tables();
     file = std::move(loaded);
     return status;
+}
+
+// They are only for speed: where there is no memory for them, the file is as good without.
+void File::make_tables() noexcept {
+    constexpr u64 most = u64{1} << 20;
+    // On the octahedral square a walk needs no trigonometry; its cells are not pieces of azimuth and height.
+    if (kind() != ACDF_KIND_ENVIRONMENT || description_->parameterization != ACDF_PARAM_LATLONG) return;
+    AcdfCells* const cells = make_cells(environment().data(), tree_units_, 8 * size_ + most);
+    owned_[2] = cells;
+    cells_ = cells;
 }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {
@@ -241,14 +254,20 @@ Text File::metadata(const char* key) const noexcept {
 
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
-                            axes_[ACDF_AXIS_THETA].resolution, description_->total});
+                            axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
+                            cells_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
     AcdfLocal local = {};
     local.blend = blend_;
-    local.environment = {tree_, 0, axes_[ACDF_AXIS_PHI].resolution, axes_[ACDF_AXIS_THETA].resolution,
-                         description_->total};
+    local.environment = {tree_,
+                         0,
+                         axes_[ACDF_AXIS_PHI].resolution,
+                         axes_[ACDF_AXIS_THETA].resolution,
+                         description_->total,
+                         description_->parameterization,
+                         nullptr};
     local.bins = bins_;
     local.lights = lights_;
     local.light_count = local_->light_count;

@@ -45,6 +45,7 @@ const Rule rules[] = {
     {3013, error, malformed, "chunk-kind",
      "TILE and ROWS come only in files of kinds 2 and 3, LOCL only in those of kind 2, VIEW only in those of kind "
      "3."},
+    {3014, error, malformed, "chunk-type", "The type of a chunk is four printable ASCII characters."},
 
     {4001, error, malformed, "chunk-crc", "`crc` is the CRC-32 of the stored bytes."},
     {4002, error, malformed, "padding", "The bytes between payloads and after the last one are zero."},
@@ -117,7 +118,8 @@ const Rule rules[] = {
     {6026, error, malformed, "bin-row", "The row of a bin is one of ROWS, or FFFFFFFF."},
 
     {7001, error, malformed, "environment-axes",
-     "An environment, local or not, has the two axes of §6.1 first, with resolutions of at most 65536."},
+     "An environment, local or not, has the two axes of §6.1 first, with parameterization 4 those of §6.9, with "
+     "resolutions of at most 65536."},
     {7002, error, malformed, "environment-bins", "An environment has one bin."},
     {7003, error, malformed, "normal-axes",
      "A local environment has the axes of an environment, and one or two of normals as in §6.7."},
@@ -130,9 +132,10 @@ const Rule rules[] = {
      "positive finite share."},
     {7007, error, malformed, "light-row",
      "In the row of a bin of positive share a light's tile has probability 0."},
+    {7008, error, malformed, "environment-share", "The share of an environment's bin is 1."},
 
     {8001, error, malformed, "brdf-axes",
-     "A BRDF has the axes of §6.8, phi_h of at most 65536 steps and cos_theta_h of at most 268435456."},
+     "A BRDF has the axes of §6.8, cos_theta_h of at most 268435456 steps and the others of at most 65536."},
     {8002, error, malformed, "brdf-bins", "A BRDF has as many bins as the product of its axes of views."},
     {8003, error, malformed, "views",
      "A BRDF has VIEW, as long as `theta_count` tells, with the counts of the axes; only flag bit 0 may be set, "
@@ -149,6 +152,8 @@ const Rule rules[] = {
     {9004, error, malformed, "table-steps",
      "The ends of a table's axis are at most 2^100 in magnitude; a step of it is at least 2^-100, and at least "
      "2^-40 of the larger end."},
+    {9005, error, malformed, "table-shares", "The shares of a table's bins add up to 1 within 2^-20."},
+    {9006, error, malformed, "table-weights", "The `channels` of a table are 0 and its channel weights 1, 0, 0."},
 };
 const std::size_t rule_count = sizeof rules / sizeof rules[0];
 

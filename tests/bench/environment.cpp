@@ -1,33 +1,34 @@
-// Time of a sample and of a density, beside the full-resolution CDF on the same map in the same run: read the
-// ratios, not the nanoseconds, which depend on the machine. The `Evicted` variants touch 64 MiB between batches,
-// as the rest of a renderer does.
+// Time of a draw and of a density of environment files, beside samplers of all texels of the same map.
+//
+//   bench_environment [COLUMNS...]            tables in Markdown; 1024 and 4096 by default
+//   bench_environment --count draw|pdf FILE N [walk]   N calls and nothing else, for callgrind
+#include "tests/bench/turns.h"
+
 #include "compress/fit.h"
 #include "compress/store.h"
+#include "measure/alias_table.h"
 #include "measure/full_cdf.h"
+#include "measure/hierarchical_warp.h"
 
 #include <acdf/reader.h>
 
-#include <benchmark/benchmark.h>
-
+#include <array>
 #include <cmath>
-#include <cstdint>
-#include <map>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <random>
-#include <vector>
 
 namespace {
 
 using namespace acdf;
+using acdf_bench::Candidate;
+using acdf_bench::keep;
 
-constexpr std::size_t kBatch = 1024;
-constexpr std::size_t kSamples =
-    1 << 20; // so many before random numbers repeat: tables must not stay in the cache by that
+constexpr std::size_t kNumbers = std::size_t{1} << 18; // pairs, before they repeat
 
-/// A sky of smooth clouds, texel noise and a small sun, columns x columns/2.
-const compress::Target& sky(std::uint32_t columns) {
-    static std::map<std::uint32_t, compress::Target> made;
-    const auto [found, missing] = made.try_emplace(columns);
-    if (!missing) return found->second;
+/// A sky of smooth clouds, texel noise and a small sun.
+compress::Target sky(std::uint32_t columns) {
     const std::uint32_t rows = columns / 2;
     std::vector<float> rgb(std::size_t{columns} * rows * 3);
     std::mt19937 random(1);
@@ -41,114 +42,174 @@ const compress::Target& sky(std::uint32_t columns) {
             for (std::size_t k = 0; k < 3; ++k)
                 rgb[3 * (std::size_t{r} * columns + c) + k] = static_cast<float>(value);
         }
-    found->second = compress::environment_target(rgb.data(), columns, rows, {});
-    return found->second;
+    return compress::environment_target(rgb.data(), columns, rows, {});
 }
 
-/// A file in memory and its view.
+/// A file in memory, with tables and without.
 struct Built {
     std::vector<std::uint8_t> bytes;
-    File file;
+    File tables, plain;
+
+    Built(const compress::Target& target, std::uint64_t budget) {
+        compress::FitOptions options;
+        options.goal.kind = compress::Goal::Kind::budget;
+        options.goal.budget = budget - 832; // what is beside the tree
+        compress::Description description = compress::environment_description(target.columns, target.rows);
+        description.total = compress::integral(target);
+        bytes = compress::store(compress::fit(target, options).tree, description);
+        open(bytes, tables, plain);
+    }
+    static bool open(const std::vector<std::uint8_t>& bytes, File& tables, File& plain) {
+        LoadOptions walk;
+        walk.tables = false;
+        return File::from_memory(bytes.data(), bytes.size(), tables).ok() &&
+               File::from_memory(bytes.data(), bytes.size(), plain, walk).ok();
+    }
 };
 
-const Built& built(std::uint32_t columns, compress::Shape shape) {
-    static std::map<std::pair<std::uint32_t, int>, Built> made;
-    const auto [found, missing] = made.try_emplace({columns, static_cast<int>(shape)});
-    if (!missing) return found->second;
-    compress::FitOptions options;
-    options.shape = shape;
-    options.goal.cells = 16384;
-    options.order = compress::Order::z;
-    const compress::Fitted fitted = compress::fit(sky(columns), options);
-    compress::Description description = compress::environment_description(columns, columns / 2);
-    description.total = compress::integral(sky(columns));
-    found->second.bytes = compress::store(fitted.tree, description);
-    File::from_memory(found->second.bytes.data(), found->second.bytes.size(), found->second.file);
-    return found->second;
-}
-
-std::vector<float> numbers(std::size_t count) {
+/// Numbers with 24 bits, as renderers draw them. Coherent ones go through the strata of a grid in its order, as
+/// neighbouring pixels do that share a sequence.
+std::vector<float> numbers(bool coherent) {
     std::mt19937_64 random(7);
-    std::vector<float> u(count);
+    std::vector<float> u(2 * kNumbers);
     for (float& value : u) value = static_cast<float>(random() >> 40) * 0x1p-24f;
+    constexpr std::size_t side = 512;
+    if (coherent)
+        for (std::size_t i = 0; i < kNumbers; ++i) {
+            u[2 * i] = (static_cast<float>(i % side) + u[2 * i]) / side;
+            u[2 * i + 1] = (static_cast<float>(i / side) + u[2 * i + 1]) / side;
+        }
+    for (float& value : u) value = std::min(value, 1.0f - 0x1p-24f);
     return u;
 }
 
-/// Runs `work` on batches; with `evict` the caches are filled with something else before each.
-template <class Work>
-void run(benchmark::State& state, bool evict, const Work& work) {
-    static std::vector<std::uint64_t> other(evict ? std::size_t{8} << 20 : 0);
-    std::size_t begin = 0;
-    for (auto _ : state) {
-        if (evict) {
-            state.PauseTiming();
-            for (std::size_t i = 0; i < other.size(); i += 8) ++other[i];
-            state.ResumeTiming();
-        }
-        for (std::size_t i = begin; i < begin + kBatch; ++i) work(i);
-        begin = (begin + kBatch) % kSamples;
+using Directions = std::vector<std::array<float, 3>>;
+Directions drawn_directions(const EnvironmentView& view, const std::vector<float>& u) {
+    Directions out(kNumbers);
+    for (std::size_t i = 0; i < kNumbers; ++i)
+        std::memcpy(out[i].data(), view.sample(u[2 * i], u[2 * i + 1]).direction, sizeof out[i]);
+    return out;
+}
+Directions uniform_directions() {
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    Directions out(kNumbers);
+    for (auto& d : out) {
+        const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * ACDF_PI * uniform(random),
+                     r = std::sqrt(1.0 - z * z);
+        d = {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), static_cast<float>(z)};
     }
-    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kBatch));
+    return out;
 }
 
-void sample_acdf(benchmark::State& state, compress::Shape shape, bool evict) {
-    const EnvironmentView view = built(static_cast<std::uint32_t>(state.range(0)), shape).file.environment();
-    const std::vector<float> u = numbers(2 * kSamples);
-    run(state, evict, [&](std::size_t i) { benchmark::DoNotOptimize(view.sample(u[2 * i], u[2 * i + 1])); });
+/// The full table as pbrt keeps it, in floats from the random numbers to the direction.
+struct FullTable {
+    measure::FullCdf cdf;
+    std::uint32_t columns, rows;
+
+    explicit FullTable(const compress::Target& target) : cdf(target), columns(target.columns), rows(target.rows) {}
+    AcdfDirectionSample sample(float u0, float u1) const {
+        const measure::FullCdf::Draw draw = cdf.sample(u0, u1);
+        const auto phi = static_cast<float>(ACDF_PI - draw.column * (2.0 * ACDF_PI / columns));
+        const auto theta = static_cast<float>(draw.row * (ACDF_PI / rows));
+        const float sine = std::sin(theta);
+        return {{sine * std::cos(phi), sine * std::sin(phi), std::cos(theta)}, static_cast<float>(draw.pdf)};
+    }
+    float pdf(const float w[3]) const {
+        const float column =
+            static_cast<float>(columns) * (0.5f - std::atan2(w[1], w[0]) * static_cast<float>(0.5 / ACDF_PI));
+        const float row = static_cast<float>(rows) * std::acos(w[2]) * static_cast<float>(1.0 / ACDF_PI);
+        return static_cast<float>(cdf.pdf(std::min(static_cast<std::uint32_t>(column), columns - 1),
+                                          std::min(static_cast<std::uint32_t>(row), rows - 1)));
+    }
+};
+
+template <class Sampler>
+Candidate draws(const char* name, const Sampler& sampler, const std::vector<float>& u) {
+    return {name, [&sampler, &u](std::size_t first, std::size_t count) {
+                for (std::size_t i = first; i < first + count; ++i) keep(sampler.sample(u[2 * i], u[2 * i + 1]));
+            }};
+}
+template <class Sampler>
+Candidate densities(const char* name, const Sampler& sampler, const Directions& w) {
+    return {name, [&sampler, &w](std::size_t first, std::size_t count) {
+                for (std::size_t i = first; i < first + count; ++i) keep(sampler.pdf(w[i].data()));
+            }};
 }
 
-void pdf_acdf(benchmark::State& state, compress::Shape shape, bool evict) {
-    const EnvironmentView view = built(static_cast<std::uint32_t>(state.range(0)), shape).file.environment();
-    const std::vector<float> u = numbers(2 * kSamples);
-    std::vector<DirectionSample> samples;
-    for (std::size_t i = 0; i < kSamples; ++i) samples.push_back(view.sample(u[2 * i], u[2 * i + 1]));
-    run(state, evict, [&](std::size_t i) { benchmark::DoNotOptimize(view.pdf(samples[i].direction)); });
+/// A row of the table: ns of each, and the ratio to the first one.
+void report(const std::string& what, std::vector<Candidate> candidates, bool evict) {
+    acdf_bench::Turns turns;
+    turns.evict = evict;
+    if (evict) turns.rounds = 40, turns.calls = 1024;
+    acdf_bench::take_turns(candidates, turns);
+    std::printf("| %s |", what.c_str());
+    for (const Candidate& c : candidates) {
+        std::printf(" %.1f", c.least);
+        if (&c != &candidates[0]) std::printf(" (%.2f)", c.least / candidates[0].least);
+        std::printf(" |");
+    }
+    std::printf("\n");
+    std::fflush(stdout);
 }
 
-/// The full table, and like ours from random numbers to a direction.
-void sample_full_cdf(benchmark::State& state, bool evict) {
-    const auto columns = static_cast<std::uint32_t>(state.range(0));
-    const measure::FullCdf table(sky(columns));
-    const std::vector<float> u = numbers(2 * kSamples);
-    const double phi_scale = 2.0 * ACDF_PI / columns, theta_scale = 2.0 * ACDF_PI / columns;
-    run(state, evict, [&](std::size_t i) {
-        const measure::FullCdf::Draw draw = table.sample(u[2 * i], u[2 * i + 1]);
-        const auto phi = static_cast<float>(ACDF_PI - draw.column * phi_scale);
-        const auto theta = static_cast<float>(draw.row * theta_scale);
-        const float direction[3] = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                    std::cos(theta)};
-        benchmark::DoNotOptimize(direction);
-        benchmark::DoNotOptimize(draw.pdf);
-    });
+void run(std::uint32_t columns) {
+    const compress::Target target = sky(columns);
+    const Built large(target, 64 << 10), small(target, 4 << 10);
+    const FullTable full(target);
+    const measure::AliasTable alias(target);
+    const measure::HierarchicalWarp warp(target);
+    const EnvironmentView fast = large.tables.environment(), walk = large.plain.environment();
+    const EnvironmentView fast_small = small.tables.environment();
+    std::printf(
+        "\n%u x %u texels; files of %zu and %zu bytes, with tables of %llu and %llu bytes; full table %llu\n\n",
+        columns, columns / 2, large.bytes.size(), small.bytes.size(),
+        static_cast<unsigned long long>(large.tables.table_bytes()),
+        static_cast<unsigned long long>(small.tables.table_bytes()),
+        static_cast<unsigned long long>(full.cdf.bytes()));
+    std::printf("| ns a call (of the full table's) | full table | alias table | hierarchical warp | 64 KiB | 4 KiB "
+                "| 64 KiB, "
+                "no tables |\n|---|---|---|---|---|---|---|\n");
+    const std::vector<float> u = numbers(false), coherent = numbers(true);
+    const Directions drawn = drawn_directions(walk, u), uniform = uniform_directions();
+    const auto all_draws = [&](const std::vector<float>& given) {
+        return std::vector<Candidate>{draws("full", full, given),    draws("alias", alias, given),
+                                      draws("warp", warp, given),    draws("64", fast, given),
+                                      draws("4", fast_small, given), draws("walk", walk, given)};
+    };
+    const auto all_densities = [&](const Directions& given) {
+        return std::vector<Candidate>{densities("full", full, given),    densities("alias", alias, given),
+                                      densities("warp", warp, given),    densities("64", fast, given),
+                                      densities("4", fast_small, given), densities("walk", walk, given)};
+    };
+    report("draw", all_draws(u), false);
+    report("draw, coherent numbers", all_draws(coherent), false);
+    report("draw, caches evicted", all_draws(u), true);
+    report("density of uniform directions", all_densities(uniform), false);
+    report("density of drawn directions", all_densities(drawn), false);
+    report("density of uniform directions, caches evicted", all_densities(uniform), true);
 }
 
-void pdf_full_cdf(benchmark::State& state, bool evict) {
-    const auto columns = static_cast<std::uint32_t>(state.range(0));
-    const measure::FullCdf table(sky(columns));
-    const EnvironmentView view = built(columns, compress::Shape::tree).file.environment();
-    const std::vector<float> u = numbers(2 * kSamples);
-    std::vector<DirectionSample> samples;
-    for (std::size_t i = 0; i < kSamples; ++i) samples.push_back(view.sample(u[2 * i], u[2 * i + 1]));
-    run(state, evict, [&](std::size_t i) {
-        const float* w = samples[i].direction;
-        const double column = columns * (0.5 - std::atan2(w[1], w[0]) / (2.0 * ACDF_PI));
-        const double row = columns / 2 * (std::acos(w[2]) / ACDF_PI);
-        benchmark::DoNotOptimize(table.pdf(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row)));
-    });
+int count(const char* what, const char* path, std::size_t calls, bool walk) {
+    LoadOptions options;
+    options.tables = !walk;
+    File file;
+    if (!File::open(path, file, options).ok() || file.kind() != ACDF_KIND_ENVIRONMENT) return 1;
+    const EnvironmentView view = file.environment();
+    const std::vector<float> u = numbers(false);
+    const Directions w = uniform_directions();
+    if (std::strcmp(what, "draw") == 0) draws(what, view, u).calls(0, calls);
+    else densities(what, view, w).calls(0, calls);
+    return 0;
 }
-
-void widths(benchmark::internal::Benchmark* benchmark) { benchmark->Arg(1024)->Arg(4096); }
-
-BENCHMARK_CAPTURE(sample_full_cdf, hot, false)->Apply(widths);
-BENCHMARK_CAPTURE(sample_acdf, tree_hot, compress::Shape::tree, false)->Apply(widths);
-BENCHMARK_CAPTURE(sample_acdf, cascade_hot, compress::Shape::cascade, false)->Apply(widths);
-BENCHMARK_CAPTURE(sample_full_cdf, evicted, true)->Apply(widths);
-BENCHMARK_CAPTURE(sample_acdf, tree_evicted, compress::Shape::tree, true)->Apply(widths);
-BENCHMARK_CAPTURE(sample_acdf, cascade_evicted, compress::Shape::cascade, true)->Apply(widths);
-BENCHMARK_CAPTURE(pdf_full_cdf, hot, false)->Apply(widths);
-BENCHMARK_CAPTURE(pdf_acdf, tree_hot, compress::Shape::tree, false)->Apply(widths);
-BENCHMARK_CAPTURE(pdf_acdf, cascade_hot, compress::Shape::cascade, false)->Apply(widths);
 
 } // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    if (argc >= 5 && std::strcmp(argv[1], "--count") == 0)
+        return count(argv[2], argv[3], std::strtoul(argv[4], nullptr, 10), argc > 5);
+    std::vector<std::uint32_t> widths;
+    for (int i = 1; i < argc; ++i) widths.push_back(static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)));
+    if (widths.empty()) widths = {1024, 4096};
+    for (const std::uint32_t columns : widths) run(columns);
+}

@@ -25,7 +25,8 @@ protected:
 };
 
 std::vector<std::uint8_t> stored(const Target& target, const acdf::compress::FitOptions& options, AcdfCodec codec) {
-    auto description = acdf::compress::environment_description(target.columns, target.rows);
+    auto description =
+        acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
     description.fit = options.fit;
     description.total = acdf::compress::integral(target);
     return acdf::compress::store(acdf::compress::fit(target, options).tree, description, codec);
@@ -49,8 +50,9 @@ TEST_P(Extreme, WeightsAreFiniteAndEveryNumberDrawsSomething) {
                 const acdf::DirectionSample s = view.sample(u0, u1);
                 ASSERT_TRUE(std::isfinite(s.pdf) && s.pdf > 0.0f) << u0 << " " << u1;
                 std::uint32_t square[2];
-                double column;
-                ASSERT_TRUE(acdf_sphere_square(target().columns, target().rows, s.direction, square, &column));
+                const AcdfGrid grid = acdf_environment_grid(&view.data());
+                double position[2];
+                ASSERT_TRUE(acdf_grid_square(&grid, s.direction, square, position));
                 ASSERT_TRUE(std::isfinite(double{target().row(square[1])[square[0]]} / s.pdf));
             }
     }
@@ -76,6 +78,8 @@ TEST_P(Extreme, CodecsChangeNoSample) {
     }
 }
 
+INSTANTIATE_TEST_SUITE_P(Octahedral, Extreme, ::testing::ValuesIn(octahedral_extremes()),
+                         [](const auto& info) { return info.param.name; });
 INSTANTIATE_TEST_SUITE_P(Probes, Extreme, ::testing::ValuesIn(extreme_targets()),
                          [](const auto& info) { return info.param.name; });
 

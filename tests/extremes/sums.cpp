@@ -40,6 +40,7 @@ Target many_suns(std::uint32_t columns, std::uint32_t rows) {
 std::vector<NamedTarget> all_targets() {
     std::vector<NamedTarget> all = extreme_targets();
     for (NamedTarget& t : synthetic_targets()) all.push_back(std::move(t));
+    for (NamedTarget& t : octahedral_extremes()) all.push_back(std::move(t));
     all.push_back({"many_suns", many_suns(512, 256)});
     return all;
 }
@@ -71,7 +72,8 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
     for (const NamedTarget& t : all_targets()) {
         acdf::compress::FitOptions options;
         options.goal.cells = 100;
-        auto description = acdf::compress::environment_description(t.target.columns, t.target.rows);
+        auto description =
+            acdf::compress::environment_description(t.target.columns, t.target.rows, t.target.parameterization);
         description.total = acdf::compress::integral(t.target);
         const auto bytes = acdf::compress::store(acdf::compress::fit(t.target, options).tree, description);
         acdf::File file;
@@ -90,8 +92,8 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
             AcdfRange range[2];
             acdf_sphere_ranges(env.columns, env.rows, range);
             const double p = acdf_tree_find(env.tree, env.root, square, range, nullptr);
-            const double dz = acdf_row_z(range[1].low, env.rows) - acdf_row_z(range[1].high, env.rows);
-            const double density = p * env.columns / (2.0 * kPi * (range[0].high - range[0].low) * dz);
+            const AcdfGrid grid = acdf_environment_grid(&env);
+            const double density = p / acdf_grid_solid_angle(&grid, range);
             const auto measure = static_cast<long double>(t.target.row_measure[square[1]]) *
                                  static_cast<long double>(t.target.column_measure[square[0]]);
             first += f * measure;

@@ -50,4 +50,14 @@ inline std::vector<NamedTarget> extreme_targets() {
     return all;
 }
 
+/// The same on the octahedral square: what lies at a pole or the seam lies at its folds.
+inline std::vector<NamedTarget> octahedral_extremes() {
+    std::vector<NamedTarget> all = extreme_targets();
+    for (NamedTarget& target : all) {
+        target.name += "_octahedral";
+        target.target = octahedral(target.target);
+    }
+    return all;
+}
+
 } // namespace acdf_test

@@ -1,8 +1,11 @@
-// format/SPEC.md against the program: the table of rules and the worked example.
+// format/SPEC.md against the program: the table of rules and the worked examples.
 #include "tests/lib/reader/load.h"
+#include "tests/lib/reader/planes.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <map>
 
@@ -49,13 +52,14 @@ TEST(Spec, tellsTheRulesOfTheProgram) {
     }
 }
 
-// The bytes of the block ```hex: each line an offset, two spaces, bytes, two spaces, a remark.
-Bytes worked_example() {
+// The bytes of block `number` of ```hex: each line an offset, two spaces, bytes, two spaces, a remark.
+Bytes worked_example(int number = 0) {
     Bytes bytes;
+    int blocks = 0;
     bool in_block = false;
     for (const std::string& line : spec_lines()) {
         if (line.rfind("```", 0) == 0) {
-            in_block = line == "```hex";
+            in_block = line == "```hex" && blocks++ == number;
             continue;
         }
         if (!in_block) continue;
@@ -64,6 +68,13 @@ Bytes worked_example() {
             bytes.push_back(static_cast<std::uint8_t>(std::stoul(line.substr(at, 2), nullptr, 16)));
     }
     return bytes;
+}
+
+/// SPEC.md as one line.
+std::string worked_text() {
+    std::string text;
+    for (const std::string& line : spec_lines()) text += line + ' ';
+    return text;
 }
 
 TEST(Spec, workedExampleLoads) {
@@ -79,5 +90,56 @@ TEST(Spec, workedExampleLoads) {
 }
 
 TEST(Spec, workedExampleIsWhatTheTestsBuild) { EXPECT_EQ(worked_example(), EnvironmentSpec().encode()); }
+
+/// The second example: links, a probability of 1, a tilt.
+EnvironmentSpec second_environment() {
+    EnvironmentSpec spec;
+    spec.columns = 8;
+    spec.rows = 4;
+    CurveSpec root, child;
+    root.axis = 1;
+    root.cumulative = {255};
+    root.positions = {2};
+    root.link_bytes = 1;
+    root.children = {1, -1};
+    child.cumulative = {64};
+    child.positions = {3};
+    child.tilts = {0x4000, 0};
+    spec.tree = {{root, child}, {}};
+    return spec;
+}
+
+// Its zlib stream is stored, not deflated, so that chunks are compared as they inflate.
+TEST(Spec, secondExampleIsWhatTheTestsBuild) {
+    const FileSpec written = taken_apart(worked_example(1)), built = as_planes(second_environment());
+    ASSERT_EQ(written.chunks.size(), built.chunks.size());
+    for (std::size_t i = 0; i < built.chunks.size(); ++i) {
+        EXPECT_EQ(written.chunks[i].type, built.chunks[i].type);
+        EXPECT_EQ(written.chunks[i].raw, built.chunks[i].raw) << built.chunks[i].type;
+        EXPECT_EQ(written.chunks[i].planes_of, built.chunks[i].planes_of);
+        EXPECT_EQ(written.chunks[i].flags, built.chunks[i].flags);
+    }
+}
+
+// The numbers that the text works out for it.
+TEST(Spec, secondExampleLoads) {
+    const Bytes bytes = worked_example(1);
+    EXPECT_TRUE(findings(bytes).rules.empty()) << findings(bytes).text;
+    acdf::File file;
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    ASSERT_TRUE(status.ok()) << status.message;
+    EXPECT_EQ(Bytes(file.tree(), file.tree() + 2 * file.tree_units()), second_environment().tree.encode());
+    const auto s = file.environment().sample(0.1, 0.25);
+    const std::string text = worked_text();
+    for (const float value : {s.direction[0], s.direction[1], s.pdf}) {
+        char digits[32];
+        std::snprintf(digits, sizeof digits, "%.6f", std::fabs(static_cast<double>(value)));
+        EXPECT_NE(text.find(digits), std::string::npos) << digits;
+    }
+    const float right[3] = {0.6f, 0.0f, 0.8f}, below[3] = {0.6f, 0.0f, -0.8f}, edge[3] = {-0.6f, 0.0f, 0.8f};
+    EXPECT_NEAR(file.environment().pdf(right), 0.190736277f, 1e-8f);
+    EXPECT_NEAR(file.environment().pdf(edge), 0.5f * 0.106519387f, 1e-8f);
+    EXPECT_EQ(file.environment().pdf(below), 0.0f);
+}
 
 } // namespace

@@ -47,7 +47,11 @@ int main(int argc, char** argv) {
         EnvironmentSpec spec = RandomTree(seed, options).make();
         spec.zlib = seed % 4 == 0;
         write(folder / ("tree" + std::to_string(seed)), spec.encode());
+        options.octahedral = true;
+        write(folder / ("octahedral_tree" + std::to_string(seed)), RandomTree(seed, options).make().encode());
         options.depth = 3;
+        write(folder / ("octahedral_local" + std::to_string(seed)), RandomLocal(seed, options).make().encode());
+        options.octahedral = false;
         LocalSpec local = RandomLocal(seed, options).make();
         local.zlib = seed % 4 == 0;
         write(folder / ("local" + std::to_string(seed)), local.encode());

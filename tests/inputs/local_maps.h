@@ -51,7 +51,8 @@ struct LocalFileOptions {
 
 inline acdf::compress::Description local_description(const acdf::compress::Target& target,
                                                      const acdf::compress::NormalBins& bins) {
-    acdf::compress::Description d = acdf::compress::environment_description(target.columns, target.rows);
+    acdf::compress::Description d =
+        acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
     d.kind = ACDF_KIND_LOCAL;
     d.total = target.total;
     if (bins.subdivisions > 0) {
@@ -86,6 +87,26 @@ inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& targe
     return store(fit.tree, description, options.codec);
 }
 
+/// The grid square of a direction.
+inline bool find_square(const acdf::compress::Target& target, const float direction[3], std::uint32_t square[2]) {
+    const AcdfGrid grid{target.columns, target.rows, static_cast<std::uint32_t>(target.parameterization)};
+    double position[2];
+    return acdf_grid_square(&grid, direction, square, position) != 0;
+}
+
+/// The direction at a place in texels; a row's middle is that of its angles.
+inline Normal place_direction(const acdf::compress::Target& target, double column, double row) {
+    Normal out;
+    if (target.parameterization == ACDF_PARAM_OCTAHEDRAL) {
+        double d[3];
+        acdf_octahedral_direction(column / target.columns, row / target.rows, d);
+        for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<float>(d[k]);
+    } else {
+        direction_of(kPi - 2.0 * kPi * column / target.columns, std::cos(kPi * row / target.rows), out.data());
+    }
+    return out;
+}
+
 /// A file in memory, and what it was made from.
 struct LocalMap {
     acdf::compress::Target target;
@@ -108,16 +129,16 @@ struct LocalMap {
     float radiance(std::uint32_t column, std::uint32_t row) const { return target.row(row)[column]; }
     float radiance(const float direction[3]) const {
         std::uint32_t square[2] = {0, 0};
-        double column = 0.0;
-        if (!acdf_sphere_square(target.columns, target.rows, direction, square, &column)) return 0.0f;
-        return radiance(square[0], square[1]);
+        return find_square(target, direction, square) ? radiance(square[0], square[1]) : 0.0f;
     }
 };
 
 // ---- exact sums -----------------------------------------------------------------------------------------
 
 inline double square_area(const AcdfEnvironment& env, std::uint32_t row) {
-    return 2.0 * kPi / env.columns * (acdf_row_z(row, env.rows) - acdf_row_z(row + 1, env.rows));
+    const AcdfGrid grid = acdf_environment_grid(&env);
+    const AcdfRange square[2] = {{0, 1, 0.0}, {row, row + 1, 0.0}};
+    return acdf_grid_solid_angle(&grid, square);
 }
 
 /// Probability of each grid square, row-major, in the part that follows the light. Needs curves without tilt.
@@ -136,9 +157,8 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
             const double p = source.what == ACDF_LOCAL_BLEND
                                  ? acdf_local_blend_find(&local, &source, square, range)
                                  : acdf_tree_find(env.tree, source.root, square, range, nullptr);
-            const double height = acdf_row_z(range[1].low, env.rows) - acdf_row_z(range[1].high, env.rows);
-            out[std::size_t{r} * env.columns + c] = p * (acdf_row_z(r, env.rows) - acdf_row_z(r + 1, env.rows)) /
-                                                    height / (range[0].high - range[0].low);
+            const AcdfGrid grid = acdf_environment_grid(&env);
+            out[std::size_t{r} * env.columns + c] = p * square_area(env, r) / acdf_grid_solid_angle(&grid, range);
         }
     return out;
 }
@@ -164,11 +184,25 @@ inline double clamped_cosine(const double n[3], double phi0, double phi1, double
            clamped_cosine(n, phi0, phi, theta, theta1) + clamped_cosine(n, phi, phi1, theta, theta1);
 }
 
+/// The same over a texel of the octahedral square, of 8 x 8 directions.
+inline double square_cosine(const acdf::compress::Target& target, const double n[3], std::uint32_t column,
+                            std::uint32_t row) {
+    double sum = 0.0;
+    for (int i = 0; i < 64; ++i) {
+        double d[3];
+        acdf_octahedral_direction((column + (i % 8 + 0.5) / 8) / target.columns,
+                                  (row + (i / 8 + 0.5) / 8) / target.rows, d);
+        sum += std::max(0.0, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
+    }
+    return sum / 64 * 4.0 * kPi / target.columns / target.rows;
+}
+
 /// Of a texel.
 inline double clamped_cosine(const acdf::compress::Target& target, const float normal[3], std::uint32_t column,
                              std::uint32_t row) {
     const double size = length(normal);
     const double n[3] = {normal[0] / size, normal[1] / size, normal[2] / size};
+    if (target.parameterization == ACDF_PARAM_OCTAHEDRAL) return square_cosine(target, n, column, row);
     return clamped_cosine(n, kPi - 2.0 * kPi * column / target.columns,
                           kPi - 2.0 * kPi * (column + 1) / target.columns, kPi * row / target.rows,
                           kPi * (row + 1) / target.rows);
@@ -186,14 +220,13 @@ inline double exact_irradiance(const acdf::compress::Target& target, const float
 /// E[(f/p)^2] of one sample for f = L max(0, n . omega), about: of 2 x 2 directions a texel.
 inline double second_moment(const LocalMap& map, const float normal[3]) {
     const auto view = map.view();
-    const double columns = map.target.columns, rows = map.target.rows, size = length(normal);
+    const double size = length(normal);
     acdf::compress::Sum sum;
     for (std::uint32_t r = 0; r < map.target.rows; ++r)
         for (std::uint32_t c = 0; c < map.target.columns; ++c)
             for (int k = 0; k < 4 && map.radiance(c, r) > 0.0f; ++k) {
-                const double phi = kPi - 2.0 * kPi * (c + 0.25 + 0.5 * (k % 2)) / columns;
-                float d[3];
-                direction_of(phi, std::cos(kPi * (r + 0.25 + 0.5 * (k / 2)) / rows), d);
+                const Normal at = place_direction(map.target, c + 0.25 + 0.5 * (k % 2), r + 0.25 + 0.5 * (k / 2));
+                const float* d = at.data();
                 const double cosine = dot(normal, d) / size, f = static_cast<double>(map.radiance(c, r)) * cosine;
                 if (!(cosine > 0.0)) continue;
                 sum.add(0.25 * square_area(view.data().environment, r) * f * f /

@@ -52,6 +52,16 @@ inline acdf::compress::Target sphere_target(std::uint32_t columns, std::uint32_t
     });
 }
 
+/// The same values on the octahedral square.
+inline acdf::compress::Target octahedral(const acdf::compress::Target& target) {
+    std::vector<float> rgb(3 * target.values.size(), 0.0f);
+    for (std::size_t i = 0; i < target.values.size(); ++i) rgb[3 * i] = target.values[i];
+    acdf::compress::TargetOptions red;
+    red.weights = {1.0, 0.0, 0.0};
+    red.parameterization = ACDF_PARAM_OCTAHEDRAL;
+    return acdf::compress::environment_target(rgb.data(), target.columns, target.rows, red);
+}
+
 /// A uniform number in [0, 1) with 53 bits, the same with every standard library.
 inline double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
@@ -104,6 +114,13 @@ inline std::vector<NamedTarget> synthetic_targets() {
     all.push_back({"one_texel", sphere_target(1, 1, smooth_sky)});
     all.push_back({"odd_noise", noise_target(37, 19, 5, 1.5, 0.3)});
     all.push_back({"constant", sphere_target(50, 25, [](double, double) { return 0.25; })});
+    return all;
+}
+
+/// The same on the octahedral square.
+inline std::vector<NamedTarget> octahedral_targets() {
+    std::vector<NamedTarget> all = synthetic_targets();
+    for (NamedTarget& target : all) target.target = octahedral(target.target);
     return all;
 }
 

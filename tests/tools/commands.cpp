@@ -99,6 +99,40 @@ TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {
     EXPECT_NE(nothing.err.find("Usage: acdf"), std::string::npos);
 }
 
+// Each option that takes a number with a fraction, before any input is looked at.
+TEST_F(Commands, NoNumberMayBeNanOrInfinite) {
+    const std::vector<std::pair<std::string, std::string>> options = {
+        {"env", "--target-variance"},   {"env", "--max-weight"},   {"env", "--eps"},
+        {"local", "--target-variance"}, {"local", "--eps"},        {"local", "--cosine-share"},
+        {"brdf", "--target-variance"},  {"brdf", "--eps"},         {"brdf", "--diffuse-floor"},
+        {"table", "--target-variance"}, {"table", "--max-weight"}, {"sweep", "--visible"},
+        {"render", "--shadow-ray-ns"}};
+    for (const auto& [command, option] : options)
+        for (const char* value : {"nan", "1e999"}) {
+            SCOPED_TRACE(command + ' ' + option + '=' + value);
+            expect_one_line_error(run_acdf({command, "ggx:alpha=0.2", option + '=' + value, "-o", folder / "out"}),
+                                  2, option);
+        }
+}
+
+// JSON has no such numbers; what stands for them is refused where it is read.
+TEST_F(Commands, NoNumberOfAJsonFileMayBeNanOrInfinite) {
+    const std::string scene = folder / "scene.json", jobs = folder / "jobs.jsonl";
+    const std::string before = R"({"source": "ggx:alpha=0.2", "output": "a.acdf", "options": {"eps": )",
+                      after = "}}\n";
+    for (const std::string value : {"NaN", "Infinity", "-Infinity", "1e999"}) {
+        SCOPED_TRACE(value);
+        write_text(scene, "{\"camera\": {\"position\": [0, " + value + ", 1]}}");
+        expect_one_line_error(run_acdf({"render", "--scene", scene, "-o", folder / "out"}), 1, "not JSON");
+        write_text(jobs, before + value + after);
+        EXPECT_EQ(run_acdf({"batch", jobs, "-o", folder / "all"}).code, 1);
+    }
+    write_text(jobs, before + "\"nan\"" + after);
+    const Result result = run_acdf({"batch", jobs, "-o", folder / "all"});
+    EXPECT_NE(result.code, 0);
+    EXPECT_NE(result.err.find("nan"), std::string::npos) << result.err;
+}
+
 TEST_F(Commands, UnreadableInputIsExitCode1AndOneLine) {
     const std::string missing = folder / "missing.acdf", text = folder / "text.acdf";
     write_text(text, "no acdf file at all, but long enough to hold a header of sixty-four bytes\n");

@@ -1,6 +1,7 @@
 // How large a fit becomes, or how accurate: --cells, --budget and --target-variance, of which one is enough.
 #pragma once
 
+#include "tools/cli/number_range.h"
 #include "tools/cli/sizes.h"
 
 #include <acdf/builder.h>
@@ -39,7 +40,7 @@ inline void add_goal(CLI::App& command, std::uint32_t& cells, std::string& budge
         .add_option("--target-variance", variance,
                     std::string("The smallest file whose samples have at most this relative variance") +
                         texts.variance_of)
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->option_text("V")
         ->group(group);
 }

@@ -25,6 +25,22 @@ inline void add_projection(CLI::App& command, input::Projection& projection, con
         ->group("Input");
 }
 
+/// The grid that a fit lies on.
+inline void add_domain(CLI::App& command, input::Domain& domain) {
+    const std::map<std::string, input::Domain> names{{"source", input::Domain::source},
+                                                     {"latlong", input::Domain::latlong},
+                                                     {"octahedral", input::Domain::octahedral}};
+    command
+        .add_option(
+            "--domain", domain,
+            "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe themselves; "
+            "for other probes the one of both grids that loses least), latlong, octahedral (equal-area). "
+            "Noise is that of a renderer that looks the probe itself up, whatever the grid")
+        ->transform(CLI::CheckedTransformer(names).description(""))
+        ->option_text("NAME [source]")
+        ->group("Input");
+}
+
 /// What is done with values that are no radiance, and with probes without any.
 inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
     const std::map<std::string, build::BadPixels> policies{

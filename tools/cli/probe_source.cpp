@@ -16,6 +16,8 @@ std::string reading_text(const input::ProbeOptions& options) {
     std::string text;
     if (options.projection != input::Projection::automatic)
         text += std::string("--projection ") + input::to_string(options.projection) + " ";
+    if (options.domain != input::Domain::source)
+        text += std::string("--domain ") + (options.domain == input::Domain::latlong ? "latlong " : "octahedral ");
     if (options.bad_pixels == build::BadPixels::clamp) text += "--bad-pixels clamp ";
     return options.uniform_if_black ? text + "--on-black uniform " : text;
 }
@@ -34,13 +36,14 @@ builder::Target lit(const std::string& path, const Make& make) {
     }
 }
 
-void tell(const input::Probe& probe, const input::ProbeOptions& options, const Note& note) {
+/// `grid`: what the probe was resampled to; empty where it was not.
+void tell(const input::Probe& probe, const input::ProbeOptions& options, const std::string& grid,
+          const Note& note) {
     const auto size = [](int width, int height) { return std::to_string(width) + "x" + std::to_string(height); };
-    const bool resampled = probe.projection != input::Projection::latlong;
-    if (resampled || options.projection == input::Projection::automatic)
+    if (!grid.empty() || options.projection == input::Projection::automatic)
         note(std::string(input::to_string(probe.projection)) + " (" + probe.projection_reason + "), " +
              size(probe.source_width, probe.source_height) +
-             (resampled ? ", resampled to a " + size(probe.width, probe.height) + " lat-long map" : ""));
+             (grid.empty() ? "" : ", resampled to a " + size(probe.width, probe.height) + " " + grid + " map"));
     const build::BadTexels& bad = probe.bad;
     if (bad.count() > 0)
         note(std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) + " infinite and " +
@@ -70,37 +73,66 @@ builder::Target probe_target(const std::string& path, const input::Probe& probe,
 
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet) {
     input::Probe probe = input::read_probe(path, options);
-    tell(probe, options, notes_of(path, quiet));
+    tell(probe, options, probe.projection == input::Projection::latlong ? "" : "lat-long", notes_of(path, quiet));
     return probe;
 }
 
-ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
-                        const builder::TargetOptions& target_options, const Note& note) {
-    builder::TargetRows rows(target_options);
-    input::Probe probe = input::read_probe(path, options, rows);
-    tell(probe, options, note);
-    builder::Target target = lit(path, [&] { return rows.finish(); });
-    return {std::move(probe), std::move(target)};
+namespace {
+
+ProbeTarget load(const std::string& path, const input::ProbeOptions& options, builder::TargetRows rows,
+                 const Note& note) {
+    ProbeTarget out;
+    out.probe = input::read_probe(path, options, rows);
+    out.target = lit(path, [&] { return rows.finish(); });
+    const builder::Target::Data& made = *out.target.data();
+    out.error = made.error;
+    out.resampled = made.resampled();
+    out.probe.width = static_cast<int>(made.grid.columns);
+    out.probe.height = static_cast<int>(made.grid.rows);
+    const bool square = made.grid.parameterization == ACDF_PARAM_OCTAHEDRAL;
+    tell(out.probe, options, !out.resampled ? "" : square ? "octahedral" : "lat-long", note);
+    return out;
 }
 
-builder::Target source_target(const std::string& path, const File& file, const std::string& source,
-                              const input::ProbeOptions& options, bool quiet) {
+} // namespace
+
+ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
+                        const builder::TargetOptions& target_options, const Note& note) {
+    builder::TargetOptions chosen = target_options;
+    chosen.domain = options.domain;
+    return load(path, options, builder::TargetRows(chosen), note);
+}
+
+builder::TargetOptions stored_options(const File& file) {
     const AcdfDescription& d = file.description();
-    builder::TargetOptions as_stored;
-    as_stored.channels = {static_cast<AcdfChannels>(d.channels),
-                          {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]}};
-    as_stored.filter = static_cast<AcdfFilter>(d.filter);
-    auto [probe, target] = load_target(source, options, as_stored, notes_of(source, quiet));
+    builder::TargetOptions out;
+    out.channels = {static_cast<AcdfChannels>(d.channels),
+                    {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]}};
+    out.filter = static_cast<AcdfFilter>(d.filter);
+    return out;
+}
+
+ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
+                          const input::ProbeOptions& options, bool quiet) {
+    const build::Domain grid{static_cast<AcdfParameterization>(file.description().parameterization),
+                             file.axis(0).resolution, file.axis(1).resolution};
+    ProbeTarget out =
+        load(source, options, builder::TargetRows(stored_options(file), {}, grid), notes_of(source, quiet));
     const Text hash = file.metadata("source.sha256");
-    if (hash.size > 0 && std::string(hash.data, hash.size) != probe.source_sha256 && !quiet)
+    if (hash.size > 0 && std::string(hash.data, hash.size) != out.probe.source_sha256 && !quiet)
         std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
                      source.c_str());
-    const AcdfAxis &phi = file.axis(ACDF_AXIS_PHI), &theta = file.axis(ACDF_AXIS_THETA);
-    if (phi.resolution != target.columns() || theta.resolution != target.rows())
-        throw Failure(source + ": is " + std::to_string(target.columns()) + "x" + std::to_string(target.rows()) +
-                      " as a lat-long map, but " + path + " was made from " + std::to_string(phi.resolution) + "x" +
-                      std::to_string(theta.resolution) + "; measure against the source it was made from");
-    return target;
+    return out;
+}
+
+std::string resampling_warning(const ProbeTarget& target, double least_variance, double relative_variance) {
+    if (!target.resampled || !(least_variance > 0.5 * relative_variance)) return {};
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "resampling is the larger part of the noise (%.3g of %.3g): make the file from the map that the "
+                  "renderer looks up",
+                  least_variance, relative_variance);
+    return text;
 }
 
 } // namespace acdf::tools

@@ -14,7 +14,7 @@ namespace acdf::tools {
 /// What was made of a probe, for the metadata.
 builder::Source source_of(const input::Probe& probe, const input::ProbeOptions& options);
 
-/// Options of reading in one spelling (option_text.h): "--projection angular ", or empty.
+/// Options of reading in one spelling (option_text.h): "--projection angular --domain latlong ", or empty.
 std::string reading_text(const input::ProbeOptions& options);
 
 /// The target of a probe. Throws Failure, naming `path`, where it has no energy.
@@ -26,23 +26,32 @@ using Note = std::function<void(const std::string&)>;
 
 /// A probe without its pixels, and what is fitted of it.
 struct ProbeTarget {
-    input::Probe probe;
+    input::Probe probe; ///< its width and height are those of the target's grid
     builder::Target target;
+    bool resampled = false; ///< the grid is not the source's own
+    double error = 0.0;     ///< build::SourceTarget
 };
 
-/// Reads a probe in bands of rows and tells what was assumed and what was mended: memory holds the target, four
-/// bytes a texel for one channel with nearest lookup, but for probes that are no lat-long maps. Throws
-/// Error, and Failure where it has no energy.
+/// Reads a probe, makes its target on the grid that `options.domain` (not that of `target_options`) tells, and
+/// tells what was assumed and what was mended. A lat-long probe on its own texels is read in bands of rows: memory
+/// holds the target, four bytes a texel for one channel with nearest lookup. Throws Error, and Failure where it has
+/// no energy.
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
                         const builder::TargetOptions& target_options, const Note& note);
 
 /// Reads a probe, and tells the same on stderr unless `quiet`. Throws Error.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
 
-/// The target that a file was fitted to, from its source: what it says of channels and filter. Tells on stderr,
-/// unless `quiet`, where the source is another file than it was made from. Throws Failure where the resolution is
-/// another.
-builder::Target source_target(const std::string& path, const File& file, const std::string& source,
-                              const input::ProbeOptions& options, bool quiet);
+/// What a file says of channels and filter.
+builder::TargetOptions stored_options(const File& file);
+
+/// What a renderer that looks `source` up integrates, on the grid of a file: what that says of channels and filter.
+/// The source may have any layout and resolution. Tells on stderr, unless `quiet`, where it is another file than
+/// the file was made from.
+ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
+                          const input::ProbeOptions& options, bool quiet);
+
+/// One line where resampling is the larger part of a file's variance; else empty.
+std::string resampling_warning(const ProbeTarget& target, double least_variance, double relative_variance);
 
 } // namespace acdf::tools

@@ -34,7 +34,7 @@ inline void add_target_options(CLI::App& command, builder::TargetOptions& target
     add_channels(
         command, target.channels,
         "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
-        "coloured lights), max (the largest channel), red, green or blue alone");
+        "coloured lights), max (the largest channel), average (all alike), red, green or blue alone");
     const std::map<std::string, AcdfFilter> filters{{"nearest", ACDF_FILTER_NEAREST},
                                                     {"bilinear", ACDF_FILTER_BILINEAR}};
     command

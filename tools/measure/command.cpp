@@ -28,16 +28,23 @@ struct MeasureArguments {
     bool rivals = false, json = false, quiet = false;
 };
 
-nlohmann::ordered_json report(const MeasureArguments& options, const File& file, const build::Accuracy& a,
-                              double full_cdf) {
+struct Measured {
+    build::Accuracy accuracy;
+    double full_cdf = 0.0; ///< relative variance of the source's own CDF on the grid of the file
+    double error = 0.0;    ///< build::SourceTarget
+};
+
+nlohmann::ordered_json report(const MeasureArguments& options, const File& file, const Measured& measured) {
+    const build::Accuracy& a = measured.accuracy;
     return {{"file", options.file},
             {"source", options.source},
             {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
-            {"relative_variance_full_cdf", full_cdf},
+            {"relative_variance_full_cdf", measured.full_cdf},
             {"least_variance", a.least_variance},
             {"rms_pdf_error", a.rms_pdf_error},
             {"kl_divergence", a.kl_divergence},
             {"max_weight", a.max_weight},
+            {"resampling_error", measured.error},
             {"support_violations", a.support_violations},
             {"bytes", file.size()},
             {"cells", a.cells},
@@ -45,12 +52,18 @@ nlohmann::ordered_json report(const MeasureArguments& options, const File& file,
             {"total", a.total}};
 }
 
-void print_text(const MeasureArguments& options, const File& file, const build::Accuracy& a, double full_cdf) {
+void print_text(const MeasureArguments& options, const File& file, const Measured& measured) {
+    const build::Accuracy& a = measured.accuracy;
     std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
-    std::printf("    full-resolution CDF  %.6g\n", full_cdf);
+    std::printf("    full-resolution CDF  %.6g\n", measured.full_cdf);
     if (a.least_variance > 0.0)
-        std::printf("    any texel table      %.6g   at least: several channels, or a filter\n", a.least_variance);
+        std::printf("    any texel table      %.6g   at least: several channels, a filter, or resampling\n",
+                    a.least_variance);
+    if (measured.error > 0.0)
+        std::printf(
+            "    error                %.2g   relative, of 1 + the variance: texels cut by the grid of the file\n",
+            measured.error);
     std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
     std::printf("  RMS error of the pdf   %.6g   sr^-1\n", a.rms_pdf_error);
     std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
@@ -74,13 +87,16 @@ void run(const MeasureArguments& options) {
     }
     if (loaded.file.kind() != ACDF_KIND_ENVIRONMENT)
         fail_kind(options.file, loaded.file, "measure", "files of every other kind");
-    const builder::Target held =
+    const ProbeTarget source =
         source_target(options.file, loaded.file, options.source, options.input, options.quiet);
-    const compress::Target& target = builder::grid_of(held);
-    const build::Accuracy accuracy = build::measure_environment(loaded.file, target);
-    const double full_cdf = measure::full_cdf_relative_variance(target);
-    if (options.json) std::printf("%s\n", report(options, loaded.file, accuracy, full_cdf).dump(2).c_str());
-    else print_text(options, loaded.file, accuracy, full_cdf);
+    const compress::Target& target = builder::grid_of(source.target);
+    const Measured measured{build::measure_environment(loaded.file, target),
+                            measure::full_cdf_relative_variance(target), source.error};
+    const std::string warning =
+        resampling_warning(source, measured.accuracy.least_variance, measured.accuracy.relative_variance);
+    if (!warning.empty() && !options.quiet) std::fprintf(stderr, "%s: %s\n", options.file.c_str(), warning.c_str());
+    if (options.json) std::printf("%s\n", report(options, loaded.file, measured).dump(2).c_str());
+    else print_text(options, loaded.file, measured);
 }
 
 } // namespace

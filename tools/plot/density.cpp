@@ -13,7 +13,9 @@ Density density_of(const EnvironmentView& view) {
 
 Density density_of(const compress::Target& target) {
     const double scale = 1.0 / compress::integral(target);
-    const build::Map grid{build::Layout::latlong, static_cast<int>(target.columns), static_cast<int>(target.rows)};
+    const bool square = target.parameterization == ACDF_PARAM_OCTAHEDRAL;
+    const build::Map grid{square ? build::Layout::octahedral : build::Layout::latlong,
+                          static_cast<int>(target.columns), static_cast<int>(target.rows)};
     return [&target, scale, grid](const float d[3]) {
         const build::ImagePoint p = build::to_image(grid, {d[0], d[1], d[2]});
         const auto column = static_cast<std::uint32_t>(p.u * grid.width);

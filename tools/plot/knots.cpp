@@ -30,9 +30,10 @@ struct GridPoint {
 
 class Tracer {
 public:
-    Tracer(const FindCell& find, std::uint32_t columns, std::uint32_t rows, const build::Map& map)
-        : find_(find), columns_(columns), rows_(rows), map_(map), grid_{build::Layout::latlong, 1, 1} {
-    } // of any size: it is scaled below
+    Tracer(const FindCell& find, const AcdfGrid& grid, const build::Map& map)
+        : find_(find), columns_(grid.columns), rows_(grid.rows),
+          map_(map), grid_{acdf_grid_is_octahedral(&grid) ? build::Layout::octahedral : build::Layout::latlong, 1,
+                           1} {} // of any size: it is scaled below
 
     Extents extents(int x, int y) const {
         float direction[3];
@@ -57,7 +58,8 @@ private:
     std::uint32_t resolution(std::size_t axis) const { return axis == ACDF_AXIS_PHI ? columns_ : rows_; }
 
     GridPoint grid_point(double x, double y) const {
-        if (map_.layout == build::Layout::latlong) // the same map: no detour, which would lose columns at the poles
+        if (map_.layout == build::Layout::latlong &&
+            !is_square()) // the same map: no detour, which would lose columns at the poles
             return {true, {x / map_.width * columns_, y / map_.height * rows_}};
         build::Direction d;
         if (!build::to_direction(map_, x / map_.width, y / map_.height, d)) return {};
@@ -65,9 +67,13 @@ private:
         return {true, {p.u * columns_, p.v * rows_}};
     }
 
-    // Change of the position on `axis` between two points; columns are periodic.
+    bool is_square() const { return grid_.layout == build::Layout::octahedral; }
+
+    // Change of the position on `axis` between two points; columns of lat-long grids are periodic. Across a side of
+    // the square the position jumps to the other half: no pixel there tells how far it moves.
     double difference(const GridPoint& a, const GridPoint& b, std::size_t axis) const {
         const double d = b.at[axis] - a.at[axis];
+        if (is_square()) return std::abs(d) < 0.25 * resolution(axis) ? d : 0.0;
         if (axis != ACDF_AXIS_PHI) return d;
         return d - columns_ * std::round(d / columns_);
     }
@@ -91,17 +97,18 @@ private:
     // A line runs half a pixel beyond its border, so that it fills one row or column of pixels where borders lie
     // between pixels, and is antialiased where they do not.
     double coverage(std::size_t axis, const AcdfRange& range, double at, double step) const {
-        if (range.high - range.low == resolution(axis)) return 0.0; // all around: no seam either
+        if (range.high - range.low == resolution(axis) && !is_square()) return 0.0; // all around: no seam either
         double covered = 0.0;
         if (is_border(axis, range.low)) covered += std::max(0.0, 1.0 - std::abs((at - range.low) / step - 0.5));
         if (is_border(axis, range.high)) covered += std::max(0.0, 0.5 - (range.high - at) / step);
         return std::min(covered, 1.0);
     }
 
-    // The poles are no borders, and the seam at phi = pi is the edge of a lat-long picture.
+    // The poles are no borders, and the seam at phi = pi is the edge of a lat-long picture. Cells end at the sides
+    // of the square.
     bool is_border(std::size_t axis, std::uint32_t position) const {
         if (position > 0 && position < resolution(axis)) return true;
-        return axis == ACDF_AXIS_PHI && map_.layout != build::Layout::latlong;
+        return is_square() || (axis == ACDF_AXIS_PHI && map_.layout != build::Layout::latlong);
     }
 };
 
@@ -130,15 +137,15 @@ std::vector<float> knot_opacity(const EnvironmentView& view, const build::Map& m
                                 const build::Progress& progress) {
     const AcdfEnvironment& env = view.data();
     const FindCell find = [&env](const float direction[3], AcdfRange range[2]) {
-        double t[2], dz[1];
-        acdf_environment_find(&env, direction, range, t, dz, nullptr);
+        double t[2];
+        acdf_environment_find(&env, direction, range, t, nullptr);
     };
-    return knot_opacity(find, env.columns, env.rows, map, progress);
+    return knot_opacity(find, acdf_environment_grid(&env), map, progress);
 }
 
-std::vector<float> knot_opacity(const FindCell& find, std::uint32_t columns, std::uint32_t rows,
-                                const build::Map& map, const build::Progress& progress) {
-    const Tracer tracer(find, columns, rows, map);
+std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, const build::Map& map,
+                                const build::Progress& progress) {
+    const Tracer tracer(find, grid, map);
     const auto width = static_cast<std::size_t>(map.width);
     std::vector<Extents> extents(width * static_cast<std::size_t>(map.height));
     std::atomic<int> finished{0};

@@ -19,11 +19,11 @@ namespace acdf::tools {
 std::vector<float> knot_opacity(const EnvironmentView& view, const build::Map& map,
                                 const build::Progress& progress = {});
 
-/// Finds the cell of a unit direction: its positions on the axes of a grid of columns x rows. Called from several
+/// Finds the cell of a unit direction: its positions on the axes of a grid. Called from several
 /// threads.
 using FindCell = std::function<void(const float direction[3], AcdfRange range[2])>;
-std::vector<float> knot_opacity(const FindCell& find, std::uint32_t columns, std::uint32_t rows,
-                                const build::Map& map, const build::Progress& progress = {});
+std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, const build::Map& map,
+                                const build::Progress& progress = {});
 
 /// Blends the lines into `picture` (RGB floats as displayed, as large as `map`): black over light colours, white
 /// over dark ones.

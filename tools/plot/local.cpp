@@ -19,15 +19,16 @@ std::vector<float> knot_opacity(const PlottedNormal& plotted, const build::Map& 
     const AcdfLocal local = plotted.local.data();
     const AcdfLocalPoint point = plotted.local.at(plotted.normal.data());
     const AcdfEnvironment& env = local.environment;
+    const AcdfGrid grid = acdf_environment_grid(&env);
     const FindCell find = [&](const float direction[3], AcdfRange range[2]) {
         std::uint32_t square[2];
-        double column;
+        double position[2];
         acdf_sphere_ranges(env.columns, env.rows, range);
-        if (!acdf_sphere_square(env.columns, env.rows, direction, square, &column)) return;
+        if (!acdf_grid_square(&grid, direction, square, position)) return;
         if (point.what == ACDF_LOCAL_BLEND) acdf_local_blend_find(&local, &point, square, range);
         else if (point.what == ACDF_LOCAL_TREE) acdf_tree_find(env.tree, point.root, square, range, nullptr);
     };
-    return knot_opacity(find, env.columns, env.rows, map, progress);
+    return knot_opacity(find, grid, map, progress);
 }
 
 std::vector<float> horizon_opacity(const Normal& normal, const build::Map& map) {

@@ -2,6 +2,7 @@
 #include "build/errors.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/commands.h"
@@ -249,7 +250,7 @@ void add_measurement_options(CLI::App& command, RenderArguments& options) {
         .add_option("--shadow-ray-ns", options.comparison.shadow_ray_ns,
                     "Nanoseconds that a shadow ray costs in your renderer beyond what it does in these simple "
                     "scenes: added in equal-time figures")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(number_range(0.0, 1e9))
         ->option_text("X [0]")
         ->group("Measurement");
 }

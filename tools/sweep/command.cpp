@@ -2,6 +2,7 @@
 #include "build/format_names.h"
 #include "input/brdf.h"
 #include "tools/cli/help.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/cli/probe_options.h"
@@ -71,12 +72,12 @@ void check_options(SweepArguments& options, SweepKind kind) {
             throw CLI::ValidationError("--fits", std::string("for --kind ") + to_string(kind) + " are " + names);
         }
     if (kind == SweepKind::brdf)
-        for (const char* option : {"--projection", "--filter", "--bad-pixels", "--on-black"})
+        for (const char* option : {"--projection", "--domain", "--filter", "--bad-pixels", "--on-black"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for environment maps");
-    const compress::TargetOptions& target = options.sweep.target;
+    const builder::TargetOptions& target = options.sweep.target;
     if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
         throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the rivals are defined for");
-    if (kind != SweepKind::brdf && target.channels == ACDF_CHANNELS_SEPARATE)
+    if (kind != SweepKind::brdf && target.channels.mode == ACDF_CHANNELS_SEPARATE)
         throw CLI::ValidationError("--channel",
                                    "is one channel in a sweep of probes: the rivals are defined for one");
     options.sweep.timing = !options.no_timing;
@@ -92,6 +93,9 @@ std::string command_of(const SweepArguments& options, SweepKind kind) {
     add("--projection", options.input.projection == input::Projection::automatic
                             ? "auto"
                             : input::to_string(options.input.projection));
+    add("--domain", options.input.domain == input::Domain::latlong      ? "latlong"
+                    : options.input.domain == input::Domain::octahedral ? "octahedral"
+                                                                        : "source");
     add("--bad-pixels", options.input.bad_pixels == build::BadPixels::clamp   ? "clamp"
                         : options.input.bad_pixels == build::BadPixels::error ? "error"
                                                                               : "zero");
@@ -108,15 +112,31 @@ std::string output_of(const std::string& source, SweepKind kind) {
     return stem + (kind == SweepKind::local ? ".local.acdf" : ".acdf");
 }
 
-Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
+/// The probe without its pixels, and its target.
+std::pair<input::Probe, builder::Target> sweep_target(const SweepArguments& options, SweepKind kind) {
+    if (kind == SweepKind::environment && options.input.domain != input::Domain::latlong) {
+        ProbeTarget own =
+            load_target(options.source, options.input, options.sweep.target, [](const std::string&) {});
+        if (!own.resampled && builder::grid_of(own.target).parameterization == ACDF_PARAM_OCTAHEDRAL)
+            return {std::move(own.probe), std::move(own.target)};
+    }
     input::Probe probe = load_probe(options.source, options.input, options.quiet);
-    const builder::Target target = probe_target(options.source, probe, options.sweep.target);
-    const builder::Source source = source_of(probe, options.input);
+    builder::Target target = probe_target(options.source, probe, options.sweep.target);
     probe.rgb = {};
+    return {std::move(probe), std::move(target)};
+}
+
+Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
+    // The samplers to compare with draw texels: of a lat-long map or, where the density is that of the map as a
+    // whole, of an octahedral one.
+    const auto [probe, target] = sweep_target(options, kind);
+    const builder::Source source = source_of(probe, options.input);
+    const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;
     Sweep sweep = kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
                                            : sweep_environment(target, source, options.sweep, progress);
-    sweep.description = std::to_string(probe.width) + " x " + std::to_string(probe.height) + " lat-long";
-    if (probe.projection != input::Projection::latlong)
+    sweep.description =
+        std::to_string(probe.width) + " x " + std::to_string(probe.height) + (square ? " octahedral" : " lat-long");
+    if (probe.projection != input::Projection::latlong && !square)
         sweep.description += ", resampled from " + std::to_string(probe.source_width) + " x " +
                              std::to_string(probe.source_height) + " " + input::to_string(probe.projection);
     return sweep;
@@ -210,7 +230,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
             "--visible", options.sweep.visibility.threshold,
             "Noise in per cent of a pixel's value that is still too small to see: 1 is about half a step of "
             "8-bit sRGB at middle grey")
-        ->check(CLI::Range(0.001, 100.0))
+        ->check(number_range(0.001, 100.0))
         ->option_text("X [1]")
         ->group("Sweep");
     command
@@ -234,6 +254,7 @@ void add_sweep(CLI::App& program, int& exit_code) {
         ->type_name("")
         ->group("Input");
     add_projection(command, options->input.projection);
+    add_domain(command, options->input.domain);
     add_repairs(command, options->input);
     add_sweep_options(command, *options);
     add_target_options(command, options->sweep.target);

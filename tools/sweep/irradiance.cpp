@@ -2,10 +2,12 @@
 
 #include "build/texel_cosines.h"
 #include "compress/sum.h"
+#include "compress/tiles.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace acdf::tools {
@@ -15,13 +17,15 @@ std::vector<float> texel_densities(const compress::Target& target, const measure
     tbb::parallel_for(0u, target.rows, [&](std::uint32_t r) {
         const std::unique_ptr<measure::PointSampler> point = sampler.point_sampler();
         point->move_to({});
-        const double z = 0.5 * (acdf_row_z(r, target.rows) + acdf_row_z(r + 1, target.rows));
-        const double radius = std::sqrt((1.0 - z) * (1.0 + z));
         for (std::uint32_t c = 0; c < target.columns; ++c) {
-            double sine, cosine;
-            acdf_sincospi(1.0 - (2.0 * c + 1.0) / target.columns, &sine, &cosine);
-            const float wi[3] = {static_cast<float>(radius * cosine), static_cast<float>(radius * sine),
-                                 static_cast<float>(z)};
+            compress::Box texel;
+            texel.begin[0] = r;
+            texel.end[0] = r + 1;
+            texel.begin[1] = c;
+            texel.end[1] = c + 1;
+            const std::array<double, 3> middle = compress::centre(target, texel);
+            const float wi[3] = {static_cast<float>(middle[0]), static_cast<float>(middle[1]),
+                                 static_cast<float>(middle[2])};
             out[std::size_t{r} * target.columns + c] = point->pdf(wi);
         }
     });
@@ -43,7 +47,7 @@ MeanAndWorst over_normals(const std::vector<build::Normal>& normals,
 
 MeanAndWorst irradiance_variance(const compress::Target& target, const std::vector<float>& density,
                                  double cosine_share, const std::vector<build::Normal>& normals) {
-    const build::TexelCosines cosines(target.columns, target.rows);
+    const build::TexelCosines cosines(target);
     return over_normals(normals, [&](const float n[3]) {
         compress::Sum irradiance, second;
         bool violated = false;

@@ -67,7 +67,7 @@ Density reflected_density(const compress::Target& target, const Normal& n) {
     const Density light = density_of(target);
     const double length = std::hypot(double{n[0]}, double{n[1]}, double{n[2]});
     compress::Sum sum;
-    const build::TexelCosines cosines(target.columns, target.rows);
+    const build::TexelCosines cosines(target);
     const float unit[3] = {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
                            static_cast<float>(n[2] / length)};
     const double flux = compress::integral(target);

@@ -160,7 +160,7 @@ enum class Projection {
 /// Linear radiance that the caller holds, rows from the top, in the projection's own order of texels (lat-long: row
 /// 0 touches +z, column 0 begins at phi = +pi and phi falls). Strides are in bytes, of any sign; 0: channels next
 /// to each other, pixels `channels` numbers apart, rows `width` pixels apart. Numbers need not be aligned, and may
-/// not overlap. At most 2^30 pixels and 2^16 on a side. What is not lat-long is resampled to it, energy kept.
+/// not overlap. At most 2^30 pixels and 2^16 on a side. TargetOptions::domain says what is resampled.
 struct Pixels {
     const void* data = nullptr; ///< the first channel of the top left pixel
     std::uint32_t width = 0, height = 0;
@@ -171,7 +171,7 @@ struct Pixels {
 };
 
 /// A lat-long map whose rows are asked for when they are needed: memory is that of the target, 4 bytes a texel for
-/// one channel and nearest lookup, and a band of rows.
+/// one channel and nearest lookup, and a band of rows; on another grid than its own the whole map.
 struct Rows {
     std::uint32_t width = 0, height = 0;
     /// Fills `rgb` (count x width x 3) with rows first to first + count - 1. Called by one thread, from the top to
@@ -195,9 +195,17 @@ struct BadTexels {
     std::uint64_t count() const { return nan + infinite + negative; }
 };
 
+/// The grid that a map is fitted on.
+enum class Domain {
+    source,    ///< its own texels, of a lat-long or octahedral map; else the one of the others that loses least
+    latlong,   ///< phi and theta
+    octahedral ///< u and v of the equal-area octahedral square
+};
+
 /// What is fitted of a map.
 struct TargetOptions {
     Channels channels;
+    Domain domain = Domain::source;
     /// How the renderer looks the map up. Set it right: a lookup that blends light into dark texels finds light
     /// where a nearest fit has none, which is bias.
     AcdfFilter filter = ACDF_FILTER_NEAREST;
@@ -217,7 +225,7 @@ public:
 
     bool empty() const noexcept { return !data_; }
     // Of a target that is not empty:
-    std::uint32_t columns() const noexcept; ///< of the lat-long map that is fitted
+    std::uint32_t columns() const noexcept; ///< of the grid that is fitted
     std::uint32_t rows() const noexcept;
     double total() const noexcept; ///< integral over the sphere, of several channels their sum
     const BadTexels& bad_texels() const noexcept;

@@ -99,6 +99,9 @@ void check(const TargetOptions& options) {
     check(options.channels);
     require(options.filter == ACDF_FILTER_NEAREST || options.filter == ACDF_FILTER_BILINEAR,
             "filter is no AcdfFilter");
+    const Domain domain = options.domain;
+    require(domain == Domain::source || domain == Domain::latlong || domain == Domain::octahedral,
+            "domain is no Domain");
     const BadTexelPolicy policy = options.bad_texels;
     require(policy == BadTexelPolicy::zero || policy == BadTexelPolicy::clamp || policy == BadTexelPolicy::error,
             "bad_texels is no BadTexelPolicy");

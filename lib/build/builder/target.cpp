@@ -111,26 +111,76 @@ Target make_target(const Rows& rows, const TargetOptions& options, int threads, 
 
 const compress::Target& grid_of(const Target& target) { return target.data()->grid; }
 
-Target target_of(compress::Target grid, const TargetOptions& options, const BadTexels& bad,
-                 const std::string& projection) {
-    if (!(compress::integral(grid) > 0.0))
+namespace {
+
+Target held(Target::Data data) {
+    if (!(compress::integral(data.grid) > 0.0))
         throw build::NoEnergy("the map is black in the channels asked for, so there is nothing to sample");
-    return Target(
-        std::make_shared<const Target::Data>(Target::Data{std::move(grid), internal(options), bad, projection}));
+    data.options.parameterization = data.grid.parameterization;
+    return Target(std::make_shared<const Target::Data>(std::move(data)));
+}
+
+} // namespace
+
+Target target_of(compress::Target grid, const TargetOptions& options) {
+    Target::Data data;
+    data.options = internal(options);
+    data.map = {grid.parameterization == ACDF_PARAM_OCTAHEDRAL ? Projection::octahedral : Projection::latlong,
+                static_cast<int>(grid.columns), static_cast<int>(grid.rows)};
+    data.grid = std::move(grid);
+    return held(std::move(data));
+}
+
+bool TargetRows::take_map(const build::Map& map, const std::vector<float>& rgb) {
+    map_ = map;
+    made_ = target_of(map, rgb.data());
+    if (progress_) progress_(0.9, "resampling");
+    return true;
 }
 
 void TargetRows::begin(int width, int height) {
-    height_ = height;
-    rows_.emplace(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), internal(options_));
+    map_ = {Projection::latlong, width, height};
+    const auto grid = grid_of(map_), own = build::own_domain(map_);
+    if (!grid || !own || !(*grid == *own)) {
+        rgb_.resize(row() * static_cast<std::size_t>(height));
+        return;
+    }
+    compress::TargetOptions options = internal(options_);
+    options.parameterization = ACDF_PARAM_LATLONG;
+    own_.emplace(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), options);
 }
 
 void TargetRows::take(int first, int count, const float* rgb) {
-    rows_->take(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), rgb);
-    if (progress_) progress_(0.9 * (first + count) / height_, "reading pixels");
+    if (own_) own_->take(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), rgb);
+    else
+        std::copy_n(rgb, row() * static_cast<std::size_t>(count),
+                    rgb_.begin() + static_cast<std::ptrdiff_t>(row() * static_cast<std::size_t>(first)));
+    if (progress_) progress_(0.9 * (first + count) / map_.height, "reading pixels");
 }
 
 Target TargetRows::finish(const BadTexels& bad, const std::string& projection) {
-    return target_of(rows_->finish(), options_, bad, projection);
+    if (own_) made_ = {own_->finish(), 0.0};
+    else if (!rgb_.empty()) made_ = target_of(map_, rgb_.data());
+    return held({std::move(made_.target), internal(options_), bad, projection, map_, made_.error});
+}
+
+/// The grid, where it does not depend on what would be lost.
+std::optional<build::Domain> TargetRows::grid_of(const build::Map& map) const {
+    if (grid_) return grid_;
+    switch (options_.domain) {
+    case Domain::latlong:
+        return build::domain_for(map, ACDF_PARAM_LATLONG);
+    case Domain::octahedral:
+        return build::domain_for(map, ACDF_PARAM_OCTAHEDRAL);
+    default:
+        return build::own_domain(map);
+    }
+}
+
+build::SourceTarget TargetRows::target_of(const build::Map& map, const float* rgb) const {
+    const auto grid = grid_of(map);
+    return grid ? build::source_target(map, rgb, *grid, internal(options_))
+                : build::source_target_losing_least(map, rgb, internal(options_));
 }
 
 Status Target::from(const Pixels& pixels, const TargetOptions& options, Target& target,

@@ -49,7 +49,7 @@ typedef struct AcdfError {
 AcdfFile* acdf_open(const char* path, AcdfError* error);
 
 /* Checks `size` bytes at `data`, which must stay as they are until acdf_close: uncompressed chunks are used
- * in place (where `data` is aligned to 4 bytes). Null on failure. */
+ * in place (where `data` is aligned to 8 bytes). Null on failure. */
 AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error);
 
 /* Ends `file` and every view and pointer taken from it. Null is allowed. */

@@ -64,15 +64,6 @@ ACDF_FN void acdf_range_cut(AcdfRange* range, uint32_t position, int upper) {
 }
 
 /* The walks below are written for a number of rows that the compiler knows: weights then stay in registers. */
-#ifndef ACDF_INLINE
-#if defined(__CUDACC__)
-#define ACDF_INLINE static __forceinline__ __host__ __device__
-#elif defined(__GNUC__)
-#define ACDF_INLINE static inline __attribute__((always_inline))
-#else
-#define ACDF_INLINE ACDF_FN
-#endif
-#endif
 
 /* What a mixture gives to a tile to which each row gives that part of itself: in this order, so that tables of
  * parts tell the same density. */

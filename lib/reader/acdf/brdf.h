@@ -133,7 +133,7 @@ ACDF_FN int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double h
     half[2] = view->wo[2] + z;
     place->length = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
     place->dot = fabs(view->wo[0] * half[0] + view->wo[1] * half[1] + view->wo[2] * half[2]);
-    return acdf_are_finite(wi) && length2 > 0.999 && length2 < 1.001 && place->length > 1e-30;
+    return acdf_are_finite(wi) && length2 > 0.999 && length2 < 1.001 && place->length > 0.0;
 }
 
 /* atan2(y, x) / pi for y >= 0 as acdf_atan2pi has it, but for rounding and without branches: the octant of a
@@ -268,7 +268,7 @@ ACDF_FN int acdf_brdf_begin(const AcdfBrdf* brdf, const AcdfBrdfView* view, doub
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     if (floor > 0.0) {
-        if (u[1] < floor || (brdf->blend.tiles && view->mix.count == 0)) {
+        if (u[1] < floor) {
             const double v = acdf_clamp(u[1] / floor, 0.0, 1.0 - 0x1p-40), radius = sqrt(v);
             double sine, cosine;
             acdf_sincospi(2.0 * u[0] - 1.0, &sine, &cosine);

@@ -248,21 +248,17 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
 
 /* The part of the density that follows the light. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
-    const uint32_t columns = local->environment.columns, rows = local->environment.rows;
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
-    double t[2] = {0.5, 0.5}, column, p, z0, dz;
+    double t[2] = {0.5, 0.5}, position[2], p;
     uint32_t square[2];
-    if (point->what == ACDF_LOCAL_NOTHING || !acdf_sphere_square(columns, rows, direction, square, &column))
-        return 0.0f;
-    acdf_sphere_ranges(columns, rows, range);
+    if (point->what == ACDF_LOCAL_NOTHING || !acdf_grid_square(&grid, direction, square, position)) return 0.0f;
+    acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND ? acdf_local_blend_find(local, point, square, range)
                                         : acdf_tree_find(local->environment.tree, point->root, square, range, 0);
     if (!(p > 0.0)) return 0.0f;
-    z0 = acdf_row_z(range[1].low, rows);
-    dz = z0 - acdf_row_z(range[1].high, rows);
-    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) acdf_sphere_fractions(direction, column, range, z0, dz, t);
-    return acdf_cell_pdf(p, range[0].high - range[0].low, columns, dz,
-                         acdf_tilt_density(range[0].tilt, t[0]) * acdf_tilt_density(range[1].tilt, t[1]));
+    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) acdf_grid_fractions(&grid, direction, position, range, t);
+    return acdf_grid_pdf(&grid, range, t, p);
 }
 
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
@@ -305,7 +301,7 @@ ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* po
  * direction) where the normal is not valid or nothing shines on it. */
 ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
                                                  double u1) {
-    const uint32_t columns = local->environment.columns, rows = local->environment.rows;
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
     AcdfRange range[2];
     double u[2], p;
@@ -317,10 +313,10 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
         out.pdf = acdf_local_light_pdf(local, point, out.direction);
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
-        acdf_sphere_ranges(columns, rows, range);
+        acdf_sphere_ranges(grid.columns, grid.rows, range);
         p = point->what == ACDF_LOCAL_BLEND ? acdf_local_blend_sample(local, point, u, range)
                                             : acdf_tree_sample(local->environment.tree, point->root, u, range);
-        out = acdf_sphere_place(columns, rows, range, u, p);
+        out = acdf_grid_place(&grid, range, u, p);
     }
     out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
     return out;

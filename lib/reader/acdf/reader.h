@@ -9,7 +9,9 @@
 // Safety: `open` and `from_memory` accept any bytes. They check every rule of format/SPEC.md that memory
 // safety and a correct density need, in time linear in the size, and never read outside what they are given.
 // A file that was accepted can be sampled for ever without reading outside it. Memory: at most four times the
-// file and its inflated chunks, and 1 MiB; the limits are checked before any of it is allocated.
+// file and its inflated chunks, and 1 MiB; the limits are checked before any of it is allocated. Runtime tables
+// take at most eight times the file and 1 MiB more, and as much again while they are made; LoadOptions leaves them
+// out.
 #pragma once
 
 #include <acdf/brdf.h>
@@ -47,6 +49,17 @@ struct Status {
 struct Limits {
     std::uint64_t max_file_bytes = std::uint64_t{1} << 32;
     std::uint64_t max_inflated_bytes = std::uint64_t{1} << 30; ///< sum over compressed chunks
+};
+
+/// How a file is loaded.
+struct LoadOptions {
+    LoadOptions() noexcept = default;
+    LoadOptions(const Limits& limits) noexcept : limits(limits) {}
+
+    Limits limits;
+    /// Whether runtime tables are made: draws and densities take a fraction of the time. Without them nothing more
+    /// is allocated, and the file's own trees are walked.
+    bool tables = true;
 };
 
 using DirectionSample = AcdfDirectionSample;
@@ -207,10 +220,11 @@ public:
     File& operator=(const File&) = delete;
 
     /// Reads and checks the regular file at `path`. On failure `file` is left empty.
-    static Status open(const char* path, File& file, const Limits& limits = {}) noexcept;
+    static Status open(const char* path, File& file, const LoadOptions& options = {}) noexcept;
     /// Checks `size` bytes at `data`. They are used in place, and must outlive `file`, unless they are not
     /// aligned to 8 bytes (then copied). Compressed chunks are inflated into memory of the file's own.
-    static Status from_memory(const void* data, std::size_t size, File& file, const Limits& limits = {}) noexcept;
+    static Status from_memory(const void* data, std::size_t size, File& file,
+                              const LoadOptions& options = {}) noexcept;
 
     bool empty() const noexcept { return bytes_ == nullptr; }
     // Everything below asks for a file that is not empty.
@@ -225,6 +239,8 @@ public:
     const AcdfBlend& blend() const noexcept { return blend_; }
     std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
+    /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
+    std::uint64_t table_bytes() const noexcept { return cells_ ? 4 * std::uint64_t{cells_->words} : 0; }
 
     /// Metadata pairs; `count` is 0 where the file carries none.
     std::uint32_t metadata_count() const noexcept { return metadata_count_; }
@@ -256,7 +272,10 @@ private:
     const float* nodes_ = nullptr;
     const std::uint8_t* metadata_ = nullptr;
     std::uint32_t metadata_count_ = 0;
-    void* owned_[2] = {nullptr, nullptr}; // the file's bytes; inflated chunks
+    const AcdfCells* cells_ = nullptr;
+    void* owned_[3] = {nullptr, nullptr, nullptr}; // the file's bytes; inflated chunks; runtime tables
+
+    void make_tables() noexcept;
 };
 
 } // namespace acdf

@@ -64,6 +64,13 @@ ACDF_FN double acdf_table_coordinate(const AcdfAxis* axis, double position) {
     return axis->low + (axis->high - axis->low) * (position / (double)axis->resolution);
 }
 
+/* Whether a coordinate is in the closed range of the axis; then its position is in [0, resolution]. A coordinate a
+ * little outside would have the position of the end by rounding. */
+ACDF_FN int acdf_table_in_range(const AcdfAxis* axis, double x) {
+    const int rises = axis->low < axis->high;
+    return acdf_is_finite(x) && x >= (rises ? axis->low : axis->high) && x <= (rises ? axis->high : axis->low);
+}
+
 /* How far a sample stays from its cell's borders, in steps: above the rounding error of acdf_table_position at
  * acdf_table_coordinate, and below 2^-8 (SPEC.md rule 9004). */
 ACDF_FN double acdf_table_border(const AcdfAxis* axis) {
@@ -139,8 +146,7 @@ ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, co
     for (axis = first; axis < table->axis_count; ++axis) {
         const AcdfAxis* a = &table->axes[axis];
         const double position = acdf_table_position(a, x[axis - first]);
-        if (!acdf_is_finite(x[axis - first])) return 0.0;
-        if (!(position >= 0.0 && position <= (double)a->resolution)) return 0.0;
+        if (!acdf_table_in_range(a, x[axis - first])) return 0.0;
         place->position[axis] = position;
         step[axis] = (uint32_t)position;
         if (step[axis] >= a->resolution) step[axis] = a->resolution - 1;

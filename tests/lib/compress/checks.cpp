@@ -24,10 +24,36 @@ using acdf::compress::Shape;
 using acdf::compress::Target;
 
 constexpr std::uint32_t kSamples = 100000;
-// Chi-square tests in all: two a fit, 19 fits, 12 synthetic targets and four probes. Together they reject a
-// correct program with a chance of 1 % (once and for all, because the seeds are fixed).
-constexpr int kChiSquareTests = 2 * 17 * (12 + 4 + 4);
-constexpr std::uint32_t kPhiBins = 31, kZBins = 15; // odd, so that no border falls on those of a grid
+// Chi-square tests in all: two a fit, 19 fits, 12 synthetic targets on two grids and four probes on two. Together
+// they reject a correct program with a chance of 1 % (once and for all, because the seeds are fixed).
+constexpr int kChiSquareTests = 2 * 19 * 2 * (12 + 4);
+constexpr std::uint32_t kPhiBins = 31,
+                        kZBins = 15; // of u and v too; odd, so that no border falls on those of a grid
+
+bool is_octahedral(const Target& target) { return target.parameterization == ACDF_PARAM_OCTAHEDRAL; }
+
+/// The direction at (u, v) of the octahedral square, and back: SPEC.md §6.9.
+void square_direction(double u, double v, float d[3]) {
+    const double a = std::abs(2.0 * u - 1.0), b = std::abs(2.0 * v - 1.0), e = a + b - 1.0, r = 1.0 - std::abs(e);
+    const double phi = r == 0.0 ? 0.0 : kPi / 4.0 * ((b - a) / r + 1.0), sine = r * std::sqrt(2.0 - r * r);
+    d[0] = static_cast<float>(sine * std::cos(phi) * (u > 0.5 ? -1.0 : 1.0));
+    d[1] = static_cast<float>(sine * std::sin(phi) * (v < 0.5 ? -1.0 : 1.0));
+    d[2] = static_cast<float>(-e * (1.0 + r));
+}
+struct Square {
+    double u, v;
+};
+Square square_of(const float d[3]) {
+    const double x = std::abs(double{d[0]}), y = std::abs(double{d[1]}), z = std::abs(double{d[2]});
+    const double r = std::sqrt((x * x + y * y) / (1.0 + z));
+    double b = 2.0 * r * std::atan2(y, x) / kPi, a = r - b;
+    if (d[2] < 0.0f) {
+        const double inner = a;
+        a = 1.0 - b;
+        b = 1.0 - inner;
+    }
+    return {0.5 * (d[0] > 0.0f ? 1.0 - a : 1.0 + a), 0.5 * (d[1] < 0.0f ? 1.0 - b : 1.0 + b)};
+}
 
 /// Cells, and for each texel the cell that covers it.
 struct CellMap {
@@ -75,11 +101,15 @@ void check_integral(const EnvironmentView& view, const Target& target) {
     std::uint64_t violations = 0;
     for (std::uint32_t r = 0; r < target.rows; ++r) {
         const double z = centre_z(r, target.rows);
-        const double solid_angle = 2.0 * kPi / target.columns *
-                                   (std::cos(kPi * r / target.rows) - std::cos(kPi * (r + 1.0) / target.rows));
+        const double height = is_octahedral(target)
+                                  ? 2.0 / target.rows
+                                  : std::cos(kPi * r / target.rows) - std::cos(kPi * (r + 1.0) / target.rows);
+        const double solid_angle = 2.0 * kPi / target.columns * height;
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             float direction[3];
-            direction_of(centre_phi(c, target.columns), z, direction);
+            if (is_octahedral(target))
+                square_direction((c + 0.5) / target.columns, (r + 0.5) / target.rows, direction);
+            else direction_of(centre_phi(c, target.columns), z, direction);
             const double pdf = view.pdf(direction);
             sum += pdf * solid_angle;
             violations += target.row(r)[c] > 0.0f && !(pdf > 0.0);
@@ -105,7 +135,9 @@ void spread(double x0, double x1, double tilt, std::vector<double>& bins) {
 /// Probability of each equal-area bin of the sphere, from the cells.
 std::vector<double> bin_probabilities(const CellMap& map, const Target& target) {
     std::vector<double> phi(kPhiBins), z(kZBins), bins(kPhiBins * kZBins, 0.0);
-    const auto height = [&](std::uint32_t row) { return 0.5 - 0.5 * std::cos(kPi * row / target.rows); };
+    const auto height = [&](std::uint32_t row) {
+        return is_octahedral(target) ? double(row) / target.rows : 0.5 - 0.5 * std::cos(kPi * row / target.rows);
+    };
     for (const Cell& cell : map.cells) {
         const acdf::build::Cell& c = cell;
         spread(double(c.range[0].low) / target.columns, double(c.range[0].high) / target.columns, c.range[0].tilt,
@@ -118,16 +150,20 @@ std::vector<double> bin_probabilities(const CellMap& map, const Target& target) 
     return bins;
 }
 
-/// Where a direction lies on the grid, by its angles.
+/// Where a direction lies on the grid, and how far down the sphere's area its row begins: 0 to 1.
 struct Place {
-    double column, row, z;
+    double column, row, z, down;
 };
 
 Place place_of(const float d[3], const Target& target) {
     const double x = d[0], y = d[1], z = d[2];
+    if (is_octahedral(target)) {
+        const Square at = square_of(d);
+        return {at.u * target.columns, at.v * target.rows, z, at.v};
+    }
     double turn = 0.5 - std::atan2(y, x) / (2.0 * kPi); // 0 at phi = pi, 1 at phi = -pi
     if (turn >= 1.0) turn = 0.0;
-    return {turn * target.columns, std::atan2(std::hypot(x, y), z) / kPi * target.rows, z};
+    return {turn * target.columns, std::atan2(std::hypot(x, y), z) / kPi * target.rows, z, 0.5 * (1.0 - z)};
 }
 
 std::size_t step_of(double position, std::uint32_t count) {
@@ -149,9 +185,14 @@ double rounding_bound(const Cell& cell, const Place& place, const Target& target
         const double density = std::max(1.0 - std::abs(range.tilt), 1.0 + range.tilt * (2.0 * t - 1.0));
         return 2.0 * std::abs(range.tilt) / density * error;
     };
-    const double sin_theta = std::max(std::sqrt((1.0 - place.z) * (1.0 + place.z)), 0x1p-22);
     const AcdfRange &columns = cell.range[0], &rows = cell.range[1];
     const double width = columns.high - columns.low, height = z_of(rows.low) - z_of(rows.high);
+    if (is_octahedral(target)) { // a sample is moved inside by 2^-23 of the side, and by rounding less than that
+        const double tall = rows.high - rows.low;
+        return share(columns, (place.column - columns.low) / width, 0x1p-22 * target.columns / width) +
+               share(rows, (place.row - rows.low) / tall, 0x1p-22 * target.rows / tall);
+    }
+    const double sin_theta = std::max(std::sqrt((1.0 - place.z) * (1.0 + place.z)), 0x1p-22);
     return share(columns, (place.column - columns.low) / width,
                  0x1p-22 / sin_theta * target.columns / (2.0 * kPi * width)) +
            share(rows, (z_of(rows.low) - place.z) / height, 0x1p-22 * sin_theta / height);
@@ -190,7 +231,7 @@ void check_samples(const EnvironmentView& view, const CellMap& map, const Target
         const std::size_t texel = texel_of(place, target);
         agreement.add(view, sample, rounding_bound(map.cells[map.of_texel[texel]], place, target));
         ++in_cells[map.of_texel[texel]];
-        ++in_bins[step_of(0.5 * (1.0 - place.z) * kZBins, kZBins) * kPhiBins +
+        ++in_bins[step_of(place.down * kZBins, kZBins) * kPhiBins +
                   step_of(place.column / target.columns * kPhiBins, kPhiBins)];
         estimate += double{target.values[texel]} / sample.pdf / kSamples;
     }
@@ -256,7 +297,8 @@ std::vector<NamedFit> all_fits(std::uint32_t columns, std::uint32_t rows, std::u
 
 void check_fit(const Target& target, const NamedFit& fit) {
     SCOPED_TRACE(fit.name);
-    auto description = acdf::compress::environment_description(target.columns, target.rows);
+    auto description =
+        acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
     description.fit = fit.options.fit;
     description.total = acdf::compress::integral(target);
     const auto bytes = acdf::compress::store(acdf::compress::fit(target, fit.options).tree, description);

@@ -17,6 +17,8 @@ TEST_P(EveryFit, IsADensityThatCoversTheTarget) {
 
 INSTANTIATE_TEST_SUITE_P(Synthetic, EveryFit, ::testing::ValuesIn(acdf_test::synthetic_targets()),
                          [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Octahedral, EveryFit, ::testing::ValuesIn(acdf_test::octahedral_targets()),
+                         [](const auto& info) { return info.param.name; });
 
 // ---- the test itself ------------------------------------------------------------------------------------
 

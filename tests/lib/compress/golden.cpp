@@ -24,8 +24,8 @@ std::vector<char> bytes_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-const char* const kNames[] = {"smallest", "one_texel", "untilted",     "zlib", "planes",
-                              "tilted",   "deep",      "shared_child", "wide", "many_segments"};
+const char* const kNames[] = {"smallest", "one_texel",    "untilted", "zlib",          "planes",    "tilted",
+                              "deep",     "shared_child", "wide",     "many_segments", "octahedral"};
 
 /// A golden file and the samples beside it.
 struct Line {
@@ -104,6 +104,11 @@ const double kMiddleZ = kHalf / 2, kMiddleSin = std::sqrt(1.0 - kHalf * kHalf / 
 // stored as 8192 and 24576 out of 65535.
 const double kSharedPdf = 0.25 / (2 * kPi * 0.3 * 0.5);
 
+// octahedral, 24 x 24: columns 9 to 20 are one cell with half of all samples. The random numbers that lead there,
+// 3/8 to 7/8, are stored as 24576 and 57343 out of 65535; column 12, the middle of the square's width, lies 3/11
+// across.
+const double kMiddleColumn = (24576 + 32767 * 3.0 / 11) / 65535;
+
 const HandMade kHandMade[] = {
     {"smallest", {0.0, 0.0}, {0, 0, 1}, 1 / (4 * kPi)},
     {"smallest", {0.5, 0.5}, {1, 0, 0}, 1 / (4 * kPi)},   // the centre of the image is +x
@@ -120,6 +125,13 @@ const HandMade kHandMade[] = {
      {0.0, 8192.01 / 65535},
      {std::sqrt(0.75) * std::cos(-0.4 * kPi), std::sqrt(0.75) * std::sin(-0.4 * kPi), 0.5},
      kSharedPdf},
+    // octahedral, 24 x 24: columns 9 to 20 are one cell with half of all samples. Its random numbers of axis 0 are
+    // 3/8 to 7/8; at 3/8 + 1/2 * 3/11 lies column 12, the middle of the square's width.
+    {"octahedral", {kMiddleColumn, 0.5}, {0, 0, 1}, 0.5 / (4 * kPi * 11 / 24)},
+    {"octahedral", {kMiddleColumn, 0.0}, {0, -1, 0}, 0.5 / (4 * kPi * 11 / 24)},
+    {"octahedral", {kMiddleColumn, 1.0}, {0, 1, 0}, 0.5 / (4 * kPi * 11 / 24)},
+    // The first column's lower left: -z; v = 5/24 of columns 0 to 3 is crossed at half of its random numbers.
+    {"octahedral", {0.0, 0.0}, {0, 0, -1}, 0.125 * 0.5 / (4 * kPi * 3 * 5 / 576)},
     {"shared_child", {1.0, 24575.99 / 65535}, {-1, 0, 0}, kSharedPdf},
 };
 

@@ -58,7 +58,7 @@ TEST_P(GoldenLocal, HasThatDensityThere) {
     EXPECT_GT(drawn, 60);
 }
 
-INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal, ::testing::Values("local", "local_grid"),
+INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal, ::testing::Values("local", "local_grid", "octahedral_local"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {

@@ -40,6 +40,10 @@ std::function<std::optional<Target>()> synthetic(const std::string& name) {
         throw std::logic_error(name);
     };
 }
+/// The same values on the octahedral square.
+std::function<std::optional<Target>()> squared(const std::string& name) {
+    return [name] { return std::optional(octahedral(*synthetic(name)())); };
+}
 std::function<std::optional<Target>()> probe(const std::string& name, int by) {
     return [=] { return probe_target(name, by); };
 }
@@ -92,6 +96,20 @@ std::vector<MapCase> map_cases() {
         {"separate_corners", synthetic("peaky_sun"), corners(3), with(0, 0, 0.0, false)},
         {"separate_grid", synthetic("black_lower_hemisphere"), grid(9, 5), with(0, 0, 0.125, false)},
         {"separate_paper_grid", synthetic("odd_noise"), grid(25, 10), with(0, 0, 0.0, false)},
+        {"octahedral_sky", squared("smooth_sky"), corners(4), with(60, 1500)},
+        {"octahedral_sun", squared("peaky_sun"), corners(5), with(120, 3000)},
+        {"octahedral_texel", squared("one_lit_texel"), corners(4), with(30, 400)},
+        {"octahedral_checkerboard", squared("checkerboard"), corners(2), with(200, 8000)},
+        {"octahedral_noise", squared("odd_noise"), corners(6), with(100, 3000, 0.0625)},
+        {"octahedral_fold", squared("sun_at_the_seam"), corners(4), with(80, 1500)},
+        {"octahedral_corner", squared("sun_at_the_pole"), corners(4), with(80, 1500)},
+        {"octahedral_range_of_1e12", squared("range_of_1e12"), corners(3), with(150, 4000)},
+        {"octahedral_suns", [] { return std::optional(octahedral(suns_target(128, 128))); }, corners(5),
+         with(150, 3000)},
+        {"octahedral_scene", [] { return std::optional(octahedral(suns_target(96, 96))); }, scene_bins,
+         with(100, 2000)},
+        {"octahedral_separate", squared("peaky_sun"), corners(3), with(0, 0, 0.0, false)},
+        {"octahedral_separate_grid", squared("black_lower_hemisphere"), grid(9, 5), with(0, 0, 0.125, false)},
         {"city", probe("city.exr", 8), corners(6), with(200, 6000)},
         {"noon_grass", probe("noon_grass_1k.hdr", 8), corners(6), with(200, 6000)},
         {"grace", probe("grace_probe.hdr", 8), corners(6), with(200, 6000)},
@@ -138,9 +156,8 @@ TEST_P(Maps, DensitiesIntegrateToOne) {
         for (const double v : p) exact.add(v);
         for (std::uint32_t r = 0; r < env.rows; ++r)
             for (std::uint32_t c = 0; c < env.columns; ++c) {
-                float d[3];
-                direction_of(centre_phi(c, env.columns), centre_z(r, env.rows), d);
-                floats.add(static_cast<double>(light.pdf(n.data(), d)) * square_area(env, r));
+                const Normal d = place_direction(map_->target, c + 0.5, r + 0.5);
+                floats.add(static_cast<double>(light.pdf(n.data(), d.data())) * square_area(env, r));
             }
         const bool lit = map_->view().sample(n.data(), 0.5, 0.5).pdf > 0.0f;
         EXPECT_NEAR(exact.value(), lit ? 1.0 : 0.0, 1e-9) << n[0] << ' ' << n[1] << ' ' << n[2];
@@ -200,8 +217,7 @@ TEST_P(Maps, ChiSquare) {
             const double u0 = uniform(random), u1 = uniform(random);
             const acdf::DirectionSample s = view.sample(n.data(), u0, u1);
             std::uint32_t square[2] = {0, 0};
-            double column = 0.0;
-            ASSERT_TRUE(acdf_sphere_square(target.columns, target.rows, s.direction, square, &column));
+            ASSERT_TRUE(find_square(target, s.direction, square));
             ++observed[std::size_t{square[1]} * target.columns + square[0]];
         }
         const ChiSquare test = chi_square(observed, probability);
@@ -217,10 +233,8 @@ Normal within(const Target& target, std::uint32_t column, std::uint32_t row, std
         const double t = uniform(random);
         return random() % 4 == 0 ? (t < 0.5 ? 1e-5 : 1.0 - 1e-5) : 1e-5 + (1.0 - 2e-5) * t;
     };
-    const double theta = kPi * (row + place()) / target.rows;
-    Normal d;
-    direction_of(kPi - 2.0 * kPi * (column + place()) / target.columns, std::cos(theta), d.data());
-    return d;
+    const double down = row + place();
+    return place_direction(target, column + place(), down);
 }
 
 /// Wherever light is above the horizon, however little, it can be drawn.

@@ -39,6 +39,13 @@ Uv mitsuba(Vec d) { return {turn_fraction(std::atan2(d.x, -d.z)), std::acos(d.y)
 // Cycles, direction_to_equirectangular: u = (phi - pi) / -2 pi, v = (theta - pi) / -pi counted from the bottom.
 Uv cycles(Vec d) { return {(std::atan2(d.y, d.x) - pi) / (-2.0 * pi), 1.0 - (std::acos(d.z) - pi) / -pi}; }
 
+// LuxCore, EnvLightSource::ToLatLongMapping: u = phi / 2 pi, v = theta / pi, z up: the formula of pbrt.
+Uv luxcore(Vec d) { return pbrt(d); }
+
+// three.js, equirectUv, and three-gpu-pathtracer: u = atan2(z, x) / 2 pi + 1/2, v = asin(y) / pi + 1/2 from the
+// bottom.
+Uv three(Vec d) { return {std::atan2(d.z, d.x) / (2.0 * pi) + 0.5, 1.0 - (std::asin(d.y) / pi + 0.5)}; }
+
 // "(−x, y, z)" applied to d. The minus sign is U+2212, three bytes of which none is an ASCII letter.
 Vec permuted(const std::string& triple, Vec d) {
     std::array<double, 3> out{};
@@ -88,11 +95,10 @@ std::vector<Vec> directions() {
 }
 
 TEST(InputConventions, DocumentedAxesMapToTheSamePixelInEveryProgram) {
-    const std::map<std::string, Uv (*)(Vec)> programs{{"OpenEXR", openexr},
-                                                      {"USD `UsdLuxDomeLight`", openexr},
-                                                      {"pbrt", pbrt},
-                                                      {"Mitsuba 3", mitsuba},
-                                                      {"Blender (Cycles)", cycles}};
+    const std::map<std::string, Uv (*)(Vec)> programs{
+        {"OpenEXR", openexr},   {"USD `UsdLuxDomeLight`", openexr}, {"pbrt", pbrt},
+        {"Mitsuba 3", mitsuba}, {"Blender (Cycles)", cycles},       {"LuxCore", luxcore},
+        {"three.js", three}};
     const std::map<std::string, std::string> rows = documented_rows();
     for (const auto& [program, formula] : programs) {
         ASSERT_EQ(rows.count(program), 1u) << program << " is not in the table";

@@ -213,6 +213,41 @@ TEST(BrdfReader, anyNumbersAreSafe) {
     }
 }
 
+// A half-vector however short has a direction.
+TEST(BrdfReader, nearlyOppositeDirectionsHaveADensity) {
+    for (const BrdfSpec& given : shared_forms()) {
+        BrdfSpec spec = given;
+        const Bytes bytes = spec.encode();
+        acdf::File file;
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+        const acdf::BrdfView view = file.brdf();
+        for (const float off : {1e-20f, 1e-32f, 1e-40f}) {
+            const float wo[3] = {off, 0.6f, 0.8f}, wi[3] = {0.0f, -0.6f, -0.8f};
+            const float at_x[3] = {off, 0.6f, 0.8f}, opposite[3] = {-off, -0.6f, -0.8f};
+            EXPECT_GT(view.pdf(wo, wi), 0.0f) << off;
+            EXPECT_EQ(view.pdf(at_x, opposite), 0.0f) << off;
+        }
+    }
+}
+
+// Bins of share 0: what is drawn is what the density tells, the part of the cosine and nothing else.
+TEST(BrdfReader, viewsWithoutATableDrawThePartOfTheCosine) {
+    BrdfSpec spec = shared_brdf();
+    spec.diffuse_share = 0.25f;
+    for (BinSpec& bin : spec.bins) bin.share = 0.0f;
+    const Bytes bytes = spec.encode();
+    acdf::File file;
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+    const acdf::BrdfView view = file.brdf();
+    const float wo[3] = {0.6f, 0.0f, 0.8f};
+    for (int i = 0; i <= 64; ++i) {
+        const acdf::DirectionSample s = view.sample(wo, 0.3, i / 64.0);
+        EXPECT_EQ(s.pdf > 0.0f, i < 16) << i;
+        EXPECT_EQ(s.pdf, i < 16 ? view.pdf(wo, s.direction) : 0.0f) << i;
+        EXPECT_FLOAT_EQ(s.pdf, i < 16 ? 0.25f * s.direction[2] / static_cast<float>(pi) : 0.0f) << i;
+    }
+}
+
 TEST(BrdfReader, albedoIsThatOfTheNodesAndBetweenThem) {
     BrdfSpec spec = shared_brdf();
     const Loaded loaded(spec.encode());

@@ -15,8 +15,9 @@ struct BrdfSpec {
     TreeSpec tree = {{CurveSpec{}}, {}};
     std::vector<SplitSpec> splits; ///< empty: bins share nothing
     std::vector<std::uint16_t> codebook = even_codebook();
-    std::vector<Bytes> codes;  ///< rows of one byte a split
-    std::vector<BinSpec> bins; ///< root: the row, or a curve of `tree`; no_root: not stored
+    std::vector<Bytes> codes;     ///< rows of one byte a split
+    std::vector<int> tile_curves; ///< empty, or one a tile: its first curve, -1: it is a cell
+    std::vector<BinSpec> bins;    ///< root: the row, or a curve of `tree`; no_root: not stored
     double total = 2.0;
     bool zlib = false;
 
@@ -58,6 +59,8 @@ struct BrdfSpec {
         shared.tiles = static_cast<std::uint32_t>(splits.size() + 1);
         shared.splits = splits;
         shared.codebook = codebook;
+        shared.tree = tree;
+        shared.tile_curves = tile_curves;
         shared.codes = codes;
         file.chunks.push_back({"TILE", shared.tile_chunk(), 1, zlib});
         file.chunks.push_back({"ROWS", shared.row_chunk(), 1, zlib});

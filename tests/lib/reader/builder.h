@@ -143,6 +143,17 @@ struct DescriptionSpec {
     double total = 1.0;
     std::vector<AxisSpec> axes = {{"phi", 0, 0, 1, pi, -pi}, {"theta", 0, 1, 1, 0.0, pi}};
 
+    /// The axes of the octahedral square.
+    void make_octahedral() {
+        parameterization = 4;
+        axes[0] = {"u", 0, 0, axes[0].resolution, 0.0, 1.0};
+        axes[1] = {"v", 0, 0, axes[1].resolution, 0.0, 1.0};
+    }
+
+    void weigh_as_table() {
+        weights[0] = 1.0;
+        weights[1] = weights[2] = 0.0;
+    }
     Bytes encode() const {
         Bytes out;
         for (auto v : {parameterization, fit, filter, up_axis, handedness, static_cast<std::uint32_t>(axes.size()),
@@ -309,12 +320,14 @@ struct EnvironmentSpec {
     Metadata metadata;    ///< no chunk META if empty
     bool zlib = false;
     double total = 1.0;
+    bool octahedral = false;
 
     FileSpec file() {
         DescriptionSpec description;
         description.axes[0].resolution = columns;
         description.axes[1].resolution = rows;
         description.total = total;
+        if (octahedral) description.make_octahedral();
         const Bytes curves = tree.encode();
         FileSpec file;
         file.chunks = {{"DESC", description.encode(), 1, zlib},

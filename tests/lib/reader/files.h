@@ -40,6 +40,7 @@ inline FileSpec spare_file() {
     DescriptionSpec description;
     description.parameterization = 3;
     description.axes = {{"phi", 0, 0, 8, 0.0, 1.0}, {"theta", 0, 0, 8, 0.0, 1.0}, {"nor", 0, 0, 1, 0.0, 1.0}};
+    description.weigh_as_table();
     file.kind = 4;
     file.chunks[0].raw = description.encode();
     return file;
@@ -55,6 +56,7 @@ inline FileSpec table_file() {
     description.bin_count = 6;
     description.axes = {
         {"i", 1, 0, 2, 0.0, 2.0}, {"j", 1, 0, 3, 5.0, -5.0}, {"x", 0, 0, 8, -1.0, 1.0}, {"y", 0, 0, 8, 10.0, 12.5}};
+    description.weigh_as_table();
     file.kind = 4;
     file.chunks[0].raw = description.encode();
     file.chunks[1].raw =

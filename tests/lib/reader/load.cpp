@@ -4,6 +4,8 @@
 #include "tests/lib/reader/local_builder.h"
 #include "tests/lib/reader/planes.h"
 
+#include <acdf/acdf.h>
+
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -176,6 +178,17 @@ bool inside(const void* p, const Exact& bytes) {
     return q >= bytes.data() && q < bytes.data() + bytes.size();
 }
 
+// What both headers promise of alignment is what the header of a file asks for.
+TEST(Memory, bothHeadersAskForTheSameAlignment) {
+    for (const char* header : {"acdf.h", "reader.h"}) {
+        std::ifstream in(std::string(ACDF_TEST_DIR "/../lib/reader/acdf/") + header);
+        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        EXPECT_NE(text.find("aligned to " + std::to_string(alignof(AcdfHeader)) + " bytes"), std::string::npos)
+            << header;
+        EXPECT_EQ(text.find("aligned to 4 bytes"), std::string::npos) << header;
+    }
+}
+
 TEST(Memory, usedInPlaceWhereAligned) {
     const Bytes bytes = complete_environment().encode();
     for (std::size_t shift = 0; shift <= 16; ++shift) {
@@ -184,6 +197,10 @@ TEST(Memory, usedInPlaceWhereAligned) {
         ASSERT_TRUE(File::from_memory(exact.data(), exact.size(), file).ok());
         EXPECT_EQ(inside(file.tree(), exact), shift % 8 == 0) << shift;
         EXPECT_EQ(inside(&file.header(), exact), shift % 8 == 0) << shift;
+        AcdfFile* c_file = acdf_from_memory(exact.data(), exact.size(), nullptr);
+        ASSERT_NE(c_file, nullptr);
+        EXPECT_EQ(inside(acdf_header(c_file), exact), shift % 8 == 0) << shift;
+        acdf_close(c_file);
         EXPECT_EQ(file.tree_units(), 18u);
         EXPECT_EQ(file.size(), bytes.size());
         EXPECT_EQ(std::memcmp(&file.header(), bytes.data(), bytes.size()), 0);

@@ -19,7 +19,8 @@ namespace {
 
 using acdf_reference::Local;
 
-constexpr std::uint32_t file_count = 80;
+// Files of both parameterizations: the first `latlong_count` are lat-long, the others octahedral.
+constexpr std::uint32_t latlong_count = 80, file_count = 2 * latlong_count;
 
 struct Loaded {
     Bytes bytes;
@@ -39,6 +40,7 @@ LocalSpec random_local(std::uint32_t seed, bool tilts) {
     options.depth = 3 + static_cast<int>(seed % 3);
     options.tilts = tilts;
     options.long_curves = false;
+    options.octahedral = seed >= latlong_count;
     LocalSpec spec = RandomLocal(seed, options).make();
     spec.zlib = seed % 5 == 0;
     return spec;

@@ -35,12 +35,14 @@ struct LocalSpec {
     float cosine_share = 0.0f;
     double total = 3.0;
     bool zlib = false;
+    bool octahedral = false; ///< axes u and v
 
     DescriptionSpec description() const {
         DescriptionSpec d;
         d.axes[0].resolution = columns;
         d.axes[1].resolution = rows;
         d.total = total;
+        if (octahedral) d.make_octahedral();
         d.bin_count = static_cast<std::uint32_t>(bins.size());
         const std::uint32_t corners = 4 * subdivisions * subdivisions + 2;
         if (subdivisions > 0) {

@@ -17,6 +17,7 @@ public:
         LocalSpec spec;
         spec.columns = options_.columns;
         spec.rows = options_.rows;
+        spec.octahedral = options_.octahedral;
         spec.subdivisions = below(3) == 0 ? 0 : 1 + below(6);
         spec.bin_columns = 1 + below(9);
         spec.bin_rows = 1 + below(5);

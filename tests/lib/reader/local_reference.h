@@ -116,7 +116,7 @@ public:
 
     double light_pdf(const Source& source, const double (&d)[3]) const {
         double square[2];
-        if (source.what == Source::nothing || !square_of(d, columns, rows, square)) return 0.0;
+        if (source.what == Source::nothing || !square_of(d, square)) return 0.0;
         Cell cell;
         cell.high[0] = columns;
         cell.high[1] = rows;

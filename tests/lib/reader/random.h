@@ -22,6 +22,7 @@ struct RandomOptions {
     double end = 0.25;         ///< chance that a segment ends before `depth`
     bool narrow_cells = false; ///< knots next to each other: cells of one step
     bool long_curves = true;   ///< now and then more than 63 segments
+    bool octahedral = false;   ///< axes u and v
 };
 
 class RandomTree {
@@ -34,6 +35,7 @@ public:
         spec.rows = options_.rows;
         spec.tree = make_within({0, 0}, {options_.columns, options_.rows});
         spec.root = 0;
+        spec.octahedral = options_.octahedral;
         return spec;
     }
 

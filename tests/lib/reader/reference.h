@@ -67,10 +67,12 @@ public:
         columns = static_cast<double>(number(description_, 64 + 24, 4));
         rows = static_cast<double>(number(description_, 64 + 48 + 24, 4));
         total = f64(description_, 56);
+        octahedral = number(description_, 0, 4) == 4;
         root = number(bins_, 0, 4);
     }
 
     double columns, rows, total;
+    bool octahedral;
     std::size_t root; // of the tree, in units of two bytes
 
     Curve curve(std::size_t unit) const {
@@ -157,6 +159,15 @@ public:
     void place(Sample& s, const double (&u)[2]) const {
         const double t0 = solve(s.cell.tilt[0], u[0]), t1 = solve(s.cell.tilt[1], u[1]);
         const double beta = std::ldexp(1.0, -22), x0 = s.cell.low[0], x1 = s.cell.high[0];
+        if (octahedral) {
+            const double y0 = s.cell.low[1], y1 = s.cell.high[1];
+            const double across =
+                std::min(std::max(x0 + t0 * (x1 - x0), x0 + beta * columns / 2), x1 - beta * columns / 2);
+            const double down = std::min(std::max(y0 + t1 * (y1 - y0), y0 + beta * rows / 2), y1 - beta * rows / 2);
+            square_direction(across / columns, down / rows, s.direction);
+            s.pdf = density(s.cell, t0, t1);
+            return;
+        }
         const double z0 = z_of(s.cell.low[1]), z1 = z_of(s.cell.high[1]);
         double x = x0 + t0 * (x1 - x0), z = z0 + t1 * (z1 - z0);
         const double bx = beta * columns / (2 * M_PI), bz = beta * std::sqrt(1 - z * z);
@@ -173,13 +184,68 @@ public:
     // SPEC.md §6.3 and §6.4
     double pdf(const double (&d)[3], Cell* found = nullptr) const {
         double square[2];
-        if (!square_of(d, columns, rows, square)) return 0.0;
+        if (!square_of(d, square)) return 0.0;
         const Cell cell = find(square);
         if (found) *found = cell;
         return density_at(cell, d);
     }
 
-    /// The grid square of a direction; false where its length is wrong.
+    // SPEC.md §6.9
+    static void square_direction(double u, double v, double (&d)[3]) {
+        const double a = std::fabs(2 * u - 1), b = std::fabs(2 * v - 1), e = a + b - 1, r = 1 - std::fabs(e);
+        const double phi = r == 0 ? 0 : M_PI / 4 * ((b - a) / r + 1), sine = r * std::sqrt(2 - r * r);
+        d[0] = sine * std::cos(phi) * (u > 0.5 ? -1 : 1);
+        d[1] = sine * std::sin(phi) * (v < 0.5 ? -1 : 1);
+        d[2] = -e * (1 + r);
+    }
+    static void square_point(const double (&d)[3], double& u, double& v) {
+        const double x = std::fabs(d[0]), y = std::fabs(d[1]), z = std::fabs(d[2]);
+        const double length = std::sqrt(x * x + y * y + z * z);
+        const double r = std::sqrt((x * x + y * y) / (length * (length + z)));
+        double b = 2 * r * std::atan2(y, x) / M_PI, a = r - b;
+        if (d[2] < 0) {
+            const double inner = a;
+            a = 1 - b;
+            b = 1 - inner;
+        }
+        u = (d[0] > 0 ? 1 - a : 1 + a) / 2;
+        v = (d[1] < 0 ? 1 - b : 1 + b) / 2;
+    }
+
+    /// Where a direction lies on both axes, in steps, and the grid square of it; false where its length is wrong.
+    void position_of(const double (&d)[3], double (&position)[2]) const {
+        if (octahedral) {
+            square_point(d, position[0], position[1]);
+            position[0] *= columns;
+            position[1] *= rows;
+        } else {
+            position[0] = column_of(d, columns);
+            position[1] = rows * std::atan2(std::hypot(d[0], d[1]), d[2]) / M_PI;
+        }
+    }
+    bool square_of(const double (&d)[3], double (&square)[2]) const {
+        if (!octahedral) return square_of(d, columns, rows, square);
+        const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        if (!(std::fabs(length - 1.0) < 0.0005)) return false;
+        position_of(d, square);
+        square[0] = std::min(std::floor(square[0]), columns - 1);
+        square[1] = std::min(std::floor(square[1]), rows - 1);
+        return true;
+    }
+    /// The direction at fractions of a cell in the measures of the axes.
+    void direction_in(const Cell& cell, double t0, double t1, double (&d)[3]) const {
+        const double x = cell.low[0] + t0 * (cell.high[0] - cell.low[0]);
+        if (octahedral) {
+            square_direction(x / columns, (cell.low[1] + t1 * (cell.high[1] - cell.low[1])) / rows, d);
+            return;
+        }
+        const double z0 = z_of(cell.low[1]), z = z0 + t1 * (z_of(cell.high[1]) - z0), sine = std::sqrt(1 - z * z);
+        d[0] = sine * std::cos(M_PI - 2 * M_PI * x / columns);
+        d[1] = sine * std::sin(M_PI - 2 * M_PI * x / columns);
+        d[2] = z;
+    }
+
+    /// The grid square of a direction on a lat-long grid; false where its length is wrong.
     static bool square_of(const double (&d)[3], double columns, double rows, double (&square)[2]) {
         const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         if (!(std::fabs(length - 1.0) < 0.0005)) return false;
@@ -195,11 +261,24 @@ public:
 
     double density_at(const Cell& cell, const double (&d)[3]) const {
         if (cell.p == 0.0) return 0.0;
+        double t[2];
+        fractions(cell, d, t);
+        return density(cell, t[0], t[1]);
+    }
+    void fractions(const Cell& cell, const double (&d)[3], double (&t)[2]) const {
+        if (octahedral) {
+            position_of(d, t);
+            for (int axis = 0; axis < 2; ++axis)
+                t[axis] =
+                    std::min(std::max((t[axis] - cell.low[axis]) / (cell.high[axis] - cell.low[axis]), 0.0), 1.0);
+            return;
+        }
         const double sine = std::hypot(d[0], d[1]), column = column_of(d, columns);
         const double t0 = (column - cell.low[0]) / (cell.high[0] - cell.low[0]);
         const double z0 = z_of(cell.low[1]), z1 = z_of(cell.high[1]);
         const double t1 = (z0 - std::cos(std::atan2(sine, d[2]))) / (z0 - z1);
-        return density(cell, std::min(std::max(t0, 0.0), 1.0), std::min(std::max(t1, 0.0), 1.0));
+        t[0] = std::min(std::max(t0, 0.0), 1.0);
+        t[1] = std::min(std::max(t1, 0.0), 1.0);
     }
 
     Cell find(const double (&square)[2]) const {
@@ -221,6 +300,7 @@ public:
 
     double z_of(double row) const { return std::cos(M_PI * row / rows); }
     double solid_angle(const Cell& c) const {
+        if (octahedral) return 4 * M_PI * (c.high[0] - c.low[0]) * (c.high[1] - c.low[1]) / (columns * rows);
         return 2 * M_PI * (c.high[0] - c.low[0]) / columns * (z_of(c.low[1]) - z_of(c.high[1]));
     }
     double density(const Cell& c, double t0, double t1) const {

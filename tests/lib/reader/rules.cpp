@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -72,10 +74,29 @@ std::function<Bytes()> table_range(double low, double high) { // of the first sa
     };
 }
 
+std::function<Bytes()> table_shares(float first) { // of six bins, the others together a half
+    return [=] {
+        FileSpec file = table_file();
+        file.chunks[1].raw =
+            encode(std::vector<BinSpec>{{0, first}, {6, 0.25f}, {0, 0.125f}, {0, 0}, {6, 0}, {0, 0.125f}});
+        return file.encode();
+    };
+}
+
 // Changes the parts before they become a file.
 std::function<Bytes()> rebuilt(std::function<void(FileSpec&)> change) {
     return [change] {
         FileSpec file = complete_file();
+        change(file);
+        return file.encode();
+    };
+}
+// The same of a file on the octahedral square.
+std::function<Bytes()> octahedral_axes(std::function<void(FileSpec&)> change) {
+    return [change] {
+        EnvironmentSpec spec = complete_environment();
+        spec.octahedral = true;
+        FileSpec file = spec.file();
         change(file);
         return file.encode();
     };
@@ -170,6 +191,19 @@ std::vector<Case> container_cases() {
         {3003, "two_metadata", rebuilt([](FileSpec& f) { f.chunks.push_back(f.chunks[3]); })},
         {3003, "two_unknown", rebuilt([](FileSpec& f) {
              f.chunks.insert(f.chunks.end(), 2, {"XTRA", {1, 2, 3}, 0, false});
+         })},
+        {3014, "control_character", rebuilt([](FileSpec& f) {
+             f.chunks.push_back({"XT\x1F"
+                                 "A",
+                                 {1, 2, 3},
+                                 0,
+                                 false});
+         })},
+        {3014, "beyond_ascii", rebuilt([](FileSpec& f) {
+             f.chunks.push_back({"\xC3\x84TR", {1, 2, 3}, 1, false});
+         })},
+        {3014, "delete", rebuilt([](FileSpec& f) {
+             f.chunks.push_back({"XTR\x7F", {1, 2, 3}, 0, false});
          })},
         {3004, "no_description", rebuilt([](FileSpec& f) { f.chunks.erase(f.chunks.begin()); })},
         {3004, "no_bins", rebuilt([](FileSpec& f) { f.chunks.erase(f.chunks.begin() + 1); })},
@@ -301,7 +335,7 @@ std::vector<Case> plane_cases() {
 std::vector<Case> description_cases() {
     return {
         {5001, "zero", payload_field("DESC", 0, 4, 0)},
-        {5001, "four", payload_field("DESC", 0, 4, 4)},
+        {5001, "five", payload_field("DESC", 0, 4, 5)},
         {5002, "zero", payload_field("DESC", 4, 4, 0)},
         {5002, "five", payload_field("DESC", 4, 4, 5)},
         {5003, "two", payload_field("DESC", 8, 4, 2)},
@@ -338,6 +372,7 @@ std::vector<Case> description_cases() {
         {5015, "nan", third_axis(32, 8, 0x7FF8000000000000)},
         {5015, "infinite", third_axis(40, 8, 0x7FF0000000000000)},
         {5016, "half_angle", payload_field("DESC", 0, 4, 2)},
+        {5016, "octahedral_table", [] { return octahedral_axes([](FileSpec& f) { f.kind = 4; })(); }},
         {5016, "environment_as_table", header_field(24, 4, 4)},
         {5017, "count", payload_field("META", 0, 4, 3)},
         {5017, "fewer", payload_field("META", 0, 4, 1)},
@@ -467,6 +502,12 @@ std::vector<Case> tree_cases() {
              return file.encode();
          }},
         {7001, "name", payload_field("DESC", 64, 1, 'P')},
+        {7001, "octahedral_with_angles", payload_field("DESC", 0, 4, 4)},
+        {7001, "angles_with_u_and_v", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 0, 4, 1); })},
+        {7001, "octahedral_name", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64, 1, 'x'); })},
+        {7001, "octahedral_measure", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64 + 68, 4, 1); })},
+        {7001, "octahedral_resolution",
+         octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 64 + 24, 4, 65537); })},
         {7001, "role",
          [] {
              FileSpec file = chain(1).file();
@@ -479,6 +520,12 @@ std::vector<Case> tree_cases() {
         {7002, "two_bins", rebuilt([](FileSpec& f) {
              set(f.chunks[0].raw, 24, 4, 2);
              f.chunks[1].raw = encode(std::vector<BinSpec>{{0, 0.5f}, {0, 0.5f}});
+         })},
+        {7008, "half", rebuilt([](FileSpec& f) {
+             f.chunks[1].raw = encode(std::vector<BinSpec>{{0, 0.5f}});
+         })},
+        {7008, "none", rebuilt([](FileSpec& f) {
+             f.chunks[1].raw = encode(std::vector<BinSpec>{{0, 0.0f}});
          })},
     };
 }
@@ -501,7 +548,7 @@ std::vector<Case> table_cases() {
          [] {
              FileSpec file = table_file();
              set(file.chunks[0].raw, 24, 4, 5);
-             file.chunks[1].raw.resize(40);
+             file.chunks[1].raw = encode(std::vector<BinSpec>(5, {0, 0.2f}));
              return file.encode();
          }},
         {9003, "longer_axis", table_field(64 + 24, 4, 3)},
@@ -517,6 +564,17 @@ std::vector<Case> table_cases() {
         {9004, "too_large", table_range(0.0, 0x1.8p100)},
         {9004, "too_wide", table_range(-1e308, 1e308)},
         {9004, "too_small", table_range(0.0, 0x1p-98)},
+        {9005, "less", table_shares(0.5f - 0x1p-18f)},
+        {9005, "more", table_shares(0.5f + 0x1p-18f)},
+        {9005, "none",
+         [] {
+             FileSpec file = table_file();
+             file.chunks[1].raw = encode(std::vector<BinSpec>(6, {0, 0.0f}));
+             return file.encode();
+         }},
+        {9006, "separate", table_field(28, 4, 1)},
+        {9006, "first", table_field(32, 8, 0x3FE0000000000000)},
+        {9006, "second", table_field(40, 8, 0x3FE0000000000000)},
     };
 }
 
@@ -561,6 +619,32 @@ TEST(Rules, theCompleteFilesBreakNone) {
         const Findings found = findings(spec.encode());
         EXPECT_TRUE(found.rules.empty()) << found.text;
     }
+    EXPECT_TRUE(load(table_shares(0.5f + 0x1p-21f)()).ok()); // what rounding leaves
+    FileSpec spaced = complete_file();
+    spaced.chunks.push_back({"X ~!", {1, 2, 3}, 0, false});
+    EXPECT_TRUE(load(spaced.encode()).ok());
+}
+
+// Where no tile has a tree, a BRDF has a TREE that nothing uses; else unit 0 is not a root of its own.
+TEST(Rules, unitZeroIsARootWhereTheSpecificationSaysSo) {
+    BrdfSpec spec = separate_brdf();
+    spec.tree.curves.insert(spec.tree.curves.begin(), CurveSpec());
+    for (CurveSpec& curve : spec.tree.curves)
+        for (int& child : curve.children) child += child >= 0;
+    for (BinSpec& bin : spec.bins) ++bin.root;
+    EXPECT_EQ(findings(spec.encode()).rules, std::multiset<int>{6012}); // a warning
+    BrdfSpec tiles = shared_brdf();
+    EXPECT_TRUE(findings(tiles.encode()).rules.empty());
+    CurveSpec curve = even_curve(0, {5}); // in columns [3, 8), from which its knot counts
+    curve.position_bytes = 1;
+    curve.origin = 3;
+    tiles.tree.curves = {curve};
+    tiles.tile_curves = {-1, -1, 0, -1};
+    EXPECT_TRUE(findings(tiles.encode()).rules.empty()) << findings(tiles.encode()).text;
+    LocalSpec local = shared_local(); // where unit 0 is the whole environment's too
+    local.tree.curves = {curve};
+    local.tile_curves = {-1, 0, -1};
+    EXPECT_EQ(findings(local.encode()).rules, std::multiset<int>{6019});
 }
 
 TEST(Rules, eachHasABrokenFile) {
@@ -568,6 +652,21 @@ TEST(Rules, eachHasABrokenFile) {
     for (const Case& c : cases()) tested.insert(c.rule);
     for (std::size_t i = 0; i < acdf::rule_count; ++i)
         EXPECT_TRUE(tested.count(acdf::rules[i].number)) << acdf::rules[i].number << " has no broken file";
+}
+
+// For other readers (tests/format/decoder.py): RULE_name.acdf for each broken file, in the folder that a variable
+// names.
+TEST(Rules, brokenFilesAreWrittenWhereAskedFor) {
+    const char* folder = std::getenv("ACDF_BROKEN_FILES");
+    if (!folder) GTEST_SKIP() << "ACDF_BROKEN_FILES names no folder";
+    for (const Case& c : cases()) {
+        if (c.limits.max_inflated_bytes != acdf::Limits().max_inflated_bytes) continue;
+        const Bytes file = c.make();
+        std::ofstream out(std::string(folder) + "/" + std::to_string(c.rule) + "_" + c.name + ".acdf",
+                          std::ios::binary);
+        out.write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+        ASSERT_TRUE(out.flush()) << folder;
+    }
 }
 
 // With no sampled axis no curve can be right either.

@@ -31,6 +31,9 @@ std::unique_ptr<Loaded> loaded(EnvironmentSpec spec) {
     return out;
 }
 
+// Trees of both parameterizations: the first `latlong_count` are lat-long, the others octahedral.
+constexpr std::uint32_t latlong_count = 120, tree_count = 2 * latlong_count;
+
 RandomOptions options_of(std::uint32_t seed) {
     RandomOptions options;
     options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 1024;
@@ -39,10 +42,15 @@ RandomOptions options_of(std::uint32_t seed) {
     options.tilts = seed % 4 != 0;
     options.dark = seed % 5 != 0;
     options.narrow_cells = seed % 6 == 0;
+    options.octahedral = seed >= latlong_count;
     return options;
 }
 
-constexpr std::uint32_t tree_count = 120;
+// Through memory: where GCC 12 vectorises the way back to double, it leaves the rounding out.
+float rounded(double x) {
+    volatile float stored = static_cast<float>(x);
+    return stored;
+}
 
 double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
 
@@ -94,8 +102,7 @@ TEST(EnvironmentView, agreesWithTheSlowDecoder) {
         }
         for (int n = 0; n < 300; ++n) { // directions anywhere, dark ones too
             const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), sine = std::sqrt(1 - z * z);
-            const float f[3] = {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)),
-                                static_cast<float>(z)};
+            const float f[3] = {rounded(sine * std::cos(phi)), rounded(sine * std::sin(phi)), rounded(z)};
             const double d[3] = {f[0], f[1], f[2]};
             const double expected = reference.pdf(d);
             ASSERT_NEAR(env->view.pdf(f), expected, 1e-5 * expected) << seed << ' ' << n;
@@ -196,8 +203,9 @@ TEST(EnvironmentView, pdfOfASampleIsExact) {
 
 TEST(EnvironmentView, pdfOfASampleIsExactInNarrowCells) {
     const std::uint32_t sizes[][2] = {{16384, 8192}, {65536, 65536}, {1, 65536}, {65536, 1}};
-    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    for (std::uint32_t seed = 0; seed < 80; ++seed) {
         RandomOptions options;
+        options.octahedral = seed >= 40;
         options.columns = sizes[seed % 4][0];
         options.rows = sizes[seed % 4][1];
         options.tilts = false;
@@ -208,11 +216,11 @@ TEST(EnvironmentView, pdfOfASampleIsExactInNarrowCells) {
     }
 }
 
-// Cells of one row and one column, at both poles, the equator and the seam, each with half the probability.
-TEST(EnvironmentView, pdfOfASampleIsExactAtThePolesAndTheSeam) {
-    const std::uint32_t columns = 16384, rows = 8192;
-    for (std::uint32_t row : {0u, 1u, 2u, rows / 2 - 1, rows / 2, rows - 2, rows - 1})
-        for (std::uint32_t column : {0u, 1u, columns / 2, columns - 1}) {
+// Cells of one row and one column, at both poles, the equator and the seam, and on the square at its sides, its
+// middle and its corners, each with half the probability.
+void expect_equal_pdf_at_edges(std::uint32_t columns, std::uint32_t rows, bool octahedral) {
+    for (std::uint32_t row : {0u, 1u, 2u, rows / 4, rows / 2 - 1, rows / 2, rows - 2, rows - 1})
+        for (std::uint32_t column : {0u, 1u, columns / 4, columns / 2 - 1, columns / 2, columns - 1}) {
             const auto around = [](std::uint32_t at, std::uint32_t end) {
                 std::vector<std::uint32_t> knots;
                 if (at > 0) knots.push_back(at);
@@ -226,8 +234,14 @@ TEST(EnvironmentView, pdfOfASampleIsExactAtThePolesAndTheSeam) {
             theta.link_bytes = 1;
             theta.children.assign(theta.segments(), 1);
             spec.tree = {{theta, even_curve(0, around(column, columns))}, {}};
+            spec.octahedral = octahedral;
             expect_equal_pdf(loaded(spec)->view, 2000, row * 7 + column);
         }
+}
+TEST(EnvironmentView, pdfOfASampleIsExactAtThePolesAndTheSeam) { expect_equal_pdf_at_edges(16384, 8192, false); }
+TEST(EnvironmentView, pdfOfASampleIsExactAtTheFoldsOfTheSquare) {
+    expect_equal_pdf_at_edges(16384, 16384, true);
+    expect_equal_pdf_at_edges(65536, 65536, true);
 }
 
 TEST(EnvironmentView, pdfOfATiltedSampleAgrees) {
@@ -342,6 +356,7 @@ TEST(EnvironmentView, directionsAtTheEdges) {
         const auto env = loaded(RandomTree(seed, options).make());
         for (const auto& d : none) EXPECT_EQ(env->view.pdf(d), 0.0f);
         for (const auto& d : some) EXPECT_GT(env->view.pdf(d), 0.0f) << d[0] << ' ' << d[1] << ' ' << d[2];
+        if (options.octahedral) continue;
         // The seam phi = -pi belongs to column 0, as +pi does.
         const float plus[3] = {-1, 0.0f, 0}, minus[3] = {-1, -0.0f, 0}, rounded[3] = {-1, -1e-30f, 0};
         EXPECT_EQ(env->view.pdf(plus), env->view.pdf(minus));
@@ -351,19 +366,23 @@ TEST(EnvironmentView, directionsAtTheEdges) {
 
 // Strata of the random numbers stay strata: within a cell each coordinate follows its random number.
 TEST(EnvironmentView, isMonotoneWithinASegment) {
-    for (std::uint32_t seed = 0; seed < 30; ++seed) {
-        RandomOptions options = options_of(seed);
+    for (std::uint32_t k = 0; k < 60; ++k) {
+        RandomOptions options = options_of(k % 2 == 0 ? k : latlong_count + k);
         options.depth = 1; // one curve: the other axis is whole
-        const auto env = loaded(RandomTree(seed, options).make());
-        double last_phi = 4.0, last_z = 2.0;
+        const auto env = loaded(RandomTree(k, options).make());
+        const Environment reference(env->bytes);
+        double last[2] = {0.0, 0.0};
         for (int n = 0; n <= 2000; ++n) {
             const double u = n / 2000.0;
-            const auto a = env->view.sample(u, 0.5), b = env->view.sample(0.5, u);
-            const double phi = std::atan2(a.direction[1], a.direction[0]);
-            ASSERT_LE(phi, last_phi + 1e-6);
-            ASSERT_LE(b.direction[2], last_z + 1e-6);
-            last_phi = phi;
-            last_z = b.direction[2];
+            // 0.45: on the square the folds are lines of the other axis
+            const auto a = env->view.sample(u, 0.45), b = env->view.sample(0.45, u);
+            double of_a[2], of_b[2];
+            reference.position_of({a.direction[0], a.direction[1], a.direction[2]}, of_a);
+            reference.position_of({b.direction[0], b.direction[1], b.direction[2]}, of_b);
+            ASSERT_GE(of_a[0], last[0] - 1e-6 * options.columns);
+            ASSERT_GE(of_b[1], last[1] - 1e-6 * options.rows);
+            last[0] = of_a[0];
+            last[1] = of_b[1];
         }
     }
 }
@@ -377,14 +396,12 @@ TEST(EnvironmentView, integratesToOne) {
         double sum = 0.0, probability = 0.0;
         reference.each_cell([&](const Cell& cell) {
             const double gauss[2] = {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)};
-            const double z0 = reference.z_of(cell.low[1]), z1 = reference.z_of(cell.high[1]);
             for (double t0 : gauss)
                 for (double t1 : gauss) {
-                    const double phi =
-                        M_PI - 2 * M_PI / reference.columns * (cell.low[0] + t0 * (cell.high[0] - cell.low[0]));
-                    const double z = z0 + t1 * (z1 - z0), sine = std::sqrt(1 - z * z);
-                    const float d[3] = {static_cast<float>(sine * std::cos(phi)),
-                                        static_cast<float>(sine * std::sin(phi)), static_cast<float>(z)};
+                    double at[3];
+                    reference.direction_in(cell, t0, t1, at);
+                    const float d[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]),
+                                        static_cast<float>(at[2])};
                     sum += 0.25 * env->view.pdf(d) * reference.solid_angle(cell);
                 }
             probability += cell.p;
@@ -434,15 +451,13 @@ TEST(EnvironmentView, samplesFollowTheDensity) {
         std::mt19937_64 rng(seed);
         for (int n = 0; n < samples; ++n) {
             const auto s = env->view.sample(unit(rng), unit(rng));
-            const double column =
-                reference.columns * (0.5 - std::atan2(s.direction[1], s.direction[0]) / (2 * M_PI));
-            const double theta = std::atan2(std::hypot(s.direction[0], s.direction[1]), s.direction[2]);
-            const double row = std::min(reference.rows * theta / M_PI, reference.rows - 0.5);
+            const double d[3] = {s.direction[0], s.direction[1], s.direction[2]};
+            double square[2], t[2];
+            ASSERT_TRUE(reference.square_of(d, square));
             const std::size_t index =
-                owner[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)];
-            const Cell& cell = cells[index];
-            const bool right = column >= (cell.low[0] + cell.high[0]) / 2;
-            const bool low = std::cos(theta) <= (reference.z_of(cell.low[1]) + reference.z_of(cell.high[1])) / 2;
+                owner[static_cast<std::size_t>(square[1]) * columns + static_cast<std::size_t>(square[0])];
+            reference.fractions(cells[index], d, t);
+            const bool right = t[0] >= 0.5, low = t[1] >= 0.5;
             count[4 * index + 2 * right + low] += 1;
         }
         double chi_square = 0.0, pooled_count = 0.0, pooled_expected = 0.0;

@@ -25,6 +25,7 @@ std::vector<std::uint8_t> table_file(const compress::Cascade& cascade, std::vect
     compress::Description description;
     description.kind = ACDF_KIND_TABLE;
     description.parameterization = ACDF_PARAM_TABLE;
+    for (const int i : {0, 1, 2}) description.channel_weights[i] = i == 0 ? 1.0 : 0.0;
     description.axes = std::move(axes);
     description.shares = std::move(shares);
     return compress::store(compress::encode_tree(cascade), description);
@@ -210,6 +211,22 @@ TEST(TableView, OutOfRangeAndBadNumbersAreSafe) {
 }
 
 // Bins are row-major over the indexed axes: each one's density sits in the step of its own number.
+// A coordinate decides, not its position, which rounding brings back to the end.
+TEST(TableView, CoordinatesNextToTheEndsAreOutside) {
+    const compress::Cascade cascade = {{{0, {}, {1.0}, {}, {}}}, {0}};
+    for (const auto& [low, high] : {std::pair{-1.0, 1.0}, {1.0, -1.0}, {-3.0, 0.1}, {1e9, 1e9 + 1.0}}) {
+        const auto bytes = table_file(cascade, {axis("x", 3, low, high)});
+        File file;
+        ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+        const TableView view = file.table();
+        for (const double end : {low, high}) {
+            const double away = end == std::max(low, high) ? 1e300 : -1e300, outside = std::nextafter(end, away);
+            EXPECT_GT(view.pdf(nullptr, &end), 0.0) << end;
+            EXPECT_EQ(view.pdf(nullptr, &outside), 0.0) << outside - end;
+        }
+    }
+}
+
 TEST(TableView, BinsAreRowMajor) {
     compress::Cascade cascade;
     for (std::uint32_t bin = 0; bin < 12; ++bin) {

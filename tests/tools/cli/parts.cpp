@@ -1,5 +1,6 @@
 // The parts under the subcommands: sizes, sequences.
 #include "measure/sequences.h"
+#include "tools/cli/number_range.h"
 #include "tools/cli/sizes.h"
 
 #include <gtest/gtest.h>
@@ -83,6 +84,21 @@ TEST(Sequences, SobolBeginsAsPublished) {
         EXPECT_EQ(point[0] * 0x1p-32, expected[i][0]) << i;
         EXPECT_EQ(point[1] * 0x1p-32, expected[i][1]) << i;
     }
+}
+
+TEST(NumberRange, TakesFiniteNumbersAlone) {
+    const CLI::Validator fraction = acdf::tools::number_range(0.0, 1.0), positive = acdf::tools::positive_number();
+    for (const char* good : {"0.5", "1", "1e-300"}) {
+        EXPECT_EQ(fraction(std::string(good)), "") << good;
+        EXPECT_EQ(positive(std::string(good)), "") << good;
+    }
+    for (const char* bad : {"nan", "-nan", "NaN(1)", "inf", "-inf", "infinity", "1e999", "-1", "x", ""}) {
+        EXPECT_NE(fraction(std::string(bad)), "") << bad;
+        EXPECT_NE(positive(std::string(bad)), "") << bad;
+    }
+    EXPECT_NE(fraction(std::string("1.5")), "");
+    EXPECT_NE(positive(std::string("0")), "");
+    EXPECT_LT(positive(std::string("0")).size(), 60u);
 }
 
 } // namespace

@@ -1,0 +1,51 @@
+"""SPEC.md §2.1: from the chunks of a file to the view of its kind."""
+from .brdf import Brdf
+from .container import BRDF, ENVIRONMENT, LOCAL
+from .description import NOT_STORED
+from .local import Local
+from .refused import require
+from .sphere import Environment
+from .table import Table
+from .tiles import NO_ROOT, Tiles
+from .tree import Tree, check_tree
+
+
+def view_of(container, d):
+    chunks, kind = container.payloads, container.kind
+    tiles = None
+    if b"TILE" in chunks:
+        require(len(d.axes) >= 2, 7003 if kind == LOCAL else 8001)
+        tiles = Tiles(chunks[b"TILE"], chunks.get(b"ROWS"), d.axes)
+    else:
+        require(b"ROWS" not in chunks, 6025)
+    tree = Tree(chunks[b"TREE"])
+    check_tree(tree, d.axes, roots_of(kind, d, tiles, tree))
+    if kind == ENVIRONMENT:
+        return Environment(tree, d.bins[0][0], d.axes[0].resolution, d.axes[1].resolution)
+    if kind == LOCAL:
+        return Local(tree, d, tiles, chunks.get(b"LOCL"))
+    if kind == BRDF:
+        return Brdf(tree, d, tiles, chunks.get(b"VIEW"))
+    return Table(tree, d.axes, d.bins)
+
+
+def roots_of(kind, d, tiles, tree):
+    """§5.4: where paths begin, each with the box by axis that is inherited there."""
+    whole = [[0, axis.resolution] for axis in d.axes]
+    roots = []
+    if kind == LOCAL or (kind == BRDF and tiles is not None and tiles.roots is None):
+        roots.append((0, whole))
+    if tiles is None:
+        for root, _ in d.bins:
+            if root == NOT_STORED and kind in (LOCAL, BRDF):
+                continue
+            require(root in tree.curves, 6010)
+            roots.append((root, whole))
+        return roots
+    for root, _ in d.bins:
+        require(root < tiles.row_count or root == NOT_STORED, 6026)
+    for tile, root in enumerate(tiles.roots or []):
+        if root != NO_ROOT:
+            require(root in tree.curves, 6024)
+            roots.append((root, [*tiles.boxes[tile], *whole[2:]]))
+    return roots

@@ -1,0 +1,227 @@
+"""SPEC.md §5.7 and §6.7: local environments."""
+import math
+import struct
+
+from .description import NOT_STORED, PI, check_sphere_axes, is_axis
+from .refused import require
+from .sphere import (NOTHING, Environment, Sphere, clamp, direction_of, f32, of_unit_length, random_number,
+                     sin_cos)
+from .tiles import sum_of
+from .tree import LEAST
+
+
+class Light:
+    def __init__(self, data):
+        *self.direction, self.radius, self.share, self.tile, x0, y0, x1, y1 = struct.unpack("<5f5I", data)
+        self.box = [[x0, x1], [y0, y1]]
+
+
+def read_local_chunk(data, tiles, bins):
+    """§5.7. Returns the cosine's share and the lights."""
+    require(data is not None and len(data) >= 8, 7005)
+    sigma, count = struct.unpack_from("<fI", data)
+    require(count <= 64 and len(data) == 8 + 40 * count, 7005)
+    require(0 <= sigma < 1, 7005)
+    lights = [Light(data[8 + 40 * k:48 + 40 * k]) for k in range(count)]
+    for k, light in enumerate(lights):
+        square = sum_of([x * x for x in light.direction])
+        require(tiles is not None and light.tile < tiles.count, 7006)
+        require(k == 0 or light.tile > lights[k - 1].tile, 7006)
+        require(abs(square - 1) < 0.001 and 0 < light.radius <= 2, 7006)
+        require(0 < light.share < math.inf and light.box == tiles.boxes[light.tile], 7006)
+        for root, share in bins:
+            if root != NOT_STORED and share > 0:
+                require(any(tiles.rows[root, node] == (255 if upper else 0)
+                            for node, upper in tiles.path(light.tile)), 7007)
+    return sigma, lights
+
+
+def read_normals(axes, bin_count):
+    """The number N of subdivisions, or a grid of normals."""
+    require(len(axes) in (3, 4), 7003)
+    if len(axes) == 3:
+        count = axes[2].resolution
+        n = math.isqrt(max(count - 2, 0) // 4)
+        require(is_axis(axes[2], b"normal", 1, 0, 0.0, float(count), 4 * 1024**2 + 2), 7003)
+        require(n >= 1 and 4 * n * n + 2 == count, 7003)
+        grid = None
+    else:
+        require(is_axis(axes[2], b"normal theta", 1, 0, 0.0, PI, 65536), 7003)
+        require(is_axis(axes[3], b"normal phi", 1, 0, PI, -PI, 65536), 7003)
+        n, grid, count = 0, Sphere(axes[3].resolution, axes[2].resolution), axes[2].resolution * axes[3].resolution
+    require(bin_count == count, 7004)
+    return n, grid
+
+
+def corner_number(n, x, y, z):
+    r = n - abs(z)
+    before = 4 * n * n + 1 - 2 * r * (r + 1) if z < 0 else 1 + 2 * r * (r - 1) if r > 0 else 0
+    if r == 0:
+        return before
+    if x > 0 and y >= 0:
+        return before + y
+    if y > 0:
+        return before + r - x
+    return before + 2 * r - y if x < 0 else before + 3 * r + x
+
+
+def octahedral_bins(N, n):
+    """Pairs of a bin and m, by the five steps."""
+    size = abs(n[0]) + abs(n[1]) + abs(n[2])
+    at = [abs(x) / size * N for x in n]
+    g = [math.floor(x) for x in at]
+    f = [x - low for x, low in zip(at, g)]
+    r = N - sum(g)
+    if r == 3:
+        g, r = [low + 1 for low in g], 0
+    if r == 0:
+        corners = [(g, 1.0)]
+    elif r == 1:
+        corners = [([low + (k == i) for k, low in enumerate(g)], f[i]) for i in range(3)]
+    else:
+        corners = [([low + (k != i) for k, low in enumerate(g)], 1 - f[i]) for i in range(3)]
+    out = []
+    for c, b in corners:
+        if b > 0:
+            m = b * math.sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
+            out.append((corner_number(N, *[-x if v < 0 else x for x, v in zip(c, n)]), m))
+    return out
+
+
+class Point:
+    """What a normal draws from: `tree` (a root), or `mixture` and `lights` (weights), or nothing."""
+
+    tree = mixture = None
+
+
+class Local:
+    def __init__(self, tree, d, tiles, chunk):
+        check_sphere_axes(d)
+        self.N, self.grid = read_normals(d.axes, d.bin_count)
+        self.sigma, self.lights = read_local_chunk(chunk, tiles, d.bins)
+        self.tree, self.tiles, self.bins = tree, tiles, d.bins
+        self.environment = Environment(tree, 0, d.axes[0].resolution, d.axes[1].resolution)
+        self.sphere = self.environment.sphere
+
+    def point(self, normal):
+        out, n = Point(), direction_of(normal)
+        if n is None or n == [0.0, 0.0, 0.0]:
+            return out
+        out.n = n
+        served = octahedral_bins(self.N, n) if self.N else [(self.grid_bin(n), 1.0)]
+        if self.tiles is None:
+            nearest = max(served, key=lambda pair: pair[1])[0]  # the first of equal ones
+            root, share = self.bins[nearest]
+            out.tree = 0 if root == NOT_STORED else root if share > 0 else None
+            return out
+        if any(self.bins[b][0] == NOT_STORED for b, _ in served):
+            out.tree = 0
+            return out
+        mixture = [(self.bins[b][0], m * self.bins[b][1]) for b, m in served]
+        self.weigh(out, [(row, w) for row, w in mixture if w > 0])
+        return out
+
+    def grid_bin(self, n):
+        column, row = self.grid.grid(n)[1]
+        return row * self.grid.W + column
+
+    def weigh(self, out, mixture):
+        n = out.n
+        length = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        factor = self.N / (abs(n[0]) + abs(n[1]) + abs(n[2])) if self.N else 1 / length
+        scaled = [factor * x for x in n]
+        weights = []
+        for light in self.lights:
+            h = sum_of([x * d for x, d in zip(scaled, light.direction)])
+            reach = light.radius * (factor * length)
+            weights.append(light.share * h if h >= reach else 0.0 if h <= -reach else
+                           light.share * ((h + reach) * (h + reach) / (4 * reach)))
+        out.light_sum, out.row_sum = sum_of(weights), sum_of([w for _, w in mixture])
+        out.S = out.light_sum + out.row_sum
+        if out.S > 0:
+            out.mixture, out.weights = mixture, weights
+
+    def draw(self, point, u, box, s):
+        """Drawing from lights and mixture."""
+        x = u[0] * point.S
+        if x < point.light_sum or not point.mixture:
+            shining = [k for k, w in enumerate(point.weights) if w > 0]
+            k = shining.pop(0)
+            while x >= point.weights[k] and shining:
+                x, k = x - point.weights[k], shining.pop(0)
+            u[0] = clamp(x / point.weights[k], 0, 1)
+            p = max(point.weights[k] / point.S, LEAST)
+            return self.tiles.draw_within(self.tree, self.lights[k].tile, p, u, box, s)
+        u[0] = clamp((x - point.light_sum) / (point.S - point.light_sum), 0, 1)
+        tile, q = self.tiles.draw(point.mixture, u)
+        p = max(point.row_sum / point.S * q, LEAST)
+        return self.tiles.draw_within(self.tree, tile, p, u, box, s)
+
+    def find(self, point, square, box, s):
+        """The cell of a direction."""
+        tile, q = self.tiles.find(point.mixture, square)
+        if q > 0:
+            p = max(point.row_sum / point.S * q, LEAST)
+        else:
+            weight = sum_of([w for w, light in zip(point.weights, self.lights) if light.tile == tile])
+            if not weight > 0:
+                return 0.0
+            p = max(weight / point.S, LEAST)
+        return self.tiles.find_within(self.tree, tile, p, square, box, s)
+
+    def light_pdf(self, point, v):
+        """p_L: steps 1 and 2 of the density of a direction."""
+        if not of_unit_length(v):
+            return 0.0
+        box, s = self.sphere.whole()
+        column, square = self.sphere.grid(v)
+        p = (self.find(point, square, box, s) if point.mixture is not None else
+             self.tree.find(point.tree, square, box, s))
+        return self.sphere.density(box, s, self.sphere.fractions(v, column, box), p)
+
+    def density(self, point, v, light):
+        """Steps 3 and 4."""
+        if self.sigma == 0:
+            return light
+        if not of_unit_length(v):
+            return 0.0
+        n = point.n
+        kappa = (n[0] * v[0] + n[1] * v[1] + n[2] * v[2]) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        pdf = (1 - self.sigma) * light + (self.sigma * kappa * (1 / PI) if kappa > 0 else 0.0)
+        return f32(max(pdf, 1.17549435e-38)) if pdf != 0 else 0.0
+
+    def sample(self, normal, u0, u1):
+        point, u = self.point(normal), [random_number(u0), random_number(u1)]
+        if point.tree is None and point.mixture is None:
+            return NOTHING
+        if u[0] < self.sigma:
+            v = self.around(point.n, u[0] / self.sigma, u[1])
+            light = self.light_pdf(point, v)
+        else:
+            if self.sigma > 0:
+                u[0] = (u[0] - self.sigma) / (1 - self.sigma)
+            box, s = self.sphere.whole()
+            p = (self.draw(point, u, box, s) if point.mixture is not None else
+                 self.tree.draw(point.tree, u, box, s))
+            *v, light = self.sphere.place(box, u, s, p)
+        return (*v, self.density(point, v, light))
+
+    @staticmethod
+    def around(n, v, u1):
+        """Step 2 of a sample."""
+        length = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        ex, ey, ez = (x / length for x in n)
+        h = math.sqrt(max(1 - u1, 2.0**-40))
+        r = math.sqrt(1 - h * h)
+        g = -1.0 if ez < 0 else 1.0
+        A = -1 / (g + ez)
+        B = ex * ey * A
+        s, t = (1 + g * ex * ex * A, g * B, -g * ex), (B, g + ey * ey * A, -ey)
+        sine, cosine = sin_cos(2 * v - 1)
+        return [f32(r * (si * cosine + ti * sine) + h * ei) for si, ti, ei in zip(s, t, (ex, ey, ez))]
+
+    def pdf(self, normal, direction):
+        point, v = self.point(normal), direction_of(direction)
+        if point.tree is None and point.mixture is None or not of_unit_length(v):
+            return 0.0
+        return self.density(point, v, self.light_pdf(point, v))

@@ -1,0 +1,70 @@
+#include "compress/division.h"
+
+#include "compress/join.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace acdf::compress {
+namespace {
+
+// A split into k parts is worth its gain per knot, but not quite: with half a knot on top, a bright spot is cut
+// out by two knots at once even where the first one alone gains little more per knot.
+constexpr double kKnotOffset = 0.5;
+
+/// The last joins: the borders that vanish with them, and the sum of costs before each.
+struct LastJoins {
+    std::array<std::uint32_t, Division::most_parts - 1> border;
+    std::array<double, Division::most_parts - 1> cost;
+    std::size_t count = 0;
+};
+
+LastJoins join_slices(const Slices& slices, DivisionScratch& s) {
+    const std::size_t n = slices.size();
+    s.measure = slices.measure;
+    s.energy = slices.energy;
+    s.alone.resize(n);
+    s.joined.resize(n);
+    double total = 0.0;
+    for (std::size_t i = 0; i < n; ++i) total += s.alone[i] = std::sqrt(s.measure[i] * s.energy[i]);
+    LastJoins last;
+    std::size_t left = n - 1;
+    join_neighbours(
+        n, left,
+        [&](std::size_t a, std::size_t b) {
+            s.joined[a] = std::sqrt((s.measure[a] + s.measure[b]) * (s.energy[a] + s.energy[b]));
+            return s.joined[a] - s.alone[a] - s.alone[b];
+        },
+        [&](std::size_t a, std::size_t b, double raise) {
+            if (left-- < Division::most_parts) {
+                last.border[last.count] = static_cast<std::uint32_t>(b);
+                last.cost[last.count++] = total;
+            }
+            total += raise;
+            s.measure[a] += s.measure[b];
+            s.energy[a] += s.energy[b];
+            s.alone[a] = s.joined[a];
+        });
+    return last;
+}
+
+} // namespace
+
+Division divide(const Slices& slices, double undivided, DivisionScratch& scratch) {
+    Division division;
+    if (slices.size() < 2) return division;
+    const LastJoins last = join_slices(slices, scratch);
+    division.knots = 1;
+    for (std::size_t knots = 1; knots <= last.count; ++knots) {
+        const double gain = (undivided - last.cost[last.count - knots]) / (double(knots) + kKnotOffset);
+        if (gain <= division.gain_per_knot) continue;
+        division.gain_per_knot = gain;
+        division.knots = knots;
+    }
+    std::copy(last.border.begin() + std::ptrdiff_t(last.count - division.knots),
+              last.border.begin() + std::ptrdiff_t(last.count), division.cuts.begin());
+    std::sort(division.cuts.begin(), division.cuts.begin() + std::ptrdiff_t(division.knots));
+    return division;
+}
+
+} // namespace acdf::compress

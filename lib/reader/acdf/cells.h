@@ -1,0 +1,189 @@
+/* Runtime tables of an environment: the cells of its tree with all that a draw and a density need precomputed, and
+ * two grids that lead to them, by random numbers and by direction. Made once at load (acdf/reader.h); flat words
+ * without pointers, which a GPU takes as they lie.
+ *
+ * The tree decides. A table only answers where it is sure that the walk finds the same cell: farther from the
+ * cell's borders than all roundings together; else it says so, and the caller walks. So every draw and every
+ * density is that of the walk; only where in its cell a draw lies differs, by the rounding of floats.
+ *
+ * The sphere is cut into eight pieces along z = 0 and the meridians half-way between the x and the y axes, and
+ * cells with it. In each, azimuth is measured from the x or y axis in its middle: sine and cosine need no
+ * reduction, and minor over major coordinate, in [-1, 1], orders directions by azimuth. Heights are measured from
+ * the nearer pole. */
+#ifndef ACDF_CELLS_H
+#define ACDF_CELLS_H
+
+#include <acdf/sphere.h>
+#include <acdf/squares.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Offsets in words from the start of this struct, which the arrays follow. */
+typedef struct AcdfCells {
+    uint32_t words;         /* of all */
+    uint32_t count;         /* of pieces of cells */
+    AcdfSquares numbers;    /* keys: u in steps of 2^-31 */
+    AcdfSquares directions; /* keys: acdf_direction_keys */
+    uint32_t pieces;        /* AcdfPiece, `count` of them */
+    uint32_t densities;     /* f32, sr^-1; 0: no sample falls there */
+    uint32_t reserved[4];
+} AcdfCells;
+
+/* The random numbers of an axis that surely lead into a piece, and where they lead. They begin at low, in steps of
+ * 2^-31; d steps of 2^-52 above it, 0 <= d < width, the local azimuth (radians) or 1 - |z| is origin + d * slope.
+ * In the south `low` is the upper end, at the pole, and -width < d < 0. Directions from origin to there surely lie
+ * in the piece; where numbers do not tell (they may be too few, or none) only that is meant. */
+typedef struct AcdfPieceAxis {
+    uint32_t low;
+    float width; /* its lowest bits: of azimuth two, the quarter; of height one, whether it is south */
+    float origin, slope;
+} AcdfPieceAxis;
+typedef struct AcdfPiece {
+    AcdfPieceAxis azimuth, height;
+} AcdfPiece;
+
+ACDF_INLINE uint32_t acdf_float_bits(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+ACDF_INLINE float acdf_bits_float(uint32_t bits) {
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* ---- drawing ---------------------------------------------------------------------------------------- */
+
+/* Sine and cosine for |y| <= pi/4, interpolated at the Chebyshev nodes of y^2; error below 1e-7. */
+ACDF_INLINE float acdf_sine_float(float y) {
+    const float q = y * y;
+    return y + y * q * (-0.16666651f + q * (0.0083320351f + q * -0.00019503819f));
+}
+ACDF_INLINE float acdf_cosine_float(float y) {
+    const float q = y * y;
+    return 1.0f + q * (-0.5f + q * (0.041666616f + q * (-0.0013886617f + q * 2.4379725e-5f)));
+}
+
+/* The direction at a local azimuth in a quarter (0: around +x, then +y, -x, -y) and 1 - |z|; south: 0 or 1. */
+ACDF_INLINE void acdf_piece_direction(float azimuth, float cap, uint32_t quarter, uint32_t south,
+                                      float direction[3]) {
+    const float radius = sqrtf(cap * (2.0f - cap)); /* exact near the poles, where z is not */
+    const uint32_t major = acdf_float_bits(radius * acdf_cosine_float(azimuth));
+    const uint32_t minor = acdf_float_bits(radius * acdf_sine_float(azimuth));
+    const uint32_t swapped = (major ^ minor) & (0u - (quarter & 1u));
+    direction[0] = acdf_bits_float((major ^ swapped) ^ ((quarter + 1u) & 2u) << 30);
+    direction[1] = acdf_bits_float((minor ^ swapped) ^ (quarter & 2u) << 30);
+    direction[2] = acdf_bits_float(acdf_float_bits(1.0f - cap) ^ south << 31);
+}
+
+/* d of a number in steps of 2^-52. */
+ACDF_INLINE float acdf_draw_distance(uint64_t number, uint32_t low) {
+    return (float)(int64_t)(number - ((uint64_t)low << 21));
+}
+
+/* Draws a direction, with acdf_environment_sample's contract. Returns 0, and leaves `out`, where the tree must be
+ * walked: for numbers next to the borders of a cell, or not in [0, 1). */
+ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, AcdfDirectionSample* out) {
+    const uint32_t* tables = (const uint32_t*)(const void*)cells;
+    const double shifted[2] = {u0 + 1.0, u1 + 1.0}; /* u in steps of 2^-52 are the bits of its fraction */
+    const uint16_t* found;
+    uint64_t n[2];
+    uint32_t mask;
+    memcpy(n, shifted, sizeof n);
+    n[0] ^= 0x3FF0000000000000u;
+    n[1] ^= 0x3FF0000000000000u;
+    if ((n[0] | n[1]) >> 52) return 0;
+    mask = acdf_squares_find(tables, &cells->numbers, (uint32_t)(n[0] >> 21), (uint32_t)(n[1] >> 21), &found);
+    for (; mask; mask &= mask - 1) {
+        const uint32_t cell = found[acdf_lowest_bit(mask)];
+        const AcdfPiece* piece = (const AcdfPiece*)(const void*)(tables + cells->pieces) + cell;
+        const float d0 = acdf_draw_distance(n[0], piece->azimuth.low);
+        const float d1 = acdf_draw_distance(n[1], piece->height.low);
+        const uint32_t width0 = acdf_float_bits(piece->azimuth.width),
+                       width1 = acdf_float_bits(piece->height.width);
+        /* 0 <= d < width by their bits; in the south for -d */
+        if (!((acdf_float_bits(d0) < width0) & ((acdf_float_bits(d1) ^ width1 << 31) < width1))) continue;
+        acdf_piece_direction(piece->azimuth.origin + d0 * piece->azimuth.slope,
+                             piece->height.origin + d1 * piece->height.slope, width0 & 3u, width1 & 1u,
+                             out->direction);
+        out->pdf = ((const float*)(const void*)(tables + cells->densities))[cell];
+        return 1;
+    }
+    return 0;
+}
+
+/* ---- finding ---------------------------------------------------------------------------------------- */
+
+/* atan(t) for t in [-1, 1], interpolated at the Chebyshev nodes of t^2; error below 2e-7. */
+ACDF_INLINE float acdf_atan_float(float t) {
+    const float q = t * t, q2 = q * q;
+    const float low = (0.99999988f + q * -0.33331813f) + q2 * (0.19966962f + q * -0.14003290f);
+    const float high = (0.098688655f + q * -0.058829753f) + q2 * (0.023780519f + q * -0.0045597920f);
+    return t * (low + q2 * q2 * high);
+}
+
+/* A direction as pieces see it. */
+typedef struct AcdfPlace {
+    uint32_t
+        key[2]; /* quarter, then `slope` in steps of 2^-22; `cap` in steps of 2^-24, in the south all bits turned */
+    float slope; /* minor over major coordinate, tangent of the local azimuth */
+    float cap;   /* 1 - |z| */
+} AcdfPlace;
+
+enum { ACDF_DIRECTION_BITS = 25 };
+#define ACDF_SLOPE_STEPS 4194304.0f
+#define ACDF_CAP_STEPS 16777215.0f
+
+/* Returns 0 where floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by
+ * more than 5e-5 or that are not finite. */
+ACDF_INLINE int acdf_direction_place(const float direction[3], AcdfPlace* place) {
+    const float x = direction[0], y = direction[1], z = direction[2];
+    const float sin2 = x * x + y * y, length2 = sin2 + z * z;
+    const uint32_t mask = (1u << ACDF_DIRECTION_BITS) - 1;
+    const int steep = fabsf(y) > fabsf(x);
+    const float minor = steep ? -x : y, major = steep ? y : x;
+    /* 0.9999 to 1.0001 and 2^-40 up, by their bits */
+    if (acdf_float_bits(length2) - 0x3F7FF972u > 0x000009D4u || acdf_float_bits(sin2) < 0x2B800000u) return 0;
+    place->slope = minor / major;
+    place->cap = sin2 * (2.0f - length2) / (1.0f + fabsf(z) * (1.5f - 0.5f * length2)); /* exact near the poles */
+    place->key[0] = (((uint32_t)steep | (acdf_float_bits(major) >> 30 & 2u)) << 23) +
+                    (uint32_t)(int32_t)(place->slope * ACDF_SLOPE_STEPS + ACDF_SLOPE_STEPS);
+    place->key[0] &= mask; /* the last quarter's end is the first one's beginning */
+    place->key[1] = ((uint32_t)(int32_t)(place->cap * ACDF_CAP_STEPS) ^ (0u - (acdf_float_bits(z) >> 31))) & mask;
+    return 1;
+}
+
+/* The density of a direction into *pdf. Returns 0 where the tree must be walked: next to the borders of a cell, and
+ * where acdf_direction_place tells nothing. */
+ACDF_INLINE int acdf_cells_pdf(const AcdfCells* cells, const float direction[3], float* pdf) {
+    const uint32_t* tables = (const uint32_t*)(const void*)cells;
+    const uint16_t* found;
+    AcdfPlace place;
+    uint32_t mask;
+    float azimuth;
+    if (!acdf_direction_place(direction, &place)) return 0;
+    mask = acdf_squares_find(tables, &cells->directions, place.key[0], place.key[1], &found);
+    azimuth = acdf_atan_float(place.slope);
+    for (; mask; mask &= mask - 1) {
+        const uint32_t cell = found[acdf_lowest_bit(mask)];
+        const AcdfPiece* piece = (const AcdfPiece*)(const void*)(tables + cells->pieces) + cell;
+        /* How far it is from `origin`, in the direction of growing cap and falling azimuth. */
+        const float d0 = piece->azimuth.origin - azimuth, d1 = place.cap - piece->height.origin;
+        const float width0 = -(piece->azimuth.width * piece->azimuth.slope);
+        const float width1 = fabsf(piece->height.width * piece->height.slope);
+        /* 0 <= d < width by their bits */
+        if (!((acdf_float_bits(d0) < acdf_float_bits(width0)) & (acdf_float_bits(d1) < acdf_float_bits(width1))))
+            continue;
+        *pdf = ((const float*)(const void*)(tables + cells->densities))[cell];
+        return 1;
+    }
+    return 0;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,111 @@
+/* What the headers of the reader share: the qualifier of their functions, numbers that are neither NaN nor
+ * infinite, and elementary functions.
+ *
+ * These are written out so that every machine draws the same directions and finds the same cells, which its libm
+ * would not grant, and because two atan2 calls would cost more than the rest. */
+#ifndef ACDF_ELEMENTARY_H
+#define ACDF_ELEMENTARY_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifndef ACDF_FN
+#define ACDF_FN static inline
+#endif
+/* Functions that are faster as a part of what calls them, and what is rarely called from such. */
+#ifndef ACDF_INLINE
+#if defined(__CUDACC__)
+#define ACDF_INLINE static __forceinline__ __host__ __device__
+#define ACDF_OUTLINE ACDF_FN
+#elif defined(__GNUC__)
+#define ACDF_INLINE static inline __attribute__((always_inline))
+#define ACDF_OUTLINE static __attribute__((noinline, unused))
+#else
+#define ACDF_INLINE ACDF_FN
+#define ACDF_OUTLINE ACDF_FN
+#endif
+#endif
+
+#if defined(__BYTE_ORDER__) && defined(__ORDER_BIG_ENDIAN__)
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#error "acdf files are little-endian and are read in place"
+#endif
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Whether numbers are neither NaN nor infinite, by their bits: compilers that are told that there are no such
+ * numbers (-ffast-math) leave out comparisons that tell. */
+ACDF_FN int acdf_is_finite(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (bits >> 52 & 0x7FFu) != 0x7FFu;
+}
+ACDF_FN int acdf_are_finite(const float v[3]) {
+    const uint32_t exponent = 0x7F800000u;
+    uint32_t bits[3];
+    memcpy(bits, v, sizeof bits);
+    return (bits[0] & exponent) != exponent && (bits[1] & exponent) != exponent && (bits[2] & exponent) != exponent;
+}
+
+ACDF_FN double acdf_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+
+#define ACDF_PI 3.14159265358979323846
+
+/* Polynomials of degree 7 and 3 in q, summed as a tree: short chains of dependent operations. */
+ACDF_FN double acdf_polynomial4(double q, double c0, double c1, double c2, double c3) {
+    return (c0 + q * c1) + q * q * (c2 + q * c3);
+}
+ACDF_FN double acdf_polynomial8(double q, double c0, double c1, double c2, double c3, double c4, double c5,
+                                double c6, double c7) {
+    const double q2 = q * q;
+    return acdf_polynomial4(q, c0, c1, c2, c3) + q2 * q2 * acdf_polynomial4(q, c4, c5, c6, c7);
+}
+
+/* Taylor series for |y| <= pi/4, error below 2e-16. */
+ACDF_FN double acdf_sine(double y) {
+    return y * acdf_polynomial8(y * y, 1.0, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
+                                1.0 / 6227020800.0, -1.0 / 1307674368000.0);
+}
+ACDF_FN double acdf_cosine(double y) {
+    const double q = y * y;
+    return 1.0 + q * acdf_polynomial8(q, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800,
+                                      1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0);
+}
+
+/* sin(pi x) and cos(pi x) for x in [-2, 2]. */
+ACDF_FN void acdf_sincospi(double x, double* sine, double* cosine) {
+    const int quadrant = (int)(2.0 * x + 4.5) - 4; /* the nearest multiple of 1/2 */
+    const double y = (x - 0.5 * quadrant) * ACDF_PI;
+    const double s = acdf_sine(y), c = acdf_cosine(y);
+    *sine = (quadrant & 1) ? c : s;
+    *cosine = (quadrant & 1) ? s : c;
+    if (quadrant & 2) *sine = -*sine;
+    if ((quadrant + 1) & 2) *cosine = -*cosine;
+}
+
+/* atan2(y, x) / pi, error below 2e-16; 0 for y = x = 0. The series in q = w^2 of atan(w) / (pi w) was
+ * interpolated at the Chebyshev nodes of [0, tan(pi/8)^2]. */
+ACDF_FN double acdf_atan2pi(double y, double x) {
+    const double ax = fabs(x), ay = fabs(y);
+    const double high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
+    const int wide = low > 0.41421356237309503 * high; /* beyond tan(pi/8): measure from pi/4 */
+    const double w = high > 0.0 ? (wide ? low - high : low) / (wide ? low + high : high) : 0.0;
+    const double q = w * w, q4 = (q * q) * (q * q);
+    const double series =
+        acdf_polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
+                         0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
+        q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
+    double turn = w * series + (wide ? 0.25 : 0.0);
+    if (ay > ax) turn = 0.5 - turn;
+    if (x < 0.0) turn = 1.0 - turn;
+    return y < 0.0 ? -turn : turn;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,107 @@
+/* Directions and cells of the sphere (SPEC.md §6.1). */
+#ifndef ACDF_SPHERE_H
+#define ACDF_SPHERE_H
+
+#include <acdf/tree.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct AcdfDirectionSample {
+    float direction[3]; /* unit, towards the light */
+    float pdf;          /* sr^-1, finite and > 0 */
+} AcdfDirectionSample;
+
+enum { ACDF_AXIS_PHI = 0, ACDF_AXIS_THETA = 1 };
+
+/* A sample stays this angle (radians) inside its cell: rounding the direction to float, and normalising it
+ * again, then cannot carry it over the border, and pdf() agrees with sample(). */
+#define ACDF_BORDER 0x1p-22
+
+/* z = cos(theta) at a row position in [0, rows]: 1 - 2 sin(theta/2)^2, exact at the poles. */
+ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
+    const int south = 2 * (uint64_t)row > rows;
+    const double s = acdf_sine((double)(south ? rows - row : row) / (double)rows * (0.5 * ACDF_PI));
+    const double z = 1.0 - 2.0 * s * s;
+    return south ? -z : z;
+}
+
+/* Density per steradian of a cell of probability p over `width` columns and a difference dz of cosines;
+ * `shape` is the product of its tilt densities. */
+ACDF_FN float acdf_cell_pdf(double p, uint32_t width, uint32_t columns, double dz, double shape) {
+    const double pdf = p * (double)columns / (2.0 * ACDF_PI * (double)width * dz) * shape;
+    if (pdf >= 3.402823466e38) return 3.402823466e38f;
+    return pdf > 1.17549435e-38 ? (float)pdf : 1.17549435e-38f;
+}
+
+/* The whole sphere, before a tree narrows it. */
+ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range[2]) {
+    range[0].low = range[1].low = 0;
+    range[0].high = columns;
+    range[1].high = rows;
+    range[0].tilt = range[1].tilt = 0.0;
+}
+
+/* The direction that what is left of the random numbers picks in a cell of probability p. */
+ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, const AcdfRange range[2],
+                                              const double u[2], double p) {
+    AcdfDirectionSample out;
+    double tx, tz, x, z, z0, z1, sin_theta, sine, cosine, border;
+    tx = acdf_tilt_sample(range[0].tilt, u[0]);
+    border = (double)columns * (ACDF_BORDER / (2.0 * ACDF_PI));
+    x = (double)range[0].low + tx * (double)(range[0].high - range[0].low);
+    x = acdf_clamp(x, (double)range[0].low + border, (double)range[0].high - border);
+
+    tz = acdf_tilt_sample(range[1].tilt, u[1]);
+    z0 = acdf_row_z(range[1].low, rows);
+    z1 = acdf_row_z(range[1].high, rows);
+    z = z0 + tz * (z1 - z0);
+    sin_theta = sqrt((1.0 - z) * (1.0 + z));
+    border = ACDF_BORDER * sin_theta;
+    z = acdf_clamp(z, z1 + border, z0 - border);
+    z = acdf_clamp(z, -1.0 + 0.5 * ACDF_BORDER * ACDF_BORDER, 1.0 - 0.5 * ACDF_BORDER * ACDF_BORDER);
+    sin_theta = sqrt((1.0 - z) * (1.0 + z));
+
+    acdf_sincospi(1.0 - 2.0 * x / (double)columns, &sine, &cosine);
+    out.direction[0] = (float)(sin_theta * cosine);
+    out.direction[1] = (float)(sin_theta * sine);
+    out.direction[2] = (float)z;
+    out.pdf = acdf_cell_pdf(p, range[0].high - range[0].low, columns, z0 - z1,
+                            acdf_tilt_density(range[0].tilt, tx) * acdf_tilt_density(range[1].tilt, tz));
+    return out;
+}
+
+/* The grid square of a direction, and where on the columns axis it lies. Returns 0 for directions that are NaN or
+ * whose length differs from 1 by more than about 5e-4. */
+ACDF_FN int acdf_sphere_square(uint32_t columns, uint32_t rows, const float direction[3], uint32_t square[2],
+                               double* column) {
+    const double x = direction[0], y = direction[1], z = direction[2];
+    const double sin2 = x * x + y * y;
+    const double length = sqrt(sin2 + z * z);
+    if (!acdf_are_finite(direction) || !(length > 0.9995 && length < 1.0005)) return 0;
+    *column = (double)columns * (0.5 - 0.5 * acdf_atan2pi(y, x));
+    if (*column >= (double)columns) *column = 0.0; /* phi = -pi is phi = +pi */
+    if (*column < 0.0) *column = 0.0;
+    square[0] = (uint32_t)*column;
+    square[1] = (uint32_t)((double)rows * acdf_atan2pi(sqrt(sin2), z));
+    if (square[1] >= rows) square[1] = rows - 1;
+    return 1;
+}
+
+/* The fractions t[axis] at which a direction lies across its cell (t[1] in z, from z0 down by dz). */
+ACDF_FN void acdf_sphere_fractions(const float direction[3], double column, const AcdfRange range[2], double z0,
+                                   double dz, double t[2]) {
+    const double x = direction[0], y = direction[1], z = direction[2];
+    const double sin2 = x * x + y * y;
+    const double length = sqrt(sin2 + z * z);
+    const double cap =
+        sin2 / (length * (length + fabs(z))); /* 1 - |cos(theta)|, exact near the poles where z is not */
+    t[0] = acdf_clamp((column - (double)range[0].low) / (double)(range[0].high - range[0].low), 0.0, 1.0);
+    t[1] = acdf_clamp((z0 - (z < 0.0 ? cap - 1.0 : 1.0 - cap)) / dz, 0.0, 1.0);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

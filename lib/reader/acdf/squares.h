@@ -1,0 +1,107 @@
+/* Which cells may hold a point of a square: a grid whose entries name blocks of up to 16 boxes, found without a
+ * branch on the data. Plain words that a GPU takes as they lie.
+ *
+ * The two keys of a point are integers. A block covers a rectangle that halving the square gives, and tells where
+ * in it each of its cells lies in steps of 1/256: what it names may hold the point, and one of them does. Whoever
+ * asks looks at the cell itself. Where a rectangle as small as an entry of the grid has too many cells, a finer
+ * grid of 8 x 8 entries takes its place. */
+#ifndef ACDF_SQUARES_H
+#define ACDF_SQUARES_H
+
+#include <acdf/elementary.h>
+
+#if defined(__SSE2__) && !defined(__CUDACC__) && !defined(__HIPCC__) && !defined(__SYCL_DEVICE_ONLY__)
+#define ACDF_SQUARES_SSE2 1
+#include <emmintrin.h>
+#endif
+
+/* What is wanted next, on its way while its place is searched for. */
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define ACDF_PREFETCH(address) __builtin_prefetch(address)
+#else
+#define ACDF_PREFETCH(address) (void)(address)
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Offsets are in words, from the start of all tables. */
+typedef struct AcdfSquares {
+    uint32_t shift0; /* bits of key 0 that are finer than the grid */
+    uint32_t shift1;
+    uint32_t bits0; /* the grid has 2^bits0 entries along key 0, which are next to each other */
+    uint32_t bits1;
+    uint32_t grid;   /* entries */
+    uint32_t finer;  /* grids of 16 entries */
+    uint32_t boxes;  /* 16 words a block: bytes low 0, high 0, low 1, high 1 of each cell, less 128 */
+    uint32_t cells;  /* 8 words a block: 16 numbers of cells */
+    uint32_t blocks; /* how many there are; block 0 names none */
+} AcdfSquares;
+
+/* An entry: shifts of both keys (5 bits each) and the number of a block; or the flag, and of a finer grid the bits
+ * along key 0 (3 bits) and the number. */
+#define ACDF_SQUARES_FINER 0x80000000u
+#define ACDF_SQUARES_BLOCK_BITS 21
+enum { ACDF_BLOCK_CELLS = 16, ACDF_FINER_BITS = 4 };
+
+ACDF_INLINE uint32_t acdf_squares_entry(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
+                                        uint32_t key1) {
+    uint32_t shift0 = squares->shift0, shift1 = squares->shift1;
+    uint32_t entry = tables[squares->grid + ((key1 >> shift1) << squares->bits0) + (key0 >> shift0)];
+    while (entry & ACDF_SQUARES_FINER) {
+        const uint32_t bits0 = entry >> 28 & 7u, bits1 = ACDF_FINER_BITS - bits0;
+        shift0 -= bits0;
+        shift1 -= bits1;
+        entry = tables[squares->finer + (entry & 0x0FFFFFFFu) * 16u +
+                       ((key1 >> shift1 & ((1u << bits1) - 1)) << bits0 | (key0 >> shift0 & ((1u << bits0) - 1)))];
+    }
+    return entry;
+}
+
+/* Bit i: whether cell i of a block may hold the point; never of those that it lacks. */
+ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byte0, uint32_t byte1) {
+#ifdef ACDF_SQUARES_SSE2
+    const __m128i* box = (const __m128i*)(const void*)boxes;
+    const __m128i at0 = _mm_set1_epi8((char)(byte0 ^ 0x80u)), at1 = _mm_set1_epi8((char)(byte1 ^ 0x80u));
+    const __m128i out0 =
+        _mm_or_si128(_mm_cmpgt_epi8(_mm_load_si128(box), at0), _mm_cmpgt_epi8(at0, _mm_load_si128(box + 1)));
+    const __m128i out1 =
+        _mm_or_si128(_mm_cmpgt_epi8(_mm_load_si128(box + 2), at1), _mm_cmpgt_epi8(at1, _mm_load_si128(box + 3)));
+    return (uint32_t)_mm_movemask_epi8(_mm_or_si128(out0, out1)) ^ 0xFFFFu;
+#else
+    const int8_t* box = (const int8_t*)(const void*)boxes;
+    const int32_t at0 = (int32_t)byte0 - 128, at1 = (int32_t)byte1 - 128;
+    uint32_t mask = 0, i;
+    for (i = 0; i < ACDF_BLOCK_CELLS; ++i)
+        mask |= (uint32_t)(box[i] <= at0 && at0 <= box[16 + i] && box[32 + i] <= at1 && at1 <= box[48 + i]) << i;
+    return mask;
+#endif
+}
+
+/* Number of the lowest bit that is set; one is. */
+ACDF_INLINE uint32_t acdf_lowest_bit(uint32_t mask) {
+#if defined(__CUDACC__) || !defined(__GNUC__)
+    uint32_t i = 0;
+    while (!(mask >> i & 1u)) ++i;
+    return i;
+#else
+    return (uint32_t)__builtin_ctz(mask);
+#endif
+}
+
+/* The cells that may hold a point: *cells[i] for each bit i that is set in what is returned. */
+ACDF_INLINE uint32_t acdf_squares_find(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
+                                       uint32_t key1, const uint16_t** cells) {
+    const uint32_t entry = acdf_squares_entry(tables, squares, key0, key1);
+    const uint32_t block = entry & ((1u << ACDF_SQUARES_BLOCK_BITS) - 1);
+    const uint32_t byte0 = key0 >> (entry >> 26) & 0xFFu, byte1 = key1 >> (entry >> 21 & 31u) & 0xFFu;
+    *cells = (const uint16_t*)(const void*)(tables + squares->cells + 8u * block);
+    ACDF_PREFETCH(*cells);
+    return acdf_squares_candidates(tables + squares->boxes + 16u * block, byte0, byte1);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

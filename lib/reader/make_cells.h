@@ -1,0 +1,19 @@
+// Makes the runtime tables of acdf/cells.h.
+#pragma once
+
+#include <acdf/cells.h>
+#include <acdf/sample.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace acdf {
+
+/// The tables of an environment whose tree takes `tree_units`, in a block from std::aligned_alloc that the caller
+/// frees, of at most `most_bytes`; null where there are none: for trees with tilts, with more than 65535 cells or
+/// more cells than units, where they would take more bytes, and where memory fails. The work is linear in
+/// tree_units.
+AcdfCells* make_cells(const AcdfEnvironment& environment, std::uint32_t tree_units,
+                      std::size_t most_bytes) noexcept;
+
+} // namespace acdf
