@@ -1,4 +1,5 @@
 // acdf measure: how accurate a file is, by summation over its source.
+#include "build/environment_accuracy.h"
 #include "measure/full_cdf.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
