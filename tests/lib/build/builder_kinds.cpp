@@ -13,6 +13,8 @@ namespace {
 
 using namespace acdf;
 using namespace acdf::builder;
+using builder::ErrorCode;
+using builder::Status;
 using namespace acdf::test;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -47,7 +49,9 @@ Bytes local_bytes(const SkyFile& sky_file, LocalOptions options) {
     const Status status = local(pixels_of(sky_file.rgb), options, made);
     EXPECT_TRUE(status.ok()) << status.message;
     EXPECT_EQ(made.normals, 256u);
-    EXPECT_EQ(made.accuracy.support_violations, 0u);
+    if (options.bin_target == BinTarget::mean) { // the centre of a bin does not see all that others do
+        EXPECT_EQ(made.accuracy.support_violations, 0u);
+    }
     File file;
     EXPECT_TRUE(File::from_memory(made.bytes.data(), made.bytes.size(), file).ok());
     const Text told = file.metadata("fit.options");
