@@ -30,6 +30,14 @@ std::vector<float> pixels_of(int width, int height) {
     return rgba;
 }
 
+// The renderer's lookup: the nearest pixel.
+float lookup(const std::vector<float>& rgba, int width, const float w[3]) {
+    const int height = width / 2;
+    const int x = int(0.5f * (1 - std::atan2(w[1], w[0]) / pi) * float(width));
+    const int y = int(std::acos(std::fmax(-1.0f, std::fmin(1.0f, w[2]))) / pi * float(height));
+    return rgba[4 * (std::size_t(y < height ? y : height - 1) * width + (x < width ? x : width - 1))];
+}
+
 int main(int argc, char** argv) {
     const int width = argc > 1 ? std::atoi(argv[1]) : 4096, height = width / 2;
     if (width < 2 || width > 32768) return std::fprintf(stderr, "a width from 2 to 32768 is needed\n"), 2;
@@ -59,7 +67,8 @@ int main(int argc, char** argv) {
     const int n = 256;
     for (int i = 0; i < n * n; ++i) {
         const acdf::DirectionSample s = sky.sample((i % n + 0.5) / n, (i / n + 0.5) / n);
-        if (s.direction[2] > 0) sum += double(radiance(s.direction)) * double(s.direction[2]) / double(s.pdf);
+        if (s.direction[2] > 0)
+            sum += double(lookup(rgba, width, s.direction)) * double(s.direction[2]) / double(s.pdf);
     }
     std::printf("%zu bytes in %.2f s, relative variance %.3g; irradiance %.4f, the map's integral %.4f\n",
                 made.bytes.size(), seconds, made.accuracy.relative_variance, sum / (n * n), sky.total());
