@@ -1,4 +1,5 @@
-# Installs the reader: headers, static library, CMake package and pkg-config file (component `reader`).
+# Installs the reader and the builder, components `reader` and, which needs the first, `builder`: headers, a static library
+# each, one CMake package and a pkg-config file each.
 # Everything is relocatable: the prefix may be moved or staged after installation.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -28,6 +29,13 @@ install(FILES
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
 
 install(EXPORT acdfTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT reader)
+if(TARGET acdf_builder)
+    install(TARGETS acdf_builder EXPORT acdfBuilderTargets COMPONENT builder
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(FILES ${PROJECT_SOURCE_DIR}/lib/build/acdf/accuracy.h ${PROJECT_SOURCE_DIR}/lib/build/acdf/builder.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT builder)
+    install(EXPORT acdfBuilderTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT builder)
+endif()
 configure_package_config_file(
     ${PROJECT_SOURCE_DIR}/lib/acdfConfig.cmake.in ${PROJECT_BINARY_DIR}/acdfConfig.cmake
     INSTALL_DESTINATION ${ACDF_CMAKE_DIR})
@@ -35,11 +43,16 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/acdfConfigVersion.cmake C
 install(FILES ${PROJECT_BINARY_DIR}/acdfConfig.cmake ${PROJECT_BINARY_DIR}/acdfConfigVersion.cmake
     DESTINATION ${ACDF_CMAKE_DIR} COMPONENT reader)
 
-# From the folder of acdf.pc up to the prefix.
+# From the folder of the .pc files up to the prefix.
 file(RELATIVE_PATH ACDF_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 string(REGEX REPLACE "/$" "" ACDF_PC_PREFIX "${ACDF_PC_PREFIX}")
 configure_file(${PROJECT_SOURCE_DIR}/lib/reader/acdf.pc.in ${PROJECT_BINARY_DIR}/acdf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/acdf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT reader)
+if(TARGET acdf_builder)
+    configure_file(${PROJECT_SOURCE_DIR}/lib/build/acdf-builder.pc.in ${PROJECT_BINARY_DIR}/acdf-builder.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/acdf-builder.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT builder)
+endif()
 
 if(TARGET acdf)
     install(TARGETS acdf RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)

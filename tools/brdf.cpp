@@ -1,7 +1,8 @@
 // acdf brdf: a BRDF to an .acdf file.
-#include "build/brdf.h"
+#include "build/builder/sources.h"
 #include "build/format_names.h"
 #include "input/brdf_models.h"
+#include "tools/cli/built.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -27,7 +28,7 @@ class BrdfConversion : public Conversion {
 public:
     void add_options(CLI::App& command) override;
     void check() override;
-    std::string option_text() const override { return build::option_text(file_); }
+    std::string option_text() const override { return builder::option_text(brdf_); }
     std::uint64_t memory() const override;
     Converted convert(const Listener& listener) override;
 
@@ -36,9 +37,9 @@ private:
     void check_fit() const;
     void add_fit_options(CLI::App& command);
     void add_size_options(CLI::App& command);
-    nlohmann::ordered_json report(const build::BrdfFile& result) const;
+    nlohmann::ordered_json report(const builder::BrdfFile& result) const;
 
-    build::BrdfFileOptions file_;
+    builder::BrdfOptions brdf_;
     std::string views_, knots_, budget_;
     const CLI::App* command_ = nullptr;
     bool separate_ = false;
@@ -59,36 +60,33 @@ bool parse_views(const std::string& text, std::uint32_t& theta, std::uint32_t& p
 }
 
 void BrdfConversion::check_fit() const {
-    const bool variance = file_.fit.fit == ACDF_FIT_VARIANCE;
+    const bool variance = brdf_.fit == ACDF_FIT_VARIANCE;
     for (const char* option : {"--cells", "--budget", "--target-variance", "--no-sharing"})
         if (!variance && given(option))
             throw CLI::ValidationError(option, "is for --fit variance; use --knots or --eps with the other fits");
     for (const char* option : {"--knots", "--eps"})
         if (variance && given(option))
             throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf; use --budget or --cells");
-    if (given("--eps") && file_.fit.fit == ACDF_FIT_UNIFORM)
+    if (given("--eps") && brdf_.fit == ACDF_FIT_UNIFORM)
         throw CLI::ValidationError("--eps", "is for --fit cdf and pdf");
 }
 
 void BrdfConversion::check() {
     check_fit();
-    compress::BrdfOptions& fit = file_.fit;
-    if (given("--views") && !parse_views(views_, fit.theta_views, fit.phi_views))
+    if (given("--views") && !parse_views(views_, brdf_.theta_views, brdf_.phi_views))
         throw CLI::ValidationError("--views",
                                    "needs a count such as 32, or two such as 16x8 (theta_o x phi_o, at least 4)");
-    if (given("--knots") && !parse_views(knots_, fit.phi_segments, fit.theta_segments))
+    if (given("--knots") && !parse_views(knots_, brdf_.phi_segments, brdf_.theta_segments))
         throw CLI::ValidationError("--knots", "needs two counts such as 10x30 (phi_h x theta_h)");
-    if (given("--eps") && !given("--knots")) fit.phi_segments = fit.theta_segments = ACDF_MAX_SEGMENTS;
-    fit.sharing = !separate_;
-    if (fit.fit != ACDF_FIT_VARIANCE) return;
-    fit.goal = {compress::Goal::Kind::budget, fit.goal.cells, std::uint64_t{64} << 10, fit.goal.variance};
-    read_goal(*command_, budget_, fit.goal);
+    if (given("--eps") && !given("--knots")) brdf_.phi_segments = brdf_.theta_segments = ACDF_MAX_SEGMENTS;
+    brdf_.sharing = !separate_;
+    if (brdf_.fit == ACDF_FIT_VARIANCE) read_goal(*command_, budget_, brdf_.goal);
 }
 
-nlohmann::ordered_json BrdfConversion::report(const build::BrdfFile& result) const {
-    const build::BrdfAccuracy& a = result.accuracy;
+nlohmann::ordered_json BrdfConversion::report(const builder::BrdfFile& result) const {
+    const builder::BrdfAccuracy& a = result.accuracy;
     return {{"source", source},
-            {"fit", build::fit_name(file_.fit.fit)},
+            {"fit", build::fit_name(brdf_.fit)},
             {"views", {result.theta_views, result.phi_views}},
             {"bytes", result.bytes.size()},
             {"bins", result.theta_views * result.phi_views},
@@ -113,15 +111,12 @@ std::uint64_t BrdfConversion::memory() const {
 Converted BrdfConversion::convert(const Listener& listener) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
     for (const std::string& note : brdf->notes) listener.note(note);
-    build::BrdfFile result;
-    try {
-        result = build::build_brdf(*brdf, file_, listener.progress);
-    } catch (const std::invalid_argument& error) {
-        throw Failure(source + ": " + error.what());
-    } catch (const std::runtime_error& error) { // the goal is out of reach
-        throw Failure(source + ": " + error.what());
-    }
-    const build::BrdfAccuracy& a = result.accuracy;
+    builder::BrdfOptions options = brdf_;
+    options.source.name = brdf->name;
+    options.source.sha256 = brdf->sha256;
+    builder::BrdfFile result;
+    require_built(source, builder::brdf(builder::described(*brdf), options, result, told(listener.progress)));
+    const builder::BrdfAccuracy& a = result.accuracy;
     char summary[200];
     std::snprintf(summary, sizeof summary, "%u views, %llu cells, relative variance %.4g (mean; worst %.4g)",
                   result.theta_views * result.phi_views, static_cast<unsigned long long>(a.cells),
@@ -131,14 +126,13 @@ Converted BrdfConversion::convert(const Listener& listener) {
 }
 
 void BrdfConversion::add_fit_options(CLI::App& command) {
-    compress::BrdfOptions& fit = file_.fit;
     const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
                                               {"cdf", ACDF_FIT_CDF},
                                               {"pdf", ACDF_FIT_PDF},
                                               {"variance", ACDF_FIT_VARIANCE}};
     command
         .add_option(
-            "--fit", fit.fit,
+            "--fit", brdf_.fit,
             "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
             "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
             "views, the nearest bin serves)")
@@ -155,27 +149,13 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
         .add_flag("--no-sharing", separate_,
                   "Give each bin of views a tree of its own, of which the nearest serves: to compare with")
         ->group("Fit");
-    std::vector<std::string> names;
-    for (const build::ChannelName& channel : build::channel_names) names.push_back(channel.name);
-    command
-        .add_option_function<std::string>(
-            "--channel",
-            [this](const std::string& name) {
-                for (const build::ChannelName& channel : build::channel_names)
-                    if (name == channel.name) {
-                        file_.channels = channel.channels;
-                        file_.weights = channel.weights;
-                    }
-            },
-            "Whose noise is minimised: luminance (Rec. 709), rgb (all three channels), max (the largest), red, "
-            "green or "
-            "blue alone")
-        ->check(CLI::IsMember(names).description(""))
-        ->option_text("NAME [luminance]")
-        ->group("Fit");
+    add_channels(
+        command, brdf_.channels,
+        "Whose noise is minimised: luminance (Rec. 709), rgb (all three channels), max (the largest), red, "
+        "green or blue alone");
     command
         .add_option(
-            "--diffuse-floor", file_.diffuse_share,
+            "--diffuse-floor", brdf_.diffuse_share,
             "Share of samples that follow the cosine instead. Not needed for what the fit has seen, which it "
             "covers; it bounds weights where a renderer's BRDF differs from the one fitted")
         ->check(number_range(0.0, 0.99))
@@ -184,8 +164,7 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
 }
 
 void BrdfConversion::add_size_options(CLI::App& command) {
-    compress::BrdfOptions& fit = file_.fit;
-    add_goal(command, fit.goal.cells, budget_, fit.goal.variance,
+    add_goal(command, brdf_.goal.cells, budget_, brdf_.goal.variance,
              {"Cells that all views share; without sharing: of each, on average", "N", "SIZE [64KiB]",
               ", about, as mean over views", 1, ACDF_MAX_TILES});
     command
@@ -193,7 +172,8 @@ void BrdfConversion::add_size_options(CLI::App& command) {
         ->option_text("AxB [10x30]")
         ->group("Size and accuracy");
     command
-        .add_option("--eps", fit.epsilon, "Stop adding knots once no curve deviates by more, for --fit cdf and pdf")
+        .add_option("--eps", brdf_.epsilon,
+                    "Stop adding knots once no curve deviates by more, for --fit cdf and pdf")
         ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group("Size and accuracy");
@@ -203,7 +183,7 @@ void BrdfConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_fit_options(command);
     add_size_options(command);
-    add_codec(command, file_.codec);
+    add_codec(command, brdf_.codec);
 }
 
 } // namespace

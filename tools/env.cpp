@@ -1,6 +1,7 @@
 // acdf env: an environment map to an .acdf file.
 #include "build/format_names.h"
 #include "input/image_header.h"
+#include "tools/cli/built.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -35,21 +36,22 @@ class EnvConversion : public Conversion {
 public:
     void add_options(CLI::App& command) override;
     void check() override;
-    std::string option_text() const override { return build::option_text(reading_text(input_), environment_); }
+    std::string option_text() const override { return builder::option_text(with_source()); }
     std::uint64_t memory() const override;
     Converted convert(const Listener& listener) override;
 
 private:
     bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
+    builder::EnvironmentOptions with_source() const;
     void set_goal();
     void set_knots();
     void add_fit_options(CLI::App& command);
     std::uint64_t memory_of_tree(std::uint64_t pixels) const;
-    nlohmann::ordered_json report(const ProbeTarget& loaded, const build::Environment& result) const;
+    nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Environment& result) const;
 
     input::ProbeOptions input_;
     const Renderer* renderer_ = nullptr;
-    build::EnvironmentOptions environment_;
+    builder::EnvironmentOptions environment_;
     std::string knots_, budget_;
     const CLI::App* command_ = nullptr;
 };
@@ -87,21 +89,20 @@ bool allows(const OnlyFor& rule, AcdfFit fit) {
 }
 
 void EnvConversion::set_goal() {
-    compress::FitOptions& fit = environment_.fit;
-    const int goals = read_goal(*command_, budget_, fit.goal);
-    const bool only_cells = fit.shape == compress::Shape::cascade;
+    const int goals = read_goal(*command_, budget_, environment_.goal);
+    const bool only_cells = environment_.fit.shape == builder::Shape::cascade;
     if (only_cells && goals > 0 && !given("--cells"))
         throw CLI::ValidationError("--shape cascade", "is sized by --cells");
     if (only_cells && given("--max-weight")) throw CLI::ValidationError("--max-weight", "is for --shape tree");
 }
 
 void EnvConversion::set_knots() {
-    compress::FitOptions& fit = environment_.fit;
+    builder::FitOptions& fit = environment_.fit;
     if (given("--knots")) {
-        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
+        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.phi_segments, fit.theta_segments))
             throw CLI::ValidationError("--knots", "needs two counts such as 64x64 (phi x theta)");
     } else if (given("--eps")) {
-        fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
+        fit.phi_segments = fit.theta_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
     }
 }
 
@@ -114,19 +115,30 @@ void EnvConversion::check() {
     else set_knots();
 }
 
-nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const build::Environment& result) const {
+/// The options as they will be, but for what only the probe's file tells.
+builder::EnvironmentOptions EnvConversion::with_source() const {
+    builder::EnvironmentOptions options = environment_;
+    options.source.reading = reading_text(input_);
+    return options;
+}
+
+const char* order_name(builder::Order order) {
+    return order == builder::Order::best ? "free" : order == builder::Order::phi ? "phi" : "z";
+}
+
+nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const builder::Environment& result) const {
     const input::Probe& probe = loaded.probe;
-    const build::Accuracy& a = result.accuracy;
+    const builder::EnvironmentAccuracy& a = result.accuracy;
     return {{"source", source},
             {"projection", input::to_string(probe.projection)},
             {"projection_reason", probe.projection_reason},
-            {"domain", build::parameterization_name(loaded.target.parameterization)},
+            {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
             {"resolution", {probe.width, probe.height}},
             {"resampling_error", loaded.error},
             {"bad_texels",
              {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
             {"fit", build::fit_name(environment_.fit.fit)},
-            {"order", result.order ? build::to_string(*result.order) : "free"},
+            {"order", order_name(result.order)},
             {"bytes", result.bytes.size()},
             {"cells", a.cells},
             {"total", a.total},
@@ -156,13 +168,10 @@ std::uint64_t EnvConversion::memory() const {
 Converted EnvConversion::convert(const Listener& listener) {
     if (renderer_) listener.note(axes_text(*renderer_));
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
-    build::Environment result;
-    try {
-        result = build::build_environment(loaded.target, source_of(loaded.probe, input_), environment_,
-                                          listener.progress);
-    } catch (const std::runtime_error& error) { // the goal is out of reach
-        throw Failure(source + ": " + error.what());
-    }
+    builder::EnvironmentOptions options = environment_;
+    options.source = source_of(loaded.probe, input_);
+    builder::Environment result;
+    require_built(source, builder::environment(loaded.target, options, result, told(listener.progress)));
     const std::string warning =
         resampling_warning(loaded, result.accuracy.least_variance, result.accuracy.relative_variance);
     if (!warning.empty()) listener.note(warning);
@@ -170,13 +179,15 @@ Converted EnvConversion::convert(const Listener& listener) {
     std::snprintf(summary, sizeof summary, "%llu cells, relative variance %.4g (%s fit%s)",
                   static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
                   build::fit_name(environment_.fit.fit).c_str(),
-                  result.order ? (std::string(", ") + build::to_string(*result.order) + " first").c_str() : "");
+                  result.order != builder::Order::best
+                      ? (std::string(", ") + order_name(result.order) + " first").c_str()
+                      : "");
     nlohmann::ordered_json told = report(loaded, result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
 
 void EnvConversion::add_fit_options(CLI::App& command) {
-    compress::FitOptions& fit = environment_.fit;
+    builder::FitOptions& fit = environment_.fit;
     const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
                                               {"cdf", ACDF_FIT_CDF},
                                               {"pdf", ACDF_FIT_PDF},
@@ -190,8 +201,8 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->transform(CLI::CheckedTransformer(fits).description(""))
         ->option_text("NAME [variance]")
         ->group("Fit");
-    const std::map<std::string, compress::Shape> shapes{{"tree", compress::Shape::tree},
-                                                        {"cascade", compress::Shape::cascade}};
+    const std::map<std::string, builder::Shape> shapes{{"tree", builder::Shape::tree},
+                                                       {"cascade", builder::Shape::cascade}};
     command
         .add_option(
             "--shape", fit.shape,
@@ -205,7 +216,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         .add_option_function<int>(
             "--order",
             [&fit](int order) {
-                if (order != 0) fit.order = order == 1 ? compress::Order::phi : compress::Order::z;
+                if (order != 0) fit.order = order == 1 ? builder::Order::phi : builder::Order::z;
             },
             "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
             "file is "
@@ -213,7 +224,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->transform(CLI::CheckedTransformer(orders).description(""))
         ->option_text("NAME [auto]")
         ->group("Fit");
-    add_goal(command, fit.goal.cells, budget_, fit.goal.variance,
+    add_goal(command, environment_.goal.cells, budget_, environment_.goal.variance,
              {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
               ": 0.01 is a tenth of the mean as standard deviation of one sample"});
     command
@@ -245,8 +256,8 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->check(CLI::Range(0u, 1u << 20))
         ->option_text("N [0]")
         ->group("Fit");
-    const std::map<std::string, compress::Conditional> conditionals{{"energy", compress::Conditional::energy},
-                                                                    {"mean", compress::Conditional::mean}};
+    const std::map<std::string, builder::Conditional> conditionals{{"energy", builder::Conditional::energy},
+                                                                   {"mean", builder::Conditional::mean}};
     command
         .add_option("--conditional", fit.conditional,
                     "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "

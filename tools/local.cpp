@@ -1,9 +1,8 @@
 // acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
-#include "build/local.h"
-#include "build/format_names.h"
 #include "input/image.h"
 #include "input/image_header.h"
 #include "input/scene_normals.h"
+#include "tools/cli/built.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -41,17 +40,17 @@ private:
     void set_normals();
     void set_separate();
     std::string scene_text() const;
-    build::LocalOptions read_scene(const Note& note) const;
+    builder::LocalOptions read_scene(const Note& note) const;
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
     void add_separate(CLI::App& command);
-    nlohmann::ordered_json report(const ProbeTarget& loaded, const build::Local& result) const;
+    nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Local& result) const;
 
     std::string normals_, budget_, knots_, scene_;
     input::ProbeOptions input_;
     const Renderer* renderer_ = nullptr;
     input::SceneOptions scene_input_;
-    build::LocalOptions local_;
+    builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
     bool no_sharing_ = false;
 };
@@ -60,7 +59,7 @@ constexpr double kWorthwhile = 1.5; ///< gain below which a file without normals
 
 void LocalConversion::set_normals() {
     if (!given("--normals")) return;
-    build::LocalOptions& local = local_;
+    builder::LocalOptions& local = local_;
     unsigned n = 0;
     int end = 0;
     if (std::sscanf(normals_.c_str(), "%4u%n", &n, &end) == 1 && static_cast<std::size_t>(end) == normals_.size() &&
@@ -73,8 +72,8 @@ void LocalConversion::set_normals() {
 }
 
 void LocalConversion::set_separate() {
-    build::LocalOptions& local = local_;
-    compress::FitOptions& fit = local.fit;
+    builder::LocalOptions& local = local_;
+    builder::FitOptions& fit = local.fit;
     local.sharing = !no_sharing_;
     if (local.sharing) {
         if (local.columns > 0)
@@ -93,12 +92,12 @@ void LocalConversion::set_separate() {
         if (variance && given(option)) throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf");
     for (const char* option : {"--cells", "--budget"})
         if (!variance && given(option)) throw CLI::ValidationError(option, "is for --fit variance");
-    if (!variance && !fit.order) fit.order = compress::Order::z;
+    if (!variance && !given("--order")) fit.order = builder::Order::z;
     if (given("--knots")) {
-        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.column_segments, fit.row_segments))
+        if (!parse_pair(knots_, ACDF_MAX_SEGMENTS, fit.phi_segments, fit.theta_segments))
             throw CLI::ValidationError("--knots", "needs two counts such as 30x30 (phi x theta)");
     } else if (given("--eps")) {
-        fit.column_segments = fit.row_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
+        fit.phi_segments = fit.theta_segments = ACDF_MAX_SEGMENTS; // the threshold alone decides
     }
 }
 
@@ -120,37 +119,38 @@ std::string LocalConversion::scene_text() const {
 }
 
 std::string LocalConversion::option_text() const {
-    build::LocalOptions told = local_;
+    builder::LocalOptions told = local_;
     if (!scene_.empty()) {
-        told.scene = {{}}; // any: only the text tells which
-        told.scene_text = scene_text();
+        told.normals = {{}}; // any: only the text tells which
+        told.normals_text = scene_text();
     }
-    return build::option_text(reading_text(input_), told);
+    told.source.reading = reading_text(input_);
+    return builder::option_text(told);
 }
 
 /// The options with the normals of the scene.
-build::LocalOptions LocalConversion::read_scene(const Note& note) const {
-    build::LocalOptions local = local_;
+builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
+    builder::LocalOptions local = local_;
     if (scene_.empty()) return local;
     const input::SceneNormals scene = input::read_scene_normals(scene_, scene_input_);
     for (const input::WeightedNormal& n : scene.normals)
-        local.scene.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
-    local.scene_text = scene_text();
+        local.normals.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
+    local.normals_text = scene_text();
     note(scene_ + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
          std::to_string(scene.skipped) + " skipped");
     return local;
 }
 
-double gain(const build::Local& result) {
+double gain(const builder::Local& result) {
     return result.accuracy.relative_variance_full_cdf / result.accuracy.relative_variance;
 }
 
-nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const build::Local& result) const {
-    const build::LocalAccuracy& a = result.accuracy;
+nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const builder::Local& result) const {
+    const builder::LocalAccuracy& a = result.accuracy;
     File file;
     File::from_memory(result.bytes.data(), result.bytes.size(), file);
     return {{"source", source},
-            {"domain", build::parameterization_name(loaded.target.parameterization)},
+            {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
             {"resolution", {loaded.probe.width, loaded.probe.height}},
             {"bytes", result.bytes.size()},
             {"bins", file.description().bin_count},
@@ -164,8 +164,8 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
             {"support_violations", a.support_violations}};
 }
 
-std::string summary_of(const build::Local& result) {
-    const build::LocalAccuracy& a = result.accuracy;
+std::string summary_of(const builder::Local& result) {
+    const builder::LocalAccuracy& a = result.accuracy;
     char text[256];
     std::snprintf(text, sizeof text,
                   "relative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
@@ -181,15 +181,12 @@ std::uint64_t LocalConversion::memory() const {
 }
 
 Converted LocalConversion::convert(const Listener& listener) {
-    const build::LocalOptions local = read_scene(listener.note);
+    builder::LocalOptions local = read_scene(listener.note);
     if (renderer_) listener.note(axes_text(*renderer_));
     const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
-    build::Local result;
-    try {
-        result = build::build_local(loaded.target, source_of(loaded.probe, input_), local, listener.progress);
-    } catch (const std::runtime_error& error) { // the goal is out of reach
-        throw Failure(source + ": " + error.what());
-    }
+    local.source = source_of(loaded.probe, input_);
+    builder::Local result;
+    require_built(source, builder::local(loaded.target, local, result, told(listener.progress)));
     if (gain(result) < kWorthwhile) {
         char text[160];
         std::snprintf(text, sizeof text,
@@ -204,7 +201,7 @@ Converted LocalConversion::convert(const Listener& listener) {
 }
 
 void LocalConversion::add_bins(CLI::App& command) {
-    build::LocalOptions& local = local_;
+    builder::LocalOptions& local = local_;
     command
         .add_option(
             "--normals", normals_,
@@ -244,7 +241,7 @@ void LocalConversion::add_bins(CLI::App& command) {
 }
 
 void LocalConversion::add_size(CLI::App& command) {
-    build::LocalOptions& local = local_;
+    builder::LocalOptions& local = local_;
     add_goal(command, local.goal.cells, budget_, local.goal.variance,
              {"Cells of the curves that bins share, about; with --no-sharing: of a bin, in the mean", "N",
               "SIZE [1MiB]", ", in the mean over normals", 16});
@@ -259,7 +256,7 @@ void LocalConversion::add_size(CLI::App& command) {
 }
 
 void LocalConversion::add_separate(CLI::App& command) {
-    compress::FitOptions& fit = local_.fit;
+    builder::FitOptions& fit = local_.fit;
     const char* group = "Trees of their own";
     command
         .add_flag("--no-sharing", no_sharing_,
@@ -280,15 +277,15 @@ void LocalConversion::add_separate(CLI::App& command) {
         ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group(group);
-    const std::map<std::string, compress::Order> orders{{"phi", compress::Order::phi}, {"z", compress::Order::z}};
+    const std::map<std::string, builder::Order> orders{{"phi", builder::Order::phi}, {"z", builder::Order::z}};
     command
-        .add_option_function<compress::Order>(
-            "--order", [&fit](compress::Order order) { fit.order = order; }, "Which axis is split first")
+        .add_option_function<builder::Order>(
+            "--order", [&fit](builder::Order order) { fit.order = order; }, "Which axis is split first")
         ->transform(CLI::CheckedTransformer(orders).description(""))
         ->option_text("phi|z [z]")
         ->group(group);
-    const std::map<std::string, compress::BinTarget> targets{{"mean", compress::BinTarget::mean},
-                                                             {"centre", compress::BinTarget::centre}};
+    const std::map<std::string, builder::BinTarget> targets{{"mean", builder::BinTarget::mean},
+                                                            {"centre", builder::BinTarget::centre}};
     command
         .add_option(
             "--bin-target", local_.bin_target,

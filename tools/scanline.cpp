@@ -144,7 +144,8 @@ Json to_json(const std::string& path, const Study& s) {
 
 void run(const ScanlineArguments& options) {
     const input::Probe probe = load_probe(options.probe, options.reading, options.quiet || options.json);
-    const compress::Target target = probe_target(options.probe, probe);
+    const builder::Target held = probe_target(options.probe, probe);
+    const compress::Target& target = builder::grid_of(held);
     const Study made = study(target, chosen_row(options.row, target));
     if (options.json) std::printf("%s\n", to_json(options.probe, made).dump(2).c_str());
     else if (options.csv) print_csv(made);

@@ -1,7 +1,8 @@
 // acdf table: an array of numbers of any number of axes to an .acdf file.
-#include "build/table.h"
+#include "build/builder/sources.h"
 #include "input/image.h"
 #include "input/npy.h"
+#include "tools/cli/built.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -29,7 +30,7 @@ struct TableArguments {
     std::vector<std::string> ranges;
     std::string budget;
     input::NpyOptions input;
-    build::TableOptions table;
+    builder::TableOptions table;
     const CLI::App* command = nullptr;
     int threads = 0;
     bool json = false, quiet = false, force = false;
@@ -82,8 +83,8 @@ void remark(const TableArguments& options, const input::NpyArray& array) {
 }
 
 nlohmann::ordered_json report(const TableArguments& options, const input::NpyArray& array, std::size_t bins,
-                              const build::Table& result) {
-    const build::TableAccuracy& a = result.accuracy;
+                              const builder::Table& result) {
+    const builder::TableAccuracy& a = result.accuracy;
     const input::BadValues& bad = array.bad;
     return {{"file", options.output},
             {"source", options.array},
@@ -103,34 +104,30 @@ nlohmann::ordered_json report(const TableArguments& options, const input::NpyArr
             {"support_violations", a.support_violations}};
 }
 
-build::Table build(const TableArguments& options, const input::NpyArray& array) {
-    const std::string name = std::filesystem::path(options.array).filename().string();
-    const std::string sha256 = input::file_sha256(options.array);
+builder::Table build(TableArguments& options, const input::NpyArray& array) {
+    options.table.source.name = std::filesystem::path(options.array).filename().string();
+    options.table.source.sha256 = input::file_sha256(options.array);
     ProgressBar bar(options.quiet);
-    try {
-        return build::build_table(array, name, sha256, options.table, bar.callback());
-    } catch (const std::invalid_argument& error) {
-        throw Failure(options.array + ": " + error.what());
-    } catch (const std::runtime_error& error) { // the goal is out of reach
-        throw Failure(options.array + ": " + error.what());
-    }
+    builder::Table result;
+    require_built(options.array, builder::table(array, array.bad, options.table, result, told(bar.callback())));
+    return result;
 }
 
 void run(TableArguments& options) {
-    read_goal(*options.command, options.budget, options.table.fit.goal);
+    read_goal(*options.command, options.budget, options.table.goal);
     const auto limit = limit_threads(options.threads);
     Output output(options.output, options.force, {options.array}); // refuses early, before the work
     const input::NpyArray array = input::read_npy(options.array, options.input);
     remark(options, array);
     set_ranges(options, array.shape);
-    const build::Table result = build(options, array);
+    const builder::Table result = build(options, array);
     output.write(result.bytes.data(), result.bytes.size());
     output.commit(check_reads_back);
 
     std::size_t bins = 1;
     for (std::uint32_t axis = 0; axis < options.table.indexed; ++axis) bins *= array.shape[axis];
     std::FILE* out = options.output == "-" ? stderr : stdout;
-    const build::TableAccuracy& a = result.accuracy;
+    const builder::TableAccuracy& a = result.accuracy;
     if (options.json) std::fprintf(out, "%s\n", report(options, array, bins, result).dump(2).c_str());
     else if (!options.quiet && bins == 1)
         std::fprintf(out, "%s: %s, %" PRIu64 " cells, relative variance %.4g\n", options.output.c_str(),
@@ -175,12 +172,11 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
 }
 
 void add_size_options(CLI::App& command, TableArguments& options) {
-    compress::FitOptions& fit = options.table.fit;
-    add_goal(command, options.table.cells, options.budget, fit.goal.variance,
+    add_goal(command, options.table.goal.cells, options.budget, options.table.goal.variance,
              {"Cells a bin, on average: a bin that is harder gets more of them",
               "N [4096 in all, at least 64 a bin]", "SIZE", ", as mean over the bins"});
     command
-        .add_option("--max-weight", fit.max_weight,
+        .add_option("--max-weight", options.table.max_weight,
                     "Bound on f/p over its mean, in every bin: no sample counts for more (no fireflies)")
         ->check(number_range(1.0, 1e30).description(""))
         ->option_text("W")

@@ -6,14 +6,11 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
 namespace acdf::build {
 namespace {
-
-using Channels = std::array<float, 3>;
 
 /// Of a part of the image.
 struct Found {
@@ -50,17 +47,7 @@ Found look_at(const float* rgb, std::size_t begin, std::size_t end, Found found)
     return found;
 }
 
-void replace(float* rgb, std::size_t texels, const Channels& for_infinity) {
-    for (std::size_t i = 0; i < 3 * texels; ++i) {
-        if (is_radiance(rgb[i])) continue;
-        rgb[i] = std::isinf(rgb[i]) && rgb[i] > 0.0f ? for_infinity[i % 3] : 0.0f;
-    }
-}
-
-} // namespace
-
-void repair_texels(float* rgb, int width, int first, int rows, BadPixels policy, int threads, BadTexels& bad) {
-    const std::size_t row = static_cast<std::size_t>(width), texels = row * static_cast<std::size_t>(rows);
+Found look_at_all(const float* rgb, std::size_t texels, int threads) {
     Found found;
     compress::with_threads(threads, [&] {
         found = tbb::parallel_reduce(
@@ -70,6 +57,26 @@ void repair_texels(float* rgb, int width, int first, int rows, BadPixels policy,
             },
             [](Found a, const Found& b) { return a.join(b); });
     });
+    return found;
+}
+
+void replace(float* rgb, std::size_t texels, const Channels& for_infinity) {
+    for (std::size_t i = 0; i < 3 * texels; ++i) {
+        if (is_radiance(rgb[i])) continue;
+        rgb[i] = std::isinf(rgb[i]) && rgb[i] > 0.0f ? for_infinity[i % 3] : 0.0f;
+    }
+}
+
+} // namespace
+
+Channels largest_radiance(const float* rgb, std::size_t count, int threads) {
+    return look_at_all(rgb, count, threads).largest;
+}
+
+void repair_texels(float* rgb, int width, int first, int rows, BadPixels policy, int threads, BadTexels& bad,
+                   const Channels* largest) {
+    const std::size_t row = static_cast<std::size_t>(width), texels = row * static_cast<std::size_t>(rows);
+    const Found found = look_at_all(rgb, texels, threads);
     if (found.first == SIZE_MAX) return;
     if (bad.count() == 0) {
         bad.x = static_cast<int>(found.first % row);
@@ -78,7 +85,14 @@ void repair_texels(float* rgb, int width, int first, int rows, BadPixels policy,
     bad.nan += found.nan;
     bad.infinite += found.infinite;
     bad.negative += found.negative;
-    replace(rgb, texels, policy == BadPixels::clamp ? found.largest : Channels{0.0f, 0.0f, 0.0f});
+    const Channels& clamped = largest ? *largest : found.largest;
+    replace(rgb, texels, policy == BadPixels::clamp ? clamped : Channels{0.0f, 0.0f, 0.0f});
+}
+
+std::string text(const BadTexels& bad) {
+    return std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) + " infinite and " +
+           std::to_string(bad.negative) + " negative texels, the first at " + std::to_string(bad.x) + "," +
+           std::to_string(bad.y);
 }
 
 } // namespace acdf::build

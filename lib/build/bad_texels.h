@@ -1,28 +1,28 @@
 // Values of an image that are no radiance.
 #pragma once
 
-#include <cstdint>
+#include <acdf/builder.h>
+
+#include <array>
+#include <string>
 
 namespace acdf::build {
 
-/// What becomes of values that are no radiance: NaN, infinite, negative. None of them ever reaches a CDF.
-enum class BadPixels {
-    zero,  ///< all are 0
-    clamp, ///< +infinity is the largest finite value of its channel; the others are 0
-    error, ///< an image that has any is refused
-};
+using BadPixels = builder::BadTexelPolicy;
+using BadTexels = builder::BadTexels;
 
-/// Texels with channels that are no radiance, each counted once, as the first of nan, infinite, negative that it
-/// has. `x`, `y`: the first in the source, row by row from the top.
-struct BadTexels {
-    std::uint64_t nan = 0, infinite = 0, negative = 0;
-    int x = -1, y = -1;
+using Channels = std::array<float, 3>;
 
-    std::uint64_t count() const { return nan + infinite + negative; }
-};
+/// The largest finite value of each channel, at least 0, of `count` RGB texels.
+Channels largest_radiance(const float* rgb, std::size_t count, int threads);
 
 /// Replaces what is NaN, infinite or negative in `rows` rows of `width` RGB texels, of which `first` is the number
-/// of the first, and adds to `bad`. BadPixels::clamp needs all rows at once. The same for any number of threads.
-void repair_texels(float* rgb, int width, int first, int rows, BadPixels policy, int threads, BadTexels& bad);
+/// of the first, and adds to `bad`. BadPixels::clamp needs all rows at once, or the `largest` of all. The same for
+/// any number of threads.
+void repair_texels(float* rgb, int width, int first, int rows, BadPixels policy, int threads, BadTexels& bad,
+                   const Channels* largest = nullptr);
+
+/// "2 NaN, 0 infinite and 1 negative texels, the first at 3,7".
+std::string text(const BadTexels& bad);
 
 } // namespace acdf::build

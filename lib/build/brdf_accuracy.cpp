@@ -1,6 +1,7 @@
 #include "build/brdf_accuracy.h"
 
 #include "build/cells.h"
+#include "build/errors.h"
 #include "compress/sum.h"
 
 #include <acdf/sample.h>
@@ -149,7 +150,7 @@ BrdfAccuracy summary(const std::vector<ViewAccuracy>& views) {
         out.max_weight = std::max(out.max_weight, v.max_weight);
         out.support_violations += v.support_violations;
     }
-    if (sorted.empty()) throw std::invalid_argument("it reflects nothing to any of the views");
+    if (sorted.empty()) throw NoEnergy("it reflects nothing to any of the views");
     const double count = out.views;
     std::sort(sorted.begin(), sorted.end());
     out.median = 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);

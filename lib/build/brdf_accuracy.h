@@ -3,6 +3,7 @@
 
 #include "compress/brdf_target.h"
 
+#include <acdf/accuracy.h>
 #include <acdf/reader.h>
 
 #include <cstdint>
@@ -24,16 +25,9 @@ struct ViewAccuracy {
     std::uint64_t support_violations = 0; ///< places with f > 0 and p = 0
 };
 
-/// Over views, each as important as any other.
-struct BrdfAccuracy {
-    double relative_variance = 0.0; ///< mean
-    double median = 0.0, worst = 0.0;
+/// With the view that is worst.
+struct BrdfAccuracy : builder::BrdfAccuracy {
     compress::View worst_view;
-    double rms_pdf_error = 0.0;                            ///< over views and the hemisphere, sr^-1
-    double kl_divergence = 0.0, share_above_horizon = 0.0; ///< means
-    double max_weight = 0.0;
-    std::uint64_t support_violations = 0, cells = 0;
-    std::uint32_t views = 0; ///< of those that reflect anything
 };
 
 /// What p is asked of: the density of wi for wo, in sr^-1. Called by several threads at once.

@@ -6,6 +6,8 @@
 #include "compress/fit.h"
 #include "compress/store.h"
 
+#include <acdf/builder.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,10 +29,7 @@ struct Environment {
 };
 
 /// Where a probe came from, for the metadata.
-struct Source {
-    std::string name, sha256, projection;
-    std::string reading = {}; ///< how it was read: see reading_text
-};
+using Source = builder::Source;
 
 /// All options that shape the file, in one spelling: what its `fit.options` tells.
 std::string option_text(const std::string& reading, const EnvironmentOptions& options);

@@ -1,5 +1,6 @@
 #include "build/local.h"
 
+#include "build/errors.h"
 #include "build/option_text.h"
 #include "compress/fit_local.h"
 
@@ -153,8 +154,12 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
 /// The smallest file whose measured variance is low enough.
 Local build_to_variance(const compress::Target& target, const Source& source, const LocalOptions& options,
                         const Progress& progress) {
+    double share = 0.0; // steps of the search are of about the same size
     const auto at = [&](double bytes) {
-        return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), {});
+        return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes),
+                               [&](double, const char*) { // no news, but a chance to cancel
+                                   if (progress) progress(share, "searching");
+                               });
     };
     constexpr double largest = 64.0 * 1048576.0;
     double low = 16384.0, high = 65536.0;
@@ -169,7 +174,7 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
         best = at(high);
     }
     for (int step = 0; step < 7; ++step) {
-        if (progress) progress(0.3 + 0.1 * step, "searching");
+        share = 0.3 + 0.1 * step;
         const double middle = std::sqrt(low * high);
         Local candidate = at(middle);
         if (candidate.accuracy.relative_variance > options.goal.variance) {
@@ -238,7 +243,7 @@ std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene
 
 Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
                   const Progress& progress) {
-    if (!(compress::integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    if (!(compress::integral(target) > 0.0)) throw NoEnergy("a target without energy");
     if (!options.sharing) return build_separate(target, source, options, progress);
     switch (options.goal.kind) {
     case Goal::Kind::budget:

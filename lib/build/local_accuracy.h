@@ -3,6 +3,7 @@
 
 #include "compress/target.h"
 
+#include <acdf/accuracy.h>
 #include <acdf/reader.h>
 
 #include <array>
@@ -25,17 +26,7 @@ struct NormalAccuracy {
     double share_above_horizon_full_cdf = 0.0; ///< the same
 };
 
-/// Over normals that have any light above their horizon, each as important as any other.
-struct LocalAccuracy {
-    double relative_variance = 0.0; ///< mean
-    double median = 0.0, worst = 0.0;
-    double relative_variance_full_cdf = 0.0; ///< mean
-    double share_above_horizon = 0.0, least_share_above_horizon = 0.0;
-    double share_above_horizon_full_cdf = 0.0, least_share_above_horizon_full_cdf = 0.0;
-    double max_weight = 0.0;
-    std::uint64_t support_violations = 0;
-    std::uint32_t lit_normals = 0;
-};
+using LocalAccuracy = builder::LocalAccuracy;
 
 /// One a normal, of any length > 0; all 0 where a normal sees no light. The file is a local environment without
 /// tilted curves, and of the target's resolution (rows theta, columns phi), else std::invalid_argument. The same

@@ -172,6 +172,24 @@ double texel_solid_angle(const Map& map, int column, int row) {
     }
 }
 
+bool has_shape(const Map& map) {
+    const auto ratio = [&](int across, int down) {
+        return map.width % across == 0 && map.width / across * down == map.height;
+    };
+    switch (map.layout) {
+    case Layout::latlong:
+        return true;
+    case Layout::vertical_cross:
+        return ratio(3, 4);
+    case Layout::horizontal_cross:
+        return ratio(4, 3);
+    case Layout::stacked_cube:
+        return ratio(1, 6);
+    default:
+        return ratio(1, 1);
+    }
+}
+
 namespace {
 
 /// Texels of the typical size of `map` around the equator: the angular map's are largest (radially) with 2 pi /

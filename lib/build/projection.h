@@ -5,20 +5,14 @@
 // docs/conventions.md: right-handed, z up. The middle of a layout shows +x, that of the octahedral map +z.
 #pragma once
 
+#include <acdf/builder.h>
+
 #include <cstddef>
 
 namespace acdf::build {
 
-/// How an image is laid out; finer than Projection, which the user names.
-enum class Layout {
-    latlong,
-    angular,          ///< P. Debevec's light probes, mirrored like the ball: distance from the centre ~ angle
-    mirrorball,       ///< orthographic photograph of a mirror ball
-    vertical_cross,   ///< cube, 3:4, the back face upside down at the foot
-    horizontal_cross, ///< cube, 4:3, the back face at the right end
-    stacked_cube,     ///< cube, 1:6, OpenEXR's ENVMAP_CUBE: texel centres on the face's borders
-    octahedral,       ///< P. Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008
-};
+/// How an image is laid out.
+using Layout = builder::Projection;
 
 /// An image of `width` x `height` texels and its layout.
 struct Map {
@@ -52,6 +46,8 @@ double texel_solid_angle(const Map& map, int column, int row);
 /// `map`: the next power of two, and half of it.
 int latlong_width(const Map& map);
 
+/// Whether `map` has the shape that its layout needs: 3:4, 4:3, 1:6 or square; lat-long maps have any.
+bool has_shape(const Map& map);
 /// Side of an octahedral image of which no texel is larger than the typical texel of `map`: the next power of two.
 int octahedral_side(const Map& map);
 

@@ -1,5 +1,6 @@
 #include "build/table.h"
 
+#include "build/errors.h"
 #include "compress/fit_tree.h"
 #include "compress/sum.h"
 
@@ -33,35 +34,34 @@ std::uint64_t bin_count(const std::vector<std::uint32_t>& shape, std::uint32_t i
 void check_options(const std::vector<std::uint32_t>& shape, const TableOptions& options) {
     const std::string axes = std::to_string(shape.size()) + (shape.size() == 1 ? " axis" : " axes");
     if (options.indexed >= shape.size())
-        throw std::invalid_argument("the array has " + axes +
-                                    ", of which one at least is sampled: index fewer than " +
-                                    std::to_string(shape.size()));
+        throw OptionError("the array has " + axes + ", of which one at least is sampled: index fewer than " +
+                          std::to_string(shape.size()));
     if (bin_count(shape, options.indexed) > max_bins)
-        throw std::invalid_argument("the indexed axes make more than 2^20 bins; index fewer");
+        throw OptionError("the indexed axes make more than 2^20 bins; index fewer");
     if (!options.names.empty() && options.names.size() != shape.size())
-        throw std::invalid_argument("the array has " + axes + ", but there are " +
-                                    std::to_string(options.names.size()) + " names");
+        throw OptionError("the array has " + axes + ", but there are " + std::to_string(options.names.size()) +
+                          " names");
     if (!options.ranges.empty() && options.ranges.size() != shape.size())
-        throw std::invalid_argument("one range an axis is needed");
+        throw OptionError("one range an axis is needed");
     std::set<std::string> seen;
     for (const std::string& name : options.names) {
-        if (name.empty() || name.size() > 15) throw std::invalid_argument("the name of an axis has 1 to 15 bytes");
-        if (!seen.insert(name).second) throw std::invalid_argument("two axes are called '" + name + "'");
+        if (name.empty() || name.size() > 15) throw OptionError("the name of an axis has 1 to 15 bytes");
+        if (!seen.insert(name).second) throw OptionError("two axes are called '" + name + "'");
     }
 }
 
 /// What rules 5015 and 9004 ask of an axis: that its coordinates tell its steps apart.
 void check_range(const compress::AxisDescription& axis) {
     if (!std::isfinite(axis.low) || !std::isfinite(axis.high) || axis.low == axis.high)
-        throw std::invalid_argument("the range of axis '" + axis.name + "' is empty or not finite");
+        throw OptionError("the range of axis '" + axis.name + "' is empty or not finite");
     AcdfAxis record = {};
     record.resolution = axis.resolution;
     record.low = axis.low;
     record.high = axis.high;
     if (!acdf_table_axis_steps(&record))
-        throw std::invalid_argument("the range of axis '" + axis.name +
-                                    "' is too far from 0 for its width, or too "
-                                    "large or small; choose other units");
+        throw OptionError("the range of axis '" + axis.name +
+                          "' is too far from 0 for its width, or too "
+                          "large or small; choose other units");
 }
 
 std::vector<compress::AxisDescription> describe_axes(const std::vector<std::uint32_t>& shape,
@@ -167,7 +167,7 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     description.axes = describe_axes(array.shape, options);
     const std::vector<compress::Grid> bins = table_grids(array, options.indexed);
     const std::vector<double> energy = integrals(bins);
-    if (!(energy.back() > 0.0)) throw std::invalid_argument("all its numbers are 0, so there is nothing to sample");
+    if (!(energy.back() > 0.0)) throw NoEnergy("all its numbers are 0, so there is nothing to sample");
     Table out;
     out.total = description.total = energy.back() * array.scale * volume(description.axes);
     if (!(out.total >= DBL_MIN && out.total <= DBL_MAX))

@@ -3,6 +3,7 @@
 
 #include "compress/grid.h"
 
+#include <acdf/accuracy.h>
 #include <acdf/reader.h>
 
 #include <cstdint>
@@ -22,17 +23,7 @@ struct BinAccuracy {
     bool lit = false; ///< whether the bin has any energy; else all of the above is 0
 };
 
-/// Over the bins that have energy, each as important as any other.
-struct TableAccuracy {
-    double relative_variance = 0.0; ///< mean
-    double median = 0.0, worst = 0.0;
-    std::uint32_t worst_bin = 0;
-    double rms_pdf_error = 0.0; ///< over bins and volume; a bin of uniform density has 1 everywhere
-    double kl_divergence = 0.0; ///< mean
-    double max_weight = 0.0;
-    std::uint64_t support_violations = 0, cells = 0;
-    std::uint32_t lit_bins = 0;
-};
+using TableAccuracy = builder::TableAccuracy;
 
 /// Compares a table file with `bins`, one grid a bin, their axes the sampled ones in order. Only the ratios of
 /// their values and of their measures matter. Throws std::invalid_argument where shapes differ, the file has tilted

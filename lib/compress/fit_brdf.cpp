@@ -2,6 +2,7 @@
 
 #include "compress/brdf_views.h"
 #include "compress/fit_separate.h"
+#include "compress/no_energy.h"
 
 #include <acdf/sample.h>
 
@@ -293,7 +294,7 @@ public:
         const BrdfViews views = look_at(reflected_, grid_, subdivided(x, parts), azimuths(turns));
         if (std::none_of(views.targets.begin(), views.targets.end(),
                          [](const ViewTarget& t) { return t.albedo > 0.0; }))
-            throw std::invalid_argument("it reflects nothing, so there is nothing to sample");
+            throw NoEnergy("it reflects nothing, so there is nothing to sample");
         if (options_.progress) options_.progress(0.6);
         Nodes nodes;
         for (std::size_t i = 0; i < x.size(); ++i) nodes.x.push_back(i * parts);

@@ -115,9 +115,9 @@ bool is_octahedral(const Image& image) {
 }
 
 build::Layout cube_layout(const std::string& path, const Image& image) {
-    if (has_ratio(image, 3, 4)) return build::Layout::vertical_cross;
-    if (has_ratio(image, 4, 3)) return build::Layout::horizontal_cross;
-    if (has_ratio(image, 1, 6)) return build::Layout::stacked_cube;
+    for (const build::Layout layout :
+         {build::Layout::vertical_cross, build::Layout::horizontal_cross, build::Layout::stacked_cube})
+        if (build::has_shape({layout, image.width, image.height})) return layout;
     refuse(path, image, "is no cube cross (3:4 or 4:3) and no column of faces (1:6); crop it, or set --projection");
 }
 

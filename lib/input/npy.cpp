@@ -17,8 +17,6 @@ namespace acdf::input {
 namespace {
 
 constexpr std::size_t block_items = std::size_t{1} << 16;
-constexpr double float_max = std::numeric_limits<float>::max();
-constexpr double float_min = std::numeric_limits<float>::min();
 
 /// Reads the numbers of a file block by block, as often as asked.
 class Numbers {
@@ -59,8 +57,6 @@ private:
     std::uint64_t count_;
 };
 
-bool is_bad(double value) { return !(value >= 0.0 && value <= std::numeric_limits<double>::max()); }
-
 /// From the order of the file to row-major.
 class Order {
 public:
@@ -83,60 +79,22 @@ private:
     const std::vector<std::uint32_t>& shape_;
 };
 
-struct Survey {
-    BadValues bad;
-    double smallest = std::numeric_limits<double>::infinity(), largest = 0.0; // of the positive ones
-};
-
-Survey survey(Numbers& numbers, const Order& order) {
-    Survey out;
-    numbers.each([&](std::uint64_t i, double value) {
-        if (is_bad(value)) {
-            ++(std::isnan(value)                   ? out.bad.nan
-               : value < 0.0 && !std::isinf(value) ? out.bad.negative
-                                                   : out.bad.infinite);
-            out.bad.first = std::min(out.bad.first, order.row_major(i));
-        } else if (value > 0.0) {
-            out.smallest = std::min(out.smallest, value);
-            out.largest = std::max(out.largest, value);
-        }
-    });
+build::Survey survey(Numbers& numbers, const Order& order) {
+    build::Survey out;
+    numbers.each([&](std::uint64_t i, double value) { out.add(value, order.row_major(i)); });
     return out;
 }
 
-void refuse_bad(const std::string& name, const std::vector<std::uint32_t>& shape, const BadValues& bad) {
-    std::string kinds;
-    const auto add = [&](std::uint64_t n, const char* kind) {
-        if (n > 0) kinds += (kinds.empty() ? "" : ", ") + std::to_string(n) + " " + kind;
-    };
-    add(bad.nan, "NaN");
-    add(bad.infinite, "infinite");
-    add(bad.negative, "negative");
-    throw input_error(name, "it has numbers that are no density: " + kinds + ", the first at [" +
-                                index_text(shape, bad.first) + "]; --bad-values zero takes them as 0");
-}
-
-/// The power of two by which numbers are multiplied before they become floats.
-double float_factor(const Survey& found) {
-    if (found.largest <= float_max && (found.largest == 0.0 || found.smallest >= float_min)) return 1.0;
-    int exponent = 0;
-    std::frexp(found.largest, &exponent);
-    return std::ldexp(1.0, std::clamp(127 - exponent, -1000, 1000));
-}
-
-NpyArray convert(Numbers& numbers, const NpyHeader& header, const Survey& found) {
+NpyArray convert(Numbers& numbers, const NpyHeader& header, const build::Survey& found) {
     const Order order(header);
     NpyArray array;
     array.shape = header.shape;
     array.bad = found.bad;
-    const double factor = header.item_size == 4 ? 1.0 : float_factor(found);
+    const double factor = header.item_size == 4 ? 1.0 : found.factor();
     array.scale = 1.0 / factor;
     array.values.resize(header.count());
-    numbers.each([&](std::uint64_t i, double value) {
-        if (is_bad(value) || value == 0.0) value = 0.0; // also -0
-        else value = std::max(value * factor, double{std::numeric_limits<float>::denorm_min()});
-        array.values[order.row_major(i)] = static_cast<float>(std::min(value, float_max));
-    });
+    numbers.each(
+        [&](std::uint64_t i, double value) { array.values[order.row_major(i)] = build::scaled(value, factor); });
     return array;
 }
 
@@ -159,9 +117,9 @@ NpyArray read_npy(std::FILE* file, std::uint64_t size, const std::string& name, 
     check_size(name, header, size); // before anything is allocated for it
     try {
         Numbers numbers(file, header, name);
-        const Survey found = survey(numbers, Order(header));
+        const build::Survey found = survey(numbers, Order(header));
         if (found.bad.count() > 0 && options.bad_values == BadValuePolicy::refuse)
-            refuse_bad(name, header.shape, found.bad);
+            throw input_error(name, build::text(found.bad, header.shape) + "; --bad-values zero takes them as 0");
         return convert(numbers, header, found);
     } catch (const std::bad_alloc&) {
         throw input_error(name, "there is not enough memory for its numbers; reduce its resolution");

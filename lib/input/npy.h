@@ -26,13 +26,8 @@ struct NpyHeader {
 /// Throws Error for anything but a plain array of float32 or float64.
 NpyHeader parse_npy_header(const std::string& name, const std::uint8_t* data, std::size_t size);
 
-/// Numbers that are no density: `first` is the index of the first one in row-major order.
-struct BadValues {
-    std::uint64_t nan = 0, infinite = 0, negative = 0;
-    std::uint64_t first = UINT64_MAX;
-
-    std::uint64_t count() const { return nan + infinite + negative; }
-};
+using build::BadValues;
+using build::index_text;
 
 /// The numbers of a file, row-major whatever the order there.
 struct NpyArray : build::Array {
@@ -50,8 +45,5 @@ NpyArray read_npy(const std::string& path, const NpyOptions& options = {});
 
 /// The same for a stream at its start that holds `size` bytes.
 NpyArray read_npy(std::FILE* file, std::uint64_t size, const std::string& name, const NpyOptions& options = {});
-
-/// "3, 0, 12": where the `flat`-th number in row-major order stands.
-std::string index_text(const std::vector<std::uint32_t>& shape, std::uint64_t flat);
 
 } // namespace acdf::input

@@ -190,11 +190,4 @@ NpyHeader parse_npy_header(const std::string& name, const std::uint8_t* data, st
     return header;
 }
 
-std::string index_text(const std::vector<std::uint32_t>& shape, std::uint64_t flat) {
-    std::string text;
-    for (std::size_t axis = shape.size(); axis-- > 0; flat /= shape[axis])
-        text = std::to_string(flat % shape[axis]) + (text.empty() ? "" : ", ") + text;
-    return text;
-}
-
 } // namespace acdf::input

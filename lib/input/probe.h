@@ -1,8 +1,7 @@
 // Reads environment maps of any common projection into one form: lat-long radiance.
 #pragma once
 
-#include "build/bad_texels.h"
-#include "build/source_target.h"
+#include "build/probe_rows.h"
 
 #include <array>
 #include <cstdint>
@@ -23,11 +22,7 @@ enum class Projection { automatic, latlong, angular, mirrorball, cube_cross, oct
 const char* to_string(Projection projection);
 
 /// The grid that a probe is fitted on.
-enum class Domain {
-    source,    ///< its own texels, of a lat-long or octahedral probe; else the one of the others that loses least
-    latlong,   ///< phi and theta
-    octahedral ///< u and v of the equal-area octahedral square
-};
+using Domain = builder::Domain;
 
 struct ProbeOptions {
     Projection projection = Projection::automatic;
@@ -53,17 +48,7 @@ struct Probe {
     std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
 };
 
-/// Takes a lat-long probe in bands of rows, or a map of another layout.
-class ProbeRows {
-public:
-    virtual ~ProbeRows() = default;
-    /// A map that is not lat-long, as it is: map.height x map.width x 3, finite and >= 0. False, and nothing is
-    /// kept, where it is wanted as rows of a lat-long map.
-    virtual bool take_map(const build::Map&, const std::vector<float>& /*rgb*/) { return false; }
-    virtual void begin(int width, int height) = 0;
-    /// `count` rows of RGB, finite and >= 0, from row `first` on. Rows that were there before are replaced.
-    virtual void take(int first, int count, const float* rgb) = 0;
-};
+using build::ProbeRows;
 
 /// Reads any image OpenImageIO reads. Throws Error.
 Probe read_probe(const std::string& path, const ProbeOptions& options = {});

@@ -1,9 +1,10 @@
 // How large a fit becomes, or how accurate: --cells, --budget and --target-variance, of which one is enough.
 #pragma once
 
-#include "compress/fit.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/sizes.h"
+
+#include <acdf/builder.h>
 
 #include <CLI/CLI.hpp>
 
@@ -46,8 +47,8 @@ inline void add_goal(CLI::App& command, std::uint32_t& cells, std::string& budge
 
 /// Takes over what was given; else `goal` stays as it is. Returns how many were. Throws CLI::ValidationError where
 /// there are two, or a budget is no size.
-inline int read_goal(const CLI::App& command, const std::string& budget, compress::Goal& goal) {
-    using Kind = compress::Goal::Kind;
+inline int read_goal(const CLI::App& command, const std::string& budget, builder::Goal& goal) {
+    using Kind = builder::Goal::Kind;
     const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
     const int goals = given("--cells") + given("--budget") + given("--target-variance");
     if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");

@@ -31,10 +31,11 @@ inline void add_domain(CLI::App& command, input::Domain& domain) {
                                                      {"latlong", input::Domain::latlong},
                                                      {"octahedral", input::Domain::octahedral}};
     command
-        .add_option("--domain", domain,
-                    "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe themselves; "
-                    "for other probes the one of both grids that loses least), latlong, octahedral (equal-area). "
-                    "Noise is that of a renderer that looks the probe itself up, whatever the grid")
+        .add_option(
+            "--domain", domain,
+            "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe themselves; "
+            "for other probes the one of both grids that loses least), latlong, octahedral (equal-area). "
+            "Noise is that of a renderer that looks the probe itself up, whatever the grid")
         ->transform(CLI::CheckedTransformer(names).description(""))
         ->option_text("NAME [source]")
         ->group("Input");

@@ -1,16 +1,14 @@
 #include "tools/cli/probe_source.h"
 
-#include "build/option_text.h"
+#include "build/errors.h"
 #include "tools/commands.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
-#include <vector>
 
 namespace acdf::tools {
 
-build::Source source_of(const input::Probe& probe, const input::ProbeOptions& options) {
+builder::Source source_of(const input::Probe& probe, const input::ProbeOptions& options) {
     return {probe.source_name, probe.source_sha256, input::to_string(probe.projection), reading_text(options)};
 }
 
@@ -26,77 +24,16 @@ std::string reading_text(const input::ProbeOptions& options) {
 
 namespace {
 
-/// A probe on its way into a target, on a grid that was told or is chosen.
-class TargetRows : public input::ProbeRows {
-public:
-    TargetRows(const compress::TargetOptions& options, input::Domain domain, std::optional<build::Domain> grid = {})
-        : options_(options), domain_(domain), grid_(grid) {}
-
-    bool take_map(const build::Map& map, const std::vector<float>& rgb) override {
-        result_ = target_of(map, rgb.data());
-        return true;
-    }
-    void begin(int width, int height) override {
-        map_ = {build::Layout::latlong, width, height};
-        if (own_texels(map_)) {
-            compress::TargetOptions options = options_;
-            options.parameterization = ACDF_PARAM_LATLONG;
-            target_.emplace(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), options);
-        } else {
-            rgb_.resize(row() * static_cast<std::size_t>(height));
-        }
-    }
-    void take(int first, int count, const float* rgb) override {
-        if (target_) target_->take(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), rgb);
-        else
-            std::copy_n(rgb, row() * static_cast<std::size_t>(count),
-                        rgb_.begin() + static_cast<std::ptrdiff_t>(row() * static_cast<std::size_t>(first)));
-    }
-    build::SourceTarget finish() {
-        if (target_) return {target_->finish(), 0.0};
-        return rgb_.empty() ? std::move(result_) : target_of(map_, rgb_.data());
-    }
-
-private:
-    std::size_t row() const { return std::size_t{3} * static_cast<std::size_t>(map_.width); }
-
-    /// The grid, where it does not depend on what would be lost.
-    std::optional<build::Domain> grid_of(const build::Map& map) const {
-        if (grid_) return grid_;
-        switch (domain_) {
-        case input::Domain::latlong:
-            return build::domain_for(map, ACDF_PARAM_LATLONG);
-        case input::Domain::octahedral:
-            return build::domain_for(map, ACDF_PARAM_OCTAHEDRAL);
-        default:
-            return build::own_domain(map);
-        }
-    }
-    bool own_texels(const build::Map& map) const {
-        const auto grid = grid_of(map), own = build::own_domain(map);
-        return grid && own && *grid == *own;
-    }
-    build::SourceTarget target_of(const build::Map& map, const float* rgb) const {
-        const auto grid = grid_of(map);
-        return grid ? build::source_target(map, rgb, *grid, options_)
-                    : build::source_target_losing_least(map, rgb, options_);
-    }
-
-    compress::TargetOptions options_;
-    input::Domain domain_;
-    std::optional<build::Domain> grid_;
-    build::Map map_;
-    std::vector<float> rgb_;
-    std::optional<compress::EnvironmentTarget> target_;
-    build::SourceTarget result_;
-};
-
-compress::Target lit(const std::string& path, compress::Target target) {
-    if (!(compress::integral(target) > 0.0))
+/// What `make` makes, unless it has no energy.
+template <class Make>
+builder::Target lit(const std::string& path, const Make& make) {
+    try {
+        return make();
+    } catch (const build::NoEnergy&) {
         throw Failure(path +
                       ": the probe is black in the channels asked for, so there is nothing to sample; is it the "
                       "right file or layer? (what is black in all channels is accepted with --on-black uniform)");
-    return target;
+    }
 }
 
 /// `grid`: what the probe was resampled to; empty where it was not.
@@ -124,10 +61,14 @@ Note notes_of(const std::string& path, bool quiet) {
 
 } // namespace
 
-compress::Target probe_target(const std::string& path, const input::Probe& probe,
-                              const compress::TargetOptions& options) {
-    return lit(path, compress::environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
-                                                  static_cast<std::uint32_t>(probe.height), options));
+builder::Target probe_target(const std::string& path, const input::Probe& probe,
+                             const builder::TargetOptions& options) {
+    return lit(path, [&] {
+        builder::TargetRows rows(options);
+        rows.begin(probe.width, probe.height);
+        rows.take(0, probe.height, probe.rgb.data());
+        return rows.finish();
+    });
 }
 
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet) {
@@ -138,18 +79,17 @@ input::Probe load_probe(const std::string& path, const input::ProbeOptions& opti
 
 namespace {
 
-ProbeTarget load(const std::string& path, const input::ProbeOptions& options, TargetRows rows, const Note& note) {
+ProbeTarget load(const std::string& path, const input::ProbeOptions& options, builder::TargetRows rows,
+                 const Note& note) {
     ProbeTarget out;
     out.probe = input::read_probe(path, options, rows);
-    build::SourceTarget made = rows.finish();
+    out.target = lit(path, [&] { return rows.finish(); });
+    const builder::Target::Data& made = *out.target.data();
     out.error = made.error;
-    out.target = lit(path, std::move(made.target));
-    out.probe.width = static_cast<int>(out.target.columns);
-    out.probe.height = static_cast<int>(out.target.rows);
-    const auto own = build::own_domain(out.probe.source_map);
-    out.resampled =
-        !own || !(*own == build::Domain{out.target.parameterization, out.target.columns, out.target.rows});
-    const bool square = out.target.parameterization == ACDF_PARAM_OCTAHEDRAL;
+    out.resampled = made.resampled();
+    out.probe.width = static_cast<int>(made.grid.columns);
+    out.probe.height = static_cast<int>(made.grid.rows);
+    const bool square = made.grid.parameterization == ACDF_PARAM_OCTAHEDRAL;
     tell(out.probe, options, !out.resampled ? "" : square ? "octahedral" : "lat-long", note);
     return out;
 }
@@ -157,19 +97,27 @@ ProbeTarget load(const std::string& path, const input::ProbeOptions& options, Ta
 } // namespace
 
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
-                        const compress::TargetOptions& target_options, const Note& note) {
-    return load(path, options, TargetRows(target_options, options.domain), note);
+                        const builder::TargetOptions& target_options, const Note& note) {
+    builder::TargetOptions chosen = target_options;
+    chosen.domain = options.domain;
+    return load(path, options, builder::TargetRows(chosen), note);
+}
+
+builder::TargetOptions stored_options(const File& file) {
+    const AcdfDescription& d = file.description();
+    builder::TargetOptions out;
+    out.channels = {static_cast<AcdfChannels>(d.channels),
+                    {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]}};
+    out.filter = static_cast<AcdfFilter>(d.filter);
+    return out;
 }
 
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
                           const input::ProbeOptions& options, bool quiet) {
-    const AcdfDescription& d = file.description();
-    const compress::TargetOptions target{{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
-                                         static_cast<AcdfChannels>(d.channels),
-                                         static_cast<AcdfFilter>(d.filter),
-                                         static_cast<AcdfParameterization>(d.parameterization)};
-    const build::Domain grid{target.parameterization, file.axis(0).resolution, file.axis(1).resolution};
-    ProbeTarget out = load(source, options, TargetRows(target, options.domain, grid), notes_of(source, quiet));
+    const build::Domain grid{static_cast<AcdfParameterization>(file.description().parameterization),
+                             file.axis(0).resolution, file.axis(1).resolution};
+    ProbeTarget out =
+        load(source, options, builder::TargetRows(stored_options(file), {}, grid), notes_of(source, quiet));
     const Text hash = file.metadata("source.sha256");
     if (hash.size > 0 && std::string(hash.data, hash.size) != out.probe.source_sha256 && !quiet)
         std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),

@@ -1,9 +1,7 @@
 // Probes as the command line takes them: read, told of, and made into targets.
 #pragma once
 
-#include "build/environment.h"
-#include "build/source_target.h"
-#include "compress/target.h"
+#include "build/builder/sources.h"
 #include "input/probe.h"
 
 #include <acdf/reader.h>
@@ -14,14 +12,14 @@
 namespace acdf::tools {
 
 /// What was made of a probe, for the metadata.
-build::Source source_of(const input::Probe& probe, const input::ProbeOptions& options);
+builder::Source source_of(const input::Probe& probe, const input::ProbeOptions& options);
 
 /// Options of reading in one spelling (option_text.h): "--projection angular --domain latlong ", or empty.
 std::string reading_text(const input::ProbeOptions& options);
 
 /// The target of a probe. Throws Failure, naming `path`, where it has no energy.
-compress::Target probe_target(const std::string& path, const input::Probe& probe,
-                              const compress::TargetOptions& options = {});
+builder::Target probe_target(const std::string& path, const input::Probe& probe,
+                             const builder::TargetOptions& options = {});
 
 /// Called with what a user should know of a source: one line without a file's name.
 using Note = std::function<void(const std::string&)>;
@@ -29,19 +27,23 @@ using Note = std::function<void(const std::string&)>;
 /// A probe without its pixels, and what is fitted of it.
 struct ProbeTarget {
     input::Probe probe; ///< its width and height are those of the target's grid
-    compress::Target target;
+    builder::Target target;
     bool resampled = false; ///< the grid is not the source's own
     double error = 0.0;     ///< build::SourceTarget
 };
 
-/// Reads a probe, makes its target on the grid that `options.domain` tells, and tells what was assumed and what was
-/// mended. A lat-long probe on its own texels is read in bands of rows: memory holds the target, four bytes a texel
-/// for one channel with nearest lookup. Throws Error, and Failure where it has no energy.
+/// Reads a probe, makes its target on the grid that `options.domain` (not that of `target_options`) tells, and
+/// tells what was assumed and what was mended. A lat-long probe on its own texels is read in bands of rows: memory
+/// holds the target, four bytes a texel for one channel with nearest lookup. Throws Error, and Failure where it has
+/// no energy.
 ProbeTarget load_target(const std::string& path, const input::ProbeOptions& options,
-                        const compress::TargetOptions& target_options, const Note& note);
+                        const builder::TargetOptions& target_options, const Note& note);
 
 /// Reads a probe, and tells the same on stderr unless `quiet`. Throws Error.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
+
+/// What a file says of channels and filter.
+builder::TargetOptions stored_options(const File& file);
 
 /// What a renderer that looks `source` up integrates, on the grid of a file: what that says of channels and filter.
 /// The source may have any layout and resolution. Tells on stderr, unless `quiet`, where it is another file than

@@ -28,17 +28,15 @@ void add_renderer(CLI::App& command, const Renderer*& chosen) {
 }
 
 void use_renderer(const CLI::App& command, const Renderer* chosen, input::ProbeOptions& input,
-                  compress::TargetOptions& target) {
+                  builder::TargetOptions& target) {
     if (!chosen) return;
     const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
     if (!given("--domain")) input.domain = chosen->domain;
     if (!given("--filter")) target.filter = chosen->filter;
     if (given("--channel")) return;
     for (const build::ChannelName& channel : build::channel_names)
-        if (channel.name == std::string(chosen->channel)) {
-            target.channels = channel.channels;
-            target.weights = channel.weights;
-        }
+        if (channel.name == std::string(chosen->channel))
+            target.channels = {channel.channels, {channel.weights.r, channel.weights.g, channel.weights.b}};
 }
 
 std::string axes_text(const Renderer& renderer) {

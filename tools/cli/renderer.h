@@ -1,7 +1,6 @@
 // What a renderer does with its map, all at once: --for.
 #pragma once
 
-#include "compress/target.h"
 #include "input/probe.h"
 
 #include <string>
@@ -35,7 +34,7 @@ void add_renderer(CLI::App& command, const Renderer*& chosen);
 
 /// Sets domain, filter and channel, those left as they are that the command line gave by themselves.
 void use_renderer(const CLI::App& command, const Renderer* chosen, input::ProbeOptions& input,
-                  compress::TargetOptions& target);
+                  builder::TargetOptions& target);
 
 /// What the caller must do with directions: one line.
 std::string axes_text(const Renderer& renderer);

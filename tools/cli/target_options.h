@@ -3,6 +3,8 @@
 
 #include "build/option_text.h"
 
+#include <acdf/builder.h>
+
 #include <CLI/CLI.hpp>
 
 #include <map>
@@ -11,24 +13,28 @@
 
 namespace acdf::tools {
 
-inline void add_target_options(CLI::App& command, compress::TargetOptions& target) {
+inline void add_channels(CLI::App& command, builder::Channels& channels, const char* help) {
     std::vector<std::string> names;
     for (const build::ChannelName& channel : build::channel_names) names.push_back(channel.name);
     command
         .add_option_function<std::string>(
             "--channel",
-            [&target](const std::string& name) {
+            [&channels](const std::string& name) {
                 for (const build::ChannelName& channel : build::channel_names)
-                    if (name == channel.name) {
-                        target.channels = channel.channels;
-                        target.weights = channel.weights;
-                    }
+                    if (name == channel.name)
+                        channels = {channel.channels, {channel.weights.r, channel.weights.g, channel.weights.b}};
             },
-            "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
-            "coloured lights), max (the largest channel), average (all alike), red, green or blue alone")
+            help)
         ->check(CLI::IsMember(names).description(""))
         ->option_text("NAME [luminance]")
         ->group("Fit");
+}
+
+inline void add_target_options(CLI::App& command, builder::TargetOptions& target) {
+    add_channels(
+        command, target.channels,
+        "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
+        "coloured lights), max (the largest channel), average (all alike), red, green or blue alone");
     const std::map<std::string, AcdfFilter> filters{{"nearest", ACDF_FILTER_NEAREST},
                                                     {"bilinear", ACDF_FILTER_BILINEAR}};
     command

@@ -1,4 +1,5 @@
 // acdf measure: how accurate a file is, by summation over its source.
+#include "build/environment_accuracy.h"
 #include "measure/full_cdf.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
@@ -89,8 +90,9 @@ void run(const MeasureArguments& options) {
         fail_kind(options.file, loaded.file, "measure", "files of every other kind");
     const ProbeTarget source =
         source_target(options.file, loaded.file, options.source, options.input, options.quiet);
-    const Measured measured{build::measure_environment(loaded.file, source.target),
-                            measure::full_cdf_relative_variance(source.target), source.error};
+    const compress::Target& target = builder::grid_of(source.target);
+    const Measured measured{build::measure_environment(loaded.file, target),
+                            measure::full_cdf_relative_variance(target), source.error};
     const std::string warning =
         resampling_warning(source, measured.accuracy.least_variance, measured.accuracy.relative_variance);
     if (!warning.empty() && !options.quiet) std::fprintf(stderr, "%s: %s\n", options.file.c_str(), warning.c_str());

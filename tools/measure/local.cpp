@@ -111,29 +111,25 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
 }
 
 /// The rivals know lat-long maps alone.
-compress::Target latlong_target(const LocalMeasureOptions& options, const File& file,
-                                const compress::Target& target) {
-    if (target.parameterization == ACDF_PARAM_LATLONG) return target;
-    const AcdfDescription& d = file.description();
+builder::Target latlong_target(const LocalMeasureOptions& options, const File& file,
+                               const builder::Target& target) {
+    if (builder::grid_of(target).parameterization == ACDF_PARAM_LATLONG) return target;
     input::ProbeOptions reading = options.input;
     reading.domain = input::Domain::latlong;
-    return load_target(options.source, reading,
-                       {{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
-                        static_cast<AcdfChannels>(d.channels),
-                        static_cast<AcdfFilter>(d.filter)},
-                       [](const std::string&) {})
-        .target;
+    return load_target(options.source, reading, stored_options(file), [](const std::string&) {}).target;
 }
 
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    const compress::Target target =
+    const builder::Target held =
         source_target(options.file, file, options.source, options.input, options.quiet).target;
+    const compress::Target& target = builder::grid_of(held);
     const std::vector<build::Normal> normals = build::random_normals(options.normals);
     const build::LocalAccuracy accuracy = build::summary(build::measure_normals(file, target, normals));
     const std::vector<Rival> rivals =
-        options.rivals ? rivals_of(latlong_target(options, file, target), normals) : std::vector<Rival>{};
+        options.rivals ? rivals_of(builder::grid_of(latlong_target(options, file, held)), normals)
+                       : std::vector<Rival>{};
     if (options.json) std::printf("%s\n", report(file, options, accuracy, rivals).dump(2).c_str());
     else print_text(file, options, accuracy, rivals);
 }

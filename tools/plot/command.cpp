@@ -45,8 +45,8 @@ constexpr int smallest_width = 16, largest_width = 8192;
 
 /// What is plotted, and what its title says.
 struct Plotted {
-    LoadedFile stored;       // of an .acdf file, else empty
-    compress::Target target; // of a probe, else empty
+    LoadedFile stored;      // of an .acdf file, else empty
+    builder::Target target; // of a probe, else empty
     Density density;
     std::uint32_t columns = 0, rows = 0;
     std::optional<PlottedView> brdf;    // of a BRDF file
@@ -146,9 +146,9 @@ void load_stored(const PlotArguments& options, Plotted& source) {
 void load_image(const PlotArguments& options, Plotted& source) {
     const input::Probe probe = load_probe(options.file, options.input, options.quiet);
     source.target = probe_target(options.file, probe);
-    source.density = density_of(source.target);
-    source.columns = source.target.columns;
-    source.rows = source.target.rows;
+    source.density = density_of(builder::grid_of(source.target));
+    source.columns = source.target.columns();
+    source.rows = source.target.rows();
     source.title = {shown_name(options.file), "full resolution",
                     std::to_string(source.columns) + " x " + std::to_string(source.rows)};
 }

@@ -1,4 +1,5 @@
 // acdf render: direct lighting of a scene with several samplers.
+#include "build/errors.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/number_range.h"
@@ -157,12 +158,15 @@ std::vector<const input::Brdf*> brdfs_of(const LoadedScene& scene) {
     return out;
 }
 
-compress::Target light_target(const RenderArguments& options, const input::Probe& probe) {
-    compress::Target target =
-        compress::environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
-                                     static_cast<std::uint32_t>(probe.height), compress::TargetOptions());
-    if (!(target.total > 0.0)) throw Failure(options.scene + ": light: the probe is black");
-    return target;
+builder::Target light_target(const RenderArguments& options, const input::Probe& probe) {
+    try {
+        builder::TargetRows rows(builder::TargetOptions{});
+        rows.begin(probe.width, probe.height);
+        rows.take(0, probe.height, probe.rgb.data());
+        return rows.finish();
+    } catch (const build::NoEnergy&) {
+        throw Failure(options.scene + ": light: the probe is black");
+    }
 }
 
 RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, std::vector<SamplerSpec> samplers) {
@@ -173,7 +177,7 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
     run.options.samples = scene.file.samples;
     run.options.reference = !options.no_reference;
     run.options.timing = !options.no_timing;
-    const compress::Target target = light_target(options, scene.probe);
+    const builder::Target target = light_target(options, scene.probe);
     SamplerBuilder builder(target, brdfs_of(scene), options.data);
     ProgressBar bar(options.quiet);
     const build::Progress progress = bar.callback();

@@ -1,11 +1,10 @@
 #include "tools/render/sampler_build.h"
 
 #include "build/brdf.h"
-#include "build/environment.h"
-#include "build/local.h"
 #include "measure/estimators.h"
 #include "measure/light_samplers.h"
 #include "measure/stratified_map.h"
+#include "tools/cli/built.h"
 #include "tools/cli/file_input.h"
 #include "tools/commands.h"
 
@@ -35,24 +34,30 @@ Table file_table(std::vector<std::uint8_t> bytes) {
     return {loaded, std::move(sampler)};
 }
 
-compress::Goal budget(std::uint64_t bytes) { return {compress::Goal::Kind::budget, 0, bytes, 0.0}; }
-
-Table env_table(const compress::Target& target, std::uint64_t bytes) {
-    build::EnvironmentOptions options;
-    options.fit.goal = budget(bytes);
-    return file_table(build::build_environment(target, {}, options).bytes);
+Table env_table(const builder::Target& target, std::uint64_t bytes) {
+    builder::EnvironmentOptions options;
+    options.goal = builder::Goal::of_budget(bytes);
+    builder::Environment made;
+    throw_unless_built(builder::environment(target, options, made));
+    return file_table(std::move(made.bytes));
 }
 
-Table local_table(const compress::Target& target, std::uint64_t bytes) {
-    build::LocalOptions options;
-    options.goal = budget(bytes);
-    return file_table(build::build_local(target, {}, options).bytes);
+Table local_table(const builder::Target& target, std::uint64_t bytes) {
+    builder::LocalOptions options;
+    options.goal = builder::Goal::of_budget(bytes);
+    builder::Local made;
+    throw_unless_built(builder::local(target, options, made));
+    return file_table(std::move(made.bytes));
 }
 
 Table brdf_table(const input::Brdf& brdf, std::uint64_t bytes) {
-    build::BrdfFileOptions options;
-    options.fit.goal = budget(bytes);
-    return file_table(build::build_brdf(brdf, options).bytes);
+    builder::BrdfOptions options;
+    options.source.name = brdf.name;
+    options.source.sha256 = brdf.sha256;
+    options.goal = builder::Goal::of_budget(bytes);
+    builder::BrdfFile made;
+    throw_unless_built(builder::brdf(builder::described(brdf), options, made));
+    return file_table(std::move(made.bytes));
 }
 
 Table full_brdf_table(const input::Brdf& brdf, bool centre) {
@@ -81,7 +86,8 @@ bool is_ours(const SamplerSpec& spec) {
 } // namespace
 
 struct SamplerBuilder::Store {
-    const compress::Target& target;
+    builder::Target fitted;
+    const compress::Target& target; ///< of it
     std::vector<const input::Brdf*> brdfs;
     std::string data;
     std::map<std::string, Table> tables; ///< by text, and the material where that matters
@@ -100,9 +106,9 @@ struct SamplerBuilder::Store {
         case SamplerKind::ggx:
             return {nullptr, measure::ggx_sampler(spec.alpha)};
         case SamplerKind::env:
-            return env_table(target, spec.bytes);
+            return env_table(fitted, spec.bytes);
         case SamplerKind::local:
-            return local_table(target, spec.bytes);
+            return local_table(fitted, spec.bytes);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
         case SamplerKind::brdf_table:
@@ -166,9 +172,9 @@ struct SamplerBuilder::Store {
     }
 };
 
-SamplerBuilder::SamplerBuilder(const compress::Target& target, std::vector<const input::Brdf*> brdfs,
+SamplerBuilder::SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs,
                                std::string data)
-    : store_(new Store{target, std::move(brdfs), std::move(data), {}, {}, {}}) {}
+    : store_(new Store{target, builder::grid_of(target), std::move(brdfs), std::move(data), {}, {}, {}}) {}
 
 SamplerBuilder::~SamplerBuilder() = default;
 

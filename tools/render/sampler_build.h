@@ -1,7 +1,7 @@
 // From the texts of samplers to estimators, all tables built once.
 #pragma once
 
-#include "compress/target.h"
+#include "build/builder/sources.h"
 #include "input/brdf.h"
 #include "measure/estimator.h"
 #include "tools/render/sampler_spec.h"
@@ -22,8 +22,8 @@ struct BuiltSampler {
 
 class SamplerBuilder {
 public:
-    /// `brdfs`: one a material. All are referred to and must outlive the builder; files are relative to `data`.
-    SamplerBuilder(const compress::Target& target, std::vector<const input::Brdf*> brdfs, std::string data);
+    /// `brdfs`: one a material, which are referred to and must outlive the builder; files are relative to `data`.
+    SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs, std::string data);
     ~SamplerBuilder();
     SamplerBuilder(const SamplerBuilder&) = delete;
     SamplerBuilder& operator=(const SamplerBuilder&) = delete;

@@ -1,10 +1,12 @@
 // The sweep of BRDF files.
 #include "build/brdf.h"
+#include "build/builder/sources.h"
 #include "input/rgl_brdf.h"
 #include "measure/brdf_table.h"
 #include "measure/light_samplers.h"
 #include "measure/point_samplers.h"
 #include "measure/rgl_sampler.h"
+#include "tools/cli/built.h"
 #include "tools/plot/brdf.h"
 #include "tools/plot/density.h"
 #include "tools/plot/knots.h"
@@ -20,25 +22,26 @@ namespace {
 
 using measure::ShadingPoint;
 
-build::BrdfFileOptions options_of(const Step& step, bool isotropic, const SweepOptions& sweep) {
-    build::BrdfFileOptions out;
+builder::BrdfOptions options_of(const Step& step, const input::Brdf& brdf, const SweepOptions& sweep) {
+    builder::BrdfOptions out;
+    out.source.name = brdf.name;
+    out.source.sha256 = brdf.sha256;
     out.channels = sweep.target.channels;
-    out.weights = sweep.target.weights;
-    out.fit.goal = {compress::Goal::Kind::budget, 0, step.budget, 0.0};
-    out.fit.sharing = step.fit == "variance";
+    out.goal = builder::Goal::of_budget(step.budget);
+    out.sharing = step.fit == "variance";
     if (step.fit != "cdf" && step.fit != "uniform") return out;
-    out.fit.fit = step.fit == "cdf" ? ACDF_FIT_CDF : ACDF_FIT_UNIFORM;
+    out.fit = step.fit == "cdf" ? ACDF_FIT_CDF : ACDF_FIT_UNIFORM;
     // Three segments in theta_h for one in phi_h, as in Lawrence et al. 2005, §6.2.
-    const double bins = isotropic ? 32.0 : 32.0 * 16.0, cells = double(cells_in(step.budget)) / bins;
-    out.fit.phi_segments = static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(cells / 3.0))));
-    out.fit.theta_segments = static_cast<std::uint32_t>(std::max(2.0, std::round(cells / out.fit.phi_segments)));
+    const double bins = brdf.isotropic ? 32.0 : 32.0 * 16.0, cells = double(cells_in(step.budget)) / bins;
+    out.phi_segments = static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(cells / 3.0))));
+    out.theta_segments = static_cast<std::uint32_t>(std::max(2.0, std::round(cells / out.phi_segments)));
     return out;
 }
 
-std::string text_of(const Step& step, const build::BrdfFileOptions& o) {
+std::string text_of(const Step& step, const builder::BrdfOptions& o) {
     if (step.fit == "variance") return "--budget " + budget_text(step.budget);
     if (step.fit == "separate") return "--no-sharing --budget " + budget_text(step.budget);
-    return "--fit " + step.fit + " " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
+    return "--fit " + step.fit + " " + knots_text(o.phi_segments, o.theta_segments);
 }
 
 const char* label_of(const std::string& fit) {
@@ -71,7 +74,7 @@ private:
     double wo_[3] = {0.0, 0.0, 1.0};
 };
 
-void take(SweepRow& row, const build::BrdfAccuracy& a) {
+void take(SweepRow& row, const builder::BrdfAccuracy& a) {
     row.cells = a.cells;
     row.relative_variance = a.support_violations > 0 ? HUGE_VAL : a.relative_variance;
     row.worst = a.support_violations > 0 ? HUGE_VAL : a.worst;
@@ -80,8 +83,9 @@ void take(SweepRow& row, const build::BrdfAccuracy& a) {
 }
 
 Candidate make_file(const input::Brdf& brdf, const SweepOptions& sweep, const Step& step) {
-    const build::BrdfFileOptions options = options_of(step, brdf.isotropic, sweep);
-    build::BrdfFile made = build::build_brdf(brdf, options);
+    const builder::BrdfOptions options = options_of(step, brdf, sweep);
+    builder::BrdfFile made;
+    throw_unless_built(builder::brdf(builder::described(brdf), options, made));
     Candidate out = file_candidate(std::move(made.bytes));
     out.row.label = label_of(step.fit);
     out.row.options = text_of(step, options);
@@ -159,7 +163,7 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
     sweep.visibility = options.visibility;
     const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     const compress::Reflected reflected =
-        build::reflected_light(brdf, options.target.channels, options.target.weights);
+        build::reflected_light(brdf, options.target.channels.mode, builder::internal(options.target).weights);
     sweep.conditions = build::kMeasuredViews;
     std::vector<Candidate> candidates;
     build_all(

@@ -74,10 +74,10 @@ void check_options(SweepArguments& options, SweepKind kind) {
     if (kind == SweepKind::brdf)
         for (const char* option : {"--projection", "--domain", "--filter", "--bad-pixels", "--on-black"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for environment maps");
-    const compress::TargetOptions& target = options.sweep.target;
+    const builder::TargetOptions& target = options.sweep.target;
     if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
         throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the rivals are defined for");
-    if (kind != SweepKind::brdf && target.channels == ACDF_CHANNELS_SEPARATE)
+    if (kind != SweepKind::brdf && target.channels.mode == ACDF_CHANNELS_SEPARATE)
         throw CLI::ValidationError("--channel",
                                    "is one channel in a sweep of probes: the rivals are defined for one");
     options.sweep.timing = !options.no_timing;
@@ -113,15 +113,15 @@ std::string output_of(const std::string& source, SweepKind kind) {
 }
 
 /// The probe without its pixels, and its target.
-std::pair<input::Probe, compress::Target> sweep_target(const SweepArguments& options, SweepKind kind) {
+std::pair<input::Probe, builder::Target> sweep_target(const SweepArguments& options, SweepKind kind) {
     if (kind == SweepKind::environment && options.input.domain != input::Domain::latlong) {
         ProbeTarget own =
             load_target(options.source, options.input, options.sweep.target, [](const std::string&) {});
-        if (!own.resampled && own.target.parameterization == ACDF_PARAM_OCTAHEDRAL)
+        if (!own.resampled && builder::grid_of(own.target).parameterization == ACDF_PARAM_OCTAHEDRAL)
             return {std::move(own.probe), std::move(own.target)};
     }
     input::Probe probe = load_probe(options.source, options.input, options.quiet);
-    compress::Target target = probe_target(options.source, probe, options.sweep.target);
+    builder::Target target = probe_target(options.source, probe, options.sweep.target);
     probe.rgb = {};
     return {std::move(probe), std::move(target)};
 }
@@ -130,8 +130,8 @@ Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress
     // The samplers to compare with draw texels: of a lat-long map or, where the density is that of the map as a
     // whole, of an octahedral one.
     const auto [probe, target] = sweep_target(options, kind);
-    const build::Source source = source_of(probe, options.input);
-    const bool square = target.parameterization == ACDF_PARAM_OCTAHEDRAL;
+    const builder::Source source = source_of(probe, options.input);
+    const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;
     Sweep sweep = kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
                                            : sweep_environment(target, source, options.sweep, progress);
     sweep.description =

@@ -1,7 +1,8 @@
 // The sweep of environment files.
-#include "build/environment.h"
+#include "build/builder/sources.h"
 #include "build/local_accuracy.h"
 #include "measure/full_cdf.h"
+#include "tools/cli/built.h"
 #include "tools/plot/density.h"
 #include "tools/plot/knots.h"
 #include "tools/sweep/build.h"
@@ -14,29 +15,27 @@
 namespace acdf::tools {
 namespace {
 
-build::EnvironmentOptions options_of(const Step& step, const compress::Target& target, const SweepOptions& sweep) {
-    build::EnvironmentOptions out;
-    out.target = sweep.target;
+builder::EnvironmentOptions options_of(const Step& step, const builder::Target& target) {
+    builder::EnvironmentOptions out;
     const std::uint32_t cells = cells_in(step.budget);
     if (step.fit == "variance") {
-        out.fit.goal.kind = compress::Goal::Kind::budget;
-        out.fit.goal.budget = step.budget;
+        out.goal = builder::Goal::of_budget(step.budget);
     } else if (step.fit == "cascade") {
-        out.fit.shape = compress::Shape::cascade;
-        out.fit.goal.cells = cells;
+        out.fit.shape = builder::Shape::cascade;
+        out.goal.cells = cells;
     } else {
         out.fit.fit = step.fit == "cdf" ? ACDF_FIT_CDF : step.fit == "pdf" ? ACDF_FIT_PDF : ACDF_FIT_UNIFORM;
         const auto side = static_cast<std::uint32_t>(std::max(2.0, std::sqrt(cells)));
-        out.fit.column_segments = std::min(side, target.columns);
-        out.fit.row_segments = std::min(side, target.rows);
+        out.fit.phi_segments = std::min(side, target.columns());
+        out.fit.theta_segments = std::min(side, target.rows());
     }
     return out;
 }
 
-std::string text_of(const Step& step, const build::EnvironmentOptions& o) {
+std::string text_of(const Step& step, const builder::EnvironmentOptions& o) {
     if (step.fit == "variance") return "--budget " + budget_text(step.budget);
-    if (step.fit == "cascade") return "--shape cascade --cells " + std::to_string(o.fit.goal.cells);
-    return "--fit " + step.fit + " " + knots_text(o.fit.column_segments, o.fit.row_segments);
+    if (step.fit == "cascade") return "--shape cascade --cells " + std::to_string(o.goal.cells);
+    return "--fit " + step.fit + " " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
 }
 
 const char* label_of(const std::string& fit) {
@@ -47,10 +46,11 @@ const char* label_of(const std::string& fit) {
                               : "uniform knots";
 }
 
-Candidate make_file(const compress::Target& target, const build::Source& source, const SweepOptions& sweep,
-                    const Step& step) {
-    const build::EnvironmentOptions options = options_of(step, target, sweep);
-    build::Environment made = build::build_environment(target, source, options);
+Candidate make_file(const builder::Target& target, const builder::Source& source, const Step& step) {
+    builder::EnvironmentOptions options = options_of(step, target);
+    options.source = source;
+    builder::Environment made;
+    throw_unless_built(builder::environment(target, options, made));
     Candidate out = file_candidate(std::move(made.bytes));
     out.row.label = label_of(step.fit);
     out.row.options = text_of(step, options);
@@ -78,8 +78,9 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
 
 } // namespace
 
-Sweep sweep_environment(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+Sweep sweep_environment(const builder::Target& fitted, const builder::Source& source, const SweepOptions& options,
                         const build::Progress& progress) {
+    const compress::Target& target = builder::grid_of(fitted);
     Sweep sweep;
     sweep.kind = SweepKind::environment;
     sweep.visibility = options.visibility;
@@ -87,7 +88,7 @@ Sweep sweep_environment(const compress::Target& target, const build::Source& sou
     std::vector<Candidate> candidates;
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
-        [&](const Step& step) { return make_file(target, source, options, step); }, part(0.0, 0.7));
+        [&](const Step& step) { return make_file(fitted, source, step); }, part(0.0, 0.7));
 
     sweep.baseline = candidates.size();
     for (Candidate& rival : environment_rivals(target, options)) candidates.push_back(std::move(rival));

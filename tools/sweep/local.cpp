@@ -1,9 +1,10 @@
 // The sweep of local environment files.
-#include "build/local.h"
+#include "tools/plot/local.h"
+#include "build/builder/sources.h"
 #include "build/texel_cosines.h"
 #include "compress/sum.h"
+#include "tools/cli/built.h"
 #include "tools/plot/density.h"
-#include "tools/plot/local.h"
 #include "tools/sweep/build.h"
 #include "tools/sweep/irradiance.h"
 #include "tools/sweep/rivals.h"
@@ -17,25 +18,24 @@ namespace {
 /// The paper's bins of normals (Lawrence et al. 2005, §7.1).
 constexpr std::uint32_t kPaperColumns = 25, kPaperRows = 10;
 
-build::LocalOptions options_of(const Step& step, const SweepOptions& sweep) {
-    build::LocalOptions out;
-    out.target = sweep.target;
-    out.goal = {compress::Goal::Kind::budget, 0, step.budget, 0.0};
+builder::LocalOptions options_of(const Step& step) {
+    builder::LocalOptions out;
+    out.goal = builder::Goal::of_budget(step.budget);
     out.sharing = step.fit == "variance";
     if (step.fit != "cdf") return out;
     out.columns = kPaperColumns, out.rows = kPaperRows;
     out.fit.fit = ACDF_FIT_CDF;
-    out.fit.order = compress::Order::z;
+    out.fit.order = builder::Order::z;
     const double cells = double(cells_in(step.budget)) / (kPaperColumns * kPaperRows);
-    out.fit.column_segments = out.fit.row_segments =
+    out.fit.phi_segments = out.fit.theta_segments =
         static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(cells))));
     return out;
 }
 
-std::string text_of(const Step& step, const build::LocalOptions& o) {
+std::string text_of(const Step& step, const builder::LocalOptions& o) {
     if (step.fit == "variance") return "--budget " + budget_text(step.budget);
     if (step.fit == "separate") return "--no-sharing --budget " + budget_text(step.budget);
-    return "--no-sharing --normals 25x10 --fit cdf " + knots_text(o.fit.column_segments, o.fit.row_segments);
+    return "--no-sharing --normals 25x10 --fit cdf " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
 }
 
 const char* label_of(const std::string& fit) {
@@ -44,12 +44,15 @@ const char* label_of(const std::string& fit) {
                                : "the paper's: 25 x 10 normals, cdf fit";
 }
 
-Candidate make_file(const compress::Target& target, const build::Source& source, const SweepOptions& sweep,
+Candidate make_file(const builder::Target& target, const builder::Source& source,
                     const std::vector<build::Normal>& normals, const Step& step) {
-    const build::LocalOptions options = options_of(step, sweep);
-    build::Local made = build::build_local(target, source, options);
+    builder::LocalOptions options = options_of(step);
+    options.source = source;
+    builder::Local made;
+    throw_unless_built(builder::local(target, options, made));
     Candidate out = file_candidate(std::move(made.bytes));
-    const build::LocalAccuracy accuracy = build::summary(build::measure_normals(out.file->file, target, normals));
+    const build::LocalAccuracy accuracy =
+        build::summary(build::measure_normals(out.file->file, builder::grid_of(target), normals));
     out.row.label = label_of(step.fit);
     out.row.options = text_of(step, options);
     out.row.cells = 0;
@@ -99,8 +102,9 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
 
 } // namespace
 
-Sweep sweep_local(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, const SweepOptions& options,
                   const build::Progress& progress) {
+    const compress::Target& target = builder::grid_of(fitted);
     Sweep sweep;
     sweep.kind = SweepKind::local;
     sweep.visibility = options.visibility;
@@ -110,7 +114,7 @@ Sweep sweep_local(const compress::Target& target, const build::Source& source, c
     std::vector<Candidate> candidates;
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
-        [&](const Step& step) { return make_file(target, source, options, normals, step); }, part(0.0, 0.8));
+        [&](const Step& step) { return make_file(fitted, source, normals, step); }, part(0.0, 0.8));
     part(0.8, 0.0)(0.0, "measuring rivals");
     sweep.baseline = candidates.size();
     for (Candidate& rival : local_rivals(target, normals)) candidates.push_back(std::move(rival));

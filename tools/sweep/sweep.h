@@ -2,11 +2,11 @@
 // renderers use without acdf.
 #pragma once
 
-#include "build/environment.h"
-#include "compress/target.h"
 #include "input/brdf.h"
 #include "tools/cli/progress.h"
 #include "tools/plot/range.h"
+
+#include <acdf/builder.h>
 
 #include <cstdint>
 #include <limits>
@@ -94,20 +94,20 @@ struct SweepOptions {
     std::vector<std::uint64_t> budgets; ///< empty: default_budgets
     std::vector<std::string> fits;      ///< empty: default_fits
     Visibility visibility;
-    compress::TargetOptions target;
+    builder::TargetOptions target;
     bool timing = true;
     bool pictures = true;
     std::uint32_t normals = 64; ///< environment and local
-    std::uint32_t views = 64;   ///< BRDF: of rivals; files are measured over build_brdf's own
+    std::uint32_t views = 64;   ///< BRDF: of rivals; files are measured over the builder's own
     std::uint32_t rounds = 31;  ///< of timing
 };
 
 /// A probe's rows, rivals included, and pictures. Source, command and output are the caller's to fill in. Goals
 /// that are out of reach are noted and left out. Throws Failure where none is left.
-Sweep sweep_environment(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+Sweep sweep_environment(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                         const build::Progress& progress = {});
 /// The same for files that know the normal.
-Sweep sweep_local(const compress::Target& target, const build::Source& source, const SweepOptions& options,
+Sweep sweep_local(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                   const build::Progress& progress = {});
 /// The same of a BRDF.
 Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress = {});

@@ -5,29 +5,7 @@
 # cmake -DBUILD=... -DWORK=... -DFILE=... -DCC=... -DCXX=... -DLIBDIR=... -P check_installed.cmake
 cmake_minimum_required(VERSION 3.25)
 
-function(run output)
-    execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE err)
-    if(NOT result EQUAL 0)
-        list(JOIN ARGN " " command)
-        message(FATAL_ERROR "${command}\nfailed (${result}):\n${out}${err}")
-    endif()
-    set(${output} "${out}" PARENT_SCOPE)
-endfunction()
-
-# expect_needed(PROGRAM NAMES...): the shared libraries that PROGRAM itself asks for.
-function(expect_needed program)
-    run(dynamic readelf -d ${program})
-    string(REGEX MATCHALL "\\(NEEDED\\)[^\n]*\\[[^]]*\\]" entries "${dynamic}")
-    foreach(entry IN LISTS entries)
-        string(REGEX REPLACE ".*\\[(lib)?([^].]*)\\..*" "\\2" name "${entry}")
-        if(NOT name IN_LIST ARGN)
-            message(FATAL_ERROR "${program} is linked with ${name}: ${entry}; allowed: ${ARGN}")
-        endif()
-    endforeach()
-    if(NOT dynamic MATCHES "\\[libz\\.so")
-        message(FATAL_ERROR "${program} is not linked with zlib: this check reads the wrong thing")
-    endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/../checks.cmake)
 
 # expect_missing_file(PROGRAM): an error is a message and an exit code, no crash.
 function(expect_missing_file program)
@@ -58,8 +36,8 @@ foreach(header layout sample blend local brdf table acdf reader)
         -fsyntax-only ${WORK}/alone.cpp)
 endforeach()
 
-# find_package
-run(ignored ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G Ninja
+# find_package: the reader alone asks for zlib alone.
+run(ignored ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G Ninja -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON
     -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release
     -DCMAKE_C_COMPILER=${CC} -DCMAKE_CXX_COMPILER=${CXX})
 run(ignored ${CMAKE_COMMAND} --build ${WORK}/build)

@@ -23,7 +23,7 @@ struct SmallScene {
         target = compress::environment_target(loaded->probe.rgb.data(), 32, 16, compress::TargetOptions());
         std::vector<const input::Brdf*> brdfs;
         for (const auto& brdf : loaded->brdfs) brdfs.push_back(brdf.get());
-        builder = std::make_unique<SamplerBuilder>(target, brdfs, folder.data());
+        builder = std::make_unique<SamplerBuilder>(acdf::builder::target_of(target, {}), brdfs, folder.data());
     }
     Comparison compare(const std::vector<std::string>& samplers, std::uint32_t seeds, bool timing = false) {
         ComparisonOptions options;

@@ -1,4 +1,6 @@
 // What a sweep recommends and writes, on made-up rows and on a tiny probe.
+#include "build/builder/sources.h"
+#include "build/environment.h"
 #include "measure/full_cdf.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/advice.h"
@@ -272,7 +274,7 @@ SweepOptions quick() {
 
 TEST(SweepRows, OfATinyProbeAreWhatTheFilesHave) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
-    Sweep sweep = sweep_environment(target, {}, quick());
+    Sweep sweep = sweep_environment(builder::target_of(target, {}), {}, quick());
     sweep.source = "tiny.exr", sweep.command = "acdf env tiny.exr", sweep.output = "tiny.acdf";
     std::map<std::string, int> systems, fits;
     for (const SweepRow& r : sweep.rows) {
@@ -305,7 +307,7 @@ TEST(SweepRows, LocalFilesBesideTheirRivals) {
     SweepOptions options = quick();
     options.budgets = {16384};
     options.fits = {"variance"};
-    const Sweep sweep = sweep_local(target, {}, options);
+    const Sweep sweep = sweep_local(builder::target_of(target, {}), {}, options);
     std::map<std::string, const SweepRow*> by;
     for (const SweepRow& r : sweep.rows) by[r.system] = &r;
     ASSERT_EQ(by.size(), 8u);
@@ -337,11 +339,11 @@ TEST(SweepRows, WhatIsOutOfReachIsTold) {
     options.budgets = {100, 2500};
     options.fits = {"variance"};
     options.pictures = false;
-    const Sweep sweep = sweep_environment(target, {}, options);
+    const Sweep sweep = sweep_environment(builder::target_of(target, {}), {}, options);
     ASSERT_EQ(sweep.notes.size(), 1u);
     EXPECT_NE(sweep.notes[0].find("100 bytes"), std::string::npos) << sweep.notes[0];
     options.budgets = {100};
-    EXPECT_THROW(sweep_environment(target, {}, options), std::runtime_error);
+    EXPECT_THROW(sweep_environment(builder::target_of(target, {}), {}, options), std::runtime_error);
 }
 
 } // namespace

@@ -1,0 +1,396 @@
+// Makes .acdf files from what a program holds in memory: pixels, BRDFs, tables. C++17; needs oneTBB and zlib alone.
+//
+// A whole program; docs/examples/build_environment.cpp is the same:
+//
+//     #include <acdf/builder.h>
+//
+//     #include <cstdio>
+//     #include <vector>
+//
+//     int main() {
+//         const int width = 512, height = 256;
+//         std::vector<float> rgb(3 * width * height, 0.2f); // the program's own pixels: an even sky ...
+//         rgb[3 * (60 * width + 300)] = 4e4f;               // ... and a red sun
+//
+//         acdf::builder::Pixels pixels;
+//         pixels.data = rgb.data();
+//         pixels.width = width, pixels.height = height;
+//         acdf::builder::EnvironmentOptions options;
+//         options.goal = acdf::builder::Goal::of_budget(16 << 10); // at most 16 KiB
+//         acdf::builder::Environment made;
+//         const acdf::builder::Status status = acdf::builder::environment(pixels, options, made);
+//         if (!status.ok()) return std::fprintf(stderr, "%s\n", status.message), 1;
+//
+//         acdf::File file; // reads made.bytes where they lie
+//         if (!acdf::File::from_memory(made.bytes.data(), made.bytes.size(), file).ok()) return 1;
+//         const acdf::DirectionSample s = file.environment().sample(0.5, 0.25);
+//         std::printf("relative variance %.2g; a direction (%.2f, %.2f, %.2f) of density %.3g per steradian\n",
+//                     made.accuracy.relative_variance, double(s.direction[0]), double(s.direction[1]),
+//                     double(s.direction[2]), double(s.pdf));
+//     }
+//
+// Results are the bytes of files (format/SPEC.md): acdf::File::from_memory reads them in place, or write them to
+// disk. The same input, options and version give the same bytes, for any number of threads. Errors are values:
+// nothing is thrown and nothing is printed, whatever the input. After an error the result is empty. Functions may
+// be called by several threads at once. The frame is that of docs/conventions.md: right-handed, z up.
+#pragma once
+
+#include <acdf/accuracy.h>
+#include <acdf/reader.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace acdf::builder {
+
+// ---- outcomes and control ----
+
+/// What kind of failure; the numbers are stable.
+enum class ErrorCode : int {
+    none = 0,
+    invalid_argument = 1, ///< an option is out of its range, or contradicts another one or the input
+    bad_source = 2,       ///< the input holds what cannot be built from: NaN that is to be refused, ...
+    no_energy = 3,        ///< the input is black, or reflects nothing: there is nothing to sample
+    out_of_reach = 4,     ///< no file reaches the goal; the message tells what can be had
+    cancelled = 5,        ///< Control::progress returned false
+    out_of_memory = 6,
+    callback_failed = 7, ///< a callback threw, or Rows::read returned false
+    internal = 8,        ///< a mistake of this library
+};
+
+/// The outcome of a call.
+struct Status {
+    ErrorCode code = ErrorCode::none;
+    char message[400] = {}; ///< one line, UTF-8: what is wrong and what would help
+
+    bool ok() const noexcept { return code == ErrorCode::none; }
+};
+
+/// Called with the share that is done, in [0, 1] and never less than before, and what is being done ("fitting").
+/// false cancels: the call that is being served returns ErrorCode::cancelled soon, and leaves nothing running. By
+/// one thread at a time, not always the same one.
+using Progress = std::function<bool(double share, const char* what)>;
+
+/// How a call works; what it makes does not depend on it.
+struct Control {
+    int threads = 0; ///< at most so many; 0: all cores that oneTBB has
+    Progress progress = {};
+};
+
+// ---- options ----
+
+/// How large a file is to be, or how accurate; only what `kind` names counts.
+struct Goal {
+    enum class Kind { cells, budget, variance };
+
+    Kind kind = Kind::cells;
+    std::uint32_t cells = 4096; ///< cells: about so many, up to 2^28; of what, each kind of file says
+    std::uint64_t budget = 0;   ///< budget: the most accurate file of at most so many bytes
+    double variance = 0.0;      ///< variance: the smallest file of at most this relative variance, > 0
+
+    static Goal of_cells(std::uint32_t n) { return {Kind::cells, n, 0, 0.0}; }
+    static Goal of_budget(std::uint64_t bytes) { return {Kind::budget, 4096, bytes, 0.0}; }
+    static Goal of_variance(double v) { return {Kind::variance, 4096, 0, v}; }
+};
+
+/// Weights of red, green and blue, >= 0 and not all 0; Rec. 709 luminance.
+struct ChannelWeights {
+    double r = 0.2126, g = 0.7152, b = 0.0722;
+};
+
+/// Whose noise is minimised: of the weighted sum of channels (ACDF_CHANNELS_WEIGHTED), of each on its own
+/// (ACDF_CHANNELS_SEPARATE, weights 1 1 1), or of the largest (ACDF_CHANNELS_LARGEST, weights 1 1 1).
+struct Channels {
+    AcdfChannels mode = ACDF_CHANNELS_WEIGHTED;
+    ChannelWeights weights;
+};
+
+/// Which axis is split first. `best`: a tree splits the axis that gains more; of fits of two levels both are made,
+/// and the more accurate one is kept.
+enum class Order { best, phi, z };
+/// What the variance fit makes: a tree that refines any segment along any axis (less noise for its size), or two
+/// levels, as in Lawrence et al. 2005 (faster to sample; its goal is a number of cells).
+enum class Shape { tree, cascade };
+/// How the rows of a region become one curve, but for the variance fit: weighted by energy, or all alike (ibid.,
+/// eq. 4).
+enum class Conditional { energy, mean };
+
+/// How knots are chosen. The variance fit has the least noise for its size and follows Goal; the others are those
+/// of ibid., §5, and equal steps: they follow segments and epsilon.
+struct FitOptions {
+    AcdfFit fit = ACDF_FIT_VARIANCE;
+    Order order = Order::best;
+    Shape shape = Shape::tree; ///< variance
+    double max_weight = 0.0;   ///< variance as a tree: the largest f/p over its mean, at least 1; 0: no bound
+    std::uint32_t phi_segments = 64, theta_segments = 64; ///< cdf, pdf, uniform: of a curve, 1 to ACDF_MAX_SEGMENTS
+    double epsilon = 0.0;             ///< cdf, pdf: deviation at which a curve has knots enough, in [0, 1]; 0: none
+    std::uint32_t gradient_knots = 0; ///< cdf, pdf: extra knots of the first curve (ibid., eq. 5), up to 2^20
+    Conditional conditional = Conditional::energy;
+};
+
+/// Where a source came from. All of it is optional, UTF-8, up to 4096 bytes each, and goes into the file's
+/// metadata.
+struct Source {
+    std::string name;       ///< source.name
+    std::string sha256;     ///< source.sha256, hex
+    std::string projection; ///< source.projection; empty: the name of Pixels::projection
+    std::string reading;    ///< before the options in fit.options: "--projection angular "
+};
+
+// ---- light ----
+
+enum class Number { float32, float16, float64 };
+
+/// How an image is laid out.
+enum class Projection {
+    latlong,
+    angular,        ///< P. Debevec's light probes, mirrored like the ball: distance from the centre ~ angle; square
+    mirrorball,     ///< orthographic photograph of a mirror ball; square
+    vertical_cross, ///< cube, 3:4, the back face upside down at the foot
+    horizontal_cross, ///< cube, 4:3, the back face at the right end
+    stacked_cube,     ///< cube, 1:6, OpenEXR's ENVMAP_CUBE: texel centres on the face's borders
+    octahedral,       ///< P. Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; square
+};
+
+/// Linear radiance that the caller holds, rows from the top, in the projection's own order of texels (lat-long: row
+/// 0 touches +z, column 0 begins at phi = +pi and phi falls). Strides are in bytes, of any sign; 0: channels next
+/// to each other, pixels `channels` numbers apart, rows `width` pixels apart. Numbers need not be aligned, and may
+/// not overlap. At most 2^30 pixels and 2^16 on a side. TargetOptions::domain says what is resampled.
+struct Pixels {
+    const void* data = nullptr; ///< the first channel of the top left pixel
+    std::uint32_t width = 0, height = 0;
+    std::uint32_t channels = 3; ///< 1 (grey), 3, or 4 (the last one is ignored)
+    Number number = Number::float32;
+    std::ptrdiff_t channel_stride = 0, pixel_stride = 0, row_stride = 0;
+    Projection projection = Projection::latlong;
+};
+
+/// A lat-long map whose rows are asked for when they are needed: memory is that of the target, 4 bytes a texel for
+/// one channel and nearest lookup, and a band of rows; on another grid than its own the whole map.
+struct Rows {
+    std::uint32_t width = 0, height = 0;
+    /// Fills `rgb` (count x width x 3) with rows first to first + count - 1. Called by one thread, from the top to
+    /// the bottom, once (twice with BadTexelPolicy::clamp). false gives up.
+    std::function<bool(std::uint32_t first, std::uint32_t count, float* rgb)> read;
+};
+
+/// What becomes of NaN, infinite and negative values. None of them ever reaches a density.
+enum class BadTexelPolicy {
+    zero,  ///< all are 0
+    clamp, ///< +infinity is the largest finite value of its channel; the others are 0
+    error, ///< ErrorCode::bad_source
+};
+
+/// Texels with channels that are no radiance, each counted once, as the first of nan, infinite, negative that it
+/// has. `x`, `y`: the first in the source, row by row from the top; -1 where there is none.
+struct BadTexels {
+    std::uint64_t nan = 0, infinite = 0, negative = 0;
+    int x = -1, y = -1;
+
+    std::uint64_t count() const { return nan + infinite + negative; }
+};
+
+/// The grid that a map is fitted on.
+enum class Domain {
+    source,    ///< its own texels, of a lat-long or octahedral map; else the one of the others that loses least
+    latlong,   ///< phi and theta
+    octahedral ///< u and v of the equal-area octahedral square
+};
+
+/// What is fitted of a map.
+struct TargetOptions {
+    Channels channels;
+    Domain domain = Domain::source;
+    /// How the renderer looks the map up. Set it right: a lookup that blends light into dark texels finds light
+    /// where a nearest fit has none, which is bias.
+    AcdfFilter filter = ACDF_FILTER_NEAREST;
+    BadTexelPolicy bad_texels = BadTexelPolicy::zero;
+    bool uniform_if_black = false; ///< black becomes the faintest even light, else ErrorCode::no_energy
+};
+
+/// A map, read once and ready for any number of files: of several sizes, of both kinds. Copies share it.
+class Target {
+public:
+    struct Data;
+
+    static Status from(const Pixels& pixels, const TargetOptions& options, Target& target,
+                       const Control& control = {}) noexcept;
+    static Status from(const Rows& rows, const TargetOptions& options, Target& target,
+                       const Control& control = {}) noexcept;
+
+    bool empty() const noexcept { return !data_; }
+    // Of a target that is not empty:
+    std::uint32_t columns() const noexcept; ///< of the grid that is fitted
+    std::uint32_t rows() const noexcept;
+    double total() const noexcept; ///< integral over the sphere, of several channels their sum
+    const BadTexels& bad_texels() const noexcept;
+
+    Target() noexcept = default;
+    explicit Target(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
+    const std::shared_ptr<const Data>& data() const noexcept { return data_; }
+
+private:
+    std::shared_ptr<const Data> data_;
+};
+
+struct EnvironmentOptions {
+    TargetOptions target; ///< of pixels and rows; a Target has its own
+    Goal goal;            ///< cells: in all, about 4.2 bytes each. Of the variance fit only
+    FitOptions fit;
+    AcdfCodec codec = ACDF_CODEC_NONE;
+    Source source;
+};
+
+struct Environment {
+    std::vector<std::uint8_t> bytes; ///< the whole file
+    EnvironmentAccuracy accuracy;
+    BadTexels bad_texels;      ///< what was mended
+    Order order = Order::best; ///< the axis that was split first, where that was tried or asked for
+};
+
+/// An environment map: a density over the sphere (acdf::EnvironmentView).
+Status environment(const Target& target, const EnvironmentOptions& options, Environment& result,
+                   const Control& control = {}) noexcept;
+Status environment(const Pixels& pixels, const EnvironmentOptions& options, Environment& result,
+                   const Control& control = {}) noexcept;
+Status environment(const Rows& rows, const EnvironmentOptions& options, Environment& result,
+                   const Control& control = {}) noexcept;
+
+/// A normal of a scene, of any length > 0, and how often it occurs, > 0.
+struct SceneNormal {
+    float normal[3] = {0.0f, 0.0f, 1.0f};
+    double weight = 1.0;
+};
+
+/// What the tree of a bin of its own is fitted to.
+enum class BinTarget {
+    mean,  ///< right for all normals of the bin
+    centre ///< the middle one, as in ibid., §7.1: biased for others, which may see what it does not
+};
+
+struct LocalOptions {
+    TargetOptions target;                 ///< of pixels and rows; a Target has its own
+    Goal goal = Goal::of_budget(1 << 20); ///< cells: of the curves that bins share, or without sharing of a bin
+    std::uint32_t subdivisions = 0;       ///< octahedral bins, 4 n^2 + 2 of them, n up to 256; 0: as suits the size
+    std::uint32_t columns = 0, rows = 0;  ///< instead lat-long bins, up to 1024 each, without sharing
+    std::uint32_t tiles = 0;              ///< up to ACDF_MAX_TILES; 0: as suits the size
+    std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
+    double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
+    bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
+    BinTarget bin_target = BinTarget::mean; ///< without sharing
+    FitOptions fit;                         ///< of a bin's tree, without sharing
+    AcdfCodec codec = ACDF_CODEC_NONE;
+    Source source;
+    std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
+};
+
+struct Local {
+    std::vector<std::uint8_t> bytes; ///< the whole file
+    LocalAccuracy accuracy;          ///< over `normals` of them: random ones, or those of the scene
+    std::uint32_t normals = 0;
+    BadTexels bad_texels; ///< what was mended
+};
+
+/// A local environment map: a density for every normal (acdf::LocalEnvironmentView).
+Status local(const Target& target, const LocalOptions& options, Local& result,
+             const Control& control = {}) noexcept;
+Status local(const Pixels& pixels, const LocalOptions& options, Local& result,
+             const Control& control = {}) noexcept;
+Status local(const Rows& rows, const LocalOptions& options, Local& result, const Control& control = {}) noexcept;
+
+// ---- reflectance ----
+
+/// A BRDF rho(wo, wi) in sr^-1 without the cosine. wo (towards the viewer) and wi (towards the light) are unit
+/// vectors above the surface, z its normal. Nothing needs to be known of peaks: the fit looks for them.
+struct Brdf {
+    /// Fills `rgb` with finite numbers below 1e18; negative ones count as 0. Called by several threads at once. All
+    /// that counts is what it returns for given arguments, which must always be the same.
+    std::function<void(const double wo[3], const double wi[3], double rgb[3])> evaluate;
+    bool isotropic = true; ///< rho depends on the difference of azimuths alone: views are stored for theta_o only
+    bool mirrored = true;  ///< and not on its sign: half of each density. Neither is checked; false is always right
+};
+
+/// Numbers that the caller holds, in 1 to 6 axes of at least 1 each. Strides in bytes, one an axis, of any sign;
+/// empty: packed, the last axis fastest. Numbers need not be aligned, and may not overlap.
+struct Array {
+    const void* data = nullptr; ///< the number at index 0 of all axes
+    Number number = Number::float32;
+    std::vector<std::uint32_t> shape;
+    std::vector<std::ptrdiff_t> strides;
+};
+
+/// Makes a BRDF, the same in all channels, of a table of rho in sr^-1 over (theta_o, phi_o, theta_h, phi_h), h the
+/// half-vector, which is copied. Value (i, j, k, l) stands at the centre of a cell; cells divide theta in [0, pi/2]
+/// and phi in [0, 2 pi) equally. With a single phi_o the BRDF is isotropic and phi_h counts from phi_o. Between
+/// centres linear in each angle. Negative numbers count as 0; NaN and infinite ones are ErrorCode::bad_source.
+Status tabulated(const Array& table, Brdf& brdf) noexcept;
+
+struct BrdfOptions {
+    Channels channels;
+    Goal goal = Goal::of_budget(64 << 10); ///< variance; cells: that views share, or of each, up to ACDF_MAX_TILES
+    AcdfFit fit = ACDF_FIT_VARIANCE;
+    bool sharing = true; ///< variance: views share cells and are interpolated; else each has a tree, nearest serves
+    /// Stored views, 2 to 1024 in theta_o, and 1 or 4 to 1024 in phi_o; 0: as suits the size.
+    std::uint32_t theta_views = 0, phi_views = 0;
+    std::uint32_t phi_segments = 10, theta_segments = 30; ///< cdf, pdf, uniform: of curves over phi_h and theta_h
+    double epsilon = 0.0;                                 ///< cdf, pdf: see FitOptions
+    float diffuse_share = 0.0f;                           ///< of samples that follow the cosine, in [0, 0.99]
+    AcdfCodec codec = ACDF_CODEC_NONE;
+    Source source; ///< name and sha256
+};
+
+struct BrdfFile {
+    std::vector<std::uint8_t> bytes; ///< the whole file
+    BrdfAccuracy accuracy;
+    std::uint32_t theta_views = 0, phi_views = 0;
+};
+
+/// A BRDF: a density over wi for every wo (acdf::BrdfView).
+Status brdf(const Brdf& brdf, const BrdfOptions& options, BrdfFile& result, const Control& control = {}) noexcept;
+
+// ---- tables ----
+
+/// NaN, infinite and negative numbers; `first` is the row-major index of the first, UINT64_MAX where there is none.
+struct BadNumbers {
+    std::uint64_t nan = 0, infinite = 0, negative = 0;
+    std::uint64_t first = UINT64_MAX;
+
+    std::uint64_t count() const { return nan + infinite + negative; }
+};
+
+struct TableOptions {
+    std::uint32_t indexed = 0;      ///< leading axes that the caller of a sample chooses: each index is a bin
+    std::vector<std::string> names; ///< one an axis, 1 to 15 bytes, all different; empty: x0, x1, ...
+    std::vector<std::pair<double, double>> ranges; ///< one an axis: coordinates of its ends; empty: 0 to its length
+    Goal goal = Goal::of_cells(0);                 ///< cells: a bin, on average; 0: 4096 in all, at least 64 a bin
+    double max_weight = 0.0;                       ///< the largest f/p over its mean, at least 1; 0: no bound
+    bool bad_as_zero = false;                      ///< bad numbers count as 0, else ErrorCode::bad_source
+    AcdfCodec codec = ACDF_CODEC_NONE;
+    Source source; ///< name and sha256
+};
+
+struct Table {
+    std::vector<std::uint8_t> bytes; ///< the whole file
+    TableAccuracy accuracy;
+    double total = 0.0; ///< integral over the sampled axes, summed over the bins
+    BadNumbers bad;     ///< taken as 0
+};
+
+/// A table: a density over its sampled axes for every bin (acdf::TableView). Each number is the value of a function
+/// that is constant on its box of the grid; numbers that float32 does not hold are scaled by a power of two.
+Status table(const Array& array, const TableOptions& options, Table& result, const Control& control = {}) noexcept;
+
+// ---- what makes a file ----
+
+/// What a file will tell as `fit.options`: equal texts, sources and versions of this library mean equal bytes. For
+/// caches. Empty where memory is short.
+std::string option_text(const EnvironmentOptions& options) noexcept;
+std::string option_text(const LocalOptions& options) noexcept;
+std::string option_text(const BrdfOptions& options) noexcept;
+
+} // namespace acdf::builder

@@ -1,0 +1,161 @@
+// What options may be, so that nothing behind has to ask.
+#include "build/builder/guard.h"
+#include "build/builder/options.h"
+#include "reader/utf8.h"
+
+#include <cmath>
+#include <string>
+
+namespace acdf::builder {
+namespace {
+
+bool is_share(double value, double most) { return value >= 0.0 && value <= most; }
+
+bool is_fit(AcdfFit fit) { return fit >= ACDF_FIT_UNIFORM && fit <= ACDF_FIT_VARIANCE; }
+
+void check(const Channels& channels) {
+    const AcdfChannels mode = channels.mode;
+    require(mode == ACDF_CHANNELS_WEIGHTED || mode == ACDF_CHANNELS_SEPARATE || mode == ACDF_CHANNELS_LARGEST,
+            "channels.mode is no AcdfChannels");
+    const ChannelWeights& w = channels.weights;
+    for (const double weight : {w.r, w.g, w.b})
+        require(weight >= 0.0 && weight <= 1e6, "a weight of channels is negative, not finite or above 1e6");
+    require(w.r + w.g + w.b >= 1e-6, "the weights of all channels are 0");
+    require(mode == ACDF_CHANNELS_WEIGHTED || (w.r == 1.0 && w.g == 1.0 && w.b == 1.0),
+            "channels that count separately, or by the largest, have weights 1, 1, 1");
+}
+
+void check(AcdfCodec codec) {
+    require(codec == ACDF_CODEC_NONE || codec == ACDF_CODEC_ZLIB || codec == ACDF_CODEC_PLANES,
+            "codec is no AcdfCodec");
+}
+
+void check(const Goal& goal, std::uint32_t least_cells) {
+    using Kind = Goal::Kind;
+    require(goal.kind == Kind::cells || goal.kind == Kind::budget || goal.kind == Kind::variance,
+            "goal.kind is no Goal::Kind");
+    require(goal.kind != Kind::cells || (goal.cells >= least_cells && goal.cells <= 1u << 28),
+            "goal.cells is too small, or above 2^28");
+    require(goal.kind != Kind::budget || (goal.budget > 0 && goal.budget <= std::uint64_t{1} << 40),
+            "goal.budget is 0, or above 2^40 bytes");
+    require(goal.kind != Kind::variance || (goal.variance > 0.0 && std::isfinite(goal.variance)),
+            "goal.variance is not a positive, finite number");
+}
+
+void check_text(const std::string& text, std::size_t most) {
+    require(text.size() <= most && is_utf8(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()),
+            "a text for the metadata, or the name of an axis, is not UTF-8 or too long");
+}
+
+void check(const Source& source) {
+    for (const std::string* text : {&source.name, &source.sha256, &source.projection, &source.reading})
+        check_text(*text, 4096);
+}
+
+void check_max_weight(double bound) {
+    require(bound == 0.0 || (bound >= 1.0 && bound <= 1e30), "max_weight is neither 0 nor in [1, 1e30]");
+}
+
+void check_segments(std::uint32_t phi, std::uint32_t theta, double epsilon) {
+    for (const std::uint32_t count : {phi, theta})
+        require(count >= 1 && count <= ACDF_MAX_SEGMENTS, "the segments of a curve are 0, or above 2^20 - 1");
+    require(is_share(epsilon, 1.0), "epsilon is not in [0, 1]");
+}
+
+void check(const FitOptions& fit) {
+    require(is_fit(fit.fit), "fit is no AcdfFit");
+    require(fit.order == Order::best || fit.order == Order::phi || fit.order == Order::z, "order is no Order");
+    require(fit.shape == Shape::tree || fit.shape == Shape::cascade, "shape is no Shape");
+    require(fit.conditional == Conditional::energy || fit.conditional == Conditional::mean,
+            "conditional is no Conditional");
+    check_max_weight(fit.max_weight);
+    check_segments(fit.phi_segments, fit.theta_segments, fit.epsilon);
+    require(fit.gradient_knots <= 1u << 20, "gradient_knots is above 2^20");
+    const bool tree = fit.fit == ACDF_FIT_VARIANCE && fit.shape == Shape::tree;
+    require(tree || fit.max_weight == 0.0, "max_weight is for the variance fit as a tree");
+}
+
+void check(const SceneNormal& n) {
+    const double square = double{n.normal[0]} * double{n.normal[0]} + double{n.normal[1]} * double{n.normal[1]} +
+                          double{n.normal[2]} * double{n.normal[2]};
+    require(square > 0.0 && std::isfinite(square), "a normal is zero or not finite");
+    require(n.weight > 0.0 && n.weight <= 1e100, "the weight of a normal is not positive, or above 1e100");
+}
+
+void check_bins(const LocalOptions& options) {
+    require(options.subdivisions <= 256, "subdivisions is above 256");
+    require(options.columns <= 1024 && options.rows <= 1024, "there are more than 1024 columns or rows of bins");
+    require((options.columns == 0) == (options.rows == 0), "columns and rows of bins are given together");
+    require(options.columns == 0 || options.subdivisions == 0, "bins are either subdivisions, or columns and rows");
+    require(options.columns == 0 || !options.sharing,
+            "columns and rows are for bins without sharing: those that share tiles are interpolated");
+    require(options.tiles <= ACDF_MAX_TILES, "tiles is above ACDF_MAX_TILES");
+    require(options.tiles == 0 || options.sharing, "tiles is for bins that share them");
+}
+
+} // namespace
+
+void check(const TargetOptions& options) {
+    check(options.channels);
+    require(options.filter == ACDF_FILTER_NEAREST || options.filter == ACDF_FILTER_BILINEAR,
+            "filter is no AcdfFilter");
+    const Domain domain = options.domain;
+    require(domain == Domain::source || domain == Domain::latlong || domain == Domain::octahedral,
+            "domain is no Domain");
+    const BadTexelPolicy policy = options.bad_texels;
+    require(policy == BadTexelPolicy::zero || policy == BadTexelPolicy::clamp || policy == BadTexelPolicy::error,
+            "bad_texels is no BadTexelPolicy");
+}
+
+void check(const EnvironmentOptions& options) {
+    check(options.fit);
+    check(options.codec);
+    check(options.source);
+    if (options.fit.fit != ACDF_FIT_VARIANCE) return;
+    check(options.goal, 1);
+    require(options.fit.shape == Shape::tree || options.goal.kind == Goal::Kind::cells,
+            "the goal of a cascade is a number of cells");
+}
+
+void check(const LocalOptions& options) {
+    check_bins(options);
+    for (const SceneNormal& n : options.normals) check(n);
+    require(is_share(options.cosine_share, 0.99), "cosine_share is not in [0, 0.99]");
+    require(options.bin_target == BinTarget::mean || options.bin_target == BinTarget::centre,
+            "bin_target is no BinTarget");
+    check(options.codec);
+    check(options.source);
+    check_text(options.normals_text, 4096);
+    if (!options.sharing) check(options.fit);
+    if (!options.sharing && options.fit.fit != ACDF_FIT_VARIANCE) return;
+    check(options.goal, options.sharing ? 16 : 1);
+    require(options.sharing || options.goal.kind != Goal::Kind::variance,
+            "goal.variance is for bins that share tiles");
+}
+
+void check(const BrdfOptions& options) {
+    check(options.channels);
+    check(options.codec);
+    check(options.source);
+    require(is_fit(options.fit), "fit is no AcdfFit");
+    const std::uint32_t theta = options.theta_views, phi = options.phi_views;
+    require(theta == 0 || (theta >= 2 && theta <= 1024), "theta_views is neither 0 nor in [2, 1024]");
+    require(phi <= 1 || (phi >= 4 && phi <= 1024), "phi_views is neither 0, 1 nor in [4, 1024]");
+    require(phi == 0 || theta > 0, "phi_views needs theta_views");
+    check_segments(options.phi_segments, options.theta_segments, options.epsilon);
+    require(is_share(double{options.diffuse_share}, 0.99f), "diffuse_share is not in [0, 0.99]");
+    if (options.fit != ACDF_FIT_VARIANCE) return;
+    check(options.goal, 1);
+    require(options.goal.kind != Goal::Kind::cells || options.goal.cells <= ACDF_MAX_TILES,
+            "goal.cells of a BRDF is above ACDF_MAX_TILES");
+}
+
+void check(const TableOptions& options) {
+    check(options.goal, 0);
+    check_max_weight(options.max_weight);
+    check(options.codec);
+    check(options.source);
+    for (const std::string& name : options.names) check_text(name, 15);
+}
+
+} // namespace acdf::builder

@@ -1,0 +1,124 @@
+#include "build/builder/options.h"
+
+#include "build/option_text.h"
+
+#include <optional>
+
+namespace acdf::builder {
+namespace {
+
+compress::Goal internal(const Goal& goal) {
+    const auto kind = goal.kind == Goal::Kind::budget     ? compress::Goal::Kind::budget
+                      : goal.kind == Goal::Kind::variance ? compress::Goal::Kind::variance
+                                                          : compress::Goal::Kind::cells;
+    return {kind, goal.cells, goal.budget, goal.variance};
+}
+
+compress::ChannelWeights internal(const ChannelWeights& weights) { return {weights.r, weights.g, weights.b}; }
+
+std::optional<compress::Order> internal(Order order) {
+    if (order == Order::best) return {};
+    return order == Order::phi ? compress::Order::phi : compress::Order::z;
+}
+
+compress::FitOptions internal(const FitOptions& options) {
+    compress::FitOptions out;
+    out.fit = options.fit;
+    out.order = internal(options.order);
+    out.shape = options.shape == Shape::tree ? compress::Shape::tree : compress::Shape::cascade;
+    out.max_weight = options.max_weight;
+    out.column_segments = options.phi_segments;
+    out.row_segments = options.theta_segments;
+    out.epsilon = options.epsilon;
+    out.gradient_knots = options.gradient_knots;
+    out.conditional =
+        options.conditional == Conditional::mean ? compress::Conditional::mean : compress::Conditional::energy;
+    return out;
+}
+
+template <class Options>
+std::string text_of(const Options& options) noexcept {
+    try {
+        return build::option_text(options.source.reading, internal(options));
+    } catch (...) {
+        return {};
+    }
+}
+
+} // namespace
+
+compress::TargetOptions internal(const TargetOptions& options) {
+    return {internal(options.channels.weights), options.channels.mode, options.filter};
+}
+
+build::EnvironmentOptions internal(const EnvironmentOptions& options) {
+    build::EnvironmentOptions out;
+    out.target = internal(options.target);
+    out.fit = internal(options.fit);
+    out.fit.goal = internal(options.goal);
+    out.codec = options.codec;
+    return out;
+}
+
+build::LocalOptions internal(const LocalOptions& options) {
+    build::LocalOptions out;
+    out.target = internal(options.target);
+    out.goal = internal(options.goal);
+    out.subdivisions = options.subdivisions;
+    out.columns = options.columns;
+    out.rows = options.rows;
+    out.tiles = options.tiles;
+    for (const SceneNormal& n : options.normals)
+        out.scene.push_back({{n.normal[0], n.normal[1], n.normal[2]}, n.weight});
+    out.sharing = options.sharing;
+    out.bin_target =
+        options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;
+    out.fit = internal(options.fit);
+    // Bins have a size that all orders share: the paper's, but for trees, which need none.
+    if (!out.sharing && out.fit.fit != ACDF_FIT_VARIANCE && !out.fit.order) out.fit.order = compress::Order::z;
+    out.cosine_share = options.cosine_share;
+    out.scene_text = options.normals_text;
+    out.codec = options.codec;
+    return out;
+}
+
+build::BrdfFileOptions internal(const BrdfOptions& options) {
+    build::BrdfFileOptions out;
+    out.fit.fit = options.fit;
+    out.fit.sharing = options.sharing;
+    out.fit.goal = internal(options.goal);
+    out.fit.theta_views = options.theta_views;
+    out.fit.phi_views = options.phi_views;
+    out.fit.theta_segments = options.theta_segments;
+    out.fit.phi_segments = options.phi_segments;
+    out.fit.epsilon = options.epsilon;
+    out.channels = options.channels.mode;
+    out.weights = internal(options.channels.weights);
+    out.diffuse_share = options.diffuse_share;
+    out.codec = options.codec;
+    return out;
+}
+
+build::TableOptions internal(const TableOptions& options) {
+    build::TableOptions out;
+    out.indexed = options.indexed;
+    out.names = options.names;
+    out.ranges = options.ranges;
+    out.cells = options.goal.cells;
+    out.fit.goal = internal(options.goal);
+    out.fit.max_weight = options.max_weight;
+    out.codec = options.codec;
+    return out;
+}
+
+std::string option_text(const EnvironmentOptions& options) noexcept { return text_of(options); }
+std::string option_text(const LocalOptions& options) noexcept { return text_of(options); }
+std::string option_text(const BrdfOptions& options) noexcept {
+    try {
+        return build::option_text(internal(options));
+    } catch (...) {
+        return {};
+    }
+}
+
+} // namespace acdf::builder

@@ -1,0 +1,18 @@
+// Texels of images that a caller holds, as RGB floats.
+#pragma once
+
+#include <acdf/builder.h>
+
+namespace acdf::builder {
+
+/// Throws build::OptionError for what is no image.
+void check(const Pixels& pixels);
+void check(const Rows& rows);
+
+/// Fills `rgb` with rows first to first + count - 1 of `pixels`, which were checked.
+void read_rows(const Pixels& pixels, std::uint32_t first, std::uint32_t count, float* rgb);
+
+/// "latlong", "angular", "mirrorball", "cube-cross", "octahedral".
+const char* name_of(Projection projection);
+
+} // namespace acdf::builder

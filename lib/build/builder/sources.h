@@ -1,0 +1,78 @@
+// Sources that are in the library's own terms already: what programs that link all of lib/ build from.
+#pragma once
+
+#include "build/array.h"
+#include "build/probe_rows.h"
+#include "build/progress.h"
+#include "build/reflectance.h"
+#include "build/source_target.h"
+#include "compress/target.h"
+
+#include <acdf/builder.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace acdf::builder {
+
+/// What a Target holds.
+struct Target::Data {
+    compress::Target grid;
+    compress::TargetOptions options;
+    BadTexels bad;
+    std::string projection; ///< its name, where pixels told it
+    build::Map map;         ///< of the source
+    double error = 0.0;     ///< build::SourceTarget
+
+    build::Domain grid_of() const { return {grid.parameterization, grid.columns, grid.rows}; }
+    /// Whether the grid is not the source's own.
+    bool resampled() const {
+        const auto own = build::own_domain(map);
+        return !own || !(*own == grid_of());
+    }
+};
+
+/// The function that is fitted. `target` is not empty, and the reference lives as long as a copy of it.
+const compress::Target& grid_of(const Target& target);
+
+/// A target in the library's terms. Throws build::NoEnergy.
+Target target_of(compress::Target grid, const TargetOptions& options);
+
+compress::TargetOptions internal(const TargetOptions& options);
+
+/// A probe on its way into a target, on a grid that was told or is chosen as the options have it.
+class TargetRows : public build::ProbeRows {
+public:
+    explicit TargetRows(const TargetOptions& options, build::Progress progress = {},
+                        std::optional<build::Domain> grid = {})
+        : options_(options), progress_(std::move(progress)), grid_(grid) {}
+
+    bool take_map(const build::Map& map, const std::vector<float>& rgb) override;
+    void begin(int width, int height) override;
+    void take(int first, int count, const float* rgb) override;
+    /// Once, after all rows. Throws build::NoEnergy.
+    Target finish(const BadTexels& bad = {}, const std::string& projection = {});
+
+private:
+    std::size_t row() const { return std::size_t{3} * static_cast<std::size_t>(map_.width); }
+    std::optional<build::Domain> grid_of(const build::Map& map) const;
+    build::SourceTarget target_of(const build::Map& map, const float* rgb) const;
+
+    TargetOptions options_;
+    build::Progress progress_;
+    std::optional<build::Domain> grid_;
+    build::Map map_;
+    std::vector<float> rgb_;                         ///< of a map that is fitted on another grid
+    std::optional<compress::EnvironmentTarget> own_; ///< of a lat-long map on its own
+    build::SourceTarget made_;
+};
+
+/// `brdf` must outlive what is made.
+Brdf described(const build::Brdf& brdf);
+
+/// The table of numbers that are floats already; `bad` says what they were.
+Status table(const build::Array& array, const BadNumbers& bad, const TableOptions& options, Table& result,
+             const Control& control = {}) noexcept;
+
+} // namespace acdf::builder

@@ -1,0 +1,48 @@
+// Tables of arrays.
+#include "build/table.h"
+
+#include "build/builder/arrays.h"
+#include "build/builder/guard.h"
+#include "build/builder/options.h"
+#include "build/builder/sources.h"
+
+#include <stdexcept>
+
+namespace acdf::builder {
+namespace {
+
+Table make(const build::Array& array, const BadNumbers& bad, const TableOptions& options,
+           const build::Progress& progress) {
+    build::Table made =
+        build::build_table(array, options.source.name, options.source.sha256, internal(options), progress);
+    Table out;
+    out.bytes = std::move(made.bytes);
+    out.accuracy = made.accuracy;
+    out.total = made.total;
+    out.bad = bad;
+    return out;
+}
+
+} // namespace
+
+Status table(const build::Array& array, const BadNumbers& bad, const TableOptions& options, Table& result,
+             const Control& control) noexcept {
+    return make_into(result, control, [&](Gate& gate) {
+        check(options);
+        return make(array, bad, options, gate.part(0.0, 1.0));
+    });
+}
+
+Status table(const Array& array, const TableOptions& options, Table& result, const Control& control) noexcept {
+    return make_into(result, control, [&](Gate& gate) {
+        check(array);
+        check(options);
+        BadNumbers bad;
+        const build::Array floats = to_floats(array, bad);
+        if (bad.count() > 0 && !options.bad_as_zero) throw std::invalid_argument(build::text(bad, array.shape));
+        gate.tell(0.1, "fitting");
+        return make(floats, bad, options, gate.part(0.1, 0.9));
+    });
+}
+
+} // namespace acdf::builder
