@@ -151,12 +151,11 @@ nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const bu
 }
 
 std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
-    const compress::FitOptions& fit = environment_.fit;
-    if (fit.fit != ACDF_FIT_VARIANCE) return 0;
-    if (fit.goal.kind == compress::Goal::Kind::variance) return pixels * kVarianceMemoryOfPixel;
+    const builder::Goal& goal = environment_.goal;
+    if (environment_.fit.fit != ACDF_FIT_VARIANCE) return 0;
+    if (goal.kind == builder::Goal::Kind::variance) return pixels * kVarianceMemoryOfPixel;
     const std::uint64_t bytes_of_cell = environment_.codec == ACDF_CODEC_NONE ? kCellBytes : kDeflatedCellBytes;
-    const std::uint64_t cells =
-        fit.goal.kind == compress::Goal::Kind::budget ? fit.goal.budget / bytes_of_cell : fit.goal.cells;
+    const std::uint64_t cells = goal.kind == builder::Goal::Kind::budget ? goal.budget / bytes_of_cell : goal.cells;
     return std::min(cells * kMemoryOfCell, pixels * kVarianceMemoryOfPixel);
 }
 

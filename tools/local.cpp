@@ -1,4 +1,5 @@
 // acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
+#include "build/format_names.h"
 #include "input/image.h"
 #include "input/image_header.h"
 #include "input/scene_normals.h"
