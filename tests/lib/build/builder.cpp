@@ -1,9 +1,8 @@
 // Environments by the public library: every form of pixels, rows on demand, targets, and what the program makes.
 #include "tests/lib/build/builder.h"
+#include "tests/lib/build/write_exr.h"
 
 #include "input/image.h"
-
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <memory>
@@ -152,12 +151,6 @@ TEST(Builder, ClampTakesTheLargestOfTheWholeMap) {
     options.target.bad_texels = BadTexelPolicy::clamp;
     EXPECT_EQ(bytes_of(pixels_of(rgb, width, height), options),
               bytes_of(pixels_of(mended, width, height), options));
-}
-
-void write_exr(const std::string& path, const std::vector<float>& rgb, int width, int height) {
-    const auto out = OIIO::ImageOutput::create(path);
-    ASSERT_TRUE(out && out->open(path, OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT)));
-    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) && out->close());
 }
 
 struct Layout {

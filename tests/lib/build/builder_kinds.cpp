@@ -1,11 +1,10 @@
 // Local environments, BRDFs and tables by the public library: what the program makes, from every form of input.
 #include "tests/inputs/table_files.h"
 #include "tests/lib/build/builder.h"
+#include "tests/lib/build/write_exr.h"
 
 #include "input/brdf_models.h"
 #include "input/image.h"
-
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 
@@ -23,10 +22,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class SkyFile {
 public:
     SkyFile() : rgb(sky()), path_(folder_ / "sky.exr") {
-        const auto out = OIIO::ImageOutput::create(path_);
-        const OIIO::ImageSpec spec(int(kSkyWidth), int(kSkyHeight), 3, OIIO::TypeDesc::FLOAT);
-        EXPECT_TRUE(out && out->open(path_, spec) && out->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) &&
-                    out->close());
+        write_exr(path_, rgb, int(kSkyWidth), int(kSkyHeight));
         source = {"sky.exr", input::file_sha256(path_), "", ""};
     }
     Bytes program(std::vector<std::string> arguments) const {
