@@ -110,30 +110,24 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
                     rival.bytes);
 }
 
-/// The rivals know lat-long maps alone.
-compress::Target latlong_target(const LocalMeasureOptions& options, const File& file,
-                                const compress::Target& target) {
-    if (target.parameterization == ACDF_PARAM_LATLONG) return target;
+/// The rivals draw texels of a lat-long map: of the source itself, or of what it is resampled to.
+compress::Target rival_target(const LocalMeasureOptions& options, const File& file, const ProbeTarget& source) {
+    if (!source.resampled && source.target.parameterization == ACDF_PARAM_LATLONG) return source.target;
     const AcdfDescription& d = file.description();
-    input::ProbeOptions reading = options.input;
-    reading.domain = input::Domain::latlong;
-    return load_target(options.source, reading,
-                       {{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
-                        static_cast<AcdfChannels>(d.channels),
-                        static_cast<AcdfFilter>(d.filter)},
-                       [](const std::string&) {})
-        .target;
+    return probe_target(options.source, load_probe(options.source, options.input, true),
+                        {{d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]},
+                         static_cast<AcdfChannels>(d.channels),
+                         static_cast<AcdfFilter>(d.filter)});
 }
 
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    const compress::Target target =
-        source_target(options.file, file, options.source, options.input, options.quiet).target;
+    const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
     const std::vector<build::Normal> normals = build::random_normals(options.normals);
-    const build::LocalAccuracy accuracy = build::summary(build::measure_normals(file, target, normals));
+    const build::LocalAccuracy accuracy = build::summary(build::measure_normals(file, source.target, normals));
     const std::vector<Rival> rivals =
-        options.rivals ? rivals_of(latlong_target(options, file, target), normals) : std::vector<Rival>{};
+        options.rivals ? rivals_of(rival_target(options, file, source), normals) : std::vector<Rival>{};
     if (options.json) std::printf("%s\n", report(file, options, accuracy, rivals).dump(2).c_str());
     else print_text(file, options, accuracy, rivals);
 }
