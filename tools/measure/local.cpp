@@ -110,25 +110,22 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
                     rival.bytes);
 }
 
-/// The rivals know lat-long maps alone.
-builder::Target latlong_target(const LocalMeasureOptions& options, const File& file,
-                               const builder::Target& target) {
-    if (builder::grid_of(target).parameterization == ACDF_PARAM_LATLONG) return target;
-    input::ProbeOptions reading = options.input;
-    reading.domain = input::Domain::latlong;
-    return load_target(options.source, reading, stored_options(file), [](const std::string&) {}).target;
+/// The rivals draw texels of a lat-long map: of the source itself, or of what it is resampled to.
+builder::Target rival_target(const LocalMeasureOptions& options, const File& file, const ProbeTarget& source) {
+    if (!source.resampled && builder::grid_of(source.target).parameterization == ACDF_PARAM_LATLONG)
+        return source.target;
+    return probe_target(options.source, load_probe(options.source, options.input, true), stored_options(file));
 }
 
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    const builder::Target held =
-        source_target(options.file, file, options.source, options.input, options.quiet).target;
-    const compress::Target& target = builder::grid_of(held);
+    const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
     const std::vector<build::Normal> normals = build::random_normals(options.normals);
-    const build::LocalAccuracy accuracy = build::summary(build::measure_normals(file, target, normals));
+    const build::LocalAccuracy accuracy =
+        build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     const std::vector<Rival> rivals =
-        options.rivals ? rivals_of(builder::grid_of(latlong_target(options, file, held)), normals)
+        options.rivals ? rivals_of(builder::grid_of(rival_target(options, file, source)), normals)
                        : std::vector<Rival>{};
     if (options.json) std::printf("%s\n", report(file, options, accuracy, rivals).dump(2).c_str());
     else print_text(file, options, accuracy, rivals);
