@@ -29,7 +29,7 @@ const Target& probe() {
 }
 
 build::Local build(const build::LocalOptions& options) {
-    return build::build_local(probe(), {"probe.exr", "", "latlong"}, options);
+    return build::build_local(probe(), {"probe.exr", "", "latlong", ""}, options);
 }
 
 File load(const build::Local& local) {
