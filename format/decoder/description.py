@@ -35,7 +35,7 @@ def read_description(container):
     d = Description()
     (d.parameterization, d.fit, d.filter, up, hand, axis_count, d.bin_count, d.channels, *weights,
      d.total) = struct.unpack_from("<8I4d", data)
-    require(1 <= d.parameterization <= 3, 5001)
+    require(1 <= d.parameterization <= 4, 5001)
     require(1 <= d.fit <= 4, 5002)
     require(d.filter <= 1, 5003)
     require(up == 2, 5004)
@@ -46,7 +46,8 @@ def read_description(container):
     require(d.bin_count >= 1, 5007)
     require(all(math.isfinite(w) and w >= 0 for w in weights), 5009)
     require(math.isfinite(d.total) and d.total > 0, 5010)
-    require(d.parameterization == {ENVIRONMENT: 1, LOCAL: 1, BRDF: 2, TABLE: 3}[container.kind], 5016)
+    allowed = {ENVIRONMENT: (1, 4), LOCAL: (1, 4), BRDF: (2,), TABLE: (3,)}[container.kind]
+    require(d.parameterization in allowed, 5016)
     d.axes = [Axis(data[64 + 48 * i:112 + 48 * i]) for i in range(axis_count)]
     check_axes(d.axes)
     check_metadata(container.payloads.get(b"META"))
@@ -100,7 +101,11 @@ def is_axis(axis, name, role, measure, low, high, most):
 
 
 def check_sphere_axes(d):
-    """§6.1, also of local environments."""
+    """§6.1 and §6.9, also of local environments."""
+    if d.parameterization == 4:
+        require(is_axis(d.axes[0], b"u", 0, 0, 0.0, 1.0, 65536), 7001)
+        require(is_axis(d.axes[1], b"v", 0, 0, 0.0, 1.0, 65536), 7001)
+        return
     require(is_axis(d.axes[0], b"phi", 0, 0, PI, -PI, 65536), 7001)
     require(is_axis(d.axes[1], b"theta", 0, 1, 0.0, PI, 65536), 7001)
 

@@ -5,6 +5,7 @@ from .description import NOT_STORED
 from .local import Local
 from .refused import require
 from .sphere import Environment
+from .square import grid_of
 from .table import Table
 from .tiles import NO_ROOT, Tiles
 from .tree import Tree, check_tree
@@ -21,7 +22,7 @@ def view_of(container, d):
     tree = Tree(chunks[b"TREE"])
     check_tree(tree, d.axes, roots_of(kind, d, tiles, tree))
     if kind == ENVIRONMENT:
-        return Environment(tree, d.bins[0][0], d.axes[0].resolution, d.axes[1].resolution)
+        return Environment(tree, d.bins[0][0], grid_of(d))
     if kind == LOCAL:
         return Local(tree, d, tiles, chunks.get(b"LOCL"))
     if kind == BRDF:

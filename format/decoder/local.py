@@ -6,6 +6,7 @@ from .description import NOT_STORED, PI, check_sphere_axes, is_axis
 from .refused import require
 from .sphere import (NOTHING, Environment, Sphere, clamp, direction_of, f32, of_unit_length, random_number,
                      sin_cos)
+from .square import grid_of
 from .tiles import sum_of
 from .tree import LEAST
 
@@ -100,7 +101,7 @@ class Local:
         self.N, self.grid = read_normals(d.axes, d.bin_count)
         self.sigma, self.lights = read_local_chunk(chunk, tiles, d.bins)
         self.tree, self.tiles, self.bins = tree, tiles, d.bins
-        self.environment = Environment(tree, 0, d.axes[0].resolution, d.axes[1].resolution)
+        self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
 
     def point(self, normal):

@@ -107,8 +107,10 @@ def of_unit_length(v):
 
 
 class Environment:
-    def __init__(self, tree, root, columns, rows):
-        self.tree, self.root, self.sphere = tree, root, Sphere(columns, rows)
+    """`sphere` is the grid of directions: a Sphere, or the Square of §6.9."""
+
+    def __init__(self, tree, root, sphere):
+        self.tree, self.root, self.sphere = tree, root, sphere
 
     def sample(self, u0, u1):
         return self.sample_light([random_number(u0), random_number(u1)])
