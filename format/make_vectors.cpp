@@ -259,7 +259,9 @@ int main(int argc, char** argv) try {
     for (int i = 2; i < argc; ++i) {
         acdf::File file;
         const std::string path = argv[i], name = path.substr(path.rfind('/') + 1);
-        const acdf::Status status = acdf::File::open(path.c_str(), file);
+        acdf::LoadOptions walked; // as SPEC.md says it, to the last bit
+        walked.tables = false;
+        const acdf::Status status = acdf::File::open(path.c_str(), file, walked);
         if (!status.ok()) throw std::runtime_error(status.message);
         const std::string text = rows_of(file);
         write(folder + name.substr(0, name.rfind('.')) + ".csv", text.data(), text.size());
