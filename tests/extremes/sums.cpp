@@ -114,7 +114,8 @@ TEST(Summation, FitsAreAsGoodInAnyOrder) {
         double variance[2];
         for (int i = 0; i < 2; ++i) {
             const Target target = i == 0 ? t.target : reversed(t.target);
-            auto description = acdf::compress::environment_description(target.columns, target.rows);
+            auto description =
+                acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
             description.total = acdf::compress::integral(target);
             const auto bytes = acdf::compress::store(acdf::compress::fit(target, options).tree, description);
             acdf::File file;

@@ -235,7 +235,8 @@ void check_samples(const EnvironmentView& view, const CellMap& map, const Target
                   step_of(place.column / target.columns * kPhiBins, kPhiBins)];
         estimate += double{target.values[texel]} / sample.pdf / kSamples;
     }
-    EXPECT_LE(agreement.worst, 1e-4);
+    // How near a tilted cell's darkest edge samples come; `far` tells whether rounding explains what is seen there.
+    EXPECT_LE(agreement.worst, target.parameterization == ACDF_PARAM_OCTAHEDRAL ? 2e-4 : 1e-4);
     for (const double u0 : {0.0, 0.5, 1.0}) // at a cell's darkest edge rounding shows most
         for (const double u1 : {0.0, 0.5, 1.0}) {
             const auto sample = view.sample(u0, u1);
