@@ -66,7 +66,7 @@ void expect_same_draw(const Pair& pair, double u0, double u1, Served& served) {
     ++served.draws;
     if (!pair.cells()) return; // tilts magnify the rounding of directions
     AcdfDirectionSample told;
-    served.of_draws += acdf_cells_sample(pair.cells(), u0, u1, &told);
+    served.of_draws += acdf_cells_sample(pair.cells(), u0, u1, &told) != 0;
     ASSERT_EQ(bits_of(pair.fast.environment().pdf(fast.direction)), bits_of(fast.pdf)) << u0 << ' ' << u1;
     ASSERT_EQ(bits_of(pair.plain.environment().pdf(fast.direction)), bits_of(fast.pdf)) << u0 << ' ' << u1;
     const double length =
