@@ -6,7 +6,7 @@ if(ACDF_PYTHON)
     execute_process(COMMAND ${ACDF_PYTHON} -c "import numpy" RESULT_VARIABLE acdf_no_numpy OUTPUT_QUIET ERROR_QUIET)
     if(acdf_no_numpy)
         message(STATUS "no NumPy for ${ACDF_PYTHON}: the test of format/decoder is left out")
-    elseif(TARGET acdf AND TARGET make_vectors)
+    elseif(TARGET acdf AND TARGET make_vectors AND NOT ACDF_SANITIZE) # it tests the format, and runs no code of its own
         add_test(NAME decoder
             COMMAND ${ACDF_PYTHON} -B ${CMAKE_CURRENT_LIST_DIR}/decoder.py
                 --program $<TARGET_FILE:acdf> --make-vectors $<TARGET_FILE:make_vectors>
