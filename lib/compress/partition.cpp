@@ -144,7 +144,7 @@ void graft(const std::vector<Part>& subtree, std::size_t root, std::vector<Part>
 class Levels {
 public:
     Levels(const Growth& growth, std::int8_t first, const Forgetting& forgetting, std::vector<Part>& parts)
-        : growth_(growth), first_(first), forgetting_(forgetting), parts_(parts), children_(kBatch) {}
+        : growth_(growth), first_(first), forgetting_(forgetting), parts_(parts) {}
 
     /// `visit` is called for each part that is divided, from one thread at a time.
     template <class Visit>
@@ -180,6 +180,7 @@ private:
 
     template <class Visit>
     void divide_batch(std::vector<std::uint32_t>& next, const Visit& visit) {
+        if (children_.size() < batch_.size()) children_.resize(batch_.size()); // most partitions are tiles: small
         tbb::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t k) {
             growth_.divide(forced(batch_[k]), parts_[batch_[k]], children_[k]);
         });
