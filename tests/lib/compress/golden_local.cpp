@@ -13,37 +13,11 @@ namespace {
 
 const std::string kGolden = ACDF_TEST_DIR "/golden/v1.0/";
 
-/// A golden file and the samples beside it.
-struct Line {
-    float normal[3];
-    double u[2];
-    float direction[3], pdf;
-};
-
-class GoldenLocal : public ::testing::TestWithParam<const char*> {
-protected:
-    void SetUp() override {
-        const acdf::Status status = acdf::File::open((kGolden + GetParam() + ".acdf").c_str(), file_);
-        ASSERT_TRUE(status.ok()) << status.message;
-        for (const auto& v : acdf_test::golden_numbers<9>(kGolden + GetParam() + ".txt"))
-            lines_.push_back(parse(v));
-        ASSERT_EQ(lines_.size(), 96u);
-    }
-
-    static Line parse(const std::array<double, 9>& v) {
-        return {{float(v[0]), float(v[1]), float(v[2])},
-                {v[3], v[4]},
-                {float(v[5]), float(v[6]), float(v[7])},
-                float(v[8])};
-    }
-
-    acdf::File file_;
-    std::vector<Line> lines_;
-};
+class GoldenLocal : public acdf_test::GoldenDraws {};
 
 TEST_P(GoldenLocal, DrawsTheSameSamples) {
-    for (const Line& line : lines_) {
-        const auto s = file_.local().sample(line.normal, line.u[0], line.u[1]);
+    for (const acdf_test::GoldenDraw& line : lines_) {
+        const auto s = file_.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
         EXPECT_EQ(s.pdf, line.pdf);
     }
@@ -51,8 +25,8 @@ TEST_P(GoldenLocal, DrawsTheSameSamples) {
 
 TEST_P(GoldenLocal, HasThatDensityThere) {
     int drawn = 0;
-    for (const Line& line : lines_) {
-        EXPECT_EQ(file_.local().pdf(line.normal, line.direction), line.pdf);
+    for (const acdf_test::GoldenDraw& line : lines_) {
+        EXPECT_EQ(file_.local().pdf(line.given, line.direction), line.pdf);
         drawn += line.pdf > 0.0f;
     }
     EXPECT_GT(drawn, 60);

@@ -12,46 +12,20 @@ namespace {
 
 const std::string kGolden = ACDF_TEST_DIR "/golden/v1.0/";
 
-/// A line `wo  u0 u1  wi  pdf` beside a golden file.
-struct Line {
-    float wo[3];
-    double u[2];
-    float wi[3], pdf;
-};
-
-class GoldenBrdf : public ::testing::TestWithParam<const char*> {
-protected:
-    void SetUp() override {
-        const acdf::Status status = acdf::File::open((kGolden + GetParam() + ".acdf").c_str(), file_);
-        ASSERT_TRUE(status.ok()) << status.message;
-        for (const auto& v : acdf_test::golden_numbers<9>(kGolden + GetParam() + ".txt"))
-            lines_.push_back(parse(v));
-        ASSERT_EQ(lines_.size(), 96u);
-    }
-
-    static Line parse(const std::array<double, 9>& v) {
-        return {{float(v[0]), float(v[1]), float(v[2])},
-                {v[3], v[4]},
-                {float(v[5]), float(v[6]), float(v[7])},
-                float(v[8])};
-    }
-
-    acdf::File file_;
-    std::vector<Line> lines_;
-};
+class GoldenBrdf : public acdf_test::GoldenDraws {};
 
 TEST_P(GoldenBrdf, DrawsTheSameSamples) {
-    for (const Line& line : lines_) {
-        const auto s = file_.brdf().sample(line.wo, line.u[0], line.u[1]);
-        for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.wi[i]);
+    for (const acdf_test::GoldenDraw& line : lines_) {
+        const auto s = file_.brdf().sample(line.given, line.u[0], line.u[1]);
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
         EXPECT_EQ(s.pdf, line.pdf);
     }
 }
 
 TEST_P(GoldenBrdf, HasThatDensityThere) {
-    for (const Line& line : lines_) {
+    for (const acdf_test::GoldenDraw& line : lines_) {
         EXPECT_GT(line.pdf, 0.0f);
-        EXPECT_EQ(file_.brdf().pdf(line.wo, line.wi), line.pdf);
+        EXPECT_EQ(file_.brdf().pdf(line.given, line.direction), line.pdf);
     }
 }
 

@@ -1,5 +1,7 @@
-// The numbers beside golden files: one sample a line.
+// The numbers beside golden files: one sample a line, and the fixture of those that are drawn for a direction.
 #pragma once
+
+#include <acdf/reader.h>
 
 #include <gtest/gtest.h>
 
@@ -28,5 +30,31 @@ std::vector<std::array<double, Count>> golden_numbers(const std::string& path) {
     }
     return lines;
 }
+
+/// A draw for a normal or a view: `given  u0 u1  direction  pdf` on a line.
+struct GoldenDraw {
+    float given[3];
+    double u[2];
+    float direction[3], pdf;
+};
+
+/// A golden file, named by the parameter, and the 96 draws beside it.
+class GoldenDraws : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
+        const acdf::Status status = acdf::File::open((path + ".acdf").c_str(), file_);
+        ASSERT_TRUE(status.ok()) << status.message;
+        for (const std::array<double, 9>& v : golden_numbers<9>(path + ".txt"))
+            lines_.push_back({{float(v[0]), float(v[1]), float(v[2])},
+                              {v[3], v[4]},
+                              {float(v[5]), float(v[6]), float(v[7])},
+                              float(v[8])});
+        ASSERT_EQ(lines_.size(), 96u);
+    }
+
+    acdf::File file_;
+    std::vector<GoldenDraw> lines_;
+};
 
 } // namespace acdf_test

@@ -8,21 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <random>
-
-#include <sys/resource.h>
-#include <sys/stat.h>
-
-#if defined(__SANITIZE_ADDRESS__)
-#define ACDF_TEST_ASAN 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ACDF_TEST_ASAN 1
-#endif
-#endif
 
 using namespace acdf_test;
 using acdf::ErrorCode;
