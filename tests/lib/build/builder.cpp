@@ -1,6 +1,6 @@
 // Environments by the public library: every form of pixels, rows on demand, targets, and what the program makes.
 #include "tests/lib/build/builder.h"
-#include "tests/lib/build/write_exr.h"
+#include "tests/inputs/write_rgb.h"
 
 #include "input/image.h"
 
@@ -174,7 +174,7 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
     for (const Layout& layout : layouts) {
         std::vector<float> rgb = sky(layout.width, layout.height);
         rgb[3 * (layout.height / 2 * layout.width + layout.width / 2)] = -1.0f;
-        write_exr(folder / "p.exr", rgb, int(layout.width), int(layout.height));
+        write_rgb(folder / "p.exr", int(layout.width), int(layout.height), rgb);
         EnvironmentOptions options;
         options.goal = Goal::of_budget(4000);
         options.codec = ACDF_CODEC_ZLIB;
@@ -194,7 +194,7 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
 TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
     const Folder folder;
     const std::vector<float> rgb = sky();
-    write_exr(folder / "p.exr", rgb, int(kSkyWidth), int(kSkyHeight));
+    write_rgb(folder / "p.exr", int(kSkyWidth), int(kSkyHeight), rgb);
     const auto expect_same = [&](EnvironmentOptions options, std::vector<std::string> arguments) {
         options.source = {"p.exr", input::file_sha256(folder / "p.exr"), "", ""};
         const std::string text = arguments.empty() ? "" : arguments.back();

@@ -1,7 +1,7 @@
 // Local environments, BRDFs and tables by the public library: what the program makes, from every form of input.
 #include "tests/inputs/table_files.h"
+#include "tests/inputs/write_rgb.h"
 #include "tests/lib/build/builder.h"
-#include "tests/lib/build/write_exr.h"
 
 #include "input/brdf_models.h"
 #include "input/image.h"
@@ -22,7 +22,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class SkyFile {
 public:
     SkyFile() : rgb(sky()), path_(folder_ / "sky.exr") {
-        write_exr(path_, rgb, int(kSkyWidth), int(kSkyHeight));
+        write_rgb(path_, int(kSkyWidth), int(kSkyHeight), rgb);
         source = {"sky.exr", input::file_sha256(path_), "", ""};
     }
     Bytes program(std::vector<std::string> arguments) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/inputs/synthetic.h"
+#include "tests/inputs/write_rgb.h"
 
 #include "build/projection.h"
 #include "compress/fit.h"
@@ -97,15 +98,6 @@ inline LoadedImage load_image(const std::string& path) {
         file.read({0, image.height, 0, header.channel_count, pixel, pixel * image.width}, image.values.data()))
         << path << ": " << file.error();
     return image;
-}
-
-/// Writes height x width x 3 floats.
-inline void write_rgb(const std::string& path, int width, int height, const std::vector<float>& rgb) {
-    images::Picture picture(width, height);
-    picture.values = rgb;
-    const std::vector<std::uint8_t> bytes = images::encode(picture, {path, false, {}, {}});
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 } // namespace acdf::test

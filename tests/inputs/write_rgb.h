@@ -1,4 +1,4 @@
-// Probes as image files, for tests that compare with the program.
+// Image files of known pixels, for the tests.
 #pragma once
 
 #include "images/image_file.h"
@@ -9,8 +9,8 @@
 
 namespace acdf::test {
 
-/// RGB floats, rows from the top.
-inline void write_exr(const std::string& path, const std::vector<float>& rgb, int width, int height) {
+/// Writes height x width x 3 floats, rows from the top.
+inline void write_rgb(const std::string& path, int width, int height, const std::vector<float>& rgb) {
     images::Picture picture(width, height);
     picture.values = rgb;
     const std::vector<std::uint8_t> bytes = images::encode(picture, {path, false, {}, {}});
