@@ -2,11 +2,11 @@
 #pragma once
 
 #include "measure/light_sampler.h"
+#include "measure/random.h"
 
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <random>
 
 namespace acdf::measure {
 
@@ -21,10 +21,6 @@ public:
     /// by.
     virtual double unoccluded(const float wi[3]) const = 0;
 };
-
-/// Uniform random numbers of one pixel and one seed.
-using Random = std::mt19937_64;
-inline double uniform(Random& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 /// What one estimate of a pixel used.
 struct Tally {

@@ -12,11 +12,12 @@ double cosine(const ShadingPoint& point, const float wi[3]) {
     return double{point.n[0]} * wi[0] + double{point.n[1]} * wi[1] + double{point.n[2]} * wi[2];
 }
 
-/// Draws one sample and counts it. True where it may contribute: above the horizon.
+/// Draws one sample, of the set of numbers that has begun, and counts it. True where it may contribute: above the
+/// horizon.
 bool draw(const PointSampler& sampler, const ShadingPoint& point, Random& random, Tally& tally,
           AcdfDirectionSample& out) {
-    const double u0 = uniform(random), u1 = uniform(random);
-    out = sampler.sample(u0, u1);
+    const std::array<double, 2> u = random.pair();
+    out = sampler.sample(u[0], u[1]);
     ++tally.samples;
     if (!(out.pdf > 0.0f && cosine(point, out.direction) > 0.0)) return false;
     ++tally.above;
@@ -36,6 +37,7 @@ public:
 
     Rgb estimate(const ShadingPoint& point, const Integrand& f, Random& random, Tally& tally) override {
         sampler_->move_to(point);
+        random.begin_set();
         Rgb sum{};
         AcdfDirectionSample s;
         for (std::uint32_t i = 0; i < n_; ++i)
@@ -59,9 +61,11 @@ public:
         for (const Part& part : parts_) part.sampler->move_to(point);
         Rgb sum{};
         AcdfDirectionSample s;
-        for (const Part& part : parts_)
+        for (const Part& part : parts_) {
+            random.begin_set();
             for (double i = 0.0; i < part.n; i += 1.0)
                 if (draw(*part.sampler, point, random, tally, s)) add(f, s.direction, weight(part, s), sum, tally);
+        }
         return sum;
     }
 
@@ -93,6 +97,7 @@ public:
 
     Rgb estimate(const ShadingPoint& point, const Integrand& f, Random& random, Tally& tally) override {
         sampler_->move_to(point);
+        random.begin_set(); // candidates of all samples; which of them are kept is left to independent numbers
         Rgb sum{};
         for (std::uint32_t i = 0; i < n_; ++i) {
             const Kept kept = keep_one(point, f, random, tally);

@@ -1,6 +1,7 @@
 // What is done with samplers: one, several, or candidates of one that are resampled.
 //
-// Random numbers are independent. The integrand is 0 below the horizon: it is evaluated above it alone.
+// Each sampler draws one set of numbers an estimate (Random). The integrand is 0 below the horizon: it is evaluated
+// above it alone.
 #pragma once
 
 #include "measure/estimator.h"

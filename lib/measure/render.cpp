@@ -17,12 +17,6 @@ std::uint64_t hash(const std::string& name) { // FNV-1a
     return h;
 }
 
-std::uint64_t mixed(std::uint64_t x) { // the finalizer of splitmix64
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-    return x ^ (x >> 31);
-}
-
 /// Everything of one point.
 class PointRendering {
 public:
@@ -30,7 +24,7 @@ public:
         : out_(out), points_(points), options_(options), stream_(stream) {}
 
     Tally operator()(std::size_t i, const ScenePoint& point, PointEstimator& estimator) const {
-        Random random(mixed(mixed(stream_ ^ options_.seed) + i));
+        Random random(mixed(mixed(stream_ ^ options_.seed) + i), options_.numbers);
         Tally tally;
         Rgb sum{};
         double luminances = 0.0;

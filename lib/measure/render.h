@@ -12,6 +12,7 @@ namespace acdf::measure {
 struct RenderOptions {
     std::uint32_t seeds = 16; ///< independent pictures, at least 2
     std::uint64_t seed = 1;
+    Numbers numbers = Numbers::independent;
 };
 
 /// What the variance of a pixel is divided by: L^2 + (0.1 mean L)^2, L the pixel's luminance. The second term keeps

@@ -23,8 +23,9 @@ private:
 /// One estimator at work on the same points over and over, as a renderer's thread is.
 class Runner {
 public:
-    Runner(const std::vector<const ScenePoint*>& points, const std::vector<const Estimator*>& estimators)
-        : points_(points) {
+    Runner(const std::vector<const ScenePoint*>& points, const std::vector<const Estimator*>& estimators,
+           Numbers numbers)
+        : points_(points), random_(1, numbers) {
         for (const Estimator* estimator : estimators) own_.push_back(estimator->point_estimator());
     }
 
@@ -41,7 +42,7 @@ public:
 private:
     const std::vector<const ScenePoint*>& points_;
     std::vector<std::unique_ptr<PointEstimator>> own_;
-    Random random_{1};
+    Random random_;
     volatile double sink_ = 0.0; ///< results that nobody reads need not be computed
 };
 
@@ -59,7 +60,7 @@ std::vector<std::vector<double>> time_estimates(const std::vector<ScenePoint>& p
     std::vector<Runner> runners;
     std::vector<std::size_t> repeats;
     for (const auto& one : estimators) {
-        runners.emplace_back(chosen, one);
+        runners.emplace_back(chosen, one, options.numbers);
         const double first = runners.back().once() * static_cast<double>(count); // warms caches, too
         repeats.push_back(static_cast<std::size_t>(std::clamp(1e9 * options.seconds_a_round / first, 1.0, 1e4)));
     }

@@ -9,8 +9,9 @@ namespace acdf::measure {
 
 struct TimingOptions {
     std::uint32_t rounds = 8;         ///< at least 2
-    double seconds_a_round = 0.02;    ///< for each estimator, about
+    double seconds_a_round = 0.01;    ///< for each estimator, about
     std::uint32_t most_points = 1024; ///< spread evenly over those given
+    Numbers numbers = Numbers::independent;
 };
 
 /// Nanoseconds of processor time of one estimate at one point, everything included: moving to the point, drawing,

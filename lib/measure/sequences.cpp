@@ -12,6 +12,14 @@ std::uint64_t row_count(std::uint64_t n) {
     return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(std::sqrt(static_cast<double>(n)))));
 }
 
+std::uint32_t reversed(std::uint32_t x) {
+    x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+    x = (x & 0x0F0F0F0Fu) << 4 | (x >> 4 & 0x0F0F0F0Fu);
+    x = (x & 0x00FF00FFu) << 8 | (x >> 8 & 0x00FF00FFu);
+    return x << 16 | x >> 16;
+}
+
 } // namespace
 
 Sequence::Sequence(SequenceKind kind, std::uint64_t n, std::optional<std::uint64_t> seed)
@@ -66,17 +74,45 @@ std::array<double, 2> Sequence::next_sobol() {
 }
 
 std::array<std::uint32_t, 2> sobol_point(std::uint32_t index) {
-    std::array<std::uint32_t, 2> point = {0, 0};
-    std::uint32_t digit = 0x80000000u, direction = 0x80000000u; // direction numbers of the two dimensions
-    for (; index != 0; index >>= 1) {
-        if (index & 1) {
-            point[0] ^= digit;
-            point[1] ^= direction;
-        }
-        digit >>= 1;
-        direction ^= direction >> 1;
-    }
-    return point;
+    const std::uint32_t digits = reversed(index);
+    // Pascal's triangle modulo 2, which is made of [[1, 1], [0, 1]] by Kronecker products: a step a factor.
+    std::uint32_t second = digits;
+    second ^= (second & 0x0000FFFFu) << 16;
+    second ^= (second & 0x00FF00FFu) << 8;
+    second ^= (second & 0x0F0F0F0Fu) << 4;
+    second ^= (second & 0x33333333u) << 2;
+    second ^= (second & 0x55555555u) << 1;
+    return {digits, second};
+}
+
+std::uint64_t mixed(std::uint64_t bits) {
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    return bits ^ (bits >> 31);
+}
+
+// Sums, products and shifts to the left carry upwards alone: on reversed digits a digit depends on those before it.
+std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed) {
+    std::uint32_t x = reversed(fraction);
+    x ^= x * 0x3D20ADEAu;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526C56u;
+    x ^= x * 0x53A22864u;
+    return reversed(x);
+}
+
+ScrambledSobol::ScrambledSobol(std::uint64_t seed) {
+    const std::uint64_t a = mixed(seed), b = mixed(a + 0x9E3779B97F4A7C15u);
+    order_ = static_cast<std::uint32_t>(a);
+    seeds_[0] = static_cast<std::uint32_t>(b);
+    seeds_[1] = static_cast<std::uint32_t>(b >> 32);
+}
+
+// A scrambled index moves whole blocks of 2^k indices that begin at a multiple of 2^k to others of that kind.
+std::array<double, 2> ScrambledSobol::next() {
+    const std::array<std::uint32_t, 2> point = sobol_point(owen_scramble(index_++, order_));
+    return {owen_scramble(point[0], seeds_[0]) * 0x1p-32, owen_scramble(point[1], seeds_[1]) * 0x1p-32};
 }
 
 } // namespace acdf::measure

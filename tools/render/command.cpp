@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -28,6 +29,7 @@ struct RenderArguments {
     std::vector<std::string> samplers;
     std::uint32_t samples = 0; ///< 0: the scene's
     ComparisonOptions comparison;
+    std::vector<measure::Numbers> sequences{measure::Numbers::independent, measure::Numbers::sobol};
     int threads = 0;
     bool no_reference = false, no_timing = false, json = false, quiet = false, force = false;
 };
@@ -101,7 +103,7 @@ std::vector<std::string> stems(const std::vector<SamplerSpec>& samplers) {
 class PictureWriter {
 public:
     PictureWriter(const Folder& folder, const LoadedScene& scene, const RenderRun& run)
-        : folder_(folder), scene_(scene), run_(run), exposure_(exposure(run.comparison.reference)) {}
+        : folder_(folder), scene_(scene), run_(run), exposure_(exposure(run.passes.front().comparison.reference)) {}
 
     void picture(const std::string& stem, const std::vector<measure::Rgb>& values, const std::string& what) const {
         const images::Picture linear = scene_picture(scene_.scene, scene_.points, values);
@@ -113,8 +115,9 @@ public:
                       encode_png(figure_picture(scene_.scene, scene_.points, values, figure), notes(figure.title)));
     }
     void all(const std::vector<std::string>& stems) const {
-        picture("reference", run_.comparison.reference, "reference");
-        const std::vector<Compared>& samplers = run_.comparison.samplers;
+        const Comparison& comparison = run_.passes.front().comparison;
+        picture("reference", comparison.reference, "reference");
+        const std::vector<Compared>& samplers = comparison.samplers;
         std::vector<double> variances;
         for (const Compared& one : samplers)
             variances.insert(variances.end(), one.relative_variance_of_points.begin(),
@@ -179,15 +182,26 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
     run.options.timing = !options.no_timing;
     const builder::Target target = light_target(options, scene.probe);
     SamplerBuilder builder(target, brdfs_of(scene), options.data);
-    ProgressBar bar(options.quiet);
-    const build::Progress progress = bar.callback();
-    run.comparison = compare(scene.scene, scene.points.points, builder, run.options, progress);
     bool occluders = false;
     for (const measure::Object& object : scene.scene.geometry.objects) occluders |= !object.seen;
-    if (!occluders) return run;
     std::vector<measure::ScenePoint> open;
-    for (const measure::ScenePoint& point : scene.points.points) open.push_back(point.in_the_open());
-    run.in_the_open = compare(scene.scene, open, builder, run.options, progress);
+    for (const measure::ScenePoint& point : scene.points.points)
+        if (occluders) open.push_back(point.in_the_open());
+    ProgressBar bar(options.quiet);
+    const build::Progress progress = bar.callback();
+    for (const measure::Numbers numbers : options.sequences) {
+        run.options.render.numbers = numbers;
+        // References are the same whatever the numbers.
+        const RenderPass* first = run.passes.empty() || options.no_reference ? nullptr : &run.passes.front();
+        RenderPass pass;
+        pass.numbers = numbers;
+        pass.comparison = compare(scene.scene, scene.points.points, builder, run.options, progress,
+                                  first ? first->comparison.reference : std::vector<measure::Rgb>());
+        if (occluders)
+            pass.in_the_open = compare(scene.scene, open, builder, run.options, progress,
+                                       first ? first->in_the_open->reference : std::vector<measure::Rgb>());
+        run.passes.push_back(std::move(pass));
+    }
     return run;
 }
 
@@ -232,6 +246,20 @@ void add_measurement_options(CLI::App& command, RenderArguments& options) {
                     "Independent pictures of each sampler: what variances and their confidence come from")
         ->check(CLI::Range(2, 4096))
         ->option_text("N [16]")
+        ->group("Measurement");
+    const std::map<std::string, std::vector<measure::Numbers>> sequences{
+        {"independent", {measure::Numbers::independent}},
+        {"sobol", {measure::Numbers::sobol}},
+        {"both", {measure::Numbers::independent, measure::Numbers::sobol}}};
+    command
+        .add_option_function<std::string>(
+            "--sequence",
+            [&options, sequences](const std::string& name) { options.sequences = sequences.at(name); },
+            "Random numbers: independent ones; sobol, a scrambled Sobol' sequence in each pixel, as renderers draw "
+            "them; or both, one table each")
+        ->check(CLI::IsMember({"independent", "sobol", "both"}))
+        ->type_name("")
+        ->option_text("NAME [both]")
         ->group("Measurement");
     command.add_option("--seed", options.comparison.render.seed, "Of the random numbers")
         ->option_text("N [1]")
@@ -300,8 +328,10 @@ void add_render(CLI::App& program, int& exit_code) {
     command.footer(help_footer(
         "Writes the exact picture, and of each sampler a picture (EXR, PNG), its relative variance, its share of "
         "samples above the horizon and its gain over the first sampler, pixel by pixel. The table has the relative "
-        "variance of an estimate with its 95 % confidence interval, and the gain over the first sampler by equal "
-        "samples and by equal time; it says where a rival wins. Where a scene has objects that the camera does not "
+        "variance of an estimate, mean over pixels with its 95 % confidence interval and median, the noise of that "
+        "at 16, 64 and 256 samples, and the gain over the first sampler by equal samples and by equal time; it "
+        "says "
+        "where a rival wins. Where a scene has objects that the camera does not "
         "see, all is done again without anything in the way of light.",
         "acdf render --scene tools/render/scenes/demo.json -o out\n"
         "acdf render --scene tools/render/scenes/e4-grace.json --data ~/probes -o out --size 160x120\n"

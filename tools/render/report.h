@@ -11,11 +11,20 @@
 namespace acdf::tools {
 
 /// What a run was, beside its figures.
-struct RenderRun {
-    std::string scene; ///< as the user named it
-    ComparisonOptions options;
+/// The comparison with one kind of random numbers.
+struct RenderPass {
+    measure::Numbers numbers = measure::Numbers::independent;
     Comparison comparison;
-    std::optional<Comparison> in_the_open; ///< the same points with nothing in the way
+    std::optional<Comparison> in_the_open; ///< where objects that are not seen hide light: the same without any
+};
+
+/// "independent", "sobol".
+const char* to_string(measure::Numbers numbers);
+
+struct RenderRun {
+    std::string scene; ///< its file's name
+    ComparisonOptions options;
+    std::vector<RenderPass> passes; ///< one or two; pictures are those of the first
 };
 
 /// Files that were written are named by the caller. Keys are stable, numbers exact.

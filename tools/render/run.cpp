@@ -79,7 +79,9 @@ void time_all(Comparison& out, const std::vector<measure::ScenePoint>& points,
               const std::vector<BuiltSampler>& built, const ComparisonOptions& options) {
     std::vector<std::vector<const measure::Estimator*>> estimators;
     for (const BuiltSampler& one : built) estimators.push_back(one.of_material);
-    auto times = measure::time_estimates(points, estimators, options.time);
+    measure::TimingOptions time = options.time;
+    time.numbers = options.render.numbers;
+    auto times = measure::time_estimates(points, estimators, time);
     for (std::size_t i = 0; i < times.size(); ++i) {
         for (double& time : times[i]) time += options.shadow_ray_ns * out.samplers[i].shadow_rays;
         out.samplers[i].nanoseconds = std::move(times[i]);
@@ -104,7 +106,7 @@ std::string gain_text(const measure::Interval& gain) {
 const Compared* best_of(const std::vector<Compared>& samplers, bool ours, Gain gain) {
     const Compared* best = nullptr;
     for (const Compared& one : samplers)
-        if (one.ours == ours && (!best || gain(one, *best).value > 1.0)) best = &one;
+        if (one.ours == ours && one.resolved() && (!best || gain(one, *best).value > 1.0)) best = &one;
     return best;
 }
 
@@ -113,6 +115,7 @@ std::string judge(const Comparison& comparison, Gain gain, const char* where, co
     const Compared* rival = best_of(comparison.samplers, false, gain);
     if (!ours || !rival) {
         const Compared* best = ours ? ours : rival;
+        if (!best) return std::string("At equal ") + where + " nothing can be said: rare, bright samples decide.";
         return std::string("At equal ") + where + " '" + best->spec.text + "' has the least noise.";
     }
     const bool wins = gain(*ours, *rival).value >= 1.0;
@@ -158,7 +161,8 @@ measure::Interval gain_at_equal_time(const Compared& a, const Compared& b) {
 }
 
 Comparison compare(const measure::Scene& scene, const std::vector<measure::ScenePoint>& points,
-                   SamplerBuilder& builder, const ComparisonOptions& options, const build::Progress& progress) {
+                   SamplerBuilder& builder, const ComparisonOptions& options, const build::Progress& progress,
+                   std::vector<measure::Rgb> reference) {
     const auto tell = [&](double fraction, const char* what) {
         if (progress) progress(fraction, what);
     };
@@ -168,7 +172,8 @@ Comparison compare(const measure::Scene& scene, const std::vector<measure::Scene
         tell(0.2 * static_cast<double>(built.size()) / static_cast<double>(options.samplers.size()), "building");
         built.push_back(builder.build(spec, options.samples));
     }
-    if (options.reference)
+    out.reference = std::move(reference);
+    if (options.reference && out.reference.empty())
         out.reference =
             measure::reference(scene.light, points, [&](double share) { tell(0.2 + 0.4 * share, "summing"); });
     for (std::size_t i = 0; i < built.size(); ++i) {
@@ -178,11 +183,13 @@ Comparison compare(const measure::Scene& scene, const std::vector<measure::Scene
         one.ours = built[i].ours;
         one.bytes = built[i].bytes;
         one.build_seconds = built[i].build_seconds;
+        one.scales =
+            options.render.numbers == measure::Numbers::independent && one.spec.kind != SamplerKind::strata;
         one.rendering = measure::render(points, built[i].of_material, one.spec.text, options.render);
         count_samples(one, points.size() * options.render.seeds);
         out.samplers.push_back(std::move(one));
     }
-    if (!options.reference) out.reference = mean_of_all(out.samplers);
+    if (out.reference.empty()) out.reference = mean_of_all(out.samplers);
     for (Compared& one : out.samplers) compare_with_reference(one, out.reference, options.render.seeds);
     for (const measure::ScenePoint& point : points)
         out.sky_hidden += point.share_hidden() / static_cast<double>(points.size());
@@ -201,11 +208,20 @@ std::vector<std::string> verdict(const Comparison& comparison, bool timed) {
     return out;
 }
 
+namespace {
+
+bool resolved(const Comparison& hidden, const Comparison& open, std::size_t i) {
+    return hidden.samplers[i].resolved() && open.samplers[i].resolved();
+}
+
+} // namespace
+
 std::vector<Overtaking> overtakings(const Comparison& hidden, const Comparison& open, Gain gain) {
     std::vector<Overtaking> out;
     for (std::size_t a = 0; a < hidden.samplers.size(); ++a)
         for (std::size_t b = 0; b < hidden.samplers.size(); ++b)
-            if (a != b && gain(hidden.samplers[a], hidden.samplers[b]).low > 1.0 &&
+            if (a != b && resolved(hidden, open, a) && resolved(hidden, open, b) &&
+                gain(hidden.samplers[a], hidden.samplers[b]).low > 1.0 &&
                 gain(open.samplers[b], open.samplers[a]).low > 1.0)
                 out.push_back({&hidden.samplers[a], &hidden.samplers[b]});
     return out;

@@ -52,7 +52,8 @@ struct Compared {
     measure::Rendering rendering;
     std::vector<double> noise;           ///< relative variance of an estimate, mean over points; one a seed
     measure::Interval relative_variance; ///< of the above
-    double median = 0.0;                 ///< over points
+    double median = 0.0;                 ///< over points, not seeds
+    bool scales = true;                  ///< n times the samples have an n-th of the variance
     std::vector<double> nanoseconds;     ///< of an estimate; one a round
     std::vector<double> relative_variance_of_points;
     measure::Interval equal_samples{1.0, 1.0, 1.0};
@@ -61,6 +62,10 @@ struct Compared {
     double bias_standard_errors = 0.0; ///< the same over its standard error
     double share_above = 0.0, least_share_above = 0.0;
     double shadow_rays = 0.0; ///< of an estimate
+
+    /// Whether the interval of its relative variance says anything: one that reaches below 0 shows that rare, very
+    /// bright samples decide, of which there were too few.
+    bool resolved() const { return relative_variance.low > 0.0 || relative_variance.value == 0.0; }
 };
 
 struct Comparison {
@@ -75,11 +80,14 @@ measure::Interval gain_at_equal_time(const Compared& a, const Compared& b);
 
 class SamplerBuilder;
 
-/// `points`: of the scene; those of without_visibility() to compare as if nothing were in the way.
+/// `points`: of the scene; those of in_the_open() to compare as if nothing were in the way. `reference`: of the
+/// same points, where it is known already.
 Comparison compare(const measure::Scene& scene, const std::vector<measure::ScenePoint>& points,
-                   SamplerBuilder& builder, const ComparisonOptions& options, const build::Progress& progress = {});
+                   SamplerBuilder& builder, const ComparisonOptions& options, const build::Progress& progress = {},
+                   std::vector<measure::Rgb> reference = {});
 
-/// One sentence each: who is best by equal samples and by equal time, and whether that is sure.
+/// One sentence each: who is best by equal samples and by equal time, and whether that is sure. What is not
+/// resolved takes no part.
 std::vector<std::string> verdict(const Comparison& comparison, bool timed);
 
 /// Two samplers whose order is another where light is hidden, beyond the noise of both runs.

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <set>
 
 namespace acdf::test {
@@ -20,6 +21,11 @@ struct RenderCommand : testing::Test {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     }
+    /// What is the same with both kinds of numbers.
+    Result render_once(const std::string& output, std::vector<std::string> more = {}) {
+        more.insert(more.end(), {"--sequence", "independent"});
+        return render(output, more);
+    }
     std::set<std::string> files(const std::string& output) const {
         std::set<std::string> out;
         for (const auto& entry : std::filesystem::directory_iterator(folder / output))
@@ -29,7 +35,7 @@ struct RenderCommand : testing::Test {
 };
 
 TEST_F(RenderCommand, WritesWhatItSays) {
-    const Result result = render("out");
+    const Result result = render_once("out");
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(files("out"),
               (std::set<std::string>{"render.json", "reference.exr", "reference.png", "full-cdf.exr",
@@ -59,12 +65,19 @@ TEST_F(RenderCommand, JsonHasTheFigures) {
     EXPECT_EQ(json["width"], 7);
     EXPECT_GT(json["sky_hidden"], 0.05);
     ASSERT_EQ(json["samplers"].size(), 3u);
-    for (const Json& all : {json["samplers"], json["nothing_hidden"]["samplers"]})
+    EXPECT_EQ(json["sequence"], "independent");
+    for (const Json& all : {json["samplers"], json["nothing_hidden"]["samplers"], json["sobol"]["samplers"],
+                            json["sobol"]["nothing_hidden"]["samplers"]})
         for (const Json& one : all) {
             for (const char* key : {"relative_variance", "equal_samples_gain", "equal_time_gain", "nanoseconds"})
                 for (const char* part : {"value", "low", "high"})
                     EXPECT_TRUE(one[key].contains(part)) << key << " " << one;
-            EXPECT_GT(one["relative_variance"]["value"], 0.0);
+            const double variance = one["relative_variance"]["value"], noise = one["noise_percent"].begin().value();
+            EXPECT_GT(variance, 0.0);
+            EXPECT_TRUE(one["relative_variance_median"].is_number() && one["resolved"].is_boolean());
+            // of the fewest samples that are told: 16, or with Sobol' points those that were drawn, 5
+            const double samples = std::stod(one["noise_percent"].begin().key());
+            EXPECT_NEAR(noise, 100.0 * std::sqrt(variance * 5.0 / samples), 1e-3 * noise);
             EXPECT_GT(one["share_above_horizon"], 0.1);
             EXPECT_FALSE(one["ours"]);
         }
@@ -72,6 +85,24 @@ TEST_F(RenderCommand, JsonHasTheFigures) {
     EXPECT_EQ(json["samplers"][1]["bytes"], 0);
     EXPECT_EQ(json["ranking"].size(), 3u);
     EXPECT_EQ(json["verdict"].size(), 2u);
+}
+
+TEST_F(RenderCommand, SequencesAreChosen) {
+    const auto json = [&](const std::string& output, const char* sequence) {
+        EXPECT_EQ(render(output, {"--sequence", sequence, "--no-timing", "--no-reference"}).code, 0);
+        return Json::parse(read_text(folder / (output + "/render.json")));
+    };
+    const Json independent = json("a", "independent"), sobol = json("b", "sobol"), both = json("c", "both");
+    EXPECT_EQ(independent["sequence"], "independent");
+    EXPECT_EQ(sobol["sequence"], "sobol");
+    EXPECT_FALSE(independent.contains("sobol"));
+    EXPECT_FALSE(sobol.contains("sobol"));
+    EXPECT_EQ(both["samplers"], independent["samplers"]);
+    EXPECT_NE(sobol["samplers"], independent["samplers"]);
+    EXPECT_EQ(both["sobol"]["samplers"].size(), 3u);
+    const Result wrong = render("d", {"--sequence", "halton"});
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_NE(wrong.err.find("sobol"), std::string::npos) << wrong.err;
 }
 
 TEST_F(RenderCommand, WritesTheSameBytesForAnyNumberOfThreads) {
@@ -82,12 +113,12 @@ TEST_F(RenderCommand, WritesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(RenderCommand, OverwritesOnlyWithForce) {
-    ASSERT_EQ(render("out", {"--no-reference", "--no-timing"}).code, 0);
+    ASSERT_EQ(render_once("out", {"--no-reference", "--no-timing"}).code, 0);
     const Result again = render("out");
     EXPECT_EQ(again.code, 1);
     EXPECT_EQ(lines_in(again.err), 1u) << again.err;
     EXPECT_NE(again.err.find("--force"), std::string::npos);
-    EXPECT_EQ(render("out", {"--force", "--no-reference", "--no-timing"}).code, 0);
+    EXPECT_EQ(render_once("out", {"--force", "--no-reference", "--no-timing"}).code, 0);
 }
 
 TEST_F(RenderCommand, SaysWhatIsWrong) {
@@ -116,7 +147,7 @@ TEST_F(RenderCommand, SaysWhatIsWrong) {
 TEST_F(RenderCommand, TakesFiles) {
     ASSERT_EQ(run_acdf({"env", folder / "probe.exr", "-o", folder / "sky.acdf", "--cells", "64", "-q"}).code, 0);
     const Result result =
-        render("out", {"--sampler", "cosine", "--sampler", "file:sky.acdf", "--json", "--no-timing"});
+        render_once("out", {"--sampler", "cosine", "--sampler", "file:sky.acdf", "--json", "--no-timing"});
     ASSERT_EQ(result.code, 0) << result.err;
     const Json json = Json::parse(result.out);
     EXPECT_TRUE(json["samplers"][1]["ours"]);

@@ -25,8 +25,10 @@ struct SmallScene {
         for (const auto& brdf : loaded->brdfs) brdfs.push_back(brdf.get());
         builder = std::make_unique<SamplerBuilder>(acdf::builder::target_of(target, {}), brdfs, folder.data());
     }
-    Comparison compare(const std::vector<std::string>& samplers, std::uint32_t seeds, bool timing = false) {
+    Comparison compare(const std::vector<std::string>& samplers, std::uint32_t seeds, bool timing = false,
+                       measure::Numbers numbers = measure::Numbers::independent) {
         ComparisonOptions options;
+        options.render.numbers = numbers;
         for (const std::string& text : samplers) options.samplers.push_back(parse_sampler(text));
         options.samples = 8;
         options.render.seeds = seeds;
@@ -67,6 +69,19 @@ TEST(RenderSamplers, OfTheSurfaceAreUnbiased) {
 TEST(RenderSamplers, OfLocalEnvironmentsAreUnbiased) {
     SmallScene scene;
     expect_unbiased(scene.compare({"local:32KiB", "mis(4*local:32KiB,cosine)"}, 400));
+}
+
+TEST(RenderSamplers, ScrambledSequencesAreUnbiasedAndLessNoisy) {
+    SmallScene scene;
+    const std::vector<std::string> samplers{"full-cdf", "cosine", "ris:4", "mis(env:4KiB,cosine)"};
+    const Comparison sobol = scene.compare(samplers, 200, false, measure::Numbers::sobol);
+    expect_unbiased(sobol);
+    const Comparison independent = scene.compare(samplers, 100);
+    for (const std::size_t i : {0u, 3u}) {
+        EXPECT_LT(sobol.samplers[i].relative_variance.high, independent.samplers[i].relative_variance.low) << i;
+        EXPECT_TRUE(independent.samplers[i].scales);
+        EXPECT_FALSE(sobol.samplers[i].scales);
+    }
 }
 
 // The same check must see what is wrong: light that is lost.
@@ -127,6 +142,21 @@ TEST(RenderSamplers, VerdictSaysWhereARivalWins) {
     EXPECT_EQ(says[0].find("within the noise"), std::string::npos);
     comparison.samplers[1].noise = {0.05, 0.2, 0.01};
     EXPECT_NE(verdict(comparison, false)[0].find("within the noise"), std::string::npos);
+}
+
+// Where rare, very bright samples decide an interval reaches below 0: nothing is made of such figures.
+TEST(RenderSamplers, WhatIsNotResolvedIsNotJudged) {
+    Comparison comparison;
+    comparison.samplers = {made("full-cdf", false, 1.0, 100.0), made("cosine", false, 0.05, 100.0),
+                           made("local:1MB", true, 0.1, 100.0)};
+    for (Compared& one : comparison.samplers) one.relative_variance = measure::mean_interval(one.noise);
+    EXPECT_NE(verdict(comparison, false)[0].find("'cosine'"), std::string::npos);
+    comparison.samplers[1].noise = {1e-4, 2e-4, 0.15};
+    comparison.samplers[1].relative_variance = measure::mean_interval(comparison.samplers[1].noise);
+    EXPECT_LT(comparison.samplers[1].relative_variance.low, 0.0);
+    EXPECT_FALSE(comparison.samplers[1].resolved());
+    EXPECT_EQ(verdict(comparison, false)[0].find("'cosine'"), std::string::npos);
+    EXPECT_TRUE(overtakings(comparison, comparison, gain_at_equal_samples).empty());
 }
 
 TEST(RenderSamplers, OvertakingsAreThoseBeyondTheNoise) {
