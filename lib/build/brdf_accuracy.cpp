@@ -57,9 +57,9 @@ public:
         out.share_above_horizon = out.integral > 0.0 ? above_.value() / out.integral : 0.0;
         if (!(e > 0.0)) return out;
         out.relative_variance = violations_ > 0 ? std::numeric_limits<double>::infinity()
-                                                : std::max(0.0, second_.value() / (e * e) - 1.0);
+                                                : std::max(0.0, second_.value() * out.integral / (e * e) - 1.0);
         out.square_error = square_p_.value() - 2.0 * cross_.value() / e + square_f_.value() / (e * e);
-        out.kl_divergence = log_.value() / e - std::log(e);
+        out.kl_divergence = log_.value() / e - std::log(e / out.integral);
         out.max_weight = largest_ / e;
         out.support_violations = violations_;
         return out;
@@ -129,6 +129,13 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
         return double{brdf.pdf(o, i)};
     };
     return measure_views(density, reflected, views, columns, rows);
+}
+
+std::vector<ViewAccuracy> with_lost_samples(std::vector<ViewAccuracy> views) {
+    for (ViewAccuracy& view : views)
+        if (view.integral > 0.0 && view.integral < 1.0)
+            view.relative_variance = (1.0 + view.relative_variance) / view.integral - 1.0;
+    return views;
 }
 
 BrdfAccuracy summary(const std::vector<ViewAccuracy>& views) {

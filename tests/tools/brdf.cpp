@@ -15,11 +15,15 @@ using Json = nlohmann::json;
 
 namespace {
 
+/// What is told when small_file() is made.
+std::string told;
+
 /// A small file of a model, made once.
 const std::string& small_file() {
     static const Folder folder;
     static const std::string path = folder / "ggx.acdf";
     static const Result made = run_acdf({"brdf", "ggx:alpha=0.4", "-o", path, "--budget", "12KiB", "--json"});
+    told = made.out;
     EXPECT_EQ(made.code, 0) << made.err;
     EXPECT_LT(Json::parse(made.out).at("relative_variance").get<double>(), 0.02);
     EXPECT_LE(Json::parse(made.out).at("bytes").get<std::size_t>(), 12u << 10);
@@ -49,6 +53,17 @@ TEST(BrdfCommand, measureComparesWithOtherSamplers) {
     EXPECT_LT(j.at("relative_variance").get<double>(), 0.1 * j.at("relative_variance_cosine").get<double>());
     EXPECT_LE(j.at("relative_variance_median"), j.at("relative_variance_worst"));
     EXPECT_GT(j.at("share_above_horizon").get<double>(), 0.98);
+
+    // One definition, one figure: what is told when a file is made, what it holds, and what is measured of it.
+    const Json made = Json::parse(told), held = Json::parse(run_acdf({"info", small_file(), "--json"}).out);
+    for (const char* key : {"relative_variance", "relative_variance_median", "relative_variance_worst",
+                            "rms_pdf_error", "kl_divergence", "max_weight", "share_above_horizon"}) {
+        EXPECT_EQ(made.at(key), j.at(key)) << key;
+        const double number = j.at(key);
+        EXPECT_NEAR(held.at("accuracy").at(key).get<double>(), number, 1e-5 * number) << key;
+    }
+    const double noise = 100.0 * std::sqrt(j.at("relative_variance").get<double>() / 64.0);
+    EXPECT_NEAR(j.at("noise_percent").at("64").get<double>(), noise, 1e-3 * noise);
 }
 
 TEST(BrdfCommand, plotsAView) {

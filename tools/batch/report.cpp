@@ -1,5 +1,6 @@
 #include "tools/batch/report.h"
 
+#include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@ Json to_json(const JobResult& job) {
     Json json{{"input", job.input}, {"output", job.output}, {"kind", job.kind}, {"status", to_string(job.status)}};
     json["bytes"] = made ? Json(job.bytes) : Json();
     json["relative_variance"] = made ? Json(job.relative_variance) : Json(); // JSON has no infinity: null too
+    json["noise_percent"] = made ? noise_json(job.relative_variance) : Json();
     json["seconds"] = worked ? Json(job.seconds) : Json();
     json["error"] = made ? Json() : Json(job.error);
     json["notes"] = job.notes;
@@ -72,11 +74,16 @@ struct Sum {
     }
 
     std::string row(const std::string& name) const {
-        char variance[16] = "-", text[160];
-        if (measured > 0)
-            std::snprintf(variance, sizeof variance, "%.3g", std::exp(log_variance / double(measured)));
-        std::snprintf(text, sizeof text, "%-6s %7zu %7zu %11zu %7zu %12s %18s %9.1f\n", name.c_str(), jobs,
-                      by_status[0], by_status[1], by_status[2], to_readable_size(bytes).c_str(), variance, seconds);
+        char variance[16] = "-", text[192];
+        std::string noise = "-";
+        if (measured > 0) {
+            const double mean = std::exp(log_variance / double(measured));
+            std::snprintf(variance, sizeof variance, "%.3g", mean);
+            noise = noise_texts(mean);
+        }
+        std::snprintf(text, sizeof text, "%-6s %7zu %7zu %11zu %7zu %12s %18s %22s %9.1f\n", name.c_str(), jobs,
+                      by_status[0], by_status[1], by_status[2], to_readable_size(bytes).c_str(), variance,
+                      noise.c_str(), seconds);
         return text;
     }
 };
@@ -144,7 +151,8 @@ std::string summary_table(const BatchReport& report) {
         kinds[job.kind].add(job);
         all.add(job);
     }
-    std::string text = "kind      jobs    done  up to date  failed        bytes  relative variance   seconds\n";
+    std::string text = "kind      jobs    done  up to date  failed        bytes  relative variance   "
+                       "noise at 16, 64, 256   seconds\n";
     for (const auto& [name, sum] : kinds) text += sum.row(name);
     return kinds.size() > 1 ? text + all.row("all") : text;
 }

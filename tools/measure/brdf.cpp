@@ -5,6 +5,7 @@
 #include "input/brdf.h"
 #include "measure/brdf_samplers.h"
 #include "measure/brdf_table.h"
+#include "tools/cli/noise.h"
 #include "tools/commands.h"
 
 #include <nlohmann/json.hpp>
@@ -57,6 +58,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
     return {{"file", path},
             {"source", source},
             {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"noise_percent", noise_json(a.relative_variance)},
             {"relative_variance_median", a.median},
             {"relative_variance_worst", a.worst},
             {"worst_theta_o", degrees(a.worst_view)},
@@ -83,6 +85,8 @@ void print_text(const std::string& path, const File& file, const std::string& so
     std::printf("%s against %s, %u random views\n", path.c_str(), source.c_str(), a.views);
     std::printf("  relative variance      %.6g   of one sample, mean over views; n samples have this over n\n",
                 a.relative_variance);
+    std::printf("    noise                %s   at 16, 64, 256 samples under even light\n",
+                noise_texts(a.relative_variance).c_str());
     std::printf("    median over views    %.6g\n", a.median);
     std::printf("    worst view           %.6g   at theta_o = %.1f degrees\n", a.worst, degrees(a.worst_view));
     std::printf("    full table           %.6g   of %.0f MB, bins made for all their views\n", r.table_mean,

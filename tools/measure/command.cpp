@@ -3,6 +3,7 @@
 #include "measure/full_cdf.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/noise.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
@@ -40,6 +41,7 @@ nlohmann::ordered_json report(const MeasureArguments& options, const File& file,
     return {{"file", options.file},
             {"source", options.source},
             {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"noise_percent", noise_json(a.relative_variance)},
             {"relative_variance_full_cdf", measured.full_cdf},
             {"least_variance", a.least_variance},
             {"rms_pdf_error", a.rms_pdf_error},
@@ -57,6 +59,8 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
     const build::Accuracy& a = measured.accuracy;
     std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("    noise                %s   at 16, 64, 256 samples; of the light's sum, not of a surface\n",
+                noise_texts(a.relative_variance).c_str());
     std::printf("    full-resolution CDF  %.6g\n", measured.full_cdf);
     if (a.least_variance > 0.0)
         std::printf("    any texel table      %.6g   at least: several channels, a filter, or resampling\n",

@@ -4,6 +4,7 @@
 #include "build/local_accuracy.h"
 #include "measure/local_rivals.h"
 #include "measure/tiling.h"
+#include "tools/cli/noise.h"
 #include "tools/cli/probe_source.h"
 
 #include <nlohmann/json.hpp>
@@ -70,6 +71,7 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
         {"source", options.source},
         {"normals", a.lit_normals},
         {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+        {"noise_percent", noise_json(a.relative_variance)},
         {"relative_variance_median", a.median},
         {"relative_variance_worst", a.worst},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},
@@ -94,6 +96,8 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
     std::printf("%s against %s, %u random normals\n", options.file.c_str(), options.source.c_str(), a.lit_normals);
     std::printf("  relative variance      %.6g   of one sample of the irradiance, mean over normals\n",
                 a.relative_variance);
+    std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
+                noise_texts(a.relative_variance).c_str());
     std::printf("    median, worst        %.6g, %.6g\n", a.median, a.worst);
     std::printf("    full-resolution CDF  %.6g   %.4g times as much\n", a.relative_variance_full_cdf,
                 a.relative_variance_full_cdf / a.relative_variance);

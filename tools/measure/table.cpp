@@ -3,6 +3,7 @@
 #include "build/table.h"
 #include "input/image.h"
 #include "input/npy.h"
+#include "tools/cli/noise.h"
 #include "tools/commands.h"
 
 #include <nlohmann/json.hpp>
@@ -35,6 +36,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
     return {{"file", path},
             {"source", source},
             {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+            {"noise_percent", noise_json(a.relative_variance)},
             {"relative_variance_median", a.median},
             {"relative_variance_worst", a.worst},
             {"worst_bin", index_of(file, a.worst_bin)},
@@ -53,6 +55,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
                 const build::TableAccuracy& a) {
     std::printf("%s against %s\n", path.c_str(), source.c_str());
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("    noise                %s   at 16, 64, 256 samples\n", noise_texts(a.relative_variance).c_str());
     if (file.description().bin_count > 1) {
         std::printf("    median over bins     %.6g\n", a.median);
         std::printf("    worst bin            %.6g   --at %s\n", a.worst,

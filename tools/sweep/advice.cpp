@@ -1,5 +1,6 @@
 #include "tools/sweep/advice.h"
 
+#include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 
@@ -46,6 +47,34 @@ std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     return size + " reaches " + has + "; beyond it you gain nothing visible.";
 }
 
+/// Of files that know no surface: what pictures have of them.
+std::string picture_sentence(const Sweep& sweep, const Recommended& recommended) {
+    const SweepRow &best = sweep.rows[recommended.row], &full = sweep.rows[sweep.baseline];
+    const Visibility& v = sweep.visibility;
+    const auto noise = [&](const SweepRow& row) {
+        return noise_text(variance_in(row, open_alone, sweep.numbers), v.spp);
+    };
+    std::string text = to_readable_size(best.bytes) + " is enough: a diffuse surface has " + noise(best) +
+                       " noise with it at " + spp_text(v) + ", and " + noise(full) + " with the " + full.label;
+    if (recommended.reached) return text + ", which cannot be seen.";
+    return text + "; no other size or fit tried lowers it by more than 5 %.";
+}
+
+std::string picture_rule(const Sweep& sweep) {
+    const Visibility& v = sweep.visibility;
+    std::string text =
+        "Rule: the smallest file tried whose noise on a diffuse surface is at most 5 % above the least of "
+        "all files, or at most " +
+        percent(v.threshold) + " at " + spp_text(v) +
+        ", in each of four situations: nothing hidden and behind the sphere and the wall of the demo "
+        "scene, with samples of the light alone and with half of them the surface's own. ";
+    text += sweep.timed ? "Noise is that after the same time, of which a sample takes " +
+                              short_number(sweep.costs.shadow_ray_ns) + " ns beside its drawing (--shadow-ray-ns)."
+                        : "Noise is that after the same samples: nothing was timed.";
+    if (sweep.numbers == measure::Numbers::sobol) text += " Samples are of a scrambled Sobol' sequence.";
+    return text;
+}
+
 std::string rule_of(const Visibility& v) {
     std::string text =
         "Rule: the smallest file tried whose noise, the standard deviation sqrt(relative variance / " +
@@ -54,7 +83,8 @@ std::string rule_of(const Visibility& v) {
     return text + ". In numbers: a relative variance of at most " + short_number(v.largest_variance()) + ".";
 }
 
-RivalComparison compare(const SweepRow& rival, std::size_t index, const SweepRow& best) {
+RivalComparison compare(const Sweep& sweep, std::size_t index, const SweepRow& best) {
+    const SweepRow& rival = sweep.rows[index];
     RivalComparison out;
     out.row = index;
     out.bytes = static_cast<double>(rival.bytes) / static_cast<double>(best.bytes);
@@ -64,8 +94,9 @@ RivalComparison compare(const SweepRow& rival, std::size_t index, const SweepRow
         out.verdict = Verdict::ours; // biased, however fast
         return out;
     }
-    if (!out.time.known() || !(best.shaded() > 0.0)) return out;
-    out.equal_time = {out.time.value * out.variance, out.time.low * out.variance, out.time.high * out.variance};
+    const Interval cost = cost_ratio(rival, best, open_alone, sweep.costs);
+    if (!cost.known() || !(best.shaded() > 0.0)) return out;
+    out.equal_time = {cost.value * out.variance, cost.low * out.variance, cost.high * out.variance};
     out.verdict = out.equal_time.low > 1.0    ? Verdict::ours
                   : out.equal_time.high < 1.0 ? Verdict::rival
                                               : Verdict::even;
@@ -87,7 +118,8 @@ std::string named(const Sweep& sweep, const Advice& advice, Verdict verdict) {
 /// Who wins at equal time; a sentence for each way it can end.
 void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best) {
     const std::string than = " Figures are the rival's variance over that of the " + to_readable_size(best.bytes) +
-                             " file after the same time of sampling.";
+                             " file after the same time, of which a sample takes " +
+                             short_number(sweep.costs.shadow_ray_ns) + " ns beside its drawing.";
     const std::string rivals = named(sweep, advice, Verdict::rival), even = named(sweep, advice, Verdict::even),
                       ours = named(sweep, advice, Verdict::ours);
     if (!rivals.empty()) advice.findings.push_back("At equal time a rival wins: " + rivals + "." + than);
@@ -97,31 +129,24 @@ void add_time_findings(const Sweep& sweep, Advice& advice, const SweepRow& best)
     for (const RivalComparison& c : advice.comparisons)
         if (std::isinf(sweep.rows[c.row].shaded()))
             advice.findings.push_back(capital(sweep.rows[c.row].label) +
-                                      " is biased here: it has no density where there is light.");
+                                      " is biased by itself: it has no density where there is light.");
 }
 
 /// Who wins sample for sample, whatever the time.
 std::string sample_finding(const Sweep& sweep, const SweepRow& best) {
+    // The light's own sum is what no picture shows; who misses a file in it finds it here.
+    const std::string of =
+        sweep.kind == SweepKind::environment ? "than this file on the light itself" : "than this file";
     std::string names;
     for (const SweepRow& rival : sweep.rows)
         if (!rival.ours() && rival.relative_variance < best.relative_variance)
             names += (names.empty() ? "" : "; ") + rival.label + " (" + short_number(rival.relative_variance) +
                      ", " + to_readable_size(rival.bytes) + ")";
     if (names.empty())
-        return "Sample for sample no rival is less noisy than this file (" + short_number(best.relative_variance) +
-               ").";
-    return "Sample for sample these are less noisy than this file (" + short_number(best.relative_variance) +
-           "): " + names + ".";
-}
-
-std::string surface_finding(const Sweep& sweep, const SweepRow& best) {
-    const SweepRow& full = sweep.rows[sweep.baseline];
-    return "On a diffuse surface, where the horizon and the cosine come on top, a sample of this file has a "
-           "relative "
-           "variance of " +
-           short_number(best.irradiance) + " in the mean over " + std::to_string(sweep.conditions) +
-           " normals, and one of the " + full.label + " " + short_number(full.irradiance) +
-           ": what is left is not the file's. Files that know the normal lower it: `acdf sweep --kind local`.";
+        return "Sample for sample no rival is less noisy " + of + " (relative variance " +
+               short_number(best.relative_variance) + ").";
+    return "Sample for sample these are less noisy " + of + " (relative variance " +
+           short_number(best.relative_variance) + "): " + names + ".";
 }
 
 /// Another file of acdf's that is not visibly noisy either, and better at equal time.
@@ -131,7 +156,7 @@ void add_own_finding(const Sweep& sweep, Advice& advice) {
     for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
         const SweepRow& row = sweep.rows[i];
         if (!row.ours() || !(row.relative_variance <= sweep.visibility.largest_variance())) continue;
-        const RivalComparison c = compare(row, i, best);
+        const RivalComparison c = compare(sweep, i, best);
         const bool better = !fastest.equal_time.known() || c.equal_time.value < fastest.equal_time.value;
         if (c.verdict == Verdict::rival && better) fastest = c;
     }
@@ -144,19 +169,24 @@ void add_own_finding(const Sweep& sweep, Advice& advice) {
 
 void add_findings(const Sweep& sweep, Advice& advice) {
     const SweepRow& best = sweep.rows[advice.recommended.row];
+    for (const SituationAdvice& one : advice.situations) advice.findings.push_back(one.sentence);
+    if (!advice.situations.empty())
+        advice.findings.push_back(
+            "What noise is left in these is not the file's: files that know the normal lower it, "
+            "`acdf sweep --kind local`.");
     advice.findings.push_back(sample_finding(sweep, best));
     add_time_findings(sweep, advice, best);
-    add_own_finding(sweep, advice);
-    if (best.irradiance == best.irradiance) advice.findings.push_back(surface_finding(sweep, best));
-    advice.findings.push_back(
-        sweep.kind == SweepKind::brdf
-            ? "All of this is under light that is the same from everywhere. Under other light mix with samples of "
-              "the "
-              "light, by the exact densities that each file tells; `acdf render` shows it on scenes."
-            : "All of this is without occluders. Where what is brightest is hidden, samplers that follow the light "
-              "closely lose most of their lead over a plain CDF: mix with cosine or BRDF samples there, by the "
-              "exact "
-              "densities that each file tells; `acdf render` shows it on scenes.");
+    if (advice.situations.empty()) add_own_finding(sweep, advice);
+    if (sweep.kind == SweepKind::brdf)
+        advice.findings.push_back(
+            "All of this is under light that is the same from everywhere. Under other light mix with samples of "
+            "the "
+            "light, by the exact densities that each file tells; `acdf render` shows it on scenes.");
+    else if (sweep.kind == SweepKind::local)
+        advice.findings.push_back(
+            "All of this is without occluders. Where what is brightest is hidden, samplers that follow the light "
+            "closely lose most of their lead over a plain CDF: mix with cosine or BRDF samples there, by the exact "
+            "densities that each file tells; `acdf render` shows it on scenes.");
 }
 
 } // namespace
@@ -171,12 +201,6 @@ std::string short_number(double value) {
     return text;
 }
 
-std::string noise_text(double variance, std::uint32_t spp) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g %%", 100.0 * std::sqrt(variance / spp));
-    return text;
-}
-
 std::string shell_word(const std::string& word) {
     const bool plain =
         !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -187,32 +211,17 @@ std::string shell_word(const std::string& word) {
     return out + "'";
 }
 
-Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility& visibility) {
-    Recommended out;
-    bool found = false;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!rows[i].ours() || !(rows[i].relative_variance == rows[i].relative_variance)) continue;
-        const bool reached = rows[i].relative_variance <= visibility.largest_variance();
-        const SweepRow& best = rows[out.row];
-        const bool better = !found || (reached != out.reached ? reached
-                                       : reached              ? rows[i].bytes < best.bytes
-                                                              : rows[i].relative_variance < best.relative_variance);
-        if (better) out = {i, reached};
-        found = true;
-    }
-    if (!found) throw Failure("none of the files has a known variance");
-    return out;
-}
-
 Advice advise(const Sweep& sweep) {
     Advice out;
-    out.recommended = recommended_row(sweep.rows, sweep.visibility);
+    out.recommended = recommended_row(sweep.rows, sweep.visibility, sweep.costs, sweep.numbers);
     const SweepRow& best = sweep.rows[out.recommended.row];
-    out.sentence = sentence_of(sweep, out.recommended);
-    out.rule = rule_of(sweep.visibility);
+    out.situations = situations_of(sweep, best);
+    const bool pictures = !out.situations.empty();
+    out.sentence = pictures ? picture_sentence(sweep, out.recommended) : sentence_of(sweep, out.recommended);
+    out.rule = pictures ? picture_rule(sweep) : rule_of(sweep.visibility);
     out.command = sweep.command + " " + best.options + " -o " + shell_word(sweep.output);
     for (std::size_t i = 0; i < sweep.rows.size(); ++i)
-        if (!sweep.rows[i].ours()) out.comparisons.push_back(compare(sweep.rows[i], i, best));
+        if (!sweep.rows[i].ours()) out.comparisons.push_back(compare(sweep, i, best));
     add_findings(sweep, out);
     return out;
 }

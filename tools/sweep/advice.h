@@ -1,6 +1,8 @@
 // What the figures of a sweep say, in words: which file to make, and where it is not the best there is.
 #pragma once
 
+#include "tools/sweep/recommend.h"
+#include "tools/sweep/situations.h"
 #include "tools/sweep/sweep.h"
 #include "tools/sweep/timing.h"
 
@@ -9,29 +11,22 @@
 
 namespace acdf::tools {
 
-struct Recommended {
-    std::size_t row = 0;
-    bool reached = false; ///< else the least noisy file, which still is visibly noisy
-};
-
-/// The smallest file whose relative variance is at most visibility.largest_variance(). There must be a file.
-Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility& visibility);
-
 enum class Verdict { ours, rival, even, unknown };
 
 /// A rival beside the recommended file. Ratios are the rival's over the file's.
 struct RivalComparison {
     std::size_t row = 0; ///< the rival
     double bytes = kUnknown, variance = kUnknown;
-    Interval time, equal_time;          ///< of a sample; of the variance after the same time of sampling
+    Interval time, equal_time;          ///< of drawing a sample; of the variance after the same time
     Verdict verdict = Verdict::unknown; ///< at equal time; even: the interval holds 1
 };
 
 struct Advice {
     Recommended recommended;
-    std::string sentence; ///< which size, and what it gives
-    std::string rule;     ///< by which it was chosen
-    std::string command;  ///< exactly what makes the file
+    std::string sentence;                    ///< which size, and what it gives
+    std::string rule;                        ///< by which it was chosen
+    std::string command;                     ///< exactly what makes the file
+    std::vector<SituationAdvice> situations; ///< environment
     std::vector<RivalComparison> comparisons;
     std::vector<std::string> findings; ///< where rivals win and where they do not; a sentence each
 };
@@ -43,7 +38,4 @@ std::string shell_word(const std::string& word);
 
 /// Three significant digits, as text for people: "0.0041", "12.3", "1230", "infinite".
 std::string short_number(double value);
-/// "0.41 %" of a relative variance after so many samples.
-std::string noise_text(double variance, std::uint32_t spp);
-
 } // namespace acdf::tools

@@ -97,10 +97,13 @@ std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected
     const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label,
-                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewDensity& density) {
+                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewDensity& density,
+                         bool loses_samples = false) {
         out.push_back(rival_candidate(system, label, std::move(sampler)));
         // The same sums as of files.
-        take(out.back().row, build::summary(build::measure_views(density, reflected, views, 251, 601)));
+        auto measured = build::measure_views(density, reflected, views);
+        if (loses_samples) measured = build::with_lost_samples(std::move(measured));
+        take(out.back().row, build::summary(measured));
         out.back().row.cells = 0;
     };
     const auto add_table = [&](const char* system, const char* label, measure::BrdfTableKind kind) {
@@ -118,9 +121,10 @@ std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected
     add("cosine", "cosine hemisphere", measure::cosine_sampler(), measure::CosineSampler::pdf);
     if (const auto* rgl = dynamic_cast<const input::RglBrdf*>(&brdf)) {
         const measure::RglSampler sampler(*rgl);
-        add("rgl", "the RGL database's own sampler",
+        add(
+            "rgl", "the RGL database's own sampler",
             std::make_shared<measure::MovedToPoints<measure::RglSampler, RglPoint>>(*rgl),
-            [&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); });
+            [&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); }, true);
     }
     return out;
 }
@@ -133,7 +137,7 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     const double wo[3] = {view[0], view[1], view[2]};
     const double x = std::sqrt(1.0 - wo[2]);
     const build::ViewDensity uniform = [](const double*, const double*) { return 0.5 / ACDF_PI; };
-    const double albedo = build::measure_views(uniform, reflected, {{x, 0.0}}, 251, 601).front().albedo;
+    const double albedo = build::measure_views(uniform, reflected, {{x, 0.0}}).front().albedo;
     const Density own = [&](const float wi[3]) {
         const double w[3] = {wi[0], wi[1], wi[2]};
         return w[2] > 0.0 && albedo > 0.0 ? static_cast<float>(reflected(wo, w) / albedo) : 0.0f;
@@ -145,7 +149,7 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
         sweep, full, {}, {}, "The BRDF itself times cosine, seen from 45 degrees",
         "The directions of light that are reflected to a view at 45 degrees, in false colour; the lower half "
         "is below the surface.");
-    for (std::size_t i : pictured(candidates, sweep.visibility)) {
+    for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedView plotted{candidates[i].file->file.brdf(), angles};
         add_picture(
             sweep, draw_density(map, density_of(plotted)), knot_opacity(plotted, map), {},
@@ -160,7 +164,7 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
 Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress) {
     Sweep sweep;
     sweep.kind = SweepKind::brdf;
-    sweep.visibility = options.visibility;
+    take_options(sweep, options);
     const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     const compress::Reflected reflected =
         build::reflected_light(brdf, options.target.channels.mode, builder::internal(options.target).weights);

@@ -7,7 +7,7 @@
 #include "tools/plot/image.h"
 #include "tools/plot/knots.h"
 #include "tools/plot/local.h"
-#include "tools/sweep/advice.h"
+#include "tools/sweep/recommend.h"
 #include "tools/sweep/timing.h"
 
 #include <algorithm>
@@ -75,6 +75,13 @@ std::vector<Step> steps_of(SweepKind kind, const SweepOptions& options) {
     return out;
 }
 
+void take_options(Sweep& sweep, const SweepOptions& options) {
+    sweep.visibility = options.visibility;
+    sweep.timed = options.timing;
+    sweep.costs.shadow_ray_ns = options.shadow_ray_ns;
+    sweep.numbers = options.numbers;
+}
+
 void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vector<Step>& steps,
                const std::function<Candidate(const Step&)>& make, const build::Progress& progress) {
     std::string last_failure;
@@ -103,13 +110,15 @@ void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vect
 
 void finish_rows(Sweep& sweep, std::vector<Candidate> candidates, const std::vector<measure::ShadingPoint>& points,
                  const SweepOptions& options, const build::Progress& progress) {
-    sweep.timed = options.timing;
-    sweep.visibility = options.visibility;
     if (options.timing) {
         std::vector<Timed> samplers;
         for (const Candidate& candidate : candidates)
             samplers.push_back({candidate.sampler.get(), candidate.has_pdf});
+        const auto company = measure::cosine_sampler();
+        samplers.push_back({company.get(), true});
         std::vector<SweepTimes> times = time_samplers(samplers, points, options.rounds, progress);
+        sweep.costs.cosine_ns =
+            median_interval(times.back().sample).value + median_interval(times.back().pdf).value;
         for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].row.times = std::move(times[i]);
     }
     for (Candidate& candidate : candidates) sweep.rows.push_back(std::move(candidate.row));
@@ -133,13 +142,13 @@ std::uint32_t cells_in(std::uint64_t budget) {
     return static_cast<std::uint32_t>(std::max(4.0, (static_cast<double>(budget) - 900.0) / 4.4));
 }
 
-std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Visibility& visibility) {
+std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Sweep& sweep) {
     std::vector<SweepRow> rows;
     for (const Candidate& candidate : candidates) {
         rows.push_back(candidate.row);
         rows.back().times = {};
     }
-    const std::size_t best = recommended_row(rows, visibility).row;
+    const std::size_t best = recommended_row(rows, sweep.visibility, sweep.costs, sweep.numbers).row;
     std::size_t smallest = best, paper = rows.size();
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!rows[i].ours()) continue;

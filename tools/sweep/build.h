@@ -48,6 +48,9 @@ std::vector<std::uint64_t> budgets_of(SweepKind kind, const SweepOptions& option
 /// All fits at all budgets.
 std::vector<Step> steps_of(SweepKind kind, const SweepOptions& options);
 
+/// What the advice goes by.
+void take_options(Sweep& sweep, const SweepOptions& options);
+
 /// Fills `candidates` with what `make` builds for each step, timed. Steps whose goal is out of reach
 /// (std::runtime_error) become notes, files that equal the one before them in fit and size are left out. Throws
 /// Failure where nothing could be made.
@@ -68,7 +71,7 @@ std::uint32_t cells_in(std::uint64_t budget);
 
 /// Which files are pictured beside the source: the smallest and the recommended one of the first fit, and where the
 /// paper's fit was asked for the one nearest to the latter in size. Indices of candidates that are there.
-std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Visibility& visibility);
+std::vector<std::size_t> pictured(const std::vector<Candidate>& candidates, const Sweep& sweep);
 
 constexpr int kPictureWidth = 640;
 

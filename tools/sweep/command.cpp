@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -232,6 +233,24 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
             "8-bit sRGB at middle grey")
         ->check(number_range(0.001, 100.0))
         ->option_text("X [1]")
+        ->group("Sweep");
+    const std::map<std::string, measure::Numbers> sequences{{"independent", measure::Numbers::independent},
+                                                            {"sobol", measure::Numbers::sobol}};
+    command
+        .add_option_function<std::string>(
+            "--sequence",
+            [&options, sequences](const std::string& name) { options.sweep.numbers = sequences.at(name); },
+            "Random numbers of your renderer, by which the advice on environment files goes: independent ones, or "
+            "sobol, a scrambled Sobol' sequence in each pixel; both are reported")
+        ->check(CLI::IsMember({"independent", "sobol"}))
+        ->type_name("")
+        ->option_text("NAME [independent]")
+        ->group("Sweep");
+    command
+        .add_option("--shadow-ray-ns", options.sweep.shadow_ray_ns,
+                    "Nanoseconds that a sample costs in your renderer beside its drawing: a shadow ray, a BRDF")
+        ->check(number_range(0.0, 1e9))
+        ->option_text("X [500]")
         ->group("Sweep");
     command
         .add_flag("--no-timing", options.no_timing,

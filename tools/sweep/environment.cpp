@@ -6,8 +6,10 @@
 #include "tools/plot/density.h"
 #include "tools/plot/knots.h"
 #include "tools/sweep/build.h"
-#include "tools/sweep/irradiance.h"
+#include "tools/sweep/occluders.h"
 #include "tools/sweep/rivals.h"
+#include "tools/sweep/surface.h"
+#include "tools/sweep/surface_draws.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,12 +70,26 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
     add_colour_bar(sweep);
     add_picture(sweep, full, {}, {}, "The probe itself, full resolution",
                 "The probe's own density in false colour, latitude and longitude.");
-    for (std::size_t i : pictured(candidates, sweep.visibility)) {
+    for (std::size_t i : pictured(candidates, sweep)) {
         const EnvironmentView view = candidates[i].file->file.environment();
         add_picture(sweep, draw_density(map, density_of(view)), knot_opacity(view, map), {},
                     picture_title(candidates[i].row),
                     "The density that this file stores, in the same colours, with the borders of its cells.");
     }
+}
+
+/// `out`: alone, and in company.
+void add_situations(const compress::Target& target, const measure::LightSampler& sampler,
+                    const std::vector<float>& density, const std::vector<SurfacePoint>& points, Scale scale,
+                    const SweepOptions& options, Lit* out) {
+    const std::vector<PointVariance> exact = point_variances(target, density, points);
+    const SurfaceVariances variances = summary(exact, scale);
+    const DrawnVariances drawn =
+        sobol_variances(target, sampler, points, exact, scale, options.visibility.spp, options.seeds);
+    out[0] = variances.alone;
+    out[1] = variances.company;
+    out[0].sobol = std::isinf(out[0].mean) ? HUGE_VAL : drawn.alone;
+    out[1].sobol = drawn.company;
 }
 
 } // namespace
@@ -83,7 +99,7 @@ Sweep sweep_environment(const builder::Target& fitted, const builder::Source& so
     const compress::Target& target = builder::grid_of(fitted);
     Sweep sweep;
     sweep.kind = SweepKind::environment;
-    sweep.visibility = options.visibility;
+    take_options(sweep, options);
     const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     std::vector<Candidate> candidates;
     build_all(
@@ -92,12 +108,16 @@ Sweep sweep_environment(const builder::Target& fitted, const builder::Source& so
 
     sweep.baseline = candidates.size();
     for (Candidate& rival : environment_rivals(target, options)) candidates.push_back(std::move(rival));
-    const std::vector<build::Normal> normals = build::random_normals(options.normals);
-    sweep.conditions = static_cast<std::uint32_t>(normals.size());
+    const std::vector<SurfacePoint> open = in_the_open(build::random_normals(options.normals)),
+                                    hidden = behind_occluders(target, options.points);
+    sweep.conditions = static_cast<std::uint32_t>(open.size());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         part(0.7, 0.2)(static_cast<double>(i) / static_cast<double>(candidates.size()), "measuring");
-        candidates[i].row.irradiance =
-            irradiance_variance(target, texel_densities(target, *candidates[i].sampler), 0.0, normals).mean;
+        const measure::LightSampler& sampler = *candidates[i].sampler;
+        const std::vector<float> density = texel_densities(target, sampler);
+        SweepRow& row = candidates[i].row;
+        add_situations(target, sampler, density, open, Scale::own, options, &row.lit[open_alone]);
+        add_situations(target, sampler, density, hidden, Scale::picture, options, &row.lit[hidden_alone]);
     }
     if (options.pictures) add_pictures(sweep, target, candidates);
     finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));

@@ -6,8 +6,8 @@
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"
 #include "tools/sweep/build.h"
-#include "tools/sweep/irradiance.h"
 #include "tools/sweep/rivals.h"
+#include "tools/sweep/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +91,7 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
     const std::vector<float> horizon = horizon_opacity(normal, map);
     add_picture(sweep, full, {}, horizon, "Light times cosine, full resolution, for a normal half-way up (1, 0, 1)",
                 "What a diffuse surface reflects of the probe, in false colour; the white line is its horizon.");
-    for (std::size_t i : pictured(candidates, sweep.visibility)) {
+    for (std::size_t i : pictured(candidates, sweep)) {
         const PlottedNormal plotted{candidates[i].file->file.local(), normal};
         add_picture(sweep, draw_density(map, density_of(plotted)), knot_opacity(plotted, map), horizon,
                     picture_title(candidates[i].row),
@@ -107,7 +107,7 @@ Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, 
     const compress::Target& target = builder::grid_of(fitted);
     Sweep sweep;
     sweep.kind = SweepKind::local;
-    sweep.visibility = options.visibility;
+    take_options(sweep, options);
     const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     const std::vector<build::Normal> normals = build::random_normals(options.normals);
     sweep.conditions = static_cast<std::uint32_t>(normals.size());

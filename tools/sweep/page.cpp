@@ -1,5 +1,6 @@
 #include "tools/sweep/page.h"
 
+#include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/page_chart.h"
@@ -62,17 +63,20 @@ std::string fact(const std::string& name, const std::string& value, const std::s
 
 std::string facts_html(const Sweep& sweep, const Advice& advice) {
     const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.baseline];
-    const std::string of_base = "of the " + base.label + ", which takes ";
     std::string out = "<dl class=\"facts\">\n";
     out += fact("Size", to_readable_size(best.bytes),
-                "1/" + short_number(double(base.bytes) / double(best.bytes)) + " " + of_base +
-                    to_readable_size(base.bytes));
+                short_number(double(base.bytes) / double(best.bytes)) + " times smaller than the " + base.label +
+                    ", which takes " + to_readable_size(base.bytes));
+    const bool pictures = sweep.kind == SweepKind::environment;
+    const std::string where = pictures ? " on a diffuse surface, nothing hidden" : "";
     out += fact("Noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel",
-                noise_text(best.relative_variance, sweep.visibility.spp),
-                "relative variance of a sample " + short_number(best.relative_variance));
-    if (base.relative_variance > 0.0 && !std::isinf(base.relative_variance))
-        out += fact("Variance", "1/" + short_number(base.relative_variance / best.relative_variance),
-                    of_base.substr(0, of_base.find(", which")) + ", sample for sample");
+                noise_text(best.shaded(), sweep.visibility.spp),
+                "relative variance of a sample " + short_number(best.shaded()) + where);
+    out +=
+        fact("Noise at 16, 64, 256 samples", noise_texts(best.shaded()),
+             pictures ? "median over normals " + noise_texts(best.lit[open_alone].median) : "mean over conditions");
+    if (std::isfinite(base.shaded() / best.shaded()))
+        out += fact("Sample for sample", noise_ratio_text(base.shaded() / best.shaded()), "the " + base.label);
     if (const Interval time = ratio_interval(best.times.sample, base.times.sample); time.known())
         out += fact("Time a sample", short_number(time.value) + " \xC3\x97",
                     "the time of the " + base.label + "; 95 % confidence " + short_number(time.low) + " to " +
@@ -95,11 +99,19 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
                        : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
                                                         : "of what is reflected to a view, mean over views";
+    const bool pictures = sweep.kind == SweepKind::environment;
     std::vector<Chart> out;
-    out.push_back({"variance", "Noise",
+    if (pictures)
+        out.push_back(
+            {"surface", "Noise in pictures",
+             "Relative variance of one sample of a diffuse surface, nothing hidden, mean over normals: lower "
+             "is better.",
+             "relative variance on a surface",
+             [](const Sweep&, const SweepRow& r) { return only(r.lit[open_alone].mean); }});
+    out.push_back({"variance", pictures ? "Noise of the light itself" : "Noise",
                    std::string("Relative variance of one sample ") + what + ": lower is better.",
                    "relative variance", [](const Sweep&, const SweepRow& r) { return only(r.relative_variance); },
-                   sweep.visibility.largest_variance(),
+                   pictures ? kUnknown : sweep.visibility.largest_variance(),
                    short_number(100.0 * sweep.visibility.threshold) + " % noise at " +
                        std::to_string(sweep.visibility.spp) + " spp"});
     out.push_back(
@@ -110,16 +122,15 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     out.push_back({"sample", "Time of a sample",
                    "Median, and the interval that holds it with 95 % confidence. One thread.", "ns a sample",
                    [](const Sweep&, const SweepRow& r) { return median_interval(r.times.sample); }});
-    out.push_back(
-        {"equal-time", "Noise at equal time",
-         "Variance times time, in units of one sample of the " + base + ". " +
-             (sweep.kind == SweepKind::environment ? "Of irradiance on a diffuse surface. " : "") +
-             "Counts sampling alone; whatever a sample costs besides, such as a shadow ray, brings samplers "
-             "closer to the plot of noise.",
-         "variance at equal time", [](const Sweep& s, const SweepRow& r) {
-             const Interval t = ratio_interval(r.times.sample, s.rows[s.baseline].times.sample);
-             return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
-         }});
+    out.push_back({"equal-time", "Noise at equal time",
+                   "Variance times time, in units of one sample of the " + base + ". " +
+                       (sweep.kind == SweepKind::environment ? "Of irradiance on a diffuse surface. " : "") +
+                       "A sample takes " + short_number(sweep.costs.shadow_ray_ns) +
+                       " ns beside its drawing: a shadow ray, a BRDF (--shadow-ray-ns).",
+                   "variance at equal time", [](const Sweep& s, const SweepRow& r) {
+                       const Interval t = cost_ratio(r, s.rows[s.baseline], open_alone, s.costs);
+                       return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
+                   }});
     out.push_back({"pdf", "Time of a density",
                    "What multiple importance sampling asks for; samplers without a density are missing.",
                    "ns a density", [](const Sweep&, const SweepRow& r) { return median_interval(r.times.pdf); }});
@@ -208,10 +219,7 @@ std::string cell_html(const SweepColumn& column, const Sweep& sweep, const Sweep
     if (name == "options") return "<td class=\"text\"" + exact + "><code>" + escaped(row.options) + "</code></td>";
     if (name == "bytes") return "<td" + exact + ">" + escaped(to_readable_size(row.bytes)) + "</td>";
     if (name == "noise")
-        return "<td" + exact + ">" +
-               (std::isfinite(row.relative_variance) ? noise_text(row.relative_variance, sweep.visibility.spp)
-                                                     : "") +
-               "</td>";
+        return "<td" + exact + ">" + (std::isfinite(row.shaded()) ? noise_texts(row.shaded()) : "") + "</td>";
     if (const auto* count = std::get_if<std::uint64_t>(&value))
         return "<td" + exact + ">" + std::to_string(*count) + "</td>";
     const double number = std::get<double>(value);
@@ -239,8 +247,7 @@ std::string rows_html(const Sweep& sweep, const Advice& advice) {
         const std::string name = column.name;
         const bool noise = name == "noise";
         out += std::string("<th") + (name == "options" ? " class=\"text\"" : "") + ">" +
-               escaped(noise ? "noise, " + std::to_string(sweep.visibility.spp) + " spp" : column.heading) +
-               "</th>";
+               escaped(noise ? "noise at 16, 64, 256" : column.heading) + "</th>";
     }
     out += "</tr></thead>\n<tbody>\n";
     for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
@@ -260,9 +267,15 @@ std::string method_html(const Sweep& sweep) {
         "over n. It is summed over the whole source, not estimated: it has no noise of its own.");
     if (sweep.kind == SweepKind::environment)
         lines.push_back(
-            "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean "
-            "over " +
-            conditions + " random normals.");
+            "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean over " +
+            conditions +
+            " random normals. In company: half of the samples are cosine distributed, all weighed by the balance "
+            "heuristic. Behind occluders: points of the demo scene, a sphere on a plane beside a wall; there "
+            "variances "
+            "are divided by E^2 + (0.1 mean E)^2, E of the point, so that a few nearly black ones do not decide. "
+            "Columns "
+            "named sobol (in sweep.csv) are variance times samples with scrambled Sobol' points, at " +
+            std::to_string(sweep.visibility.spp) + " samples, by drawing them.");
     else
         lines.push_back(std::string("Means are over ") + conditions + " random " +
                         (sweep.kind == SweepKind::local ? "normals" : "views") +

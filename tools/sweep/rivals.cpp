@@ -5,7 +5,7 @@
 #include "measure/local_rivals.h"
 #include "measure/point_samplers.h"
 #include "measure/tiling.h"
-#include "tools/sweep/irradiance.h"
+#include "tools/sweep/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,6 +112,8 @@ std::vector<Candidate> environment_rivals(const Target& target, const SweepOptio
     out.push_back(rival_candidate("full_cdf", "full-resolution CDF", measure::full_cdf_sampler(target)));
     out.push_back(rival_candidate("alias_table", "alias table", measure::alias_sampler(target)));
     out.push_back(rival_candidate("hierarchical_warp", "hierarchical warp", measure::hierarchical_sampler(target)));
+    out.push_back(rival_candidate("mis_compensation", "compensated CDF, for company only",
+                                  measure::compensated_sampler(target)));
     for (std::uint64_t budget : budgets_of(SweepKind::environment, options)) {
         const double side = std::sqrt(static_cast<double>(budget) / 8.0 / 2.0); // eight bytes a cell, 2:1
         const auto rows = static_cast<std::uint32_t>(std::lround(side));
@@ -134,7 +136,7 @@ std::vector<Candidate> local_rivals(const Target& target, const std::vector<buil
     const measure::LocalFullCdf full(target);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label, std::shared_ptr<const LightSampler> sampler,
-                         const MeanAndWorst& variance) {
+                         const Lit& variance) {
         out.push_back(rival_candidate(system, label, std::move(sampler)));
         out.back().row.relative_variance = variance.mean;
         out.back().row.worst = variance.worst;
@@ -142,14 +144,16 @@ std::vector<Candidate> local_rivals(const Target& target, const std::vector<buil
     const auto each = [&](const auto& sampler) {
         return over_normals(normals, [&sampler](const float n[3]) { return sampler.relative_variance(n); });
     };
-    const MeanAndWorst of_full = each(full);
+    const auto in_company = [&](const LightSampler& sampler) {
+        return summary(point_variances(target, texel_densities(target, sampler), in_the_open(normals)), Scale::own)
+            .company;
+    };
+    const Lit of_full = each(full);
     const std::shared_ptr<const LightSampler> cdf = measure::full_cdf_sampler(target);
     add("full_cdf", "full-resolution CDF", cdf, of_full);
-    add("cdf_cosine", "CDF and cosine, balance heuristic", half_cosine(cdf),
-        irradiance_variance(target, texel_densities(target, *cdf), 0.5, normals));
+    add("cdf_cosine", "CDF and cosine, balance heuristic", half_cosine(cdf), in_company(*cdf));
     const std::shared_ptr<const LightSampler> compensated = measure::compensated_sampler(target);
-    add("mis_compensation", "CDF and cosine, MIS compensation", half_cosine(compensated),
-        irradiance_variance(target, texel_densities(target, *compensated), 0.5, normals));
+    add("mis_compensation", "CDF and cosine, MIS compensation", half_cosine(compensated), in_company(*compensated));
     for (std::uint32_t columns : {32u, 64u}) {
         if (columns > target.columns || columns / 2 > target.rows) continue;
         const std::string tiles = std::to_string(columns * columns / 2);
@@ -159,7 +163,7 @@ std::vector<Candidate> local_rivals(const Target& target, const std::vector<buil
     }
     add("resampling_32", "resampling of 32 candidates",
         std::make_shared<measure::MovedToPoints<measure::Resampling, ResamplingPoint>>(target, candidates),
-        {of_full.mean / candidates, of_full.worst / candidates});
+        {of_full.mean / candidates, of_full.median / candidates, of_full.worst / candidates});
     out.back().has_pdf = false;
     add("cosine", "cosine hemisphere", measure::cosine_sampler(), each(measure::CosineHemisphere(target)));
     return out;

@@ -3,11 +3,13 @@
 #pragma once
 
 #include "input/brdf.h"
+#include "measure/random.h"
 #include "tools/cli/progress.h"
 #include "tools/plot/range.h"
 
 #include <acdf/builder.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -35,6 +37,17 @@ struct SweepTimes {
     std::vector<double> pdf;    ///< ns a density; empty: not timed, or the sampler has none
 };
 
+/// How a renderer uses the light's samples: on a diffuse surface, with nothing in the way or behind what hides
+/// light in the demo scene, alone or in company of as many samples of the surface (balance heuristic).
+enum Situation : std::size_t { open_alone, open_company, hidden_alone, hidden_company, kSituations };
+
+/// Relative variance of one sample over points of a surface, exact. Infinite: biased.
+struct Lit {
+    double mean = kUnknown, median = kUnknown, worst = kUnknown;
+    /// Of scrambled Sobol' points: the variance of a pixel times its samples, mean over points, by drawing them.
+    double sobol = kUnknown;
+};
+
 /// One file, or one rival. kUnknown where something does not apply.
 struct SweepRow {
     std::string system;      ///< "acdf", or a rival's name for programs: "full_cdf"
@@ -46,16 +59,19 @@ struct SweepRow {
     /// Of one sample over the squared mean, exact. Infinite: biased, light without density. Environment: of the
     /// light itself; local and BRDF: of what a surface reflects, mean over normals or views.
     double relative_variance = kUnknown;
-    double worst = kUnknown;      ///< the same for the worst normal or view
-    double irradiance = kUnknown; ///< environment: the same of a diffuse surface, mean over normals
-    double max_weight = kUnknown; ///< largest f/p over its mean
-    double rms = kUnknown;        ///< of the density's error, sr^-1
+    double worst = kUnknown;          ///< the same for the worst normal or view
+    std::array<Lit, kSituations> lit; ///< environment: of a diffuse surface
+    double max_weight = kUnknown;     ///< largest f/p over its mean
+    double rms = kUnknown;            ///< of the density's error, sr^-1
     double build_seconds = kUnknown;
     SweepTimes times;
 
     bool ours() const { return system == "acdf"; }
     /// What counts at equal time: with a surface, where that is known.
-    double shaded() const { return irradiance == irradiance ? irradiance : relative_variance; }
+    double shaded() const {
+        const double mean = lit[open_alone].mean;
+        return mean == mean ? mean : relative_variance;
+    }
 };
 
 /// A density in false colour, knots overlaid.
@@ -73,6 +89,12 @@ struct Visibility {
     double largest_variance() const { return threshold * threshold * spp; }
 };
 
+/// What counts at equal time beside the drawing of light's samples.
+struct SampleCosts {
+    double shadow_ray_ns = 500.0; ///< what else a sample costs: a ray, a BRDF
+    double cosine_ns = 0.0;       ///< to draw one of the surface's samples and to evaluate its density
+};
+
 struct Sweep {
     SweepKind kind = SweepKind::environment;
     std::string source;      ///< as the user named it
@@ -88,6 +110,8 @@ struct Sweep {
     DensityRange range;                   ///< of their colours
     std::vector<std::uint8_t> colour_bar; ///< PNG, low to high
     bool timed = true;
+    SampleCosts costs;
+    measure::Numbers numbers = measure::Numbers::independent; ///< by which the advice goes
 };
 
 struct SweepOptions {
@@ -99,7 +123,11 @@ struct SweepOptions {
     bool pictures = true;
     std::uint32_t normals = 64; ///< environment and local
     std::uint32_t views = 64;   ///< BRDF: of rivals; files are measured over the builder's own
+    std::uint32_t points = 48;  ///< environment: of the demo scene, where light is hidden; about
+    std::uint32_t seeds = 16;   ///< environment: pictures with Sobol' points
     std::uint32_t rounds = 31;  ///< of timing
+    double shadow_ray_ns = 500.0;
+    measure::Numbers numbers = measure::Numbers::independent;
 };
 
 /// A probe's rows, rivals included, and pictures. Source, command and output are the caller's to fill in. Goals

@@ -1,5 +1,6 @@
 #include "tools/sweep/text.h"
 
+#include "tools/cli/noise.h"
 #include "tools/sweep/advice.h"
 
 #include <nlohmann/json.hpp>
@@ -35,10 +36,26 @@ constexpr SweepColumn columns[] = {
     {"cells", "cells", false,
      [](S, R r) -> SweepValue { return r.cells > 0 ? SweepValue(r.cells) : SweepValue(kUnknown); }},
     {"relative_variance", "relative variance", false, [](S, R r) -> SweepValue { return r.relative_variance; }},
-    {"noise", "noise", false,
-     [](S s, R r) -> SweepValue { return std::sqrt(r.relative_variance / s.visibility.spp); }},
+    {"noise", "noise", false, [](S s, R r) -> SweepValue { return std::sqrt(r.shaded() / s.visibility.spp); }},
+    {"noise_16", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 16); }},
+    {"noise_64", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 64); }},
+    {"noise_256", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 256); }},
     {"worst", "worst", false, [](S, R r) -> SweepValue { return r.worst; }},
-    {"irradiance_variance", "on a diffuse surface", false, [](S, R r) -> SweepValue { return r.irradiance; }},
+    {"irradiance_variance", "on a diffuse surface", false,
+     [](S, R r) -> SweepValue { return r.lit[open_alone].mean; }},
+    {"irradiance_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_alone].median; }},
+    {"irradiance_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_alone].sobol; }},
+    {"company_variance", "the same in company", false,
+     [](S, R r) -> SweepValue { return r.lit[open_company].mean; }},
+    {"company_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_company].median; }},
+    {"company_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_company].sobol; }},
+    {"hidden_variance", "behind occluders", false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].mean; }},
+    {"hidden_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].median; }},
+    {"hidden_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_alone].sobol; }},
+    {"hidden_company_variance", "behind occluders, in company", false,
+     [](S, R r) -> SweepValue { return r.lit[hidden_company].mean; }},
+    {"hidden_company_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_company].median; }},
+    {"hidden_company_sobol", nullptr, false, [](S, R r) -> SweepValue { return r.lit[hidden_company].sobol; }},
     {"max_weight", "largest weight", false, [](S, R r) -> SweepValue { return r.max_weight; }},
     {"rms_pdf_error", "RMS error of pdf", false, [](S, R r) -> SweepValue { return r.rms; }},
     {"build_seconds", "build, s", true, [](S, R r) -> SweepValue { return r.build_seconds; }},
@@ -54,7 +71,9 @@ constexpr SweepColumn columns[] = {
     {"time_ratio_low", nullptr, true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).low; }},
     {"time_ratio_high", nullptr, true, [](S s, R r) -> SweepValue { return sample_ratio(s, r).high; }},
     {"equal_time_variance", "variance at equal time", true,
-     [](S s, R r) -> SweepValue { return r.shaded() * sample_ratio(s, r).value; }},
+     [](S s, R r) -> SweepValue {
+         return r.shaded() * cost_ratio(r, s.rows[s.baseline], open_alone, s.costs).value;
+     }},
 };
 
 std::string csv_text(const std::string& text) {
@@ -85,6 +104,17 @@ nlohmann::ordered_json comparison_json(const RivalComparison& c, bool timed) {
     out["equal_time_variance_ratio"] = interval_json(c.equal_time);
     out["better_at_equal_time"] = verdicts[static_cast<int>(c.verdict)];
     return out;
+}
+
+nlohmann::ordered_json situation_json(const SituationAdvice& s) {
+    return {{"situation", to_string(s.situation)},
+            {"relative_variance", json_value(s.lit.mean)},
+            {"median", json_value(s.lit.median)},
+            {"sobol", json_value(s.lit.sobol)},
+            {"noise_percent", noise_json(s.lit.mean)},
+            {"baseline_variance_ratio", interval_json(s.over_baseline)},
+            {"best_rival", s.has_rival ? nlohmann::ordered_json(s.rival) : nlohmann::ordered_json()},
+            {"best_rival_variance_ratio", interval_json(s.over_rival)}};
 }
 
 } // namespace
@@ -121,24 +151,29 @@ std::string sweep_csv(const Sweep& sweep) {
 
 nlohmann::ordered_json sweep_json(const Sweep& sweep) {
     const Advice advice = advise(sweep);
-    nlohmann::ordered_json out = {{"kind", to_string(sweep.kind)},
-                                  {"source", sweep.source},
-                                  {"description", sweep.description},
-                                  {"conditions", sweep.conditions},
-                                  {"timed", sweep.timed},
-                                  {"baseline", sweep.baseline},
-                                  {"recommendation",
-                                   {{"row", advice.recommended.row},
-                                    {"reached", advice.recommended.reached},
-                                    {"spp", sweep.visibility.spp},
-                                    {"threshold", sweep.visibility.threshold},
-                                    {"sentence", advice.sentence},
-                                    {"rule", advice.rule},
-                                    {"command", advice.command}}},
-                                  {"findings", advice.findings},
-                                  {"notes", sweep.notes},
-                                  {"comparisons", nlohmann::ordered_json::array()},
-                                  {"rows", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json out = {
+        {"kind", to_string(sweep.kind)},
+        {"source", sweep.source},
+        {"description", sweep.description},
+        {"conditions", sweep.conditions},
+        {"timed", sweep.timed},
+        {"baseline", sweep.baseline},
+        {"recommendation",
+         {{"row", advice.recommended.row},
+          {"reached", advice.recommended.reached},
+          {"spp", sweep.visibility.spp},
+          {"threshold", sweep.visibility.threshold},
+          {"sentence", advice.sentence},
+          {"sequence", sweep.numbers == measure::Numbers::sobol ? "sobol" : "independent"},
+          {"shadow_ray_ns", sweep.costs.shadow_ray_ns},
+          {"rule", advice.rule},
+          {"command", advice.command}}},
+        {"findings", advice.findings},
+        {"notes", sweep.notes},
+        {"pictures", nlohmann::ordered_json::array()},
+        {"comparisons", nlohmann::ordered_json::array()},
+        {"rows", nlohmann::ordered_json::array()}};
+    for (const SituationAdvice& one : advice.situations) out["pictures"].push_back(situation_json(one));
     for (const RivalComparison& c : advice.comparisons)
         out["comparisons"].push_back(comparison_json(c, sweep.timed));
     for (const SweepRow& row : sweep.rows) {

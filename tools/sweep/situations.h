@@ -1,0 +1,32 @@
+// The recommended file in pictures: how noisy a diffuse surface is with it, and with rivals after the same time.
+#pragma once
+
+#include "tools/sweep/sweep.h"
+#include "tools/sweep/timing.h"
+
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+/// "open", "open_company", "hidden", "hidden_company".
+const char* to_string(Situation situation);
+
+/// "1.2 times less noise than", "1.2 times more noise than", "the same noise as" of how many times more variance
+/// the other has.
+std::string noise_ratio_text(double variance_ratio);
+
+struct SituationAdvice {
+    Situation situation = open_alone;
+    Lit lit;               ///< of the recommended file
+    std::size_t rival = 0; ///< the best after the same time, or after the same samples where nothing was timed
+    bool has_rival = false;
+    Interval over_baseline; ///< variance of the baseline over that of the file, after the same time
+    Interval over_rival;    ///< the same of `rival`
+    std::string sentence;
+};
+
+/// None for files that are not of environments.
+std::vector<SituationAdvice> situations_of(const Sweep& sweep, const SweepRow& best);
+
+} // namespace acdf::tools

@@ -1,0 +1,59 @@
+// Exact variances of what a diffuse surface reflects, from a density that is known at every texel: alone and in
+// company of the surface's own samples, in the open and where something is in the way.
+#pragma once
+
+#include "build/local_accuracy.h"
+#include "compress/target.h"
+#include "measure/light_sampler.h"
+#include "tools/sweep/sweep.h"
+
+#include <functional>
+#include <vector>
+
+namespace acdf::tools {
+
+/// The density of a sampler that does not know the normal, in sr^-1, in the middle of each texel (its z halves the
+/// texel's solid angle).
+std::vector<float> texel_densities(const compress::Target& target, const measure::LightSampler& sampler);
+
+/// Where light is gathered: a unit normal, and what is hidden from there.
+struct SurfacePoint {
+    build::Normal n{0.0f, 0.0f, 1.0f};
+    std::vector<bool> hidden; ///< one a texel, row-major; empty: nothing is
+};
+
+/// Points of a target's map with nothing in the way.
+std::vector<SurfacePoint> in_the_open(const std::vector<build::Normal>& normals);
+
+/// The irradiance E is the integral of f = L max(0, n . omega) visibility. Variances are those of one sample; n
+/// have an n-th of it. Infinite where light has no density.
+struct PointVariance {
+    double irradiance = 0.0;
+    double alone = 0.0;   ///< of f/p
+    double company = 0.0; ///< half of the samples drawn by p, half by the cosine, weighed by the
+                          ///< balance heuristic
+};
+
+/// By summation over texels with each one's cosine in its middle. L^2 is the target's mean square over a texel. The
+/// same for any number of threads.
+std::vector<PointVariance> point_variances(const compress::Target& target, const std::vector<float>& density,
+                                           const std::vector<SurfacePoint>& points);
+
+/// What each point's variance is divided by. In the open its own E^2; where something is in the way
+/// E^2 + (0.1 mean E)^2, as of pixels (measure::noise_scale), so that a few nearly black ones do not decide.
+enum class Scale { own, picture };
+
+/// Relative variances over points that see any light, alone and in company.
+struct SurfaceVariances {
+    Lit alone, company;
+};
+SurfaceVariances summary(const std::vector<PointVariance>& points, Scale scale);
+
+/// Mean, median and worst of what `variance` gives for each normal, which several threads ask at once.
+Lit over_normals(const std::vector<build::Normal>& normals,
+                 const std::function<double(const float n[3])>& variance);
+
+/// Mean, median and worst.
+Lit spread_of(std::vector<double> variances);
+
+} // namespace acdf::tools

@@ -1,0 +1,106 @@
+#include "tools/sweep/surface_draws.h"
+
+#include "measure/local_rivals.h"
+#include "measure/probe_grid.h"
+#include "measure/random.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace acdf::tools {
+namespace {
+
+using measure::CosineHemisphere;
+
+/// Estimates of the irradiance of one point.
+class Draws {
+public:
+    Draws(const compress::Target& target, const measure::ProbeGrid& grid, measure::PointSampler& sampler,
+          const SurfacePoint& point)
+        : target_(target), grid_(grid), sampler_(sampler), point_(point) {
+        measure::ShadingPoint shading;
+        std::copy_n(point.n.begin(), 3, shading.n);
+        sampler_.move_to(shading);
+    }
+
+    double alone(measure::Random& random, std::uint32_t samples) {
+        random.begin_set();
+        double sum = 0.0;
+        for (std::uint32_t i = 0; i < samples; ++i) {
+            const AcdfDirectionSample s = drawn(random);
+            if (s.pdf > 0.0f) sum += integrand(s.direction) / double{s.pdf};
+        }
+        return sum / samples;
+    }
+    double company(measure::Random& random, std::uint32_t samples) {
+        double sum = 0.0;
+        random.begin_set();
+        for (std::uint32_t i = 0; i < samples / 2; ++i) {
+            const AcdfDirectionSample s = drawn(random);
+            if (s.pdf > 0.0f)
+                sum +=
+                    integrand(s.direction) / (double{s.pdf} + CosineHemisphere::pdf(point_.n.data(), s.direction));
+        }
+        random.begin_set();
+        for (std::uint32_t i = 0; i < samples / 2; ++i) {
+            const std::array<double, 2> u = random.pair();
+            const AcdfDirectionSample s = CosineHemisphere::sample(point_.n.data(), u[0], u[1]);
+            sum += integrand(s.direction) / (double{s.pdf} + sampler_.pdf(s.direction));
+        }
+        return sum / (samples / 2);
+    }
+
+private:
+    AcdfDirectionSample drawn(measure::Random& random) const {
+        const std::array<double, 2> u = random.pair();
+        return sampler_.sample(u[0], u[1]);
+    }
+    double integrand(const float wi[3]) const {
+        const build::Normal& n = point_.n;
+        const double cosine = double{n[0]} * wi[0] + double{n[1]} * wi[1] + double{n[2]} * wi[2];
+        std::uint32_t texel[2];
+        if (!(cosine > 0.0) || !grid_.find(wi, texel)) return 0.0;
+        const std::size_t at = std::size_t{texel[1]} * target_.columns + texel[0];
+        return point_.hidden.empty() || !point_.hidden[at] ? target_.values[at] * cosine : 0.0;
+    }
+
+    const compress::Target& target_;
+    const measure::ProbeGrid& grid_;
+    measure::PointSampler& sampler_;
+    const SurfacePoint& point_;
+};
+
+/// Without bias, of at least two numbers.
+double variance_of(const std::vector<double>& values) {
+    const double n = static_cast<double>(values.size());
+    double mean = 0.0, square = 0.0;
+    for (const double v : values) mean += v / n;
+    for (const double v : values) square += (v - mean) * (v - mean);
+    return square / (n - 1.0);
+}
+
+} // namespace
+
+DrawnVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
+                               const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
+                               Scale scale, std::uint32_t samples, std::uint32_t seeds) {
+    samples += samples % 2;
+    const measure::ProbeGrid grid(target);
+    std::vector<PointVariance> drawn(points.size());
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+        const std::unique_ptr<measure::PointSampler> own = sampler.point_sampler();
+        Draws draws(target, grid, *own, points[i]);
+        measure::Random random(i, measure::Numbers::sobol);
+        std::vector<double> alone, company;
+        for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+            alone.push_back(draws.alone(random, samples));
+            company.push_back(draws.company(random, samples));
+        }
+        drawn[i] = {exact[i].irradiance, variance_of(alone) * samples, variance_of(company) * samples};
+    });
+    const SurfaceVariances out = summary(drawn, scale);
+    return {out.alone.mean, out.company.mean};
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,23 @@
+// Variances of what a diffuse surface reflects where a renderer's numbers are not independent: by drawing samples.
+#pragma once
+
+#include "tools/sweep/surface.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace acdf::tools {
+
+struct DrawnVariances {
+    double alone = 0.0, company = 0.0;
+};
+
+/// The variance of an estimate of `samples` (rounded up to an even number) times their number, over E^2 as
+/// `summary` scales it, mean over points: with independent numbers those of `exact`, which is of the same points;
+/// here of scrambled Sobol' points. Over `seeds` (at least 2) estimates. In company half of the samples are the
+/// cosine's. The same for any number of threads.
+DrawnVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
+                               const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
+                               Scale scale, std::uint32_t samples, std::uint32_t seeds);
+
+} // namespace acdf::tools
