@@ -32,7 +32,7 @@ addEventListener("load", () => {
         return fields;
     });
     const head = lines.shift(), rows = lines.map(l => Object.fromEntries(head.map((name, i) => [name, l[i]])));
-    const charts = {variance: "relative_variance", weight: "max_weight", sample: "ns_per_sample", pdf: "ns_per_pdf",
+    const charts = {surface: "irradiance_variance", variance: "relative_variance", weight: "max_weight", sample: "ns_per_sample", pdf: "ns_per_pdf",
                     "equal-time": "equal_time_variance", build: "build_seconds"};
     let count = 0;
     for (const [chart, column] of Object.entries(charts)) {
