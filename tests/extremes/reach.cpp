@@ -1,6 +1,7 @@
 // Random numbers are floats in most renderers: 2^24 steps an axis. Which cells can they reach, and how far from
 // its density is what they draw? Every number of the grid counts: nothing is sampled.
 #include "tests/extremes/targets.h"
+#include "tests/inputs/sanitized.h"
 
 #include "build/cells.h"
 #include "compress/fit.h"
@@ -14,14 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#if defined(__SANITIZE_ADDRESS__)
-#define ACDF_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ACDF_SANITIZED 1
-#endif
-#endif
 
 namespace {
 
@@ -270,9 +263,7 @@ class Reachability : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(Reachability, FloatsReachAllLightWithoutBias) {
     const std::uint32_t columns = GetParam();
-#ifdef ACDF_SANITIZED
-    if (columns > 1024) GTEST_SKIP() << "too large a map for sanitizers";
-#endif
+    if (kSanitized && columns > 1024) GTEST_SKIP() << "too large a map for sanitizers";
     const Target target = sun_in_sky(columns, columns / 2);
     acdf::compress::FitOptions tree, cascade, paper;
     cascade.shape = acdf::compress::Shape::cascade;

@@ -107,7 +107,8 @@ void print_text(const std::string& path, const File& file, const std::string& so
 
 } // namespace
 
-void measure_brdf(const std::string& path, const File& file, const std::string& source, bool json, bool quiet) {
+void measure_brdf(const std::string& path, const File& file, const std::string& source, std::uint32_t view_count,
+                  bool json, bool quiet) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
     const Text hash = file.metadata("source.sha256");
     if (hash.size > 0 && std::string(hash.data, hash.size) != brdf->sha256 && !quiet)
@@ -117,7 +118,7 @@ void measure_brdf(const std::string& path, const File& file, const std::string& 
     const compress::Reflected reflected =
         build::reflected_light(*brdf, static_cast<AcdfChannels>(d.channels),
                                {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]});
-    const std::vector<compress::View> views = build::random_views(build::kMeasuredViews, brdf->isotropic);
+    const std::vector<compress::View> views = build::random_views(view_count, brdf->isotropic);
     try {
         build::BrdfAccuracy accuracy = build::summary(build::measure_views(file, reflected, views));
         accuracy.cells = build::brdf_cells(file);

@@ -1,4 +1,5 @@
 // acdf measure: how accurate a file is, by summation over its source.
+#include "build/brdf.h"
 #include "build/environment_accuracy.h"
 #include "measure/full_cdf.h"
 #include "tools/cli/file_input.h"
@@ -26,7 +27,7 @@ namespace {
 struct MeasureArguments {
     std::string file, source;
     input::ProbeOptions input;
-    std::uint32_t normals = 256;
+    std::uint32_t normals = 256, views = build::kMeasuredViews;
     bool rivals = false, json = false, quiet = false;
 };
 
@@ -83,7 +84,7 @@ void run(const MeasureArguments& options) {
     case ACDF_KIND_TABLE:
         return measure_table(options.file, loaded.file, options.source, options.json, options.quiet);
     case ACDF_KIND_BRDF:
-        return measure_brdf(options.file, loaded.file, options.source, options.json, options.quiet);
+        return measure_brdf(options.file, loaded.file, options.source, options.views, options.json, options.quiet);
     case ACDF_KIND_LOCAL:
         return measure_local(loaded.file, {options.file, options.source, options.input, options.normals,
                                            options.rivals, options.json, options.quiet});
@@ -127,6 +128,10 @@ void add_measure(CLI::App& program, int& exit_code) {
         .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")
         ->check(CLI::Range(1u, 1u << 20))
         ->option_text("N [256]")
+        ->group("Input");
+    command.add_option("--views", options->views, "Of a BRDF: random views to take the mean over")
+        ->check(CLI::Range(1u, 1u << 20))
+        ->option_text("N [64]")
         ->group("Input");
     command
         .add_flag(

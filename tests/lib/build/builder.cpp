@@ -161,12 +161,12 @@ struct Layout {
 constexpr Layout layouts[] = {
     {"latlong", Projection::latlong, 64, 32},
     {"latlong", Projection::latlong, 50, 40},
-    {"angular", Projection::angular, 40, 40},
-    {"mirrorball", Projection::mirrorball, 40, 40},
+    {"angular", Projection::angular, 20, 20},
+    {"mirrorball", Projection::mirrorball, 20, 20},
     {"octahedral", Projection::octahedral, 40, 40},
-    {"cube-cross", Projection::vertical_cross, 36, 48},
-    {"cube-cross", Projection::horizontal_cross, 48, 36},
-    {"cube-cross", Projection::stacked_cube, 16, 96},
+    {"cube-cross", Projection::vertical_cross, 18, 24},
+    {"cube-cross", Projection::horizontal_cross, 24, 18},
+    {"cube-cross", Projection::stacked_cube, 8, 48},
 };
 
 TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
@@ -263,8 +263,8 @@ TEST(Builder, FilesAreReadInPlace) {
 }
 
 TEST(Builder, ThreadsDoNotMatter) {
-    const std::vector<float> rgb = sky(300, 300);
-    Pixels pixels = pixels_of(rgb, 300, 300);
+    const std::vector<float> rgb = sky(60, 60);
+    Pixels pixels = pixels_of(rgb, 60, 60);
     pixels.projection = Projection::angular;
     std::vector<Bytes> all;
     for (const int threads : {0, 1, 2, 7}) {

@@ -2,6 +2,7 @@
 // compare with.
 #pragma once
 
+#include "tests/inputs/sanitized.h"
 #include "tests/tools/run.h"
 
 #include <acdf/builder.h>

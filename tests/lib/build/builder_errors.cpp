@@ -213,12 +213,12 @@ std::function<Status(const Control&, Bytes&)> taking_bytes(const Call& call) {
 }
 
 TEST(BuilderErrors, EnvironmentsCanBeCancelled) {
-    const std::vector<float> rgb = sky(256, 256);
+    const std::vector<float> rgb = sky(64, 64);
     for (const Projection projection : {Projection::latlong, Projection::angular}) {
-        Pixels pixels = pixels_of(rgb, 256, 256);
+        Pixels pixels = pixels_of(rgb, 64, 64);
         pixels.projection = projection;
         EnvironmentOptions options;
-        options.goal = Goal::of_budget(8000);
+        options.goal = Goal::of_budget(4000);
         expect_cancellable(taking_bytes<Environment>([=](const Control& control, Environment& made) {
             return environment(pixels, options, made, control);
         }));
@@ -244,15 +244,8 @@ TEST(BuilderErrors, OtherKindsCanBeCancelled) {
         taking_bytes<Table>([&](const Control& control, Table& made) { return table(array, {}, made, control); }));
 }
 
-#if defined(__SANITIZE_ADDRESS__)
-#define ACDF_TEST_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ACDF_TEST_SANITIZED 1
-#endif
-#endif
-#ifndef ACDF_TEST_SANITIZED
 TEST(BuilderErrors, ShortOfMemory) {
+    if (acdf_test::kSanitized) GTEST_SKIP() << "sanitizers need address space without end";
     Rows rows{1 << 15, 1 << 15, [](std::uint32_t, std::uint32_t count, float* rgb) { // a target of 4 GiB
                   std::fill_n(rgb, (std::size_t{3} << 15) * count, 1.0f);
                   return true;
@@ -269,6 +262,5 @@ TEST(BuilderErrors, ShortOfMemory) {
     expect_failed(status, ErrorCode::out_of_memory);
     EXPECT_TRUE(made.bytes.empty());
 }
-#endif
 
 } // namespace

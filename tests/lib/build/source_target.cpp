@@ -27,13 +27,13 @@ struct Named {
     Map map;
 };
 
-const Named maps[] = {{"latlong", {Layout::latlong, 48, 24}},
-                      {"octahedral", {Layout::octahedral, 32, 32}},
-                      {"angular", {Layout::angular, 40, 40}},
-                      {"mirrorball", {Layout::mirrorball, 40, 40}},
-                      {"vertical_cross", {Layout::vertical_cross, 48, 64}},
-                      {"horizontal_cross", {Layout::horizontal_cross, 64, 48}},
-                      {"stacked_cube", {Layout::stacked_cube, 16, 96}}};
+const Named maps[] = {{"latlong", {Layout::latlong, 36, 18}},
+                      {"octahedral", {Layout::octahedral, 24, 24}},
+                      {"angular", {Layout::angular, 24, 24}},
+                      {"mirrorball", {Layout::mirrorball, 24, 24}},
+                      {"vertical_cross", {Layout::vertical_cross, 24, 32}},
+                      {"horizontal_cross", {Layout::horizontal_cross, 32, 24}},
+                      {"stacked_cube", {Layout::stacked_cube, 8, 48}}};
 
 /// A sky, with a sun of one texel and a part that is dark.
 std::vector<float> picture(const Map& map) {

@@ -1,5 +1,6 @@
 // What fits of local environment maps must do at horizons, for scenes, and for any number of threads.
 #include "tests/inputs/local_maps.h"
+#include "tests/inputs/sanitized.h"
 
 #include "compress/light.h"
 
@@ -213,7 +214,7 @@ TEST(LocalFit, LightsAreSmallAndTold) {
 
 /// The mean over ten million samples, spread over a hundred normals.
 TEST(LocalFit, TenMillionSamplesAgree) {
-    constexpr int normals = 100, samples = 100000;
+    constexpr int normals = 100, samples = repeated(100000);
     LocalFileOptions options = sized(200, 4000);
     options.cosine_share = 0.1;
     const LocalMap map(suns_target(128, 64), octahedral_bins(6), options);

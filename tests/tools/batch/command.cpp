@@ -289,7 +289,7 @@ TEST_F(BatchCommand, ShardsTogetherAreTheWholeAndReportsMerge) {
 }
 
 TEST_F(BatchCommand, KilledAtAnyTimeItEndsWithTheSameBytes) {
-    write_small_probes(probes, 200);
+    write_small_probes(probes, 80);
     const std::vector<std::string> run = {probes,           "--kind", "env,local",         "--set",
                                           "env.cells=40",   "--set",  "local.budget=8KiB", "--set",
                                           "local.normals=2"};
@@ -303,12 +303,12 @@ TEST_F(BatchCommand, KilledAtAnyTimeItEndsWithTheSameBytes) {
     ASSERT_EQ(run_acdf(with_output(folder / "undisturbed")).code, 0);
 
     std::mt19937 random(2005);
-    const std::size_t jobs = 400;
+    const std::size_t jobs = 160;
     for (int kill_number = 1; kill_number <= 5; ++kill_number) {
         const pid_t pid = start_acdf(with_output(out), "/dev/null", folder / "stdout", folder / "stderr");
         ASSERT_GT(pid, 0);
         // By progress, not by the clock: after some share of the files that are still missing.
-        std::size_t at_most = 60 * static_cast<std::size_t>(kill_number) + random() % 40;
+        std::size_t at_most = 24 * static_cast<std::size_t>(kill_number) + random() % 16;
         while (true) {
             std::size_t made = 0;
             std::error_code ignored;

@@ -1,0 +1,118 @@
+// What jobs take against what `acdf batch` believes that they take, by which it starts them.
+#include "tests/inputs/sanitized.h"
+#include "tests/tools/batch/files.h"
+#include "tests/tools/run.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+
+#include <sys/resource.h>
+
+namespace acdf::test {
+namespace {
+
+using nlohmann::json;
+
+struct Job {
+    std::string kind, source, options;
+
+    std::vector<std::string> words() const {
+        std::istringstream stream(options);
+        return {std::istream_iterator<std::string>(stream), {}};
+    }
+};
+
+/// Peak memory of the program, in bytes.
+std::uint64_t peak_of(const std::vector<std::string>& arguments, const std::string& messages) {
+    const pid_t pid = start_acdf(arguments, "/dev/null", "/dev/null", messages);
+    int status = 0;
+    rusage used{};
+    EXPECT_EQ(wait4(pid, &status, 0, &used), pid);
+    EXPECT_EQ(status, 0) << read_text(messages);
+    return std::uint64_t(used.ru_maxrss) << 10;
+}
+
+class BatchMemory : public testing::Test {
+protected:
+    Folder folder;
+    const std::string noise = folder / "noise.pfm", tiny = folder / "tiny.pfm";
+
+    void SetUp() override {
+        write_small_probe(noise, 1, 192); // the worst there is: every texel is worth a cell of its own
+        write_small_probe(tiny, 1, 2);
+    }
+
+    std::uint64_t peak(const Job& job) const {
+        std::vector<std::string> arguments{job.kind, job.source, "-o", folder / "x.acdf", "--force", "--quiet"};
+        for (const std::string& word : job.words()) arguments.push_back(word);
+        return peak_of(arguments, folder / "messages");
+    }
+
+    std::vector<std::uint64_t> estimates(const std::vector<Job>& jobs) const {
+        std::string lines;
+        for (std::size_t i = 0; i < jobs.size(); ++i)
+            lines += json{{"source", jobs[i].source},
+                          {"kind", jobs[i].kind},
+                          {"options", jobs[i].words()},
+                          {"output", std::to_string(i) + ".acdf"}}
+                         .dump() +
+                     "\n";
+        write_text(folder / "jobs.jsonl", lines);
+        const Result planned =
+            run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--dry-run", "--json"});
+        EXPECT_EQ(planned.code, 0) << planned.err;
+        std::vector<std::uint64_t> out(jobs.size(), 0);
+        for (const json& job : json::parse(planned.out).at("jobs"))
+            out.at(std::stoul(job.at("output").get<std::string>())) = job.at("memory");
+        return out;
+    }
+};
+
+TEST_F(BatchMemory, JobsTakeNoMoreThanIsEstimated) {
+    if (acdf_test::kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+    std::vector<Job> jobs;
+    for (const char* options : {"",
+                                "--cells 100",
+                                "--cells 4000",
+                                "--cells 40000",
+                                "--budget 4KiB",
+                                "--budget 16KiB",
+                                "--budget 64KiB",
+                                "--budget 128KiB",
+                                "--budget 1MiB",
+                                "--target-variance 0.05",
+                                "--target-variance 0.005",
+                                "--target-variance 0.001",
+                                "--budget 32KiB --channel rgb",
+                                "--budget 32KiB --channel max",
+                                "--budget 32KiB --filter bilinear",
+                                "--budget 32KiB --domain octahedral",
+                                "--budget 32KiB --max-weight 3",
+                                "--budget 32KiB --compress zlib",
+                                "--target-variance 0.01 --channel rgb",
+                                "--shape cascade",
+                                "--fit cdf",
+                                "--fit pdf",
+                                "--fit uniform"})
+        jobs.push_back({"env", noise, options});
+    for (const char* options : {"--budget 16KiB --normals 2", "--budget 32KiB --normals 2 --domain octahedral",
+                                "--no-sharing --fit cdf --normals 2", "--target-variance 0.4 --normals 2"})
+        jobs.push_back({"local", noise, options});
+    for (const char* options : {"--budget 12KiB --views 4", "--fit cdf --views 6", "--cells 40 --views 4"})
+        jobs.push_back({"brdf", "lambert", options});
+    ASSERT_EQ(jobs.size(), 30u);
+    const std::vector<std::uint64_t> estimated = estimates(jobs);
+    const std::uint64_t program = peak({"env", tiny, "--cells 2"}); // with the module of images
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const std::uint64_t used = peak(jobs[i]), beside = used - std::min(used, program);
+        EXPECT_LE(beside, estimated[i]) << jobs[i].kind << " " << jobs[i].options;
+        std::printf("%s %s: %llu of %llu MiB\n", jobs[i].kind.c_str(), jobs[i].options.c_str(),
+                    static_cast<unsigned long long>(beside >> 20),
+                    static_cast<unsigned long long>(estimated[i] >> 20));
+    }
+}
+
+} // namespace
+} // namespace acdf::test
