@@ -103,7 +103,7 @@ std::string option_text(const std::string& reading, const EnvironmentOptions& op
 
 Environment build_environment(const compress::Target& target, const Source& source,
                               const EnvironmentOptions& options, const Progress& progress) {
-    if (!(compress::integral(target) > 0.0)) throw NoEnergy("a target without energy");
+    if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
     const bool tree = options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == compress::Shape::tree;
     return tree || options.fit.order ? build_once(target, source, options, {}, progress)
                                      : build_better(target, source, options, progress);

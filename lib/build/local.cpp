@@ -243,7 +243,7 @@ std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene
 
 Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
                   const Progress& progress) {
-    if (!(compress::integral(target) > 0.0)) throw NoEnergy("a target without energy");
+    if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
     if (!options.sharing) return build_separate(target, source, options, progress);
     switch (options.goal.kind) {
     case Goal::Kind::budget:

@@ -12,6 +12,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 namespace acdf::build {
@@ -21,6 +22,7 @@ using compress::Sum;
 using compress::Target;
 
 constexpr int kMaxHalvings = 6;
+constexpr int kRowsAtOnce = 64;
 /// Of a dark texel beside a lit one: its g, of the largest beside it. A border that was cut a hair off leaves no
 /// light without density then.
 constexpr double kGlimpse = 1e-4;
@@ -44,6 +46,7 @@ public:
         target_.values.assign(texels, 0.0f);
         target_.peaks.assign(texels, 0.0f);
         tbb::parallel_for(std::uint32_t{0}, domain_.rows, [&](std::uint32_t row) { cover(row); });
+        const double error = scale_what_is_covered();
         std::vector<std::array<double, 3>> flux(domain_.rows);
         tbb::parallel_for(std::uint32_t{0}, domain_.rows, [&](std::uint32_t row) { flux[row] = gather(row); });
         std::array<Sum, 3> total;
@@ -55,7 +58,7 @@ public:
             target_.total += plane.value();
             target_.mean_square += plane.value() * plane.value();
         }
-        return {std::move(target_), error()};
+        return {std::move(target_), error};
     }
 
 private:
@@ -79,9 +82,17 @@ private:
     double covered(std::size_t texel) const {
         return static_cast<double>(covered_[texel].load(std::memory_order_relaxed)) / kUnits;
     }
-    double solid_angle(std::size_t texel) const {
-        return texel_solid_angle(map_, static_cast<int>(texel % static_cast<std::size_t>(map_.width)),
-                                 static_cast<int>(texel / static_cast<std::size_t>(map_.width)));
+    /// By what a texel's overlaps are scaled; negative where there are none. Takes the place of what was covered.
+    double scale(std::size_t texel) const {
+        const std::uint64_t bits = covered_[texel].load(std::memory_order_relaxed);
+        double scale;
+        std::memcpy(&scale, &bits, sizeof scale);
+        return scale;
+    }
+    void set_scale(std::size_t texel, double scale) {
+        std::uint64_t bits;
+        std::memcpy(&bits, &scale, sizeof bits);
+        covered_[texel].store(bits, std::memory_order_relaxed);
     }
 
     void cover(std::uint32_t row) {
@@ -92,15 +103,43 @@ private:
             });
     }
 
-    /// Each texel of the map hands out its own solid angle: what is covered is scaled by about 1.
+    /// Each texel of the map is to hand out its own solid angle: what is covered is scaled by about 1. Returns how
+    /// much of the energy that moves.
+    double scale_what_is_covered() {
+        Sum missed, all;
+        const auto width = static_cast<std::size_t>(map_.width);
+        std::vector<double> omegas(width * kRowsAtOnce); // the rim of a disc takes long
+        for (int first = 0; first < map_.height; first += kRowsAtOnce) {
+            const int rows = std::min(kRowsAtOnce, map_.height - first);
+            tbb::parallel_for(0, rows, [&](int row) {
+                for (int x = 0; x < map_.width; ++x)
+                    omegas[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(x)] =
+                        texel_solid_angle(map_, x, first + row);
+            });
+            for (std::size_t i = 0; i < width * static_cast<std::size_t>(rows); ++i) {
+                const std::size_t texel = static_cast<std::size_t>(first) * width + i;
+                const double omega = omegas[i], cover = covered(texel);
+                if (omega > 0.0) {
+                    const int parts = source_.parts();
+                    const double square =
+                        at_middle(parts * static_cast<int>(texel % width), parts * static_cast<int>(texel / width))
+                            .square;
+                    missed.add(square * std::abs(cover - omega));
+                    all.add(square * omega);
+                }
+                set_scale(texel, cover > 0.0 ? omega / cover : -1.0);
+            }
+        }
+        return all.value() > 0.0 ? missed.value() / all.value() : 0.0;
+    }
+
     std::array<double, 3> gather(std::uint32_t row) {
         std::array<double, 3> flux{};
         for (std::uint32_t column = 0; column < domain_.columns; ++column) {
             Overlapped sum;
             overlaps(column, row, [&](int x, int y, double omega, const Polygon& part) {
-                const std::size_t texel = texel_of(x, y);
-                const double whole = covered(texel);
-                if (whole > 0.0) add(source_.moments(x, y, part), omega * (solid_angle(texel) / whole), sum);
+                const double scaled = scale(texel_of(x, y));
+                if (scaled >= 0.0) add(source_.moments(x, y, part), omega * scaled, sum);
             });
             for (std::size_t plane = 0; plane < 3; ++plane) flux[plane] += sum.flux[plane];
             put(column, row, sum);
@@ -131,10 +170,11 @@ private:
     void hand_out_missed(std::array<Sum, 3>& total) {
         const AcdfGrid grid{domain_.columns, domain_.rows, static_cast<std::uint32_t>(domain_.parameterization)};
         for (std::size_t texel = 0; texel < covered_.size(); ++texel) {
-            const double omega = covered_[texel].load(std::memory_order_relaxed) == 0 ? solid_angle(texel) : 0.0;
-            if (!(omega > 0.0)) continue;
+            if (scale(texel) >= 0.0) continue;
             const int x = static_cast<int>(texel % static_cast<std::size_t>(map_.width)),
                       y = static_cast<int>(texel / static_cast<std::size_t>(map_.width)), parts = source_.parts();
+            const double omega = texel_solid_angle(map_, x, y);
+            if (!(omega > 0.0)) continue;
             Direction d{-1.0, 0.0, 0.0}; // the rim of both discs
             to_direction(map_, (x + 0.5) / map_.width, (y + 0.5) / map_.height, d);
             const float direction[3] = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
@@ -168,21 +208,6 @@ private:
                 target_.values[i] = target_.peaks[i] = compress::positive_float(kGlimpse * double{largest});
             }
         });
-    }
-
-    double error() const {
-        Sum missed, all;
-        for (std::size_t texel = 0; texel < covered_.size(); ++texel) {
-            const double omega = solid_angle(texel);
-            if (!(omega > 0.0)) continue;
-            const int parts = source_.parts();
-            const double square = at_middle(parts * static_cast<int>(texel % static_cast<std::size_t>(map_.width)),
-                                            parts * static_cast<int>(texel / static_cast<std::size_t>(map_.width)))
-                                      .square;
-            missed.add(square * std::abs(covered(texel) - omega));
-            all.add(square * omega);
-        }
-        return all.value() > 0.0 ? missed.value() / all.value() : 0.0;
     }
 
     const SourceLookup& source_;

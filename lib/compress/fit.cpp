@@ -39,7 +39,7 @@ FitOptions of_best_density(const Target& target, FitOptions options) {
 } // namespace
 
 Fitted fit(const Target& target, const FitOptions& options) {
-    if (!(integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (options.fit == ACDF_FIT_VARIANCE && options.goal.kind == Goal::Kind::cells && options.goal.cells == 0)
         throw std::invalid_argument("a goal of 0 cells");
     if (options.fit == ACDF_FIT_VARIANCE && options.shape == Shape::tree)

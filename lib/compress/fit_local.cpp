@@ -188,7 +188,7 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
     const auto report = [&](double share) {
         if (progress) progress(share);
     };
-    if (!(integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
     const Worth light_worth = worth(target, bins, irradiance(light_points(target), bins));
     report(0.1);

@@ -288,7 +288,7 @@ Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin,
 
 SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
                                const FitOptions& options) {
-    if (!(integral(target) > 0.0)) throw std::invalid_argument("a target without energy");
+    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     const std::vector<LightPoint> light = light_points(target);
     const bool one_price = options.fit == ACDF_FIT_VARIANCE && options.shape == Shape::tree;
     return one_price ? fit_at_one_price(target, light, bins, kind, options)

@@ -40,6 +40,13 @@ Target transposed(const Target& target) {
     return out;
 }
 
+bool has_energy(const Target& target) {
+    for (std::uint32_t r = 0; r < target.rows; ++r)
+        for (std::uint32_t c = 0; c < target.columns; ++c)
+            if (target.row(r)[c] * target.column_measure[c] * target.row_measure[r] > 0.0) return true;
+    return false;
+}
+
 double integral(const Target& target) {
     Sum total;
     for (std::uint32_t r = 0; r < target.rows; ++r) {

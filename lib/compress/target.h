@@ -90,6 +90,8 @@ Target environment_target(const float* rgb, std::uint32_t columns, std::uint32_t
 /// The same function with rows and columns exchanged.
 Target transposed(const Target& target);
 
+/// Whether the integral of g is above 0.
+bool has_energy(const Target& target);
 /// The integral of g, by compensated summation.
 double integral(const Target& target);
 

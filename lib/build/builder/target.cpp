@@ -114,7 +114,7 @@ const compress::Target& grid_of(const Target& target) { return target.data()->gr
 namespace {
 
 Target held(Target::Data data) {
-    if (!(compress::integral(data.grid) > 0.0))
+    if (!compress::has_energy(data.grid))
         throw build::NoEnergy("the map is black in the channels asked for, so there is nothing to sample");
     data.options.parameterization = data.grid.parameterization;
     return Target(std::make_shared<const Target::Data>(std::move(data)));

@@ -213,12 +213,16 @@ std::function<Status(const Control&, Bytes&)> taking_bytes(const Call& call) {
 }
 
 TEST(BuilderErrors, EnvironmentsCanBeCancelled) {
-    const std::vector<float> rgb = sky(64, 64);
-    for (const Projection projection : {Projection::latlong, Projection::angular}) {
-        Pixels pixels = pixels_of(rgb, 64, 64);
-        pixels.projection = projection;
+    const struct {
+        Projection projection;
+        std::uint32_t side;
+    } maps[] = {{Projection::latlong, 96}, {Projection::angular, 20}};
+    for (const auto& map : maps) {
+        const std::vector<float> rgb = sky(map.side, map.side);
+        Pixels pixels = pixels_of(rgb, map.side, map.side);
+        pixels.projection = map.projection;
         EnvironmentOptions options;
-        options.goal = Goal::of_budget(4000);
+        options.goal = Goal::of_budget(2000);
         expect_cancellable(taking_bytes<Environment>([=](const Control& control, Environment& made) {
             return environment(pixels, options, made, control);
         }));
@@ -228,13 +232,15 @@ TEST(BuilderErrors, EnvironmentsCanBeCancelled) {
 TEST(BuilderErrors, OtherKindsCanBeCancelled) {
     const std::vector<float> rgb = sky();
     LocalOptions local_options;
-    local_options.goal = Goal::of_budget(24 << 10);
+    local_options.goal = Goal::of_budget(16 << 10);
+    local_options.subdivisions = 2;
     expect_cancellable(taking_bytes<Local>(
         [&](const Control& control, Local& made) { return local(pixels_of(rgb), local_options, made, control); }));
     Brdf lambert;
     lambert.evaluate = [](const double*, const double*, double out[3]) { out[0] = out[1] = out[2] = 0.3; };
     BrdfOptions brdf_options;
-    brdf_options.goal = Goal::of_budget(12 << 10);
+    brdf_options.goal = Goal::of_cells(40);
+    brdf_options.theta_views = 4;
     expect_cancellable(taking_bytes<BrdfFile>(
         [&](const Control& control, BrdfFile& made) { return brdf(lambert, brdf_options, made, control); }));
     Array array;

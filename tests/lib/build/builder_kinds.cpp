@@ -175,9 +175,10 @@ TEST(BuilderBrdf, Tables) {
     EXPECT_TRUE(tabular.mirrored);
     BrdfOptions options;
     options.goal = Goal::of_budget(16 << 10);
+    options.theta_views = 6;
     options.source = {"b.npy", input::file_sha256(folder / "b.npy"), "", ""};
     EXPECT_EQ(brdf_bytes(tabular, options),
-              program_bytes({"brdf", folder / "b.npy", "--budget", "16KiB"}, folder / "b.acdf"));
+              program_bytes({"brdf", folder / "b.npy", "--budget", "16KiB", "--views", "6"}, folder / "b.acdf"));
     array.shape = {6, 8, 12};
     EXPECT_EQ(tabulated(array, tabular).code, ErrorCode::invalid_argument);
     EXPECT_FALSE(tabular.evaluate);
