@@ -17,7 +17,7 @@ row() {
             (.relative_variance_full_cdf * 1e5 | round / 1e5 | tostring) + " | " + (.support_violations | tostring) + " |"'
 }
 
-echo "| BRDF | fit | bytes | variance, mean over views | worst view | 67 MB table, mean over views | violations |"
+echo "| BRDF | fit | bytes | variance, mean over views | worst view | 65 MiB table, mean over views | violations |"
 echo "|---|---|---|---|---|---|---|"
 for file in nickel.binary blue-metallic-paint.binary; do
     for size in 16KiB 32KiB 64KiB 200KiB; do row "variance, $size" $file --budget $size; done

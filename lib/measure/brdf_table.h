@@ -35,8 +35,8 @@ public:
 
     BrdfSample sample(const double wo[3], const double u[2]) const; ///< u (phi_h, theta_h) in [0, 1]
     double pdf(const double wo[3], const double wi[3]) const;
-    /// Of a probability and a cumulative one for each cell, in double precision: 67 MB at the paper's size, which
-    /// says 65.
+    /// Of a probability and a cumulative one for each cell, in double precision: 65 MiB at the paper's size, which
+    /// says 65 MB.
     std::size_t bytes() const;
 
 private:

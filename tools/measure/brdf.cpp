@@ -6,6 +6,7 @@
 #include "measure/brdf_samplers.h"
 #include "measure/brdf_table.h"
 #include "tools/cli/noise.h"
+#include "tools/cli/sizes.h"
 #include "tools/commands.h"
 
 #include <nlohmann/json.hpp>
@@ -89,8 +90,8 @@ void print_text(const std::string& path, const File& file, const std::string& so
                 noise_texts(a.relative_variance).c_str());
     std::printf("    median over views    %.6g\n", a.median);
     std::printf("    worst view           %.6g   at theta_o = %.1f degrees\n", a.worst, degrees(a.worst_view));
-    std::printf("    full table           %.6g   of %.0f MB, bins made for all their views\n", r.table_mean,
-                double(r.table_bytes) * 1e-6);
+    std::printf("    full table           %.6g   of %s, bins made for all their views\n", r.table_mean,
+                to_readable_size(r.table_bytes).c_str());
     std::printf(
         "      for bins' centres  %.6g   the same as published: biased between them where this is infinite\n",
         r.table_centre);
