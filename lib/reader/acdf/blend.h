@@ -78,11 +78,10 @@ ACDF_INLINE double acdf_mixture_of(const AcdfMixture* mix, const int rows, const
  * from that of its axis, and the division that rescales the other one is not waited for. Which part comes next is
  * left to a branch: where it is guessed, the loads of the next split do not wait for this one's. */
 ACDF_INLINE uint32_t acdf_blend_sample_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
-                                            double* u, AcdfRange* range, double* probability) {
+                                            uint32_t node, double* u, AcdfRange* range, double* probability) {
     const uint16_t* codebook = blend->tiles->codebook;
     const double whole = acdf_mixture_sum(mix);
     double weight[ACDF_MAX_ROWS_MIXED], part[ACDF_MAX_ROWS_MIXED], chosen = whole, x[2];
-    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
     int i;
     x[0] = u[0] * whole;
     x[1] = u[1] * whole;
@@ -122,14 +121,14 @@ ACDF_INLINE uint32_t acdf_blend_sample_rows(const AcdfBlend* blend, const AcdfMi
 /* Where a square lies does not depend on weights: the walk is free of branches on the data, and the products
  * follow it. */
 ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
-                                          const uint32_t* square, AcdfRange* range, AcdfStratum* strata,
-                                          double* probability) {
+                                          uint32_t node, const uint32_t* square, AcdfRange* range,
+                                          AcdfStratum* strata, double* probability) {
     const uint16_t* codebook = blend->tiles->codebook;
     const double whole = acdf_mixture_sum(mix);
     /* At or above every `place` of its axis and a position up to the square's. */
     const uint32_t key0 = square[0] << 3 | 7u, key1 = square[1] << 3 | 7u;
     double part[ACDF_MAX_ROWS_MIXED], chosen;
-    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG, bound[2][2];
+    uint32_t bound[2][2];
     int i;
     for (i = 0; i < 2; ++i) {
         bound[i][0] = range[i].high;
@@ -166,38 +165,57 @@ ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixt
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* Draws a tile of the mixture, whose sum is positive; u and range as in acdf_tree_sample. Returns the tile's
- * number; *probability becomes its share of the mixture. */
-ACDF_FN uint32_t acdf_blend_sample_tile(const AcdfBlend* blend, const AcdfMixture* mix, double* u, AcdfRange* range,
-                                        double* probability) {
+/* Where walks begin: split 0, or the only tile. */
+ACDF_FN uint32_t acdf_blend_root(const AcdfBlend* blend) {
+    return blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
+}
+
+/* Draws a tile below `node` (a split, or a tile with its flag) whose box is `range`: of a mixture whose sum,
+ * positive, is what the rows give to it. u and range as in acdf_tree_sample. Returns the tile's number;
+ * *probability becomes its share of the mixture. */
+ACDF_FN uint32_t acdf_blend_sample_below(const AcdfBlend* blend, const AcdfMixture* mix, uint32_t node, double* u,
+                                         AcdfRange* range, double* probability) {
     switch (mix->count) {
     case 1:
-        return acdf_blend_sample_rows(blend, mix, 1, u, range, probability);
+        return acdf_blend_sample_rows(blend, mix, 1, node, u, range, probability);
     case 2:
-        return acdf_blend_sample_rows(blend, mix, 2, u, range, probability);
+        return acdf_blend_sample_rows(blend, mix, 2, node, u, range, probability);
     case 3:
-        return acdf_blend_sample_rows(blend, mix, 3, u, range, probability);
+        return acdf_blend_sample_rows(blend, mix, 3, node, u, range, probability);
     default:
-        return acdf_blend_sample_rows(blend, mix, 4, u, range, probability);
+        return acdf_blend_sample_rows(blend, mix, 4, node, u, range, probability);
     }
 }
 
-/* Finds the tile of a grid square; square, range and strata as in acdf_tree_find. *probability becomes its share of
- * the mixture, 0 where no sample can fall. */
-ACDF_FN uint32_t acdf_blend_find_tile(const AcdfBlend* blend, const AcdfMixture* mix, const uint32_t* square,
-                                      AcdfRange* range, AcdfStratum* strata, double* probability) {
+/* Draws a tile of a mixture. */
+ACDF_FN uint32_t acdf_blend_sample_tile(const AcdfBlend* blend, const AcdfMixture* mix, double* u, AcdfRange* range,
+                                        double* probability) {
+    return acdf_blend_sample_below(blend, mix, acdf_blend_root(blend), u, range, probability);
+}
+
+/* Finds the tile of a grid square below `node`, whose box is `range`; square, range and strata as in
+ * acdf_tree_find. *probability becomes its share of the mixture, 0 where no sample can fall. */
+ACDF_FN uint32_t acdf_blend_find_below(const AcdfBlend* blend, const AcdfMixture* mix, uint32_t node,
+                                       const uint32_t* square, AcdfRange* range, AcdfStratum* strata,
+                                       double* probability) {
     switch (mix->count) {
     case 0:
-        return acdf_blend_find_rows(blend, mix, 0, square, range, strata, probability);
+        return acdf_blend_find_rows(blend, mix, 0, node, square, range, strata, probability);
     case 1:
-        return acdf_blend_find_rows(blend, mix, 1, square, range, strata, probability);
+        return acdf_blend_find_rows(blend, mix, 1, node, square, range, strata, probability);
     case 2:
-        return acdf_blend_find_rows(blend, mix, 2, square, range, strata, probability);
+        return acdf_blend_find_rows(blend, mix, 2, node, square, range, strata, probability);
     case 3:
-        return acdf_blend_find_rows(blend, mix, 3, square, range, strata, probability);
+        return acdf_blend_find_rows(blend, mix, 3, node, square, range, strata, probability);
     default:
-        return acdf_blend_find_rows(blend, mix, 4, square, range, strata, probability);
+        return acdf_blend_find_rows(blend, mix, 4, node, square, range, strata, probability);
     }
+}
+
+/* Finds the tile of a grid square. */
+ACDF_FN uint32_t acdf_blend_find_tile(const AcdfBlend* blend, const AcdfMixture* mix, const uint32_t* square,
+                                      AcdfRange* range, AcdfStratum* strata, double* probability) {
+    return acdf_blend_find_below(blend, mix, acdf_blend_root(blend), square, range, strata, probability);
 }
 
 /* Draws a cell of the mixture, as acdf_tree_sample does of a tree. Returns its probability, > 0. */

@@ -1,0 +1,182 @@
+/* A cut through the tiles of a local environment map: boxes that cover the sphere, each a split of the file with
+ * all below it, each with a probability of its own. What product sampling weighs at a shading point
+ * (acdf/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL, with the same
+ * contract.
+ *
+ * Within a part the density is that of the local map, light times cosine; how much each part gets is up to whoever
+ * made the cut. A direction's part is found by the cut's own splits, then the map's walk goes on from there: what
+ * the cut does first the map need not do again. */
+#ifndef ACDF_CUT_H
+#define ACDF_CUT_H
+
+#include <acdf/local.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ACDF_CUT_MAX_PARTS = 96, ACDF_CUT_MAX_LIGHTS = 64 };
+
+/* A box: what lies below a split or in a tile. */
+typedef struct AcdfCutPart {
+    uint32_t node;                   /* the split, or the tile with its flag */
+    uint32_t tile;                   /* the first tile in it; they are numbered in the order of the walk */
+    uint16_t first_light, end_light; /* which lights lie in it */
+    uint16_t owner;                  /* 2 * split of the cut + side; of the whole: not used */
+    uint32_t low[2], high[2];
+    double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */
+    double lights;                      /* weights of the lights in it */
+    double sum;                         /* of all weights */
+    double probability;                 /* of the cut, for its maker to set */
+} AcdfCutPart;
+
+typedef struct AcdfCutSplit {
+    uint32_t place;   /* axis and position, as in AcdfSplit */
+    int16_t child[2]; /* another split; or the complement of a part's number */
+    double lower;     /* the lower child's share of the two */
+} AcdfCutSplit;
+
+typedef struct AcdfCut {
+    int count;   /* of parts; 0: there is nothing to draw */
+    int nearest; /* which of the rows weighs most */
+    AcdfCutPart part[ACDF_CUT_MAX_PARTS];
+    AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];
+    double light[ACDF_CUT_MAX_LIGHTS]; /* weight of each */
+} AcdfCut;
+
+ACDF_FN double acdf_cut_lights(const AcdfCut* cut, uint32_t first, uint32_t end) {
+    double sum = 0.0;
+    for (; first < end; ++first) sum += cut->light[first];
+    return sum;
+}
+
+/* The whole as one part, of probability 1. For points that lights and shared tiles serve (ACDF_LOCAL_BLEND). */
+ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut) {
+    AcdfCutPart* whole = &cut->part[0];
+    uint32_t i;
+    int k;
+    cut->count = 1;
+    for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_light_weight(&local->lights[i], point);
+    whole->node = acdf_blend_root(&local->blend);
+    whole->tile = 0;
+    whole->first_light = 0;
+    whole->end_light = (uint16_t)local->light_count;
+    whole->owner = 0;
+    whole->low[0] = whole->low[1] = 0;
+    whole->high[0] = local->environment.columns;
+    whole->high[1] = local->environment.rows;
+    for (k = 0; k < ACDF_MAX_ROWS_MIXED; ++k) whole->weight[k] = k < point->mix.count ? point->mix.weight[k] : 0.0;
+    cut->nearest = 0;
+    for (k = 1; k < point->mix.count; ++k)
+        if (point->mix.weight[k] > point->mix.weight[cut->nearest]) cut->nearest = k;
+    whole->lights = acdf_cut_lights(cut, 0, whole->end_light);
+    whole->sum = whole->lights + acdf_mixture_sum(&point->mix);
+    whole->probability = 1.0;
+}
+
+/* Whether a part can be divided: it is no tile, and there is room. */
+ACDF_FN int acdf_cut_divisible(const AcdfCut* cut, int part) {
+    return !(cut->part[part].node & ACDF_TILE_FLAG) && cut->count < ACDF_CUT_MAX_PARTS;
+}
+
+/* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
+ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int part) {
+    const int count = cut->count - 1;
+    AcdfCutPart *lower = &cut->part[part], *upper = &cut->part[cut->count];
+    const AcdfSplit* split = &local->blend.splits[lower->node];
+    const uint32_t axis = split->place & 7u, position = split->place >> 3, child = split->child[1];
+    double low = 0.0, high = 0.0;
+    int i;
+    cut->split[count].place = split->place;
+    cut->split[count].child[0] = (int16_t)~part;
+    cut->split[count].child[1] = (int16_t)~cut->count;
+    if (count > 0) cut->split[lower->owner >> 1].child[lower->owner & 1u] = (int16_t)count;
+    ++cut->count;
+    *upper = *lower;
+    lower->owner = (uint16_t)(2 * count);
+    upper->owner = (uint16_t)(2 * count + 1);
+    for (i = 0; i < point->mix.count; ++i) {
+        const double code = (double)local->blend.tiles->codebook[point->mix.row[i][lower->node]];
+        low += lower->weight[i] *= code * (1.0 / 65535.0);
+        high += upper->weight[i] -= lower->weight[i];
+    }
+    /* Splits are numbered as the walk meets them, and so are tiles: as many as the splits of the lower half, and
+     * one. */
+    upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : lower->tile + child - lower->node;
+    while (upper->first_light < upper->end_light && local->lights[upper->first_light].tile < upper->tile)
+        ++upper->first_light;
+    lower->end_light = upper->first_light;
+    lower->lights = acdf_cut_lights(cut, lower->first_light, lower->end_light);
+    upper->lights = acdf_cut_lights(cut, upper->first_light, upper->end_light);
+    lower->sum = low + lower->lights;
+    upper->sum = high + upper->lights;
+    lower->high[axis] = upper->low[axis] = position;
+    lower->node = split->child[0];
+    upper->node = child;
+}
+
+/* The direction (about unit) of the middle of a box. */
+ACDF_FN void acdf_cut_middle(const AcdfLocal* local, const uint32_t box[2][2], float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    const double u = 0.5 * ((double)box[0][0] + (double)box[0][1]) / (double)grid.columns;
+    const double v = 0.5 * ((double)box[1][0] + (double)box[1][1]) / (double)grid.rows;
+    double d[3], sine, cosine;
+    int i;
+    if (acdf_grid_is_octahedral(&grid)) {
+        acdf_octahedral_direction(u, v, d);
+    } else {
+        acdf_sincospi(v, &sine, &d[2]);
+        acdf_sincospi(1.0 - 2.0 * u, &d[1], &cosine);
+        d[0] = sine * cosine;
+        d[1] *= sine;
+    }
+    for (i = 0; i < 3; ++i) direction[i] = (float)d[i];
+}
+
+/* A direction from which a part is lit much: of its brightest light, where lights give it more than all else; else
+ * the middle of the tile that is reached where the walk always takes the half to which the nearest bin gives more.
+ * Returns the tile's number. */
+ACDF_FN uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut, int number,
+                                float direction[3]) {
+    const AcdfCutPart* part = &cut->part[number];
+    const uint16_t* codebook = local->blend.tiles->codebook;
+    uint32_t node = part->node, box[2][2], k;
+    const uint8_t* row = point->mix.row[cut->nearest];
+    if (part->lights > 0.5 * part->sum) {
+        uint32_t brightest = part->first_light;
+        for (k = brightest + 1; k < part->end_light; ++k)
+            if (cut->light[k] > cut->light[brightest]) brightest = k;
+        for (k = 0; k < 3; ++k) direction[k] = local->lights[brightest].direction[k];
+        return local->lights[brightest].tile;
+    }
+    for (k = 0; k < 2; ++k) {
+        box[k][0] = part->high[k];
+        box[k][1] = part->low[k];
+    }
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit* split = &local->blend.splits[node];
+        const uint32_t upper = (uint32_t)(codebook[row[node]] < 32768u);
+        box[split->place & 1u][upper] = split->place >> 3;
+        node = split->child[upper];
+    }
+    acdf_cut_middle(local, box, direction);
+    return node & ~ACDF_TILE_FLAG;
+}
+
+/* Solid angle of a part, sr. */
+ACDF_FN double acdf_cut_solid_angle(const AcdfLocal* local, const AcdfCutPart* part) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfRange range[2];
+    int i;
+    for (i = 0; i < 2; ++i) {
+        range[i].low = part->low[i];
+        range[i].high = part->high[i];
+        range[i].tilt = 0.0;
+    }
+    return acdf_grid_solid_angle(&grid, range);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
