@@ -3,6 +3,7 @@
 #include "build/brdf.h"
 #include "measure/estimators.h"
 #include "measure/light_samplers.h"
+#include "measure/product_samplers.h"
 #include "measure/stratified_map.h"
 #include "tools/cli/built.h"
 #include "tools/cli/file_input.h"
@@ -23,6 +24,7 @@ using measure::LightSamplerPtr;
 struct Table {
     std::shared_ptr<const void> keep;
     LightSamplerPtr sampler;
+    const File* file = nullptr; ///< that it draws from; null where there is none
 };
 
 Table file_table(std::vector<std::uint8_t> bytes) {
@@ -31,7 +33,8 @@ Table file_table(std::vector<std::uint8_t> bytes) {
     const Status status = File::from_memory(loaded->bytes.data(), loaded->bytes.size(), loaded->file);
     if (!status.ok()) throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
     LightSamplerPtr sampler = measure::file_sampler(loaded->file);
-    return {loaded, std::move(sampler)};
+    const File* file = &loaded->file;
+    return {loaded, std::move(sampler), file};
 }
 
 Table env_table(const builder::Target& target, std::uint64_t bytes) {
@@ -70,17 +73,19 @@ Table full_brdf_table(const input::Brdf& brdf, bool centre) {
 Table given_file(const std::string& path) {
     auto loaded = std::make_shared<LoadedFile>(load_file(path));
     LightSamplerPtr sampler = measure::file_sampler(loaded->file);
-    return {loaded, std::move(sampler)};
+    const File* file = &loaded->file;
+    return {loaded, std::move(sampler), file};
 }
 
 bool knows_brdf(const SamplerSpec& spec) {
+    if (spec.kind == SamplerKind::product) return knows_brdf(spec.parts[1]);
     return spec.kind == SamplerKind::brdf || spec.kind == SamplerKind::brdf_table;
 }
 
 bool is_ours(const SamplerSpec& spec) {
     if (spec.kind == SamplerKind::mis) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
     return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
-           spec.kind == SamplerKind::file;
+           spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
 }
 
 } // namespace
@@ -125,16 +130,31 @@ struct SamplerBuilder::Store {
             return {nullptr, measure::compensated_sampler(target)};
         case SamplerKind::strata:
         case SamplerKind::mis:
+        case SamplerKind::product:
             break;
         }
         throw std::logic_error("is no sampler of single directions");
     }
-    const measure::LightSampler& sampler(const SamplerSpec& spec, std::size_t material) {
+    const Table& table(const SamplerSpec& spec, std::size_t material) {
         const std::string text = spec.kind == SamplerKind::ris ? "full-cdf" : spec.text;
         const std::string key = knows_brdf(spec) ? text + "@" + std::to_string(material) : text;
         auto found = tables.find(key);
         if (found == tables.end()) found = tables.emplace(key, make(spec, material)).first;
-        return *found->second.sampler;
+        return found->second;
+    }
+    const measure::LightSampler& sampler(const SamplerSpec& spec, std::size_t material) {
+        return *table(spec, material).sampler;
+    }
+    const measure::LightSampler& product(const SamplerSpec& spec, std::size_t material, std::uint32_t samples) {
+        const int parts = spec.divisions ? static_cast<int>(spec.divisions) : measure::product_parts(samples);
+        const std::string key = spec.text + "/" + std::to_string(parts) + "@" + std::to_string(material);
+        auto found = tables.find(key);
+        if (found != tables.end()) return *found->second.sampler;
+        const File* light = table(spec.parts[0], material).file;
+        const File* brdf = table(spec.parts[1], material).file;
+        LightSamplerPtr made = brdf ? measure::product_sampler(*light, *brdf, parts)
+                                    : measure::product_sampler(*light, spec.parts[1].alpha, parts);
+        return *tables.emplace(key, Table{nullptr, std::move(made)}).first->second.sampler;
     }
     const measure::StratifiedMap& stratified(const SamplerSpec& spec, std::uint32_t strata) {
         auto& map = maps[spec.text + "/" + std::to_string(strata)];
@@ -150,6 +170,8 @@ struct SamplerBuilder::Store {
                                                                   samples);
         if (spec.kind == SamplerKind::strata)
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
+        if (spec.kind == SamplerKind::product)
+            return std::make_unique<measure::SingleEstimator>(product(spec, material, samples), samples);
         if (spec.kind != SamplerKind::mis)
             return std::make_unique<measure::SingleEstimator>(sampler(spec, material), samples);
         const std::vector<std::uint32_t> counts = divided(samples, spec);
@@ -163,7 +185,7 @@ struct SamplerBuilder::Store {
     std::uint64_t bytes(const SamplerSpec& spec) {
         const std::vector<SamplerSpec> alone{spec};
         std::set<const measure::LightSampler*> used;
-        for (const SamplerSpec& part : spec.kind == SamplerKind::mis ? spec.parts : alone)
+        for (const SamplerSpec& part : spec.parts.empty() ? alone : spec.parts)
             for (std::size_t material = 0; material < brdfs.size(); ++material)
                 used.insert(&sampler(part, material));
         std::uint64_t sum = 0;

@@ -3,6 +3,8 @@
 #include "tools/cli/options.h"
 #include "tools/cli/sizes.h"
 
+#include <acdf/cut.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -107,7 +109,7 @@ SamplerSpec parse_single(const std::string& text) {
     if (found == std::end(names)) {
         std::string all;
         for (const Name& n : names) all += std::string(n.name) + ", ";
-        fail(text, "is none of " + all + "mis(...), mis-power(...), mis-compensated");
+        fail(text, "is none of " + all + "mis(...), mis-power(...), mis-compensated, product(...)");
     }
     SamplerSpec spec;
     spec.kind = found->kind;
@@ -129,6 +131,30 @@ std::vector<std::string> split(const std::string& whole, const std::string& insi
     }
     if (open != 0) fail(whole, "has a '(' too many");
     return out;
+}
+
+/// product(LIGHT,BRDF) or product:PARTS(LIGHT,BRDF).
+SamplerSpec parse_product(const std::string& text) {
+    SamplerSpec spec;
+    spec.kind = SamplerKind::product;
+    spec.text = text;
+    const std::size_t open = text.find('(');
+    double number = 0.0;
+    if (text[7] == ':') {
+        if (!parse_number(text.substr(8, open - 8), number) || number != std::floor(number) || number < 1.0 ||
+            number > ACDF_CUT_MAX_PARTS)
+            fail(text, "parts are counted from 1 to " + std::to_string(ACDF_CUT_MAX_PARTS));
+        spec.divisions = static_cast<std::uint32_t>(number);
+    }
+    for (const std::string& part : split(text, text.substr(open + 1, text.size() - open - 2)))
+        spec.parts.push_back(parse_single(part));
+    if (spec.parts.size() != 2) fail(text, "is made of a light and a BRDF");
+    const SamplerKind light = spec.parts[0].kind, brdf = spec.parts[1].kind;
+    if (light != SamplerKind::local && light != SamplerKind::env && light != SamplerKind::file)
+        fail(text, "its light is local:SIZE, env:SIZE or file:my.acdf");
+    if (brdf != SamplerKind::brdf && brdf != SamplerKind::ggx && brdf != SamplerKind::file)
+        fail(text, "its BRDF is brdf:SIZE, ggx:ALPHA or file:my.acdf");
+    return spec;
 }
 
 SamplerSpec parse_mis(const std::string& text, std::size_t begin) {
@@ -161,6 +187,9 @@ SamplerSpec parse_sampler(const std::string& text) {
     for (const std::string prefix : {"mis(", "mis-power("})
         if (text.compare(0, prefix.size(), prefix) == 0 && text.back() == ')')
             return parse_mis(text, prefix.size());
+    for (const std::string prefix : {"product(", "product:"})
+        if (text.compare(0, prefix.size(), prefix) == 0 && text.back() == ')' && text.find('(') != text.npos)
+            return parse_product(text);
     if (text == "mis-compensated") {
         SamplerSpec spec = parse_sampler("mis(compensated,cosine)");
         spec.text = text;

@@ -31,6 +31,7 @@ enum class SamplerKind {
     mis,          ///< mis(A,B), mis-power(A,B): balance or power heuristic; mis-compensated is
                   ///< mis(compensated,cosine)
     file,         ///< file:my.acdf: any environment, local environment or BRDF file
+    product, ///< product(local:1MB,brdf:64KiB), product:32(file:sky.acdf,ggx:0.1): light times BRDF, in 32 parts
 };
 
 struct SamplerSpec {
@@ -44,7 +45,8 @@ struct SamplerSpec {
     bool centre = false;                 ///< brdf-table as described
     bool power = false;                  ///< mis: power heuristic
     std::string path;                    ///< file
-    std::vector<SamplerSpec> parts;      ///< mis: two or more
+    std::uint32_t divisions = 0;         ///< product: parts of the sphere; 0: as many as the samples pay for
+    std::vector<SamplerSpec> parts;      ///< mis: two or more; product: light and BRDF
     std::vector<double> shares;          ///< mis: of the samples; their sum is 1
 };
 

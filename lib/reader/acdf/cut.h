@@ -153,14 +153,14 @@ ACDF_FN uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* po
         box[k][0] = part->high[k];
         box[k][1] = part->low[k];
     }
-    while (!(node & ACDF_TILE_FLAG)) {
+    while (!(node & ACDF_TILE_FLAG) && point->mix.count > 0) {
         const AcdfSplit* split = &local->blend.splits[node];
         const uint32_t upper = (uint32_t)(codebook[row[node]] < 32768u);
         box[split->place & 1u][upper] = split->place >> 3;
         node = split->child[upper];
     }
     acdf_cut_middle(local, box, direction);
-    return node & ~ACDF_TILE_FLAG;
+    return node & ACDF_TILE_FLAG ? node & ~ACDF_TILE_FLAG : part->tile; /* where only lights shine, and not here */
 }
 
 /* Solid angle of a part, sr. */

@@ -1,0 +1,227 @@
+// acdf/product.h and acdf/cut.h on files and lobes of every kind: that the density is exactly that of the samples,
+// that it integrates to 1, and that nothing is left out.
+#include "tests/lib/reader/load.h"
+#include "tests/lib/reader/local_random.h"
+
+#include <acdf/product.h>
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace acdf_test;
+
+namespace {
+
+struct Loaded {
+    Bytes bytes;
+    acdf::File file;
+
+    explicit Loaded(LocalSpec spec) : bytes(spec.encode()) {
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        EXPECT_TRUE(status.ok()) << status.message;
+    }
+    AcdfLocal light() const { return file.local().data(); }
+};
+
+constexpr std::uint32_t file_count = 48;
+
+// Small grids, so that densities can be summed over their squares.
+LocalSpec random_local(std::uint32_t seed, bool tilts) {
+    RandomOptions options;
+    options.columns = 17 + seed % 16;
+    options.rows = 9 + seed % 13;
+    options.depth = 3;
+    options.tilts = tilts;
+    options.long_curves = false;
+    options.octahedral = seed % 2 == 1;
+    return RandomLocal(seed, options).make();
+}
+
+double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
+
+struct Vector {
+    float v[3];
+};
+
+Vector unit_vector(double x, double y, double z) {
+    const double length = std::sqrt(x * x + y * y + z * z);
+    return {{static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)}};
+}
+
+// Anywhere, and where bins of normals meet.
+Vector random_normal(std::mt19937_64& rng) {
+    if (rng() % 3 == 0) {
+        const auto step = [&] { return static_cast<double>(rng() % 5) - 2.0; };
+        const double x = step(), y = step(), z = step();
+        return x == 0.0 && y == 0.0 && z == 0.0 ? unit_vector(0, 0, -1) : unit_vector(x, y, z);
+    }
+    const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), sine = std::sqrt(1 - z * z);
+    return unit_vector(sine * std::cos(phi), sine * std::sin(phi), z);
+}
+
+// Towards the viewer, often at grazing angles.
+Vector random_view(std::mt19937_64& rng, const acdf::SurfaceFrame& frame) {
+    const double z = rng() % 3 == 0 ? 1e-4 + 0.01 * unit(rng) : unit(rng), phi = 2 * M_PI * unit(rng);
+    const Vector local = unit_vector(std::sqrt(1 - z * z) * std::cos(phi), std::sqrt(1 - z * z) * std::sin(phi), z);
+    Vector world;
+    frame.to_world(local.v, world.v);
+    return world;
+}
+
+// A lobe of half-vectors, sin^2 of whose angle is at most `width` and even below that, reflects directions that may
+// lie below the surface; beside it a cosine, half of all.
+struct TestLobe {
+    double width;
+
+    struct Point {
+        float wo[3];
+    };
+    bool at(const float wo[3], Point& point) const {
+        for (int k = 0; k < 3; ++k) point.wo[k] = wo[k];
+        return wo[2] > 0.0f;
+    }
+    float pdf(const Point& point, const float wi[3]) const {
+        double h[3], length = 0.0, dot = 0.0;
+        for (int k = 0; k < 3; ++k) h[k] = double{point.wo[k]} + double{wi[k]};
+        for (double x : h) length += x * x;
+        length = std::sqrt(length);
+        for (int k = 0; k < 3; ++k) dot += double{point.wo[k]} * h[k] / length;
+        const double sin2 = (h[0] * h[0] + h[1] * h[1]) / (length * length), z = h[2] / length;
+        const double lobe = sin2 < width && z > 0.0 ? z / (M_PI * width * 4.0 * std::fabs(dot)) : 0.0;
+        return static_cast<float>(0.5 * lobe + (wi[2] > 0.0f ? 0.5 * double{wi[2]} / M_PI : 0.0));
+    }
+    float value(const Point&, const float wi[3], float pdf) const { return pdf / std::max(0.02f, wi[2]); }
+    acdf::ProductSample sample(const Point& point, double u0, double u1) const {
+        const bool cosine = u0 < 0.5;
+        const double inside = std::min(u1, 1.0 - 1e-5); // not on the border, where rounding leaves the lobe
+        const double r = std::sqrt(inside * (cosine ? 1.0 : width)), z = std::sqrt(1.0 - r * r);
+        double s, c;
+        acdf_sincospi(cosine ? 4.0 * u0 - 1.0 : 4.0 * u0 - 3.0, &s, &c);
+        const double h[3] = {r * c, r * s, z};
+        acdf::ProductSample out;
+        double dot = 0.0;
+        for (int k = 0; k < 3; ++k) dot += 2.0 * h[k] * double{point.wo[k]};
+        for (int k = 0; k < 3; ++k)
+            out.direction[k] = static_cast<float>(cosine ? h[k] : dot * h[k] - double{point.wo[k]});
+        out.pdf = pdf(point, out.direction);
+        return out;
+    }
+};
+
+constexpr double widths[] = {1.0, 0.1, 1e-3};
+using Sampler = acdf::ProductSampler<TestLobe>;
+
+template <class Visit> // visit(file, lobe, sampler, point, name, random): of many files, with any number of parts
+void each_point(bool tilts, const Visit& visit) {
+    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+        const Loaded loaded(random_local(seed, tilts));
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 6; ++i) {
+            acdf::ProductOptions options;
+            options.parts = 1 + static_cast<int>(rng() % ACDF_CUT_MAX_PARTS);
+            const TestLobe lobe{widths[i % 3]};
+            const bool all = rng() % 6 == 0; // of the light, whatever the normal
+            const Sampler sampler =
+                all ? Sampler(loaded.light().environment, lobe, options) : Sampler(loaded.light(), lobe, options);
+            const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
+            const Vector wo = random_view(rng, frame);
+            visit(loaded, lobe, sampler, sampler.at(frame, wo.v),
+                  "seed " + std::to_string(seed) + ", point " + std::to_string(i), rng);
+        }
+    }
+}
+
+// To the bit, with and without slopes in cells, for random numbers of every kind.
+TEST(Product, DensityIsExactlyThatOfTheSamples) {
+    const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000, NAN, -1.0, 2.0};
+    int drawn = 0, all = 0;
+    for (const bool tilts : {false, true})
+        each_point(tilts, [&](const Loaded&, const TestLobe&, const Sampler& sampler, const Sampler::Point& point,
+                              const std::string& name, std::mt19937_64& rng) {
+            for (int i = 0; i < 200; ++i) {
+                const double u0 = rng() % 8 == 0 ? edges[rng() % 10] : unit(rng);
+                const double u1 = rng() % 8 == 0 ? edges[rng() % 10] : unit(rng);
+                const acdf::ProductSample s = sampler.sample(point, u0, u1);
+                ASSERT_TRUE(std::isfinite(s.pdf) && s.pdf >= 0.0f) << name;
+                ++all;
+                if (s.pdf == 0.0f) continue;
+                ++drawn;
+                ASSERT_EQ(sampler.pdf(point, s.direction), s.pdf) << name << ", " << u0 << ' ' << u1;
+                ASSERT_NEAR(std::hypot(s.direction[0], s.direction[1], s.direction[2]), 1.0, 1e-6) << name;
+            }
+        });
+    EXPECT_GT(drawn, all * 0.99);
+}
+
+// The light's part, over the squares of its grid, in which it is constant; the lobe's part is the lobe's own.
+TEST(Product, DensityIntegratesToOne) {
+    int cuts = 0;
+    each_point(false, [&](const Loaded& loaded, const TestLobe& lobe, const Sampler& sampler,
+                          const Sampler::Point& point, const std::string& name, std::mt19937_64&) {
+        if (point.light.what != ACDF_LOCAL_BLEND || point.cut.count == 0) return;
+        ++cuts;
+        const AcdfLocal light = loaded.light();
+        const AcdfGrid grid = acdf_environment_grid(&light.environment);
+        double sum = 0.0;
+        for (std::uint32_t y = 0; y < grid.rows; ++y)
+            for (std::uint32_t x = 0; x < grid.columns; ++x) {
+                const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
+                const double middle[2] = {0.5, 0.5};
+                const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
+                const float p = acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
+                sum += double{p} * acdf_grid_solid_angle(&grid, square);
+                float wi[3];
+                point.frame.to_local(at.direction, wi);
+                const double mixture = (1.0 - point.share) * p + point.share * lobe.pdf(point.lobe, wi);
+                ASSERT_NEAR(sampler.pdf(point, at.direction), mixture, 1e-6 * mixture) << name;
+            }
+        ASSERT_NEAR(sum, 1.0, 1e-5) << name;
+    });
+    EXPECT_GT(cuts, 100);
+}
+
+// Wherever the lobe's own sampler draws, whatever the light; nothing is drawn where nothing is reflected.
+TEST(Product, NothingIsLeftOut) {
+    each_point(true, [&](const Loaded&, const TestLobe& lobe, const Sampler& sampler, const Sampler::Point& point,
+                         const std::string& name, std::mt19937_64& rng) {
+        for (int i = 0; i < 100; ++i) {
+            const acdf::ProductSample s = lobe.sample(point.lobe, unit(rng), unit(rng));
+            float world[3], wi[3];
+            point.frame.to_world(s.direction, world);
+            point.frame.to_local(world, wi); // as it was rounded
+            ASSERT_GE(sampler.pdf(point, world), 0.0299 * double{lobe.pdf(point.lobe, wi)}) << name;
+        }
+        const float below[3] = {-point.frame.normal[0], -point.frame.normal[1], -point.frame.normal[2]};
+        const Sampler::Point unseen = sampler.at(point.frame, below);
+        ASSERT_EQ(sampler.sample(unseen, unit(rng), unit(rng)).pdf, 0.0f);
+        ASSERT_EQ(sampler.pdf(unseen, point.frame.normal), 0.0f);
+        const float bad[][3] = {{NAN, 0.0f, 1.0f}, {0.0f, 0.0f, 2.0f}, {0.0f, 0.0f, 0.0f}};
+        for (const auto& d : bad) ASSERT_TRUE(std::isfinite(sampler.pdf(point, d))) << name;
+    });
+}
+
+// Where no light arrives the lobe's own sampler draws all: its samples count as 0, and the density is still right.
+TEST(Product, HemispheresWithoutLightAreTheLobes) {
+    LocalSpec spec = random_local(1, false);
+    for (auto& light : spec.lights) light.share = 1e-30f;
+    for (auto& bin : spec.bins) bin.share = 0.0f;
+    spec.lights.clear();
+    const Loaded loaded(std::move(spec));
+    const TestLobe lobe{0.1};
+    const Sampler sampler(loaded.light(), lobe);
+    std::mt19937_64 rng(3);
+    for (int i = 0; i < 100; ++i) {
+        const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
+        const Sampler::Point point = sampler.at(frame, frame.normal);
+        if (!loaded.file.local().stored(frame.normal) && point.light.what == ACDF_LOCAL_TREE) continue;
+        ASSERT_EQ(point.share, 1.0);
+        const acdf::ProductSample s = sampler.sample(point, unit(rng), unit(rng));
+        float wi[3];
+        frame.to_local(s.direction, wi);
+        ASSERT_EQ(s.pdf, lobe.pdf(point.lobe, wi));
+    }
+}
+
+} // namespace
