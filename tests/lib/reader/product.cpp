@@ -88,8 +88,8 @@ struct TestLobe {
         for (double x : h) length += x * x;
         length = std::sqrt(length);
         for (int k = 0; k < 3; ++k) dot += double{point.wo[k]} * h[k] / length;
-        const double sin2 = (h[0] * h[0] + h[1] * h[1]) / (length * length), z = h[2] / length;
-        const double lobe = sin2 < width && z > 0.0 ? z / (M_PI * width * 4.0 * std::fabs(dot)) : 0.0;
+        const double sin2 = (h[0] * h[0] + h[1] * h[1]) / (length * length), z = std::fabs(h[2]) / length;
+        const double lobe = sin2 < width ? z / (M_PI * width * 4.0 * std::fabs(dot)) : 0.0;
         return static_cast<float>(0.5 * lobe + (wi[2] > 0.0f ? 0.5 * double{wi[2]} / M_PI : 0.0));
     }
     float value(const Point&, const float wi[3], float pdf) const { return pdf / std::max(0.02f, wi[2]); }
