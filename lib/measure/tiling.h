@@ -40,6 +40,8 @@ public:
     /// cosine, p = L b / W, W = the sum of flux b, so it is W (sum over tiles of int L cos^2 / b) / E^2 - 1; each
     /// texel's cosine at its centre. 0 where no light is above the horizon.
     double relative_variance(const float n[3]) const;
+    /// The light in each tile, row by row.
+    const std::vector<double>& flux() const { return flux_; }
     /// Of the tables; a point takes eight bytes a tile more.
     std::uint64_t bytes() const;
 

@@ -3,6 +3,7 @@
 #include "build/brdf.h"
 #include "measure/estimators.h"
 #include "measure/light_samplers.h"
+#include "measure/product_rivals.h"
 #include "measure/product_samplers.h"
 #include "measure/stratified_map.h"
 #include "tools/cli/built.h"
@@ -78,12 +79,12 @@ Table given_file(const std::string& path) {
 }
 
 bool knows_brdf(const SamplerSpec& spec) {
-    if (spec.kind == SamplerKind::product) return knows_brdf(spec.parts[1]);
+    if (spec.kind != SamplerKind::mis && !spec.parts.empty()) return knows_brdf(spec.parts.back());
     return spec.kind == SamplerKind::brdf || spec.kind == SamplerKind::brdf_table;
 }
 
 bool is_ours(const SamplerSpec& spec) {
-    if (spec.kind == SamplerKind::mis) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
+    if (!spec.parts.empty()) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
     return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
            spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
 }
@@ -136,6 +137,7 @@ struct SamplerBuilder::Store {
         throw std::logic_error("is no sampler of single directions");
     }
     const Table& table(const SamplerSpec& spec, std::size_t material) {
+        if (!spec.parts.empty() && spec.kind == SamplerKind::tiles) return tiles(spec, material);
         const std::string text = spec.kind == SamplerKind::ris ? "full-cdf" : spec.text;
         const std::string key = knows_brdf(spec) ? text + "@" + std::to_string(material) : text;
         auto found = tables.find(key);
@@ -145,16 +147,35 @@ struct SamplerBuilder::Store {
     const measure::LightSampler& sampler(const SamplerSpec& spec, std::size_t material) {
         return *table(spec, material).sampler;
     }
+    /// The table of that name, made where there is none.
+    template <class Make> // LightSamplerPtr make()
+    const Table& kept(const std::string& text, std::size_t material, const Make& make_sampler) {
+        const std::string key = text + "@" + std::to_string(material);
+        auto found = tables.find(key);
+        if (found == tables.end()) found = tables.emplace(key, Table{nullptr, make_sampler()}).first;
+        return found->second;
+    }
+    const Table& tiles(const SamplerSpec& spec, std::size_t material) {
+        const File* brdf = table(spec.parts[0], material).file;
+        return kept(spec.text, material, [&] {
+            return brdf ? measure::product_tiles_sampler(target, spec.columns, spec.rows, *brdf)
+                        : measure::product_tiles_sampler(target, spec.columns, spec.rows, spec.parts[0].alpha);
+        });
+    }
     const measure::LightSampler& product(const SamplerSpec& spec, std::size_t material, std::uint32_t samples) {
         const int parts = spec.divisions ? static_cast<int>(spec.divisions) : measure::product_parts(samples);
-        const std::string key = spec.text + "/" + std::to_string(parts) + "@" + std::to_string(material);
-        auto found = tables.find(key);
-        if (found != tables.end()) return *found->second.sampler;
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
-        LightSamplerPtr made = brdf ? measure::product_sampler(*light, *brdf, parts)
-                                    : measure::product_sampler(*light, spec.parts[1].alpha, parts);
-        return *tables.emplace(key, Table{nullptr, std::move(made)}).first->second.sampler;
+        const Table& made = kept(spec.text + "/" + std::to_string(parts), material, [&] {
+            return brdf ? measure::product_sampler(*light, *brdf, parts)
+                        : measure::product_sampler(*light, spec.parts[1].alpha, parts);
+        });
+        return *made.sampler;
+    }
+    const measure::LightSampler& candidates(const SamplerSpec& spec, std::size_t material) {
+        if (spec.parts.empty()) return sampler(spec, material);
+        const measure::LightSampler &a = sampler(spec.parts[0], material), &b = sampler(spec.parts[1], material);
+        return *kept(spec.text, material, [&] { return measure::half_and_half(a, b); }).sampler;
     }
     const measure::StratifiedMap& stratified(const SamplerSpec& spec, std::uint32_t strata) {
         auto& map = maps[spec.text + "/" + std::to_string(strata)];
@@ -166,7 +187,7 @@ struct SamplerBuilder::Store {
     std::unique_ptr<measure::Estimator> estimator(const SamplerSpec& spec, std::size_t material,
                                                   std::uint32_t samples) {
         if (spec.kind == SamplerKind::ris)
-            return std::make_unique<measure::ResamplingEstimator>(sampler(spec, material), spec.candidates,
+            return std::make_unique<measure::ResamplingEstimator>(candidates(spec, material), spec.candidates,
                                                                   samples);
         if (spec.kind == SamplerKind::strata)
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
@@ -176,21 +197,27 @@ struct SamplerBuilder::Store {
             return std::make_unique<measure::SingleEstimator>(sampler(spec, material), samples);
         const std::vector<std::uint32_t> counts = divided(samples, spec);
         std::vector<measure::Share> shares;
-        for (std::size_t i = 0; i < counts.size(); ++i)
-            shares.push_back({&sampler(spec.parts[i], material), counts[i]});
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            const SamplerSpec& part = spec.parts[i];
+            shares.push_back(
+                {part.kind == SamplerKind::product ? &product(part, material, counts[i]) : &sampler(part, material),
+                 counts[i]});
+        }
         return std::make_unique<measure::MisEstimator>(shares, spec.power ? measure::Heuristic::power
                                                                           : measure::Heuristic::balance);
     }
     /// All tables of a sampler, each once.
     std::uint64_t bytes(const SamplerSpec& spec) {
-        const std::vector<SamplerSpec> alone{spec};
         std::set<const measure::LightSampler*> used;
-        for (const SamplerSpec& part : spec.parts.empty() ? alone : spec.parts)
-            for (std::size_t material = 0; material < brdfs.size(); ++material)
-                used.insert(&sampler(part, material));
+        for (std::size_t material = 0; material < brdfs.size(); ++material) gather(spec, material, used);
         std::uint64_t sum = 0;
         for (const measure::LightSampler* one : used) sum += one->bytes();
         return sum;
+    }
+    void gather(const SamplerSpec& spec, std::size_t material, std::set<const measure::LightSampler*>& used) {
+        if (spec.parts.empty() || spec.kind == SamplerKind::tiles) used.insert(&sampler(spec, material));
+        else
+            for (const SamplerSpec& part : spec.parts) gather(part, material, used);
     }
 };
 

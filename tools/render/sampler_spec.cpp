@@ -42,6 +42,7 @@ constexpr Name names[] = {
     {"compensated", SamplerKind::compensated, nullptr},
     {"strata", SamplerKind::strata, "solid-angle"},
     {"ris", SamplerKind::ris, "32"},
+    {"product", SamplerKind::product, "auto"},
     {"file", SamplerKind::file, ""},
 };
 
@@ -92,6 +93,13 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
             fail(spec.text, "candidates are counted from 1 to " + std::to_string(kMostCandidates));
         spec.candidates = static_cast<std::uint32_t>(number);
         return;
+    case SamplerKind::product:
+        if (argument == "auto") return;
+        if (!parse_number(argument, number) || number != std::floor(number) || number < 1.0 ||
+            number > ACDF_CUT_MAX_PARTS)
+            fail(spec.text, "parts are counted from 1 to " + std::to_string(ACDF_CUT_MAX_PARTS));
+        spec.divisions = static_cast<std::uint32_t>(number);
+        return;
     case SamplerKind::file:
         if (argument.empty()) fail(spec.text, "needs a file, file:my.acdf");
         spec.path = argument;
@@ -109,7 +117,7 @@ SamplerSpec parse_single(const std::string& text) {
     if (found == std::end(names)) {
         std::string all;
         for (const Name& n : names) all += std::string(n.name) + ", ";
-        fail(text, "is none of " + all + "mis(...), mis-power(...), mis-compensated, product(...)");
+        fail(text, "is none of " + all + "mis(...), mis-power(...), mis-compensated");
     }
     SamplerSpec spec;
     spec.kind = found->kind;
@@ -133,28 +141,49 @@ std::vector<std::string> split(const std::string& whole, const std::string& insi
     return out;
 }
 
-/// product(LIGHT,BRDF) or product:PARTS(LIGHT,BRDF).
-SamplerSpec parse_product(const std::string& text) {
-    SamplerSpec spec;
-    spec.kind = SamplerKind::product;
+bool is_brdf(const SamplerSpec& spec) {
+    return spec.kind == SamplerKind::brdf || spec.kind == SamplerKind::ggx || spec.kind == SamplerKind::file;
+}
+
+/// What is made of other samplers but mis: NAME[:ARGUMENT](PART,...).
+SamplerSpec parse_made(const std::string& text, std::size_t open) {
+    SamplerSpec spec = parse_single(text.substr(0, open));
     spec.text = text;
-    const std::size_t open = text.find('(');
-    double number = 0.0;
-    if (text[7] == ':') {
-        if (!parse_number(text.substr(8, open - 8), number) || number != std::floor(number) || number < 1.0 ||
-            number > ACDF_CUT_MAX_PARTS)
-            fail(text, "parts are counted from 1 to " + std::to_string(ACDF_CUT_MAX_PARTS));
-        spec.divisions = static_cast<std::uint32_t>(number);
-    }
     for (const std::string& part : split(text, text.substr(open + 1, text.size() - open - 2)))
         spec.parts.push_back(parse_single(part));
-    if (spec.parts.size() != 2) fail(text, "is made of a light and a BRDF");
-    const SamplerKind light = spec.parts[0].kind, brdf = spec.parts[1].kind;
-    if (light != SamplerKind::local && light != SamplerKind::env && light != SamplerKind::file)
-        fail(text, "its light is local:SIZE, env:SIZE or file:my.acdf");
-    if (brdf != SamplerKind::brdf && brdf != SamplerKind::ggx && brdf != SamplerKind::file)
-        fail(text, "its BRDF is brdf:SIZE, ggx:ALPHA or file:my.acdf");
-    return spec;
+    const std::size_t count = spec.parts.size();
+    const SamplerSpec &first = spec.parts.front(), &last = spec.parts.back();
+    switch (spec.kind) {
+    case SamplerKind::product:
+        if (count != 2 || !is_brdf(last) ||
+            (first.kind != SamplerKind::local && first.kind != SamplerKind::env && first.kind != SamplerKind::file))
+            fail(text,
+                 "is product(LIGHT,BRDF): of local:SIZE, env:SIZE or a file, and brdf:SIZE, ggx:ALPHA or a file");
+        return spec;
+    case SamplerKind::tiles:
+        if (count != 1 || !is_brdf(last)) fail(text, "is tiles:12x12(BRDF): of brdf:SIZE, ggx:ALPHA or a file");
+        return spec;
+    case SamplerKind::ris:
+        if (count != 2) fail(text, "takes its candidates from two samplers");
+        for (const SamplerSpec& part : spec.parts)
+            if (part.kind == SamplerKind::ris || part.kind == SamplerKind::strata ||
+                part.kind == SamplerKind::product)
+                fail(text, "'" + part.text + "' cannot give candidates");
+        return spec;
+    default:
+        fail(text, "is made of nothing: product(...), tiles:12x12(...), ris:32(...) and mis(...) are");
+    }
+}
+
+/// One that is no mis(...).
+SamplerSpec parse_part(const std::string& text) {
+    const std::size_t open = text.find('(');
+    if (open == std::string::npos || text.back() != ')' || text.compare(0, 5, "file:") == 0) {
+        SamplerSpec spec = parse_single(text);
+        if (spec.kind == SamplerKind::product) fail(text, "is product(LIGHT,BRDF)");
+        return spec;
+    }
+    return parse_made(text, open);
 }
 
 SamplerSpec parse_mis(const std::string& text, std::size_t begin) {
@@ -167,7 +196,7 @@ SamplerSpec parse_mis(const std::string& text, std::size_t begin) {
         double share = 1.0;
         const bool weighted = star != std::string::npos && parse_number(part.substr(0, star), share);
         if (!(share >= 1e-6 && share <= 1e6)) fail(text, "shares are from 1e-6 to 1e6");
-        spec.parts.push_back(parse_single(weighted ? part.substr(star + 1) : part));
+        spec.parts.push_back(parse_part(weighted ? part.substr(star + 1) : part));
         const SamplerSpec& last = spec.parts.back();
         if (last.kind == SamplerKind::ris || last.kind == SamplerKind::strata)
             fail(text, "'" + last.text + "' has no density by itself that others could be weighed with");
@@ -187,15 +216,12 @@ SamplerSpec parse_sampler(const std::string& text) {
     for (const std::string prefix : {"mis(", "mis-power("})
         if (text.compare(0, prefix.size(), prefix) == 0 && text.back() == ')')
             return parse_mis(text, prefix.size());
-    for (const std::string prefix : {"product(", "product:"})
-        if (text.compare(0, prefix.size(), prefix) == 0 && text.back() == ')' && text.find('(') != text.npos)
-            return parse_product(text);
     if (text == "mis-compensated") {
         SamplerSpec spec = parse_sampler("mis(compensated,cosine)");
         spec.text = text;
         return spec;
     }
-    SamplerSpec spec = parse_single(text);
+    SamplerSpec spec = parse_part(text);
     if (spec.kind == SamplerKind::compensated)
         fail(text, "has no support where little light is: mis(compensated,cosine), which is mis-compensated");
     return spec;

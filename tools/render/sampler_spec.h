@@ -14,23 +14,24 @@ struct SpecError : std::runtime_error {
 };
 
 enum class SamplerKind {
-    full_cdf,     ///< full-cdf: the probe's full-resolution CDF, directions below the horizon drawn in vain
-    cosine,       ///< cosine: of the hemisphere
-    tiles,        ///< tiles:32x16: of the probe, weighed at each point, the full CDF inside
-    env,          ///< env:64KiB: what `acdf env` makes
-    local,        ///< local:1MB: what `acdf local` makes
-    brdf,         ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
-    brdf_table,   ///< brdf-table[:centre]: the full table of the paper, repaired or as described
-    ggx,          ///< ggx:0.1: normals of a lobe visible to the viewer
-    alias,        ///< alias: table over texels
+    full_cdf,   ///< full-cdf: the probe's full-resolution CDF, directions below the horizon drawn in vain
+    cosine,     ///< cosine: of the hemisphere
+    tiles,      ///< tiles:32x16: of the probe, weighed at each point, the full CDF inside; tiles:12x12(brdf:64KiB):
+                ///< weighed by the BRDF, too
+    env,        ///< env:64KiB: what `acdf env` makes
+    local,      ///< local:1MB: what `acdf local` makes
+    brdf,       ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
+    brdf_table, ///< brdf-table[:centre]: the full table of the paper, repaired or as described
+    ggx,        ///< ggx:0.1: normals of a lobe visible to the viewer
+    alias,      ///< alias: table over texels
     hierarchical, ///< hierarchical: warping through a quadtree
     downsampled,  ///< downsampled:64x32: a full CDF of means
     compensated,  ///< compensated: a CDF of what exceeds the mean radiance, in mis(...) alone
     strata,       ///< strata[:radiance]: jittered in a stratified map, Agarwal et al. 2003
-    ris,          ///< ris:32: resampled candidates of the full CDF
-    mis,          ///< mis(A,B), mis-power(A,B): balance or power heuristic; mis-compensated is
-                  ///< mis(compensated,cosine)
-    file,         ///< file:my.acdf: any environment, local environment or BRDF file
+    ris,     ///< ris:32: resampled candidates of the full CDF; ris:32(local:1MB,brdf:64KiB): of both, half each
+    mis,     ///< mis(A,B), mis-power(A,B): balance or power heuristic; mis-compensated is
+             ///< mis(compensated,cosine)
+    file,    ///< file:my.acdf: any environment, local environment or BRDF file
     product, ///< product(local:1MB,brdf:64KiB), product:32(file:sky.acdf,ggx:0.1): light times BRDF, in 32 parts
 };
 
@@ -46,7 +47,7 @@ struct SamplerSpec {
     bool power = false;                  ///< mis: power heuristic
     std::string path;                    ///< file
     std::uint32_t divisions = 0;         ///< product: parts of the sphere; 0: as many as the samples pay for
-    std::vector<SamplerSpec> parts;      ///< mis: two or more; product: light and BRDF
+    std::vector<SamplerSpec> parts;      ///< mis: two or more; product: light and BRDF; ris: two; tiles: a BRDF
     std::vector<double> shares;          ///< mis: of the samples; their sum is 1
 };
 

@@ -22,9 +22,9 @@ namespace acdf {
 
 /// How much work `at` does.
 struct ProductOptions {
-    /// Into how many parts the sphere is divided, 1 to ACDF_CUT_MAX_PARTS. The BRDF is evaluated about once a part.
-    /// More pay where more samples are drawn: about 24 for 16 samples a point, 64 for 100 (docs/product.md).
-    int parts = 48;
+    /// Into how many parts the sphere is divided, 1 to ACDF_CUT_MAX_PARTS: the BRDF is evaluated about once a part.
+    /// More pay where more samples are drawn (docs/product.md). 1: light times cosine and the BRDF half and half.
+    int parts = 64;
 };
 
 /// A shading point, ready to be drawn from. Plain data of bounded size.
@@ -308,11 +308,12 @@ auto ProductSampler<AnyLobe>::at(const SurfaceFrame& frame, const float wo[3]) c
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     if (point.light.what != ACDF_LOCAL_BLEND) return point;
-    Rating ratings[ACDF_CUT_MAX_PARTS];
-    const Guides samples = guides(point);
     acdf_cut_begin(&light_, &point.light, &point.cut);
-    divide(point, samples, ratings);
-    point.share = weigh(point.cut, ratings);
+    if (parts_ > 1) {
+        Rating ratings[ACDF_CUT_MAX_PARTS];
+        divide(point, guides(point), ratings);
+        point.share = weigh(point.cut, ratings);
+    }
     acdf_cut_finish(&point.cut);
     if (point.cut.count == 0) point.share = 1.0;
     return point;

@@ -163,6 +163,18 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(divided(3, parse_sampler("mis(1000*cosine,full-cdf,env)")), (std::vector<std::uint32_t>{1, 1, 1}));
     EXPECT_THROW(divided(1, mis), SpecError);
 
+    const SamplerSpec product = parse_sampler("product:32(local:1MB,ggx:0.1)");
+    EXPECT_EQ(product.kind, SamplerKind::product);
+    EXPECT_EQ(product.divisions, 32u);
+    ASSERT_EQ(product.parts.size(), 2u);
+    EXPECT_EQ(product.parts[0].bytes, 1000000u);
+    EXPECT_EQ(product.parts[1].alpha, 0.1);
+    EXPECT_EQ(parse_sampler("product(env,file:a.acdf)").divisions, 0u); // as the samples ask for
+    EXPECT_EQ(parse_sampler("ris:8(local,brdf)").candidates, 8u);
+    EXPECT_EQ(parse_sampler("tiles:12x12(brdf)").parts[0].kind, SamplerKind::brdf);
+    EXPECT_EQ(parse_sampler("file:a(1)").path, "a(1)");
+    EXPECT_EQ(parse_sampler("mis(tiles:12x12(brdf),3*product(local,brdf))").parts[1].parts.size(), 2u);
+
     const SamplerSpec compensated = parse_sampler("mis-compensated");
     EXPECT_EQ(compensated.text, "mis-compensated");
     ASSERT_EQ(compensated.parts.size(), 2u);
@@ -178,6 +190,15 @@ TEST(RenderSampler, MistakesAreNamed) {
         {"cosine:1", "takes no argument"},
         {"tiles:32", "is no grid"},
         {"ris:0", "candidates are counted"},
+        {"product", "is product(LIGHT,BRDF)"},
+        {"product:0(local,brdf)", "parts are counted"},
+        {"product:97(local,brdf)", "parts are counted"},
+        {"product(local)", "is product(LIGHT,BRDF)"},
+        {"product(brdf,local)", "is product(LIGHT,BRDF)"},
+        {"product(local,product(local,brdf))", "is product(LIGHT,BRDF)"},
+        {"ris:8(local)", "from two samplers"},
+        {"tiles:12x12(local)", "is tiles:12x12(BRDF)"},
+        {"cosine(local)", "is made of nothing"},
         {"ris:1.5", "candidates are counted"},
         {"ggx:nan", "alpha is a number"},
         {"ggx: 0.1", "alpha is a number"},
