@@ -96,7 +96,7 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     case SamplerKind::product:
         if (argument == "auto") return;
         if (!parse_number(argument, number) || number != std::floor(number) || number < 1.0 ||
-            number > ACDF_CUT_MAX_PARTS)
+            number > double{ACDF_CUT_MAX_PARTS})
             fail(spec.text, "parts are counted from 1 to " + std::to_string(ACDF_CUT_MAX_PARTS));
         spec.divisions = static_cast<std::uint32_t>(number);
         return;
