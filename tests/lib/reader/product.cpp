@@ -4,6 +4,7 @@
 #include "tests/lib/reader/local_random.h"
 
 #include <acdf/product.h>
+#include <acdf/product_c.h>
 #include <acdf/reader.h>
 
 #include <gtest/gtest.h>
@@ -221,6 +222,50 @@ TEST(Product, HemispheresWithoutLightAreTheLobes) {
         float wi[3];
         frame.to_local(s.direction, wi);
         ASSERT_EQ(s.pdf, lobe.pdf(point.lobe, wi));
+    }
+}
+
+extern "C" {
+float c_value(const void* data, const float wo[3], const float wi[3]) {
+    const auto* lobe = static_cast<const TestLobe*>(data);
+    const TestLobe::Point point{{wo[0], wo[1], wo[2]}};
+    return lobe->value(point, wi, lobe->pdf(point, wi));
+}
+float c_pdf(const void* data, const float wo[3], const float wi[3]) {
+    return static_cast<const TestLobe*>(data)->pdf({{wo[0], wo[1], wo[2]}}, wi);
+}
+AcdfDirectionSample c_sample(const void* data, const float wo[3], double u0, double u1) {
+    return static_cast<const TestLobe*>(data)->sample({{wo[0], wo[1], wo[2]}}, u0, u1);
+}
+}
+
+TEST(Product, InCIsTheSame) {
+    for (std::uint32_t seed = 0; seed < 8; ++seed) {
+        const Loaded loaded(random_local(seed, false));
+        const AcdfLocal light = loaded.light();
+        const TestLobe lobe{0.1};
+        const AcdfLobe c_lobe{&lobe, c_value, c_sample, c_pdf};
+        const Sampler sampler(light, lobe, acdf::ProductOptions{32});
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 50; ++i) {
+            const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
+            const Vector wo = random_view(rng, frame);
+            float axes[9];
+            for (int k = 0; k < 3; ++k) {
+                axes[k] = frame.tangent[k];
+                axes[3 + k] = frame.bitangent[k];
+                axes[6 + k] = frame.normal[k];
+            }
+            const Sampler::Point point = sampler.at(frame, wo.v);
+            AcdfProductPoint c_point;
+            acdf_product_lobe_at(&light, &c_lobe, 32, axes, wo.v, &c_point);
+            const double u0 = unit(rng), u1 = unit(rng);
+            const AcdfDirectionSample a = sampler.sample(point, u0, u1),
+                                      b = acdf_product_lobe_sample(&light, &c_lobe, &c_point, u0, u1);
+            for (int k = 0; k < 3; ++k) ASSERT_EQ(a.direction[k], b.direction[k]);
+            ASSERT_EQ(a.pdf, b.pdf);
+            ASSERT_EQ(acdf_product_lobe_pdf(&light, &c_lobe, &c_point, b.direction), b.pdf);
+        }
     }
 }
 
