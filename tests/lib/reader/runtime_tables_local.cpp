@@ -53,7 +53,7 @@ void expect_same(const Pair& pair, const AcdfLocalPoint points[2], const float d
 /// Draws of a normal and their densities, directions anywhere, and such beside borders between squares.
 void expect_same(const Pair& pair, const float normal[3], std::mt19937_64& random, Served& served, Served& edges) {
     const AcdfLocalPoint points[2] = {pair.fast.local().at(normal), pair.plain.local().at(normal)};
-    const AcdfEnvironment& env = pair.plain.local().data().environment;
+    const AcdfEnvironment env = pair.plain.local().data().environment;
     for (int i = 0; i < 8 && !testing::Test::HasFatalFailure(); ++i) {
         const double u0 = uniform(random), u1 = uniform(random);
         const acdf::DirectionSample a = pair.fast.local().sample(points[0], u0, u1);
