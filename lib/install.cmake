@@ -17,6 +17,9 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h

@@ -1,6 +1,7 @@
 // `File`: reading, ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check.h"
 #include "make_cells.h"
+#include "make_local_tables.h"
 
 #include <cerrno>
 #include <cstdarg>
@@ -169,6 +170,7 @@ File& File::operator=(File&& other) noexcept {
     metadata_ = std::exchange(other.metadata_, nullptr);
     metadata_count_ = std::exchange(other.metadata_count_, 0);
     cells_ = std::exchange(other.cells_, nullptr);
+    local_tables_ = std::exchange(other.local_tables_, nullptr);
     for (int i = 0; i < 3; ++i) owned_[i] = std::exchange(other.owned_[i], nullptr);
     return *this;
 }
@@ -224,12 +226,12 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
 
 // They are only for speed: where there is no memory for them, the file is as good without.
 void File::make_tables() noexcept {
-    constexpr u64 most = u64{1} << 20;
+    const u64 most = 8 * size_ + (u64{1} << 20);
     // On the octahedral square a walk needs no trigonometry; its cells are not pieces of azimuth and height.
-    if (kind() != ACDF_KIND_ENVIRONMENT || description_->parameterization != ACDF_PARAM_LATLONG) return;
-    AcdfCells* const cells = make_cells(environment().data(), tree_units_, 8 * size_ + most);
-    owned_[2] = cells;
-    cells_ = cells;
+    if (description_->parameterization != ACDF_PARAM_LATLONG) return;
+    if (kind() == ACDF_KIND_ENVIRONMENT) owned_[2] = cells_ = make_cells(environment().data(), tree_units_, most);
+    if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
+        owned_[2] = local_tables_ = make_local_tables(local().data(), tree_units_, most);
 }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {
@@ -272,6 +274,7 @@ LocalEnvironmentView File::local() const noexcept {
     local.lights = lights_;
     local.light_count = local_->light_count;
     local.cosine_share = static_cast<double>(local_->cosine_share);
+    local.tables = local_tables_;
     if (description_->axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
         while (4 * local.subdivisions * local.subdivisions + 2 < axes_[2].resolution) ++local.subdivisions;
     } else {

@@ -240,7 +240,9 @@ public:
     std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
-    std::uint64_t table_bytes() const noexcept { return cells_ ? 4 * std::uint64_t{cells_->words} : 0; }
+    std::uint64_t table_bytes() const noexcept {
+        return 4 * std::uint64_t{cells_ ? cells_->words : local_tables_ ? local_tables_->words : 0};
+    }
 
     /// Metadata pairs; `count` is 0 where the file carries none.
     std::uint32_t metadata_count() const noexcept { return metadata_count_; }
@@ -272,7 +274,8 @@ private:
     const float* nodes_ = nullptr;
     const std::uint8_t* metadata_ = nullptr;
     std::uint32_t metadata_count_ = 0;
-    const AcdfCells* cells_ = nullptr;
+    AcdfCells* cells_ = nullptr;
+    AcdfLocalTables* local_tables_ = nullptr;
     void* owned_[3] = {nullptr, nullptr, nullptr}; // the file's bytes; inflated chunks; runtime tables
 
     void make_tables() noexcept;

@@ -27,12 +27,16 @@ ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
     return south ? -z : z;
 }
 
-/* Density per steradian of a cell of probability p over `width` columns and a difference dz of cosines;
- * `shape` is the product of its tilt densities. */
-ACDF_FN float acdf_cell_pdf(double p, uint32_t width, uint32_t columns, double dz, double shape) {
-    const double pdf = p * (double)columns / (2.0 * ACDF_PI * (double)width * dz) * shape;
+/* Density per steradian of a cell of probability p whose solid angle is `area` over `columns`; `shape` is the
+ * product of its tilt densities. */
+ACDF_FN float acdf_area_pdf(double p, uint32_t columns, double area, double shape) {
+    const double pdf = p * (double)columns / area * shape;
     if (pdf >= 3.402823466e38) return 3.402823466e38f;
     return pdf > 1.17549435e-38 ? (float)pdf : 1.17549435e-38f;
+}
+/* The same over `width` columns and a difference dz of cosines. */
+ACDF_FN float acdf_cell_pdf(double p, uint32_t width, uint32_t columns, double dz, double shape) {
+    return acdf_area_pdf(p, columns, 2.0 * ACDF_PI * (double)width * dz, shape);
 }
 
 /* The whole sphere, before a tree narrows it. */
@@ -47,7 +51,7 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
 ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, const AcdfRange range[2],
                                               const double u[2], double p) {
     AcdfDirectionSample out;
-    double tx, tz, x, z, z0, z1, sin_theta, sine, cosine, border;
+    double tx, tz, x, z, z0, z1, sin_theta, sine, cosine, border, kept;
     tx = acdf_tilt_sample(range[0].tilt, u[0]);
     border = (double)columns * (ACDF_BORDER / (2.0 * ACDF_PI));
     x = (double)range[0].low + tx * (double)(range[0].high - range[0].low);
@@ -59,9 +63,12 @@ ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, c
     z = z0 + tz * (z1 - z0);
     sin_theta = sqrt((1.0 - z) * (1.0 + z));
     border = ACDF_BORDER * sin_theta;
-    z = acdf_clamp(z, z1 + border, z0 - border);
-    z = acdf_clamp(z, -1.0 + 0.5 * ACDF_BORDER * ACDF_BORDER, 1.0 - 0.5 * ACDF_BORDER * ACDF_BORDER);
-    sin_theta = sqrt((1.0 - z) * (1.0 + z));
+    kept = acdf_clamp(z, z1 + border, z0 - border);
+    kept = acdf_clamp(kept, -1.0 + 0.5 * ACDF_BORDER * ACDF_BORDER, 1.0 - 0.5 * ACDF_BORDER * ACDF_BORDER);
+    if (kept != z) { /* rarely */
+        z = kept;
+        sin_theta = sqrt((1.0 - z) * (1.0 + z));
+    }
 
     acdf_sincospi(1.0 - 2.0 * x / (double)columns, &sine, &cosine);
     out.direction[0] = (float)(sin_theta * cosine);

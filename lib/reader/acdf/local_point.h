@@ -1,0 +1,143 @@
+/* Shading points of a local environment map: what serves a normal (SPEC.md §6.7). Part of acdf/local.h. */
+#ifndef ACDF_LOCAL_POINT_H
+#define ACDF_LOCAL_POINT_H
+
+#include <acdf/local_tables.h>
+#include <acdf/normals.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct AcdfLocal {
+    AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
+    AcdfEnvironment environment; /* the 2D table that is always there */
+    const AcdfBin* bins;
+    const AcdfLight* lights; /* of the blend */
+    uint32_t light_count;
+    uint32_t subdivisions; /* of an octahedron's edge; 0: bins are cells of a lat-long grid */
+    uint32_t columns;      /* of that grid */
+    uint32_t rows;
+    double cosine_share;
+    const AcdfLocalTables* tables; /* runtime tables; null: splits are walked */
+} AcdfLocal;
+
+ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
+    if (local->subdivisions > 0) return acdf_octahedral_bins(local->subdivisions, normal, out);
+    return acdf_latlong_bins(local->columns, local->rows, normal, out);
+}
+
+/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share. Made once
+ * for a shading point, it serves all samples there. */
+enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND };
+
+typedef struct AcdfLocalPoint {
+    int what;
+    uint32_t root;    /* of the tree */
+    float surface[3]; /* the normal as given */
+    double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
+    double length;    /* of that */
+    AcdfMixture mix;  /* of the blend */
+    const double* parts[ACDF_MAX_ROWS_MIXED]; /* of the rows in the runtime tables, where there are such */
+    double lights;                            /* sum of the weights of the lights */
+    double sum;                               /* of all weights */
+} AcdfLocalPoint;
+
+/* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
+ * from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
+ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
+    const double radius = (double)light->radius * point->length;
+    const double height = point->normal[0] * (double)light->direction[0] +
+                          point->normal[1] * (double)light->direction[1] +
+                          point->normal[2] * (double)light->direction[2];
+    /* The horizon rarely cuts a light, and whether one is above it is not to be guessed: no branch. */
+    if (fabs(height) < radius)
+        return (double)light->share * ((height + radius) * (height + radius) / (4.0 * radius));
+    return (double)light->share * (height > 0.0 ? height : 0.0);
+}
+
+/* The bin of the largest weight. */
+ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
+    int i, nearest = 0;
+    for (i = 1; i < bins->count; ++i)
+        if (bins->weight[i] > bins->weight[nearest]) nearest = i;
+    return bins->bin[nearest];
+}
+
+/* Sets the normal in the scale of the weights of its bins. */
+ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    const double x = normal[0], y = normal[1], z = normal[2], length = sqrt(x * x + y * y + z * z);
+    const double scale =
+        local->subdivisions > 0 ? (double)local->subdivisions / (fabs(x) + fabs(y) + fabs(z)) : 1.0 / length;
+    out->normal[0] = scale * x;
+    out->normal[1] = scale * y;
+    out->normal[2] = scale * z;
+    out->length = scale * length;
+}
+
+/* Finds what serves a normal. */
+ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    AcdfNormalBins bins;
+    uint32_t k;
+    int i;
+    out->what = ACDF_LOCAL_NOTHING;
+    out->root = 0;
+    for (i = 0; i < 3; ++i) out->surface[i] = normal[i];
+    out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
+    out->mix.count = 0;
+    for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
+        out->mix.row[i] = 0;
+        out->mix.weight[i] = 0.0;
+        out->parts[i] = 0;
+    }
+    if (!acdf_local_bins(local, normal, &bins)) return;
+    if (!local->blend.tiles) {
+        const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
+        out->root = bin->root != ACDF_NO_ROOT ? bin->root : local->environment.root;
+        if (bin->root == ACDF_NO_ROOT || bin->share > 0.0f) out->what = ACDF_LOCAL_TREE;
+        return;
+    }
+    for (i = 0; i < bins.count; ++i) {
+        const AcdfBin* bin = &local->bins[bins.bin[i]];
+        if (bin->root == ACDF_NO_ROOT) {
+            out->what = ACDF_LOCAL_TREE;
+            out->root = local->environment.root;
+            return;
+        }
+        if (local->tables) /* where the row goes, if it has a weight */
+            out->parts[out->mix.count] = acdf_local_parts(local->tables, bin->root, local->blend.tiles->tile_count);
+        acdf_mixture_add(&out->mix, &local->blend, bin->root, bins.weight[i] * (double)bin->share);
+    }
+    acdf_local_normal(local, normal, out);
+    for (k = 0; k < local->light_count; ++k) out->lights += acdf_light_weight(&local->lights[k], out);
+    out->sum = out->lights + acdf_mixture_sum(&out->mix);
+    if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
+}
+
+/* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left
+ * of u[0] takes its place. */
+ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
+                                               double* weight) {
+    const AcdfLight* light = 0;
+    double x = u[0] * point->sum;
+    uint32_t k;
+    if (!(x < point->lights || point->mix.count == 0)) {
+        u[0] = acdf_unit_interval((x - point->lights) / (point->sum - point->lights));
+        return 0;
+    }
+    *weight = 0.0;
+    for (k = 0; k < local->light_count; ++k) {
+        const double w = acdf_light_weight(&local->lights[k], point);
+        if (!(w > 0.0)) continue;
+        if (light) x -= *weight;
+        light = &local->lights[k];
+        *weight = w;
+        if (x < w) break;
+    }
+    u[0] = acdf_unit_interval(x / *weight);
+    return light;
+}
+#ifdef __cplusplus
+}
+#endif
+#endif

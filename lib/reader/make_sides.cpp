@@ -1,0 +1,105 @@
+#include "make_sides.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace acdf {
+
+namespace {
+
+using u32 = std::uint32_t;
+
+// A draw stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
+constexpr double kMargin = 0x1p-20;
+constexpr u32 kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
+
+// Tangent of the local azimuth between columns.
+double tangent_of(u32 column, u32 columns) {
+    const std::uint64_t eighths = 8 * std::uint64_t{column};
+    const std::uint64_t quarter = (eighths + columns) / (2 * std::uint64_t{columns}); // from phi = pi down
+    double sine, cosine;
+    acdf_sincospi(0.5 * static_cast<double>(quarter) - 2.0 * column / columns, &sine, &cosine);
+    return sine / cosine;
+}
+} // namespace
+
+double Sides::tangent(u32 column) const {
+    return column < tangents_.size() ? tangents_[column] : tangent_of(column, columns_);
+}
+
+Sides::Row Sides::row_of(u32 row, u32 rows) {
+    const bool south = 2 * std::uint64_t{row} > rows;
+    const double s = acdf_sine(static_cast<double>(south ? rows - row : row) / rows * (0.5 * ACDF_PI));
+    const double cap = 2.0 * s * s;
+    return {acdf_row_z(row, rows), cap, kMargin * std::sqrt(cap * (2.0 - cap)) + kMargin * kMargin};
+}
+Sides::Row Sides::row(u32 row) const { return row < heights_.size() ? heights_[row] : row_of(row, rows_); }
+
+bool Sides::remember(std::size_t most) {
+    if (columns_ <= most && tangents_.reserve(columns_ + 1))
+        for (u32 i = 0; i <= columns_; ++i) tangents_.add(tangent_of(i, columns_));
+    if (rows_ <= most && heights_.reserve(rows_ + 1))
+        for (u32 i = 0; i <= rows_; ++i) heights_.add(row_of(i, rows_));
+    return !(tangents_.failed() || heights_.failed());
+}
+
+int Sides::azimuths(const Cell& cell, Side* out) const {
+    static const struct {
+        double end; // of the piece, as a part of the columns
+        double middle;
+        u32 quarter;
+    } pieces[5] = {{0.125, 0.0, 2}, {0.375, 0.25, 1}, {0.625, 0.5, 0}, {0.875, 0.75, 3}, {1.0, 1.0, 2}};
+    const u32 first = cell.first[0], last = cell.last[0];
+    const double columns = columns_, low = first, high = last;
+    const double number = (cell.high[0] - cell.low[0]) / (high - low); // of a column
+    double from = low;
+    int count = 0;
+    for (const auto& piece : pieces) {
+        const double end = piece.end * columns, to = std::min(high, end);
+        if (!(from < to)) continue;
+        Side& side = out[count++];
+        side.piece = piece.quarter;
+        side.low = cell.low[0] + (from - low) * number;
+        side.high = to == high ? cell.high[0] : cell.low[0] + (to - low) * number;
+        side.local[0] = 2.0 * ACDF_PI * (piece.middle - from / columns);
+        side.local[1] = 2.0 * ACDF_PI * (piece.middle - to / columns);
+        side.margin[0] = side.margin[1] = kMargin;
+        const double tangents[2] = {to == end && piece.end < 1.0 ? -1.0 : tangent(last),
+                                    from == low ? tangent(first) : 1.0};
+        for (int i = 0; i < 2; ++i)
+            side.key[i] = (2.0 * piece.quarter + 1.0 + tangents[i]) * static_cast<double>(ACDF_SLOPE_STEPS);
+        from = to;
+    }
+    return count;
+}
+
+int Sides::heights(const Cell& cell, Side* out) const {
+    const Row ends[2] = {row(cell.first[1]), row(cell.last[1])};
+    const Row equator = {0.0, 1.0, kMargin};
+    const double number = (cell.high[1] - cell.low[1]) / (ends[0].z - ends[1].z); // of z
+    int count = 0;
+    for (u32 south = 0; south < 2; ++south) {
+        if (south ? !(ends[1].z < 0.0) : !(ends[0].z > 0.0)) continue;
+        const Row* const row[2] = {south && ends[0].z > 0.0 ? &equator : &ends[0],
+                                   !south && ends[1].z < 0.0 ? &equator : &ends[1]};
+        Side& side = out[count++];
+        side.piece = south;
+        side.low = row[0] == &equator ? cell.low[1] + ends[0].z * number : cell.low[1];
+        side.high = row[1] == &equator ? cell.low[1] + ends[0].z * number : cell.high[1];
+        for (int i = 0; i < 2; ++i) {
+            side.local[i] = row[i]->cap;
+            side.margin[i] = row[i]->margin;
+            const double key = row[i]->cap * static_cast<double>(ACDF_CAP_STEPS);
+            side.key[i] = south ? static_cast<double>(kSouthKeys) - key : key;
+        }
+    }
+    return count;
+}
+
+float Sides::density(const Cell& cell) const {
+    if (cell.dark) return 0.0f;
+    return acdf_cell_pdf(acdf_positive(cell.probability), cell.last[0] - cell.first[0], columns_, height(cell),
+                         1.0);
+}
+
+} // namespace acdf

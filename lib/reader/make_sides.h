@@ -1,0 +1,88 @@
+// Cells of trees on a lat-long grid as parts of the eight pieces of the sphere (acdf/cells.h).
+#pragma once
+
+#include "growable.h"
+
+#include <acdf/cells.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace acdf {
+
+/// A cell as the walk of a tree finds it.
+struct Cell {
+    double probability;
+    double low[2], high[2];          ///< random numbers
+    std::uint32_t first[2], last[2]; ///< positions
+    bool dark, tilted;
+};
+
+/// Calls add(cell) for each cell of the tree at `at`, which lies in the cell `above`, in their order, as long as it
+/// returns true. Returns whether it always did. A path passes at most 64 curves.
+template <class Add>
+bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, const Add& add) {
+    const AcdfCurve curve = acdf_curve_at(tree, at);
+    const std::uint32_t axis = acdf_curve_axis(&curve), end = acdf_curve_maximum(&curve);
+    const double maximum = end, width = above.high[axis] - above.low[axis];
+    std::uint32_t low = 0;
+    for (std::uint32_t i = 0; i < curve.segments; ++i) {
+        const std::uint32_t high = acdf_curve_cumulative(&curve, i + 1);
+        Cell cell = above;
+        cell.dark = high == low;
+        cell.probability *= static_cast<double>(high - low) / maximum;
+        cell.low[axis] = above.low[axis] + width * (low / maximum);
+        if (high != end) cell.high[axis] = above.low[axis] + width * (high / maximum);
+        AcdfRange range = {above.first[axis], above.last[axis], 0.0};
+        acdf_curve_narrow(&curve, i, &range);
+        cell.first[axis] = range.low;
+        cell.last[axis] = range.high;
+        cell.tilted = curve.tilts ? above.tilted || range.tilt != 0.0 : above.tilted;
+        const std::uint32_t link = acdf_curve_link(&curve, i);
+        if (link == 0 ? !add(cell) : !each_cell(tree, at + link, cell, add)) return false;
+        low = high;
+    }
+    return true;
+}
+
+/// The part of a cell's side that lies in one piece of the sphere: from low to high random numbers.
+struct Side {
+    std::uint32_t piece; ///< quarter, or whether it is south
+    double low, high;    ///< random numbers
+    double local[2];     ///< at low and high: local azimuth, or 1 - |z|
+    double margin[2];    ///< of `local`, in which nothing is sure
+    double key[2];       ///< of acdf_direction_place: the lesser, and the greater
+};
+
+/// Cuts cells of a grid.
+class Sides {
+public:
+    Sides(std::uint32_t columns, std::uint32_t rows) : columns_(columns), rows_(rows) {}
+
+    /// Trigonometry of each column and row once, unless they are more than `most`. False where memory fails.
+    bool remember(std::size_t most);
+    /// Into out[5]; returns how many.
+    int azimuths(const Cell& cell, Side* out) const;
+    /// Into out[2]; returns how many.
+    int heights(const Cell& cell, Side* out) const;
+    /// Difference of z between the rows of a cell.
+    double height(const Cell& cell) const { return row(cell.first[1]).z - row(cell.last[1]).z; }
+    /// Density of a cell without tilts, sr^-1; 0 for a dark one.
+    float density(const Cell& cell) const;
+
+private:
+    /// What the trigonometry of a border between rows gives.
+    struct Row {
+        double z, cap; ///< cosine, 1 - |cosine|
+        double margin; ///< of the angle, as a difference of z
+    };
+    double tangent(std::uint32_t column) const;
+    Row row(std::uint32_t row) const;
+    static Row row_of(std::uint32_t row, std::uint32_t rows);
+
+    std::uint32_t columns_, rows_;
+    Growable<double> tangents_;
+    Growable<Row> heights_;
+};
+
+} // namespace acdf

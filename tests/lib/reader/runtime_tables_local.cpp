@@ -1,0 +1,173 @@
+// Runtime tables of local environments beside the walk that they stand for: the same density to the bit for every
+// direction and normal, on golden files, random ones, those that break their luck, and a fitted one.
+#include "tests/inputs/local_maps.h"
+#include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/local_random.h"
+
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+namespace {
+
+using namespace acdf_test;
+
+/// The same bytes with tables and without.
+struct Pair {
+    std::vector<std::uint8_t> bytes;
+    acdf::File fast, plain;
+
+    explicit Pair(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
+        acdf::LoadOptions options;
+        options.tables = false;
+        EXPECT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), plain, options).ok());
+        EXPECT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), fast).ok());
+        EXPECT_EQ(plain.table_bytes(), 0u);
+        EXPECT_LE(fast.table_bytes(), 8 * fast.size() + (1u << 20));
+    }
+    const AcdfLocalTables* tables() const { return fast.local().data().tables; }
+};
+
+struct Served {
+    std::size_t asked = 0, told = 0; ///< directions, and those that tables knew
+};
+
+bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+void expect_same(const Pair& pair, const AcdfLocalPoint points[2], const float direction[3], Served& served) {
+    const float fast = pair.fast.local().pdf(points[0], direction);
+    const float plain = pair.plain.local().pdf(points[1], direction);
+    ASSERT_TRUE(same_bits(fast, plain))
+        << fast << " is not " << plain << " at " << direction[0] << ' ' << direction[1] << ' ' << direction[2];
+    ++served.asked;
+    served.told += pair.tables() && acdf_local_find_piece(pair.tables(), direction);
+}
+
+/// Draws of a normal and their densities, directions anywhere, and such beside borders between squares.
+void expect_same(const Pair& pair, const float normal[3], std::mt19937_64& random, Served& served, Served& edges) {
+    const AcdfLocalPoint points[2] = {pair.fast.local().at(normal), pair.plain.local().at(normal)};
+    const AcdfEnvironment env = pair.plain.local().data().environment;
+    for (int i = 0; i < 8 && !testing::Test::HasFatalFailure(); ++i) {
+        const double u0 = uniform(random), u1 = uniform(random);
+        const acdf::DirectionSample a = pair.fast.local().sample(points[0], u0, u1);
+        const acdf::DirectionSample b = pair.plain.local().sample(points[1], u0, u1);
+        ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+        if (a.pdf > 0.0f) expect_same(pair, points, a.direction, served);
+        const Normal any = random_direction(random);
+        expect_same(pair, points, any.data(), served);
+        const double off = (uniform(random) - 0.5) * std::exp2(-18.0 - 12.0 * uniform(random));
+        const double column = static_cast<double>(random() % (env.columns + 1)),
+                     row = static_cast<double>(random() % (env.rows + 1));
+        float beside[3];
+        direction_of(kPi * (1.0 - 2.0 * column / env.columns) + off, 1.0 - 2.0 * uniform(random), beside);
+        expect_same(pair, points, beside, edges);
+        direction_of(2.0 * kPi * uniform(random), std::cos(kPi * row / env.rows + off), beside);
+        expect_same(pair, points, beside, edges);
+        direction_of(0.25 * kPi * static_cast<double>(random() % 8), 1.0 - std::exp(-30.0 * uniform(random)),
+                     beside);
+        expect_same(pair, points, beside, edges); // at the seams of pieces, close to the poles
+        for (float& d : beside) d *= 1.0003f;     // not quite of unit length: it counts all the same
+        expect_same(pair, points, beside, edges);
+        beside[random() % 3] = std::nanf("");
+        expect_same(pair, points, beside, edges);
+    }
+}
+
+Served expect_agreement(const Pair& pair, int normals) {
+    std::mt19937_64 random(6);
+    Served served, edges;
+    for (int i = 0; i < normals && !testing::Test::HasFatalFailure(); ++i) {
+        Normal normal = random_direction(random);
+        if (i % 4 == 0) // on edges and corners of the octahedron, of any length
+            for (float& n : normal) n = static_cast<float>(static_cast<int>(random() % 7) - 3);
+        expect_same(pair, normal.data(), random, served, edges);
+    }
+    return served;
+}
+
+TEST(LocalRuntimeTables, AgreeOnGoldenFiles) {
+    int files = 0, with_tables = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(ACDF_TEST_DIR "/golden/v1.0")) {
+        if (entry.path().extension() != ".acdf") continue;
+        std::ifstream in(entry.path(), std::ios::binary);
+        Pair pair({std::istreambuf_iterator<char>(in), {}});
+        if (pair.plain.kind() != ACDF_KIND_LOCAL) continue;
+        SCOPED_TRACE(entry.path().filename());
+        ++files;
+        with_tables += pair.tables() != nullptr;
+        expect_agreement(pair, 300);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GE(files, 3);
+    EXPECT_GE(with_tables, 1);
+}
+
+// Shared curves, dark segments, tiles that are cells, lights, tilts, both parameterizations.
+TEST(LocalRuntimeTables, AgreeOnRandomFiles) {
+    int with_tables = 0;
+    for (std::uint32_t seed = 0; seed < 120; ++seed) {
+        RandomOptions options;
+        options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 5000;
+        options.rows = seed % 2 == 0 ? 33 : 511;
+        options.depth = 3 + static_cast<int>(seed % 3);
+        options.tilts = seed % 8 == 0;
+        options.long_curves = false;
+        options.octahedral = seed % 10 == 9;
+        SCOPED_TRACE(seed);
+        Pair pair(RandomLocal(seed, options).make().encode());
+        with_tables += pair.tables() != nullptr;
+        expect_agreement(pair, 60);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(with_tables, 40);
+}
+
+TEST(LocalRuntimeTables, AgreeOnHandMadeLights) {
+    Pair pair(lit_local().encode());
+    ASSERT_NE(pair.tables(), nullptr);
+    expect_agreement(pair, 500);
+}
+
+// As many tiles as files in use have: nearly all that is asked is told by the tables, in bounded memory.
+TEST(LocalRuntimeTables, ServeNearlyAllOfUsualFiles) {
+    const auto sky = texel_target(128, 64, [](std::uint32_t c, std::uint32_t r) {
+        const double phi = centre_phi(c, 128), z = centre_z(r, 64);
+        return std::hypot(phi - 0.6, z - 0.7) < 0.06 ? 3e3 : smooth_sky(phi, z);
+    });
+    LocalFileOptions options;
+    options.size.tiles = 100;
+    const LocalMap map(sky, acdf::compress::octahedral_bins(4), options);
+    Pair pair(map.bytes);
+    ASSERT_NE(pair.tables(), nullptr);
+    const Served served = expect_agreement(pair, 1000);
+    EXPECT_GT(double(served.told), 0.99 * double(served.asked));
+}
+
+// Numbers of corners are those of the levels that SPEC.md counts.
+TEST(LocalRuntimeTables, CornersAreCountedLevelByLevel) {
+    for (const std::uint32_t n : {1u, 2u, 5u, 12u}) {
+        const auto size = static_cast<std::int32_t>(n);
+        std::uint32_t expected = 0;
+        for (std::int32_t z = size; z >= -size; --z) {
+            const std::int32_t r = size - std::abs(z);
+            EXPECT_EQ(acdf_octahedral_corner(n, r, 0, z), expected);
+            for (std::int32_t i = 0; i < 4 * r; ++i, ++expected) {
+                const std::int32_t side = i / r, step = i % r; // from +x towards +y
+                const std::int32_t x[4] = {r - step, -step, step - r, step},
+                                   y[4] = {step, r - step, -step, step - r};
+                EXPECT_EQ(acdf_octahedral_corner(n, x[side], y[side], z), expected);
+            }
+            expected += r == 0;
+        }
+        EXPECT_EQ(expected, 4 * n * n + 2);
+    }
+}
+
+} // namespace
