@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # company_tables.sh DATA [SIZE [SEEDS]]: the tables of docs/accuracy.md about two samples a point, of the light and of the
 # cosine, in the scene of hidden-grace.json. DATA holds probes/. ACDF names the program (default: build/release/tools/acdf).
+# Maps are resized to 256 x 128 by oiiotool: the ideal rows look at every texel at every point.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 data=$(cd "${1:?usage: docs/make/company_tables.sh DATA [SIZE [SEEDS]]}" && pwd)
@@ -19,11 +20,12 @@ samplers=("full-cdf" "mis(full-cdf,cosine)" "mis-compensated" "mis(env:64KiB,cos
 samplers=("${samplers[@]/mis-power(mis-compensated)/mis-power(compensated,cosine)}")
 
 for probe in $probes; do
-    jq --arg probe "probes/$probe" '.light = {probe: $probe} | .samples = 2 | del(."$schema")' \
+    oiiotool "$data/probes/$probe" --ch R,G,B --resize:filter=box 256x128 -d float -o "$work/$probe.exr" > /dev/null
+    jq --arg probe "$probe.exr" '.light = {probe: $probe} | .samples = 2 | del(."$schema")' \
         "$root/tools/render/scenes/hidden-grace.json" > "$work/$probe.json"
     arguments=()
     for sampler in "${samplers[@]}"; do arguments+=(--sampler "$sampler"); done
-    "$acdf" render --scene "$work/$probe.json" --data "$data" -o "$work/$probe" --size "$size" --seeds "$seeds" \
+    "$acdf" render --scene "$work/$probe.json" --data "$work" -o "$work/$probe" --size "$size" --seeds "$seeds" \
         --no-timing --quiet "${arguments[@]}" > /dev/null
 done
 

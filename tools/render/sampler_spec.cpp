@@ -137,7 +137,7 @@ void read_company(const std::string& options, SamplerSpec& spec) {
 
 SamplerSpec parse_single(const std::string& whole) {
     const std::string text = trimmed(whole);
-    const std::size_t option = text.find(" --");
+    const std::size_t option = text.compare(0, 5, "file:") == 0 ? std::string::npos : text.find(" --");
     const std::string plain = text.substr(0, option);
     const std::size_t colon = plain.find(':');
     const std::string name = plain.substr(0, colon);

@@ -163,6 +163,18 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(divided(3, parse_sampler("mis(1000*cosine,full-cdf,env)")), (std::vector<std::uint32_t>{1, 1, 1}));
     EXPECT_THROW(divided(1, mis), SpecError);
 
+    const SamplerSpec with =
+        parse_sampler("mis(2*auto:local:1MB --with cosine --shares 3:1 --heuristic power --scene, cosine)");
+    EXPECT_TRUE(with.parts[0].automatic && with.parts[0].of_scene);
+    EXPECT_EQ(with.parts[0].company.kind, ACDF_COMPANY_COSINE);
+    EXPECT_EQ(with.parts[0].company.heuristic, ACDF_HEURISTIC_POWER);
+    EXPECT_EQ(with.parts[0].company.light, 3.0);
+    EXPECT_EQ(with.parts[1].kind, SamplerKind::cosine);
+    for (const char* text :
+         {"local:1MB --with cosine", "mis(local --with mean,cosine)", "mis(full-cdf --scene,cosine)",
+          "mis(env --with,cosine)", "mis(env --with sun,cosine)", "mis(env --shares 2,cosine)",
+          "mis(auto:env --with cosine,auto:cosine)", "mis(ideal --with brdf,cosine)"})
+        EXPECT_THROW(parse_sampler(text), SpecError) << text;
     const SamplerSpec compensated = parse_sampler("mis-compensated");
     EXPECT_EQ(compensated.text, "mis-compensated");
     ASSERT_EQ(compensated.parts.size(), 2u);
