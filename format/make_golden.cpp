@@ -106,6 +106,16 @@ Golden deep() {
     return golden("deep", cascade, environment_description(64, 32));
 }
 
+/// Not to be used alone: half of the sphere is left to its company.
+Golden company() {
+    const Cascade cascade = {
+        {{kTheta, {3, 5}, {0.75, 0.25, 0.0}, {1, -1, -1}, {}}, {kPhi, {2, 9}, {0.5, 0.0, 0.5}, {}, {}}}, {0}};
+    Description description = environment_description(12, 10);
+    description.chunks = {
+        company_chunk({ACDF_COMPANY_COSINE, ACDF_HEURISTIC_POWER, 3.0, 1.0}, 0.625f, {{0.625f, 0.0f}})};
+    return golden("company", cascade, description);
+}
+
 /// One curve that three segments share.
 Golden shared_child() {
     const Cascade cascade = {{{kTheta, {2, 3, 5}, {0.125, 0.25, 0.5, 0.125}, {1, 2, 1, 1}, {}},
@@ -355,14 +365,26 @@ int main(int argc, char** argv) try {
     }
     const std::string folder = std::string(argv[1]) + "/";
     for (const Golden& golden :
-         {smallest(), one_texel(), fitted("untilted", ACDF_FIT_VARIANCE, Order::z, ACDF_CODEC_NONE),
-          fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB), tilted(), deep(), shared_child(), wide(),
-          many_segments("many_segments", ACDF_CODEC_NONE), many_segments("planes", ACDF_CODEC_ZLIB), octahedral(),
-          local("local", ACDF_PARAM_LATLONG), local("octahedral_local", ACDF_PARAM_OCTAHEDRAL), local_grid(),
+         {smallest(),
+          one_texel(),
+          fitted("untilted", ACDF_FIT_VARIANCE, Order::z, ACDF_CODEC_NONE),
+          fitted("zlib", ACDF_FIT_CDF, Order::phi, ACDF_CODEC_ZLIB),
+          tilted(),
+          deep(),
+          company(),
+          shared_child(),
+          wide(),
+          many_segments("many_segments", ACDF_CODEC_NONE),
+          many_segments("planes", ACDF_CODEC_ZLIB),
+          octahedral(),
+          local("local", ACDF_PARAM_LATLONG),
+          local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
+          local_grid(),
           brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
           brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
           brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),
-          brdf("brdf_floor", {0.25f, 0.75f}, 1, ACDF_VIEWS_MIRRORED, 0.25f), brdf_separate()}) {
+          brdf("brdf_floor", {0.25f, 0.75f}, 1, ACDF_VIEWS_MIRRORED, 0.25f),
+          brdf_separate()}) {
         const std::string text = samples(golden);
         write(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
         write(folder + golden.name + ".txt", text.data(), text.size());

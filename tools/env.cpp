@@ -2,6 +2,7 @@
 #include "build/format_names.h"
 #include "input/image_header.h"
 #include "tools/cli/built.h"
+#include "tools/cli/company_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -10,6 +11,7 @@
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
 #include "tools/cli/renderer.h"
+#include "tools/cli/scene_option.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -36,6 +38,7 @@ class EnvConversion : public Conversion {
 public:
     void add_options(CLI::App& command) override;
     void check() override;
+    std::vector<std::string*> files() override;
     std::string option_text() const override { return builder::option_text(with_source()); }
     std::uint64_t memory() const override;
     Converted convert(const Listener& listener) override;
@@ -43,6 +46,7 @@ public:
 private:
     bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
     builder::EnvironmentOptions with_source() const;
+    void check_company() const;
     void set_goal();
     void set_knots();
     void add_fit_options(CLI::App& command);
@@ -53,6 +57,7 @@ private:
     const Renderer* renderer_ = nullptr;
     builder::EnvironmentOptions environment_;
     std::string knots_, budget_;
+    SceneOption scene_;
     const CLI::App* command_ = nullptr;
 };
 
@@ -106,6 +111,21 @@ void EnvConversion::set_knots() {
     }
 }
 
+std::vector<std::string*> EnvConversion::files() {
+    if (scene_.path.empty()) return {&source};
+    return {&source, &scene_.path};
+}
+
+void EnvConversion::check_company() const {
+    const bool alone = environment_.company.kind == ACDF_COMPANY_NONE;
+    for (const char* option : {"--shares", "--heuristic", "--scene"})
+        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
+    for (const char* option : {"--target-variance", "--max-weight"})
+        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+    if (!alone && (environment_.fit.fit != ACDF_FIT_VARIANCE || environment_.fit.shape != builder::Shape::tree))
+        throw CLI::ValidationError("--with", "is for --fit variance and --shape tree");
+}
+
 void EnvConversion::check() {
     use_renderer(*command_, renderer_, input_, environment_.target);
     const AcdfFit fit = environment_.fit.fit;
@@ -113,12 +133,17 @@ void EnvConversion::check() {
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
     if (fit == ACDF_FIT_VARIANCE) set_goal();
     else set_knots();
+    check_company();
 }
 
 /// The options as they will be, but for what only the probe's file tells.
 builder::EnvironmentOptions EnvConversion::with_source() const {
     builder::EnvironmentOptions options = environment_;
     options.source.reading = reading_text(input_);
+    if (!scene_.path.empty()) {
+        options.normals = {{}}; // any: only the text tells which
+        options.normals_text = scene_.text();
+    }
     return options;
 }
 
@@ -129,25 +154,28 @@ const char* order_name(builder::Order order) {
 nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const builder::Environment& result) const {
     const input::Probe& probe = loaded.probe;
     const builder::EnvironmentAccuracy& a = result.accuracy;
-    return {{"source", source},
-            {"projection", input::to_string(probe.projection)},
-            {"projection_reason", probe.projection_reason},
-            {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
-            {"resolution", {probe.width, probe.height}},
-            {"resampling_error", loaded.error},
-            {"bad_texels",
-             {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
-            {"fit", build::fit_name(environment_.fit.fit)},
-            {"order", order_name(result.order)},
-            {"bytes", result.bytes.size()},
-            {"cells", a.cells},
-            {"total", a.total},
-            {"relative_variance", a.relative_variance},
-            {"least_variance", a.least_variance},
-            {"rms_pdf_error", a.rms_pdf_error},
-            {"kl_divergence", a.kl_divergence},
-            {"max_weight", a.max_weight},
-            {"support_violations", a.support_violations}};
+    nlohmann::ordered_json out = {
+        {"source", source},
+        {"projection", input::to_string(probe.projection)},
+        {"projection_reason", probe.projection_reason},
+        {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
+        {"resolution", {probe.width, probe.height}},
+        {"resampling_error", loaded.error},
+        {"bad_texels",
+         {{"nan", probe.bad.nan}, {"infinite", probe.bad.infinite}, {"negative", probe.bad.negative}}},
+        {"fit", build::fit_name(environment_.fit.fit)},
+        {"order", order_name(result.order)},
+        {"bytes", result.bytes.size()},
+        {"cells", a.cells},
+        {"total", a.total},
+        {"relative_variance", a.relative_variance},
+        {"least_variance", a.least_variance},
+        {"rms_pdf_error", a.rms_pdf_error},
+        {"kl_divergence", a.kl_divergence},
+        {"max_weight", a.max_weight},
+        {"support_violations", a.support_violations}};
+    if (a.combined) out["combined"] = true; // of the file and its company
+    return out;
 }
 
 std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
@@ -169,14 +197,18 @@ Converted EnvConversion::convert(const Listener& listener) {
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     builder::EnvironmentOptions options = environment_;
     options.source = source_of(loaded.probe, input_);
+    options.normals = scene_.read(listener.note);
+    if (!scene_.path.empty()) options.normals_text = scene_.text();
     builder::Environment result;
     require_built(source, builder::environment(loaded.target, options, result, told(listener.progress)));
     const std::string warning =
         resampling_warning(loaded, result.accuracy.least_variance, result.accuracy.relative_variance);
     if (!warning.empty()) listener.note(warning);
-    char summary[160];
-    std::snprintf(summary, sizeof summary, "%llu cells, relative variance %.4g (%s fit%s)",
-                  static_cast<unsigned long long>(result.accuracy.cells), result.accuracy.relative_variance,
+    char summary[240];
+    std::snprintf(summary, sizeof summary, "%llu cells, %srelative variance %.4g%s (%s fit%s)",
+                  static_cast<unsigned long long>(result.accuracy.cells),
+                  result.accuracy.combined ? "with its company " : "", result.accuracy.relative_variance,
+                  result.accuracy.combined ? " a sample, mean over normals; not to be used alone" : "",
                   build::fit_name(environment_.fit.fit).c_str(),
                   result.order != builder::Order::best
                       ? (std::string(", ") + order_name(result.order) + " first").c_str()
@@ -273,6 +305,12 @@ void EnvConversion::add_options(CLI::App& command) {
     add_renderer(command, renderer_);
     add_repairs(command, input_);
     add_fit_options(command);
+    add_company(command, environment_.company, true);
+    scene_.add(
+        command,
+        "The normals that the company lights: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals "
+        "(.txt, x y z [weight] a line)",
+        "Company");
     add_target_options(command, environment_.target);
     add_codec(command, environment_.codec);
 }

@@ -1,4 +1,5 @@
 // acdf info: what is inside a file, in a form for people or as JSON.
+#include "build/company_text.h"
 #include "build/format_names.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
@@ -8,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <map>
@@ -132,6 +134,25 @@ Json local_json(const File& file) {
     return report;
 }
 
+/// What a file is not to be used without.
+Json company_json(const File& file) {
+    const AcdfCompany& company = *file.company();
+    Json report;
+    report["with"] = build::company_name(static_cast<AcdfCompanyKind>(company.kind));
+    report["heuristic"] = build::heuristic_name(static_cast<AcdfHeuristic>(company.heuristic));
+    report["share"] = company.share;
+    report["recommended_share"] = company.recommended_share;
+    float least = company.recommended_share, most = least;
+    for (std::uint32_t i = 0; i < company.record_count; ++i) {
+        if (file.kind() != ACDF_KIND_TABLE && file.bin(i).root == ACDF_NO_ROOT) continue;
+        least = std::min(least, acdf_company_bin_share(&company, i));
+        most = std::max(most, acdf_company_bin_share(&company, i));
+    }
+    report["least_recommended_share"] = least;
+    report["largest_recommended_share"] = most;
+    return report;
+}
+
 Json describe(const std::string& path, const File& file) {
     const AcdfHeader& header = file.header();
     const AcdfDescription& description = file.description();
@@ -146,6 +167,7 @@ Json describe(const std::string& path, const File& file) {
     report["cells"] = counts.cells;
     report["curves"] = counts.curves;
     if (header.kind == ACDF_KIND_LOCAL) report["local"] = local_json(file);
+    if (file.company()) report["company"] = company_json(file);
     report["axes"] = axes_json(file);
     report["fit"] = build::fit_name(description.fit);
     report["filter"] = build::filter_name(description.filter);
@@ -192,6 +214,13 @@ std::string local_text(const Json& local) {
     return bins + shared + "; cosine share " + number(local["cosine_share"]);
 }
 
+std::string company_text(const Json& company) {
+    return text_of(company["with"]) + " (" + text_of(company["heuristic"]) + " heuristic, " +
+           number(100.0 * company["share"].get<double>()) + " % of samples from this file); recommended share " +
+           number(company["recommended_share"]) + ", from " + number(company["least_recommended_share"]) + " to " +
+           number(company["largest_recommended_share"]) + "; not to be used alone";
+}
+
 std::string source_text(const Json& source) {
     std::string text;
     for (const auto& [key, value] : source.items()) {
@@ -220,6 +249,7 @@ void print(const Json& report) {
     if (const std::uint64_t tables = report["table_bytes"]; tables > 0)
         line("in memory", to_readable_size(tables) + " of tables besides, made when it is opened");
     if (report.contains("local")) line("normals", local_text(report["local"]));
+    if (report.contains("company")) line("company", company_text(report["company"]));
     line("source", source_text(report["source"]));
     line("made by", text_of(report["tool"]));
     line("options", text_of(report["options"]));

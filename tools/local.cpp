@@ -2,8 +2,8 @@
 #include "build/format_names.h"
 #include "input/image.h"
 #include "input/image_header.h"
-#include "input/scene_normals.h"
 #include "tools/cli/built.h"
+#include "tools/cli/company_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -11,6 +11,7 @@
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/renderer.h"
+#include "tools/cli/scene_option.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -40,17 +41,16 @@ private:
     bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
     void set_normals();
     void set_separate();
-    std::string scene_text() const;
     builder::LocalOptions read_scene(const Note& note) const;
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
     void add_separate(CLI::App& command);
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Local& result) const;
 
-    std::string normals_, budget_, knots_, scene_;
+    std::string normals_, budget_, knots_;
+    SceneOption scene_;
     input::ProbeOptions input_;
     const Renderer* renderer_ = nullptr;
-    input::SceneOptions scene_input_;
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
     bool no_sharing_ = false;
@@ -107,23 +107,23 @@ void LocalConversion::check() {
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
+    const bool alone = local_.company.kind == ACDF_COMPANY_NONE;
+    for (const char* option : {"--shares", "--heuristic"})
+        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
+    for (const char* option : {"--no-sharing", "--cosine-share"})
+        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
 }
 
 std::vector<std::string*> LocalConversion::files() {
-    if (scene_.empty()) return {&source};
-    return {&source, &scene_};
-}
-
-std::string LocalConversion::scene_text() const {
-    return "--scene " + input::file_sha256(scene_) + (scene_input_.up == input::UpAxis::y ? " --scene-up y" : "") +
-           (scene_input_.rgb_is_normal ? " --scene-rgb" : "");
+    if (scene_.path.empty()) return {&source};
+    return {&source, &scene_.path};
 }
 
 std::string LocalConversion::option_text() const {
     builder::LocalOptions told = local_;
-    if (!scene_.empty()) {
+    if (!scene_.path.empty()) {
         told.normals = {{}}; // any: only the text tells which
-        told.normals_text = scene_text();
+        told.normals_text = scene_.text();
     }
     told.source.reading = reading_text(input_);
     return builder::option_text(told);
@@ -132,13 +132,9 @@ std::string LocalConversion::option_text() const {
 /// The options with the normals of the scene.
 builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
     builder::LocalOptions local = local_;
-    if (scene_.empty()) return local;
-    const input::SceneNormals scene = input::read_scene_normals(scene_, scene_input_);
-    for (const input::WeightedNormal& n : scene.normals)
-        local.normals.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
-    local.normals_text = scene_text();
-    note(scene_ + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
-         std::to_string(scene.skipped) + " skipped");
+    if (scene_.path.empty()) return local;
+    local.normals = scene_.read(note);
+    local.normals_text = scene_.text();
     return local;
 }
 
@@ -150,24 +146,34 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
     const builder::LocalAccuracy& a = result.accuracy;
     File file;
     File::from_memory(result.bytes.data(), result.bytes.size(), file);
-    return {{"source", source},
-            {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
-            {"resolution", {loaded.probe.width, loaded.probe.height}},
-            {"bytes", result.bytes.size()},
-            {"bins", file.description().bin_count},
-            {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
-            {"normals_measured", result.normals},
-            {"relative_variance", a.relative_variance},
-            {"relative_variance_full_cdf", a.relative_variance_full_cdf},
-            {"gain", gain(result)},
-            {"share_above_horizon", a.share_above_horizon},
-            {"least_share_above_horizon", a.least_share_above_horizon},
-            {"support_violations", a.support_violations}};
+    nlohmann::ordered_json out = {
+        {"source", source},
+        {"domain", build::parameterization_name(builder::grid_of(loaded.target).parameterization)},
+        {"resolution", {loaded.probe.width, loaded.probe.height}},
+        {"bytes", result.bytes.size()},
+        {"bins", file.description().bin_count},
+        {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
+        {"normals_measured", result.normals},
+        {"relative_variance", a.relative_variance},
+        {"relative_variance_full_cdf", a.relative_variance_full_cdf},
+        {"gain", gain(result)},
+        {"share_above_horizon", a.share_above_horizon},
+        {"least_share_above_horizon", a.least_share_above_horizon},
+        {"support_violations", a.support_violations}};
+    if (a.combined) out["combined"] = true; // of the file and its company
+    return out;
 }
 
 std::string summary_of(const builder::Local& result) {
     const builder::LocalAccuracy& a = result.accuracy;
-    char text[256];
+    char text[320];
+    if (a.combined) {
+        std::snprintf(text, sizeof text,
+                      "with its company, relative variance %.4g a sample over %u normals: %.3g times less than the "
+                      "probe's own CDF with it (%.4g); not to be used alone",
+                      a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf);
+        return text;
+    }
     std::snprintf(text, sizeof text,
                   "relative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
                   "%.1f %% of samples above the horizon",
@@ -188,7 +194,7 @@ Converted LocalConversion::convert(const Listener& listener) {
     local.source = source_of(loaded.probe, input_);
     builder::Local result;
     require_built(source, builder::local(loaded.target, local, result, told(listener.progress)));
-    if (gain(result) < kWorthwhile) {
+    if (!result.accuracy.combined && gain(result) < kWorthwhile) {
         char text[160];
         std::snprintf(text, sizeof text,
                       "knowing the normal lowers the variance by a factor of %.2f only; `acdf env` would do about "
@@ -211,26 +217,11 @@ void LocalConversion::add_bins(CLI::App& command) {
             "--no-sharing")
         ->option_text("N|AxB [as suits the size]")
         ->group("Normals");
-    command
-        .add_option(
-            "--scene", scene_,
-            "Only what a scene requires: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals (.txt, "
-            "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
-            "whole environment, unbiased but noisier")
-        ->type_name("FILE")
-        ->group("Normals");
-    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
-    command
-        .add_option(
-            "--scene-up", scene_input_.up,
-            "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
-        ->transform(CLI::CheckedTransformer(axes).description(""))
-        ->option_text("y|z [z]")
-        ->group("Normals");
-    command
-        .add_flag("--scene-rgb", scene_input_.rgb_is_normal,
-                  "Take R, G and B of the scene's image as a normal where no channel is named as one")
-        ->group("Normals");
+    scene_.add(command,
+               "Only what a scene requires: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals (.txt, "
+               "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
+               "whole environment, unbiased but noisier",
+               "Normals");
     command
         .add_option(
             "--cosine-share", local.cosine_share,
@@ -305,6 +296,7 @@ void LocalConversion::add_options(CLI::App& command) {
     add_repairs(command, input_);
     add_bins(command);
     add_size(command);
+    add_company(command, local_.company, false);
     add_separate(command);
     add_target_options(command, local_.target);
     add_codec(command, local_.codec);

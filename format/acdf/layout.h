@@ -63,6 +63,20 @@ typedef enum AcdfAxisMeasure {
     ACDF_MEASURE_COSINE = 1  /* cos of that: positions are equal steps of an angle */
 } AcdfAxisMeasure;
 
+/* What a file was made to be combined with, by multiple importance sampling (SPEC.md §5.8). */
+typedef enum AcdfCompanyKind {
+    ACDF_COMPANY_NONE = 0,
+    ACDF_COMPANY_COSINE = 1, /* cos / pi around the normal */
+    ACDF_COMPANY_BRDF = 2,   /* lobes as BRDFs have them: cosine, and GGX of several widths */
+    ACDF_COMPANY_MEAN = 3,   /* as if it were the same everywhere: Karlik et al. 2019 */
+    ACDF_COMPANY_TABLE = 4   /* of a table: another table over the same axes */
+} AcdfCompanyKind;
+
+typedef enum AcdfHeuristic {
+    ACDF_HEURISTIC_BALANCE = 0, /* n_i p_i over their sum */
+    ACDF_HEURISTIC_POWER = 1    /* of their squares */
+} AcdfHeuristic;
+
 #define ACDF_FOURCC(a, b, c, d) ((uint32_t)(a) | (uint32_t)(b) << 8 | (uint32_t)(c) << 16 | (uint32_t)(d) << 24)
 #define ACDF_CHUNK_DESCRIPTION ACDF_FOURCC('D', 'E', 'S', 'C')
 #define ACDF_CHUNK_BINS ACDF_FOURCC('B', 'I', 'N', 'S')
@@ -71,6 +85,7 @@ typedef enum AcdfAxisMeasure {
 #define ACDF_CHUNK_TILES ACDF_FOURCC('T', 'I', 'L', 'E')
 #define ACDF_CHUNK_ROWS ACDF_FOURCC('R', 'O', 'W', 'S')
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
+#define ACDF_CHUNK_COMPANY ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
 
 #define ACDF_CHUNK_FLAG_CRITICAL 1u
@@ -195,6 +210,21 @@ typedef struct AcdfLight {
     uint32_t high[2];
 } AcdfLight;
 
+/* Chunk COMP of a file that is not to be used alone: this, then `record_count` records (0, or one a bin). */
+typedef struct AcdfCompany {
+    uint32_t kind;           /* AcdfCompanyKind, not 0 */
+    uint32_t heuristic;      /* AcdfHeuristic */
+    float share;             /* of the samples, in (0, 1): what the fit was told that this file draws */
+    float recommended_share; /* in (0, 1]: of the samples that this file should draw, in the mean */
+    uint32_t record_count;
+    uint32_t reserved; /* 0 */
+} AcdfCompany;
+
+typedef struct AcdfCompanyRecord {
+    float recommended_share; /* of the bin, in (0, 1] */
+    float flux;              /* of local environments: irradiance of the bin over `total`; else 0 */
+} AcdfCompanyRecord;
+
 #define ACDF_NO_ROOT 0xFFFFFFFFu /* of a tile: it is a cell; of a bin: it is not stored */
 #define ACDF_TILE_FLAG 0x8000u
 #define ACDF_MAX_TILES 32768u
@@ -233,5 +263,7 @@ ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLight) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfCompany) == 24);
+ACDF_STATIC_ASSERT(sizeof(AcdfCompanyRecord) == 8);
 
 #endif

@@ -1,5 +1,6 @@
 """SPEC.md §2.1: from the chunks of a file to the view of its kind."""
 from .brdf import Brdf
+from .company import Company
 from .container import BRDF, ENVIRONMENT, LOCAL
 from .description import NOT_STORED
 from .local import Local
@@ -12,6 +13,13 @@ from .tree import Tree, check_tree
 
 
 def view_of(container, d):
+    view = sampler_of(container, d)
+    company = container.payloads.get(b"COMP")
+    view.company = None if company is None else Company(company, container.kind, d.bin_count)
+    return view
+
+
+def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
     tiles = None
     if b"TILE" in chunks:

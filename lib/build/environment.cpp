@@ -1,7 +1,11 @@
 #include "build/environment.h"
 
+#include "build/company_accuracy.h"
+#include "build/company_text.h"
 #include "build/errors.h"
+#include "build/local.h"
 #include "build/option_text.h"
+#include "compress/company_target.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -35,6 +39,24 @@ compress::Metadata metadata(const Source& source, const EnvironmentOptions& opti
     return out;
 }
 
+constexpr std::uint32_t kNormalsPerEdge = 8; // of an octahedron: the normals that a company lights
+
+/// What is fitted.
+compress::Target fitted_target(const compress::Target& target, const EnvironmentOptions& options) {
+    compress::NormalBins normals = compress::octahedral_bins(kNormalsPerEdge);
+    if (!options.scene.empty()) compress::weigh(normals, options.scene);
+    return compress::company_target(target, normals, options.company);
+}
+
+/// Writes into the file what the company was found to leave to it.
+void recommend(const std::vector<std::uint8_t>& bytes, const compress::Target& target,
+               const EnvironmentOptions& options, compress::Description& description) {
+    File file;
+    if (!File::from_memory(bytes.data(), bytes.size(), file).ok()) return; // told by measure_bytes
+    const CompanyAccuracy both = measure_beside_company(file, target, test_normals(options.scene, 64));
+    description.chunks = {compress::company_chunk(options.company, static_cast<float>(both.recommended_share), {})};
+}
+
 Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
@@ -55,6 +77,7 @@ Environment build_once(const compress::Target& target, const Source& source, con
     const double stored_weights[3] = {weights.r, weights.g, weights.b};
     std::copy(std::begin(stored_weights), std::end(stored_weights), description.channel_weights);
     description.metadata = metadata(source, options, tried, {});
+    if (options.company) description.chunks = {compress::company_chunk(options.company, 0.5f, {})};
 
     compress::FitOptions fit = options.fit;
     if (tried) fit.order = tried;
@@ -65,9 +88,11 @@ Environment build_once(const compress::Target& target, const Source& source, con
     fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };
-    const compress::EncodedTree tree = compress::fit(target, fit).tree;
+    const compress::EncodedTree tree =
+        compress::fit(options.company ? fitted_target(target, options) : target, fit).tree;
     Environment out;
     out.order = fit.order;
+    if (options.company) recommend(compress::store(tree, description), target, options, description);
     out.accuracy = measure_bytes(compress::store(tree, description), target);
     description.metadata = metadata(source, options, tried, out.accuracy);
     out.bytes = compress::store(tree, description, options.codec);
@@ -97,6 +122,9 @@ std::string option_text(const std::string& reading, const EnvironmentOptions& op
     if (fit.order) text += "--order " + std::string(to_string(*fit.order)) + " ";
     if (fit.fit != ACDF_FIT_VARIANCE) return text + knots_text(fit);
     if (fit.shape == compress::Shape::cascade) text += "--shape cascade ";
+    text += company_text(options.company);
+    if (options.company && !options.scene.empty())
+        text += options.scene_text.empty() ? "--scene " : options.scene_text + " ";
     if (fit.max_weight > 0.0) text += "--max-weight " + option_number(fit.max_weight) + " ";
     return text + goal_text(fit.goal);
 }

@@ -3,7 +3,9 @@
 
 #include "build/environment_accuracy.h"
 #include "build/progress.h"
+#include "compress/company.h"
 #include "compress/fit.h"
+#include "compress/normals.h"
 #include "compress/store.h"
 
 #include <acdf/builder.h>
@@ -20,6 +22,9 @@ struct EnvironmentOptions {
     compress::TargetOptions target;
     compress::FitOptions fit; ///< without an order, fits of two levels are made both ways, the better one kept
     AcdfCodec codec = ACDF_CODEC_NONE;
+    compress::Company company;                ///< of trees of the variance fit alone
+    std::vector<compress::SceneNormal> scene; ///< that the company lights; empty: all normals
+    std::string scene_text;                   ///< what `scene` was read from and how, as options in one spelling
 };
 
 struct Environment {

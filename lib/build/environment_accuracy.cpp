@@ -1,6 +1,7 @@
 #include "build/environment_accuracy.h"
 
 #include "build/cells.h"
+#include "build/company_accuracy.h"
 #include "build/sums.h"
 
 #include <tbb/parallel_for.h>
@@ -142,12 +143,31 @@ Sums sum_all(const Work& work, const Target& target, double total) {
 
 } // namespace
 
+namespace {
+
+constexpr std::uint32_t kCompanyNormals = 64;
+
+Accuracy measure_combined(const File& file, const Target& target) {
+    const CompanyAccuracy both = measure_beside_company(file, target, random_normals(kCompanyNormals));
+    Accuracy a;
+    a.combined = true;
+    a.total = target.total > 0.0 ? target.total : integral(target);
+    for_each_cell(file, file.bin(0).root, [&](const Cell&) { ++a.cells; });
+    a.relative_variance = both.relative_variance;
+    a.max_weight = both.max_weight;
+    a.support_violations = both.support_violations;
+    return a;
+}
+
+} // namespace
+
 Accuracy measure_environment(const File& file, const Target& target) {
     if (file.description().parameterization != target.parameterization)
         throw std::invalid_argument("the file lies on another grid");
     if (file.axis(ACDF_AXIS_PHI).resolution != target.columns ||
         file.axis(ACDF_AXIS_THETA).resolution != target.rows)
         throw std::invalid_argument("the file was made from another resolution");
+    if (file.company()) return measure_combined(file, target);
     Accuracy a;
     const double perfect = integral(target);
     a.total = target.total > 0.0 ? target.total : perfect;

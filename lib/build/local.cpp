@@ -1,5 +1,6 @@
 #include "build/local.h"
 
+#include "build/company_text.h"
 #include "build/errors.h"
 #include "build/option_text.h"
 #include "compress/fit_local.h"
@@ -101,15 +102,28 @@ Local finish(Draft draft, const compress::Target& target, const Source& source, 
     return out;
 }
 
+float mean_share(const std::vector<AcdfCompanyRecord>& records, const NormalBins& bins) {
+    double sum = 0.0;
+    for (std::size_t b = 0; b < records.size(); ++b)
+        sum += bins.weight[b] * static_cast<double>(records[b].recommended_share);
+    return static_cast<float>(std::clamp(sum, 1e-3, 1.0)); // weights add up to 1
+}
+
 Draft shared_draft(const compress::Target& target, const Source& source, const LocalOptions& options,
                    const NormalBins& bins, const compress::LocalSize& size, const Progress& progress) {
-    compress::LocalFit fit = compress::fit_local(target, bins, size, [&](double share) {
-        if (progress) progress(0.8 * share, "fitting");
-    });
+    compress::LocalFit fit = compress::fit_local(
+        target, bins, size,
+        [&](double share) {
+            if (progress) progress(0.8 * share, "fitting");
+        },
+        options.company);
     Draft draft{std::move(fit.tree), description_of(target, source, options, bins, {})};
     draft.description.shares = std::move(fit.shares);
     draft.description.chunks = compress::shared_chunks(fit.shared);
     draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
+    if (options.company)
+        draft.description.chunks.push_back(
+            compress::company_chunk(options.company, mean_share(fit.records, bins), fit.records));
     return draft;
 }
 
@@ -117,7 +131,8 @@ Draft shared_draft(const compress::Target& target, const Source& source, const L
 compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes) {
     constexpr double fixed = 2600.0;
     const double each = double(bins.stored()) + sizeof(AcdfSplit) + sizeof(std::uint32_t);
-    const double room = bytes - fixed - double(bins.normals.size() * sizeof(AcdfBin));
+    const std::size_t of_bin = sizeof(AcdfBin) + (o.company ? sizeof(AcdfCompanyRecord) : 0);
+    const double room = bytes - fixed - double(bins.normals.size() * of_bin);
     compress::LocalSize size;
     const double tiles = o.tiles > 0 ? o.tiles : 0.7 * room / each;
     size.tiles = static_cast<std::uint32_t>(std::clamp(tiles, 1.0, double(ACDF_MAX_TILES)));
@@ -214,6 +229,7 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.subdivisions > 0) text += "--normals " + std::to_string(o.subdivisions) + " ";
     if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
     if (!o.scene.empty()) text += o.scene_text.empty() ? "--scene " : o.scene_text + " ";
+    text += company_text(o.company);
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {
         if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";

@@ -29,6 +29,7 @@ struct LocalOptions {
     double cosine_share = 0.0;
     std::string scene_text; ///< what `scene` was read from and how, as options in one spelling
     AcdfCodec codec = ACDF_CODEC_NONE;
+    compress::Company company; ///< of bins that share tiles
 };
 
 /// All options that shape the file, in one spelling: what its `fit.options` tells.

@@ -1,6 +1,7 @@
 #include "build/local_accuracy.h"
 
 #include "build/cells.h"
+#include "build/combination.h"
 #include "build/texel_cosines.h"
 #include "compress/sum.h"
 
@@ -127,6 +128,7 @@ private:
         Sum flux, second, first_above, light, light_second;
         const double share = local_.cosine_share;
         double largest = 0.0;
+        Combination both = no_combination(), rival = both;
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
             const std::size_t row = std::size_t{r} * target_.columns;
             double row_flux = 0.0, row_second = 0.0, row_above = 0.0, row_light = 0.0, row_light_second = 0.0;
@@ -141,6 +143,11 @@ private:
                 row_flux += f * omega;
                 row_light += g * omega;
                 row_light_second += f * cosine * omega;
+                if (local_.company) {
+                    both.add(f, omega, p, cosine / ACDF_PI);
+                    rival.add(f, omega, g / total_, cosine / ACDF_PI);
+                    return;
+                }
                 if (!(p > 0.0)) {
                     ++out.support_violations;
                     return;
@@ -164,7 +171,18 @@ private:
         out.max_weight = largest / e;
         out.relative_variance_full_cdf = total_ / e * (light_second.value() / e) - 1.0;
         out.share_above_horizon_full_cdf = light.value() / total_;
+        if (!local_.company) return out;
+        out.relative_variance = both.relative_variance();
+        out.relative_variance_full_cdf = rival.relative_variance();
+        out.support_violations = both.violations();
+        out.max_weight = both.max_weight();
+        out.combined = true;
         return out;
+    }
+
+    Combination no_combination() const {
+        if (!local_.company) return {0.5, ACDF_HEURISTIC_BALANCE};
+        return {double{local_.company->share}, static_cast<AcdfHeuristic>(local_.company->heuristic)};
     }
 
     const File& file_;
@@ -208,6 +226,7 @@ LocalAccuracy summary(const std::vector<NormalAccuracy>& normals) {
             std::min(out.least_share_above_horizon_full_cdf, n.share_above_horizon_full_cdf);
         out.max_weight = std::max(out.max_weight, n.max_weight);
         out.support_violations += n.support_violations;
+        out.combined = out.combined || n.combined;
     }
     out.lit_normals = static_cast<std::uint32_t>(variances.size());
     if (variances.empty()) return {};

@@ -24,6 +24,7 @@ struct NormalAccuracy {
     std::uint64_t support_violations = 0;      ///< texels with f > 0 and p = 0
     double relative_variance_full_cdf = 0.0;   ///< what the probe's own full-resolution CDF has
     double share_above_horizon_full_cdf = 0.0; ///< the same
+    bool combined = false;                     ///< see LocalAccuracy
 };
 
 using LocalAccuracy = builder::LocalAccuracy;

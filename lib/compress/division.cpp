@@ -19,20 +19,25 @@ struct LastJoins {
     std::size_t count = 0;
 };
 
+template <bool Company>
 LastJoins join_slices(const Slices& slices, DivisionScratch& s) {
     const std::size_t n = slices.size();
     s.measure = slices.measure;
     s.energy = slices.energy;
+    if (Company) s.left = slices.left;
+    const auto cost = [](double alone, double left) { return Company ? cell_cost(alone, left) : alone; };
     s.alone.resize(n);
     s.joined.resize(n);
     double total = 0.0;
-    for (std::size_t i = 0; i < n; ++i) total += s.alone[i] = std::sqrt(s.measure[i] * s.energy[i]);
+    for (std::size_t i = 0; i < n; ++i)
+        total += s.alone[i] = cost(std::sqrt(s.measure[i] * s.energy[i]), Company ? s.left[i] : 0.0);
     LastJoins last;
     std::size_t left = n - 1;
     join_neighbours(
         n, left,
         [&](std::size_t a, std::size_t b) {
-            s.joined[a] = std::sqrt((s.measure[a] + s.measure[b]) * (s.energy[a] + s.energy[b]));
+            s.joined[a] = cost(std::sqrt((s.measure[a] + s.measure[b]) * (s.energy[a] + s.energy[b])),
+                               Company ? s.left[a] + s.left[b] : 0.0);
             return s.joined[a] - s.alone[a] - s.alone[b];
         },
         [&](std::size_t a, std::size_t b, double raise) {
@@ -43,6 +48,7 @@ LastJoins join_slices(const Slices& slices, DivisionScratch& s) {
             total += raise;
             s.measure[a] += s.measure[b];
             s.energy[a] += s.energy[b];
+            if (Company) s.left[a] += s.left[b];
             s.alone[a] = s.joined[a];
         });
     return last;
@@ -53,7 +59,8 @@ LastJoins join_slices(const Slices& slices, DivisionScratch& s) {
 Division divide(const Slices& slices, double undivided, DivisionScratch& scratch) {
     Division division;
     if (slices.size() < 2) return division;
-    const LastJoins last = join_slices(slices, scratch);
+    const LastJoins last =
+        slices.left.empty() ? join_slices<false>(slices, scratch) : join_slices<true>(slices, scratch);
     division.knots = 1;
     for (std::size_t knots = 1; knots <= last.count; ++knots) {
         const double gain = (undivided - last.cost[last.count - knots]) / (double(knots) + kKnotOffset);

@@ -20,7 +20,7 @@ struct Division {
 
 /// Memory that divisions reuse.
 struct DivisionScratch {
-    std::vector<double> measure, energy, alone, joined;
+    std::vector<double> measure, energy, left, alone, joined;
 };
 
 /// Joins slices bottom-up to one part, then takes the number of parts whose gain per knot is largest. `undivided`

@@ -3,6 +3,7 @@
 
 #include "compress/fit_shared.h"
 #include "compress/light.h"
+#include "compress/local_company.h"
 #include "compress/tile_curves.h"
 
 #include <acdf/local.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 namespace acdf::compress {
@@ -126,7 +128,7 @@ public:
                 if (!(amount > 0.0)) return;
                 lit_[t].push_back(part.box);
                 for_each_block(target, part.box, kPointStep, [&](const Box& block, double share) {
-                    points_[t].push_back({centre(target, block), amount * share});
+                    points_[t].push_back({centre(target, block), amount * share, 0.0});
                 });
             });
         });
@@ -163,8 +165,9 @@ private:
     std::vector<double> least_;
 };
 
-/// Rows and shares of all bins that occur.
-void fill_rows(const TileLight& light, const NormalBins& bins, LocalFit& out) {
+/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to.
+template <class Costs>
+void fill_rows(const Costs& costs, const NormalBins& bins, LocalFit& out) {
     const std::size_t count = bins.normals.size(), width = out.tiles.splits.size();
     out.shares.assign(count, 0.0f);
     out.tree.roots.assign(count, ACDF_NO_ROOT);
@@ -173,7 +176,7 @@ void fill_rows(const TileLight& light, const NormalBins& bins, LocalFit& out) {
     out.shared.codes.resize(out.shared.row_count * width);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
         if (out.tree.roots[b] == ACDF_NO_ROOT) return;
-        const std::vector<double> cost = light.costs(bins.normals[b]);
+        const std::vector<double> cost = costs(b);
         double sum = 0.0;
         for (double c : cost) sum += c;
         const std::vector<std::uint8_t> row = encode_row(out.tiles, cost);
@@ -184,18 +187,26 @@ void fill_rows(const TileLight& light, const NormalBins& bins, LocalFit& out) {
 
 } // namespace
 
-LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress) {
+LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
+                   const Company& company) {
     const auto report = [&](double share) {
         if (progress) progress(share);
     };
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
-    const Worth light_worth = worth(target, bins, irradiance(light_points(target), bins));
+    const std::vector<LightPoint> points = light_points(target);
+    const std::vector<double> flux = irradiance(points, bins);
+    const Worth light_worth = worth(target, bins, flux);
+    std::optional<LocalCompany> beside;
+    if (company) beside.emplace(target, points, bins, flux, company);
     report(0.1);
     LocalFit out;
-    out.tiles = divide_tiles(target, light_worth, std::min(size.tiles, ACDF_MAX_TILES));
+    out.tiles =
+        divide_tiles(beside ? beside->excess(target) : target, light_worth, std::min(size.tiles, ACDF_MAX_TILES));
     report(0.4);
-    TileCurves tile_curves(target, out.tiles.tiles, worth_of_tiles(target, out.tiles.tiles, light_worth));
+    const Target filled = beside ? beside->filled(target) : Target{};
+    const Target& fitted = beside ? filled : target;
+    TileCurves tile_curves(fitted, out.tiles.tiles, worth_of_tiles(target, out.tiles.tiles, light_worth));
     Curves curves = fit_curves(out.tiles, tile_curves, size.tree_bytes);
     report(0.8);
     out.lights = find_lights(target, out.tiles, *curves.cascade, tile_curves.total(), light_worth);
@@ -206,7 +217,22 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
     out.shared.codebook = row_codebook();
     for (std::int32_t curve : curves.cascade->tile_curve)
         out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);
-    fill_rows(TileLight(target, out.tiles, *curves.cascade, out.lights), bins, out);
+    if (beside) {
+        const FilledTiles light(target, out.tiles, tile_curves, *curves.cascade, out.lights, *beside, bins);
+        out.records.resize(bins.normals.size(), {1.0f, 0.0f});
+        fill_rows(
+            [&](std::size_t b) {
+                std::vector<double> shares = light.shares(b);
+                for (double& share : shares) share /= tile_curves.total();
+                out.records[b] = {light.recommended_share(b, shares),
+                                  static_cast<float>(flux[b] / tile_curves.total())};
+                return shares;
+            },
+            bins, out);
+    } else {
+        const TileLight light(target, out.tiles, *curves.cascade, out.lights);
+        fill_rows([&](std::size_t b) { return light.costs(bins.normals[b]); }, bins, out);
+    }
     out.cascade = std::move(curves.cascade->cascade);
     report(1.0);
     return out;

@@ -1,6 +1,7 @@
 // The fit of a local environment map: one probe, for every normal the light above its horizon times the cosine.
 #pragma once
 
+#include "compress/company.h"
 #include "compress/fit.h"
 #include "compress/normals.h"
 #include "compress/tiles.h"
@@ -26,12 +27,16 @@ struct LocalFit {
     StoredRows shared; ///< tiles, and a row for each bin
     std::vector<AcdfLight> lights;
     std::vector<float> shares; ///< one a bin: its irradiance, lights excepted, over the integral of the probe
+    std::vector<AcdfCompanyRecord> records; ///< beside a company: one a bin
 };
 
 /// Fits tiles, the curves in them, lights, and the rows of all bins that occur. Deterministic for any number of
 /// threads. Throws std::invalid_argument where the target has no energy, or the bins are cells of a grid: rows are
 /// made for corners, whose mixture covers what a normal between them sees.
+///
+/// Beside a company a share is the flux that is left to the file, rows are 0 where the company covers a tile, and
+/// records tell the irradiance.
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size,
-                   const Progress& progress = {});
+                   const Progress& progress = {}, const Company& company = {});
 
 } // namespace acdf::compress

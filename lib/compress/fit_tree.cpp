@@ -101,7 +101,8 @@ private:
         sizer_.forget();
         nodes_.clear();
         for (const auto& partition : partitions_)
-            nodes_.push_back(partition ? prune_nodes(partition->parts(), heaviest_) : PruneNodes{});
+            nodes_.push_back(partition ? prune_nodes(partition->parts(), heaviest_, partition->grid().filling)
+                                       : PruneNodes{});
     }
 
     std::vector<Pruned> pruned(double price) const {
@@ -128,7 +129,7 @@ private:
         double variance = 0.0;
         for (std::size_t bin = 0; bin < trees.size(); ++bin) {
             if (!partitions_[bin]) continue;
-            const double cost = costs_below(nodes_[bin], trees[bin])[0];
+            const double cost = shares_below(nodes_[bin], trees[bin])[0];
             variance += cost * cost - 1.0;
         }
         return variance > (goal_.variance * (1.0 + 1e-9) + 1e-9) * double(lit_);
@@ -158,9 +159,14 @@ private:
 
     /// Knots of a line are moved to better places, unless that could break a bound on weights.
     bool polished() const {
-        return !std::isfinite(heaviest_) &&
+        return !std::isfinite(heaviest_) && !beside_company() &&
                std::any_of(partitions_.begin(), partitions_.end(),
                            [](const auto& partition) { return partition && partition->grid().dimensions() == 1; });
+    }
+
+    bool beside_company() const {
+        return std::any_of(partitions_.begin(), partitions_.end(),
+                           [](const auto& partition) { return partition && partition->grid().filling; });
     }
 
     /// E[(f/p)^2] is about the square of the sum of costs: a byte is worth twice as much in it. `reach` in
@@ -175,7 +181,7 @@ private:
         for (std::size_t bin = 0; bin < partitions_.size(); ++bin)
             if (partitions_[bin]) {
                 flatten(*partitions_[bin], trees[bin], flat);
-                if (!std::isfinite(heaviest_)) polish(*partitions_[bin], bin, flat);
+                if (!std::isfinite(heaviest_) && !beside_company()) polish(*partitions_[bin], bin, flat);
             } else {
                 flatten_nothing(dark_axis_, flat);
             }

@@ -1,6 +1,7 @@
 // A non-negative function on a grid of any number of axes, as the variance fit sees it.
 #pragma once
 
+#include "compress/company.h"
 #include "compress/target.h"
 
 #include <cstdint>
@@ -17,6 +18,11 @@ struct Grid {
     const float* values = nullptr;
     const float* peaks = nullptr; ///< largest value within each box of the grid, laid out alike; null: `values`
 
+    /// Beside a company (compress/company.h), laid out alike: what steps cost if they are left to it, and at best;
+    /// both per measure. Null: without any.
+    const float *left = nullptr, *least = nullptr;
+    const Filling* filling = nullptr; ///< how a cell's share follows from its costs
+
     std::size_t dimensions() const { return shape.size(); }
 };
 
@@ -26,7 +32,10 @@ inline Grid grid_of(const Target& target) {
             {target.row_measure, target.column_measure},
             {target.row_axis, target.column_axis},
             target.values.data(),
-            target.peaks.empty() ? nullptr : target.peaks.data()};
+            target.peaks.empty() ? nullptr : target.peaks.data(),
+            target.left.empty() ? nullptr : target.left.data(),
+            target.least.empty() ? nullptr : target.least.data(),
+            target.filling.get()};
 }
 
 /// The integral of f, by compensated summation.

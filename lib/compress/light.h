@@ -22,6 +22,7 @@ inline double dot(const Direction& a, const Direction& b) { return a[0] * b[0] +
 struct LightPoint {
     Direction direction{};
     double amount = 0.0;
+    double measure = 0.0; ///< the solid angle that it comes from, where that is known
 };
 
 double solid_angle(const Target& target, const Box& box);

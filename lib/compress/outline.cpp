@@ -58,14 +58,18 @@ private:
 
 } // namespace
 
-std::vector<double> costs_below(const PruneNodes& nodes, const Pruned& pruned) {
-    std::vector<double> cost(nodes.size(), 0.0);
-    for (std::size_t i = nodes.size(); i-- > 0;) {
-        if (!pruned.divided[i]) cost[i] = nodes[i].cost;
-        for (std::uint32_t k = 0; pruned.divided[i] && k < nodes[i].children; ++k)
-            cost[i] += cost[nodes[i].first_child + k];
-    }
-    return cost;
+std::vector<double> shares_below(const PruneNodes& nodes, const Pruned& pruned) {
+    const auto sums = [&](double PruneNode::*what) {
+        std::vector<double> out(nodes.size(), 0.0);
+        for (std::size_t i = nodes.size(); i-- > 0;) {
+            if (!pruned.divided[i]) out[i] = nodes[i].*what;
+            for (std::uint32_t k = 0; pruned.divided[i] && k < nodes[i].children; ++k)
+                out[i] += out[nodes[i].first_child + k];
+        }
+        return out;
+    };
+    std::vector<double> shares = sums(&PruneNode::share);
+    return shares[0] > 0.0 ? shares : sums(&PruneNode::cost);
 }
 
 Outline outline(const PruneNodes& nodes, const Pruned& pruned, const std::vector<double>& cost) {

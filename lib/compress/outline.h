@@ -28,10 +28,11 @@ struct Outline {
     const Segment* end(const Curve& curve) const { return begin(curve) + curve.count; }
 };
 
-/// For each part the sum of the costs of the cells below it.
-std::vector<double> costs_below(const PruneNodes& nodes, const Pruned& pruned);
+/// For each part the sum of the shares of the cells below it; of their costs where all shares are 0, as they are
+/// where few cells stand for light that a company nearly covers.
+std::vector<double> shares_below(const PruneNodes& nodes, const Pruned& pruned);
 
-/// Divisions along the same axis become one curve. `cost` is costs_below: where it is 0, nothing is refined.
+/// Divisions along the same axis become one curve. `cost` is shares_below: where it is 0, nothing is refined.
 Outline outline(const PruneNodes& nodes, const Pruned& pruned, const std::vector<double>& cost);
 
 /// The probability of a segment of the curve of part `whole`.

@@ -34,7 +34,7 @@ public:
         const float* peaks = grid_.peaks ? grid_.peaks : grid_.values;
         for (std::uint32_t i = begin; i < end; ++i) {
             const double f = grid_.values[i] / total_, flux = f * grid_.measure[0][i];
-            sum.add({grid_.measure[0][i], f * flux, flux, peaks[i] / total_});
+            sum.add({grid_.measure[0][i], f * flux, flux, 0.0, peaks[i] / total_});
         }
         return sum;
     }

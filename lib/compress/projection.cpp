@@ -146,9 +146,41 @@ private:
     LineSum sums_[kLines];
 };
 
+/// Beside a company: what slices cost at best takes the place of their flux, and what they cost if left to it comes
+/// with it.
+void add_company(const Grid& grid, double total, const Box& box, Projections& out) {
+    const std::size_t last = grid.dimensions() - 1;
+    for (std::size_t axis = 0; axis <= last; ++axis) {
+        std::fill(out[axis].flux.begin(), out[axis].flux.end(), 0.0);
+        out[axis].left.assign(out[axis].size(), 0.0);
+    }
+    for_each_line(grid, box, [&](std::size_t offset, const auto& index) {
+        double weight = 1.0 / total, least = 0.0, left = 0.0;
+        for (std::size_t axis = 0; axis < last; ++axis) weight *= grid.measure[axis][index[axis]];
+        const double* measures = grid.measure[last].data() + box.begin[last];
+        for (std::size_t i = 0; i < box.length(last); ++i) {
+            const double step = weight * measures[i];
+            const double own_least = grid.least[offset + i] * step, own_left = grid.left[offset + i] * step;
+            least += own_least;
+            left += own_left;
+            out[last].flux[i] += own_least;
+            out[last].left[i] += own_left;
+        }
+        for (std::size_t axis = 0; axis < last; ++axis) {
+            out[axis].flux[index[axis] - box.begin[axis]] += least;
+            out[axis].left[index[axis] - box.begin[axis]] += left;
+        }
+    });
+}
+
 } // namespace
 
-double Moments::cost() const { return std::sqrt(measure * energy); }
+double Moments::cost() const { return cell_cost(std::sqrt(measure * energy), left); }
+
+double Moments::share(const Filling* filling) const {
+    const double alone = std::sqrt(measure * energy);
+    return filling ? filling->share(alone, left) : alone;
+}
 
 double Moments::weight() const { return energy > 0.0 ? peak * std::sqrt(measure / energy) : 0.0; }
 
@@ -156,12 +188,14 @@ void Slices::reset(std::size_t count) {
     measure.assign(count, 0.0);
     energy.assign(count, 0.0);
     flux.assign(count, 0.0);
+    left.clear();
     peak.assign(count, 0.0f);
 }
 
 Moments Slices::sum(std::size_t begin, std::size_t end, double total) const {
     Moments out;
-    for (std::size_t i = begin; i < end; ++i) out.add({measure[i], energy[i], flux[i], double{peak[i]}});
+    for (std::size_t i = begin; i < end; ++i)
+        out.add({measure[i], energy[i], flux[i], left.empty() ? 0.0 : left[i], double{peak[i]}});
     out.peak /= total;
     return out;
 }
@@ -180,6 +214,7 @@ void project(const Grid& grid, double total, const Box& box, Projections& out) {
         gathered.add(line);
     });
     gathered.finish();
+    if (grid.left) add_company(grid, total, box, out);
 }
 
 double integral(const Grid& grid) {

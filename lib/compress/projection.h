@@ -22,18 +22,22 @@ struct Box {
 struct Moments {
     double measure = 0.0;
     double energy = 0.0; ///< of f^2
-    double flux = 0.0;   ///< of f
+    double flux = 0.0;   ///< of f; beside a company of what f costs at best
+    double left = 0.0;   ///< beside a company twice what the part costs if it is left to it; 0: without any
     double peak = 0.0;   ///< the largest f
 
     void add(const Moments& other) {
         measure += other.measure;
         energy += other.energy;
         flux += other.flux;
+        left += other.left;
         peak = other.peak > peak ? other.peak : peak;
     }
     /// C: what the part adds to sqrt(E[(f/p)^2]) as one cell of the best constant density. At least `flux`,
-    /// which is what it adds however finely it is divided.
+    /// which is what it adds however finely it is divided. Beside a company: docs/method.md.
     double cost() const;
+    /// What its probability is proportional to: without a company, its cost.
+    double share(const Filling* filling) const;
     /// The largest f/p of the part as one cell, relative to its best density: peak over root mean square.
     double weight() const;
 };
@@ -41,7 +45,8 @@ struct Moments {
 /// The moments of the slices of a box across one axis, by what they are.
 struct Slices {
     std::vector<double> measure, energy, flux;
-    std::vector<float> peak; ///< not normalised
+    std::vector<double> left; ///< empty without a company
+    std::vector<float> peak;  ///< not normalised
 
     std::size_t size() const { return measure.size(); }
     void reset(std::size_t count);

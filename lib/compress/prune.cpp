@@ -9,12 +9,12 @@
 
 namespace acdf::compress {
 
-PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest) {
+PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest, const Filling* filling) {
     PruneNodes out;
     out.reserve(parts.size());
     for (const Part& part : parts)
-        out.push_back({part.moments.cost(), part.first_child, static_cast<std::uint16_t>(part.children), part.split,
-                       part.moments.weight() > heaviest});
+        out.push_back({part.moments.cost(), part.moments.share(filling), part.first_child,
+                       static_cast<std::uint16_t>(part.children), part.split, part.moments.weight() > heaviest});
     return out;
 }
 
@@ -64,8 +64,8 @@ std::vector<bool> may_pay(const std::vector<Part>& parts, double price) {
 
 void flatten(const Partition& partition, const Pruned& pruned, Flattened& out) {
     const std::vector<Part>& parts = partition.parts();
-    const PruneNodes nodes = prune_nodes(parts, std::numeric_limits<double>::infinity());
-    const std::vector<double> cost = costs_below(nodes, pruned);
+    const PruneNodes nodes = prune_nodes(parts, std::numeric_limits<double>::infinity(), partition.grid().filling);
+    const std::vector<double> cost = shares_below(nodes, pruned);
     const Outline curves = outline(nodes, pruned, cost);
     const auto base = static_cast<std::int32_t>(out.cascade.curves.size());
     out.cascade.roots.push_back(static_cast<std::uint32_t>(base));

@@ -17,7 +17,7 @@ constexpr double kLeastBytes = 2.5; // of any division: what could gain less at 
 
 /// What pruning looks at of a part, close together: it goes through all parts for every price.
 struct PruneNode {
-    double cost;
+    double cost, share; ///< see Moments
     std::uint32_t first_child;
     std::uint16_t children;
     std::int8_t split; ///< Part::whole where there are no children
@@ -25,7 +25,7 @@ struct PruneNode {
 };
 using PruneNodes = std::vector<PruneNode>;
 
-PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest);
+PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest, const Filling* filling = nullptr);
 
 /// A partition pruned at one price.
 struct Pruned {
@@ -47,7 +47,7 @@ std::vector<bool> may_pay(const std::vector<Part>& parts, double price);
 struct Flattened {
     Cascade cascade;
     std::vector<std::vector<float>> weights; ///< for each curve one a segment: Moments::weight where it ends
-    std::vector<double> cost;                ///< one a bin: the sum of the costs of its cells
+    std::vector<double> cost;                ///< one a bin: the sum of the shares of its cells
 };
 
 /// Appends the curves of a pruned partition as one bin. Divisions along the same axis become one curve.

@@ -181,6 +181,17 @@ Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights) {
     return chunk;
 }
 
+Chunk company_chunk(const Company& company, float recommended_share,
+                    const std::vector<AcdfCompanyRecord>& records) {
+    Chunk chunk{ACDF_CHUNK_COMPANY, {}};
+    append(chunk.bytes,
+           AcdfCompany{static_cast<std::uint32_t>(company.kind), static_cast<std::uint32_t>(company.heuristic),
+                       static_cast<float>(company.share()), recommended_share,
+                       static_cast<std::uint32_t>(records.size()), 0});
+    for (const AcdfCompanyRecord& record : records) append(chunk.bytes, record);
+    return chunk;
+}
+
 std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description, AcdfCodec codec) {
     std::vector<Payload> payloads;
     payloads.push_back({ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_FLAG_CRITICAL, description_payload(description)});

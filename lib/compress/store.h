@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/cascade.h"
+#include "compress/company.h"
 
 #include <acdf/layout.h>
 
@@ -74,6 +75,9 @@ std::vector<Chunk> shared_chunks(const StoredRows& rows);
 
 /// Chunk LOCL.
 Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights);
+
+/// Chunk COMP. `records`: none, or one a bin.
+Chunk company_chunk(const Company& company, float recommended_share, const std::vector<AcdfCompanyRecord>& records);
 
 /// The whole file. The same arguments give the same bytes. Metadata is never compressed: it is short, stays
 /// readable, and keeps its size whatever numbers it tells.

@@ -4,9 +4,12 @@
 #include <acdf/layout.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace acdf::compress {
+
+class Filling;
 
 /// g on rows x columns, row-major; each axis carries the measure of its steps. For a probe the columns are
 /// azimuths and the rows elevations, or u and v of the octahedral square, so that the measure of a texel is its
@@ -28,6 +31,9 @@ struct Target {
     /// Square of the integral of f, of several channels their sum: what E[(f/p)^2] is compared with. 0: g is f.
     double mean_square = 0.0;
     AcdfParameterization parameterization = ACDF_PARAM_LATLONG; ///< of a probe: lat-long or octahedral
+    /// Beside a company: see Grid. Empty: without any.
+    std::vector<float> left, least;
+    std::shared_ptr<const Filling> filling;
 
     const float* row(std::uint32_t r) const { return values.data() + std::size_t{r} * columns; }
 };

@@ -37,7 +37,8 @@ TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double
       cost_(tiles.tiles.size(), 0.0), split_cost_(tiles.splits.size()) {
     tbb::parallel_for(std::size_t{0}, tiles.tiles.size(), [&](std::size_t t) {
         pruned_[t] = curves.pruned(t, price);
-        for_each_cell(t, [&](const Part& part) { cost_[t] += part.moments.cost(); });
+        const Filling* filling = curves.partition(t).grid().filling;
+        for_each_cell(t, [&](const Part& part) { cost_[t] += part.moments.share(filling); });
     });
     for (std::size_t s = tiles.splits.size(); s-- > 0;)
         split_cost_[s] = child_cost(tiles.splits[s].child[0]) + child_cost(tiles.splits[s].child[1]);

@@ -38,7 +38,7 @@ public:
     Cascade cascade;                      ///< root 0 is the environment
     std::vector<std::int32_t> tile_curve; ///< one a tile: its first curve; -1: it is a cell
 
-    /// The sum of the costs of the cells of a tile: its share of the environment.
+    /// The sum of the shares of the cells of a tile: its part of the environment.
     double tile_cost(std::size_t tile) const { return cost_[tile]; }
 
     /// Calls `visit(part)` for each cell of a tile.

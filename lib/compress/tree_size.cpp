@@ -81,7 +81,7 @@ std::shared_ptr<const SizedTree::Curves> TreeSizer::curves_of(const std::vector<
         const std::vector<Part>& parts = *bins[b].parts;
         Bin& bin = bins_[b];
         bin.drop_changed(*bins[b].nodes, *bins[b].pruned);
-        const std::vector<double> cost = costs_below(*bins[b].nodes, *bins[b].pruned);
+        const std::vector<double> cost = shares_below(*bins[b].nodes, *bins[b].pruned);
         const Outline outlined = outline(*bins[b].nodes, *bins[b].pruned, cost);
         out->curves.resize(base + outlined.curves.size());
         out->curves[base].reach = 1.0 / double(bins.size());

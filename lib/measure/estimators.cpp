@@ -1,6 +1,8 @@
 #include "measure/estimators.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 namespace acdf::measure {
@@ -54,11 +56,16 @@ private:
 class Mis final : public PointEstimator {
 public:
     Mis(const std::vector<Share>& shares, Heuristic heuristic) : power_(heuristic == Heuristic::power) {
-        for (const Share& share : shares) parts_.push_back({share.sampler->point_sampler(), double(share.n)});
+        for (const Share& share : shares) {
+            if (share.automatic) automatic_ = parts_.size();
+            parts_.push_back({share.sampler->point_sampler(), double(share.n)});
+            given_.push_back(share.n);
+        }
     }
 
     Rgb estimate(const ShadingPoint& point, const Integrand& f, Random& random, Tally& tally) override {
         for (const Part& part : parts_) part.sampler->move_to(point);
+        if (automatic_ < parts_.size()) divide_samples();
         Rgb sum{};
         AcdfDirectionSample s;
         for (const Part& part : parts_) {
@@ -74,6 +81,25 @@ private:
         PointSamplerPtr sampler;
         double n;
     };
+    /// Whole numbers that depend on the point alone: the estimate stays unbiased.
+    void divide_samples() {
+        std::uint32_t all = 0;
+        for (const std::uint32_t n : given_) all += n;
+        const std::uint32_t others = all - given_[automatic_];
+        const auto least = static_cast<double>(parts_.size() - 1);
+        const double own = std::round(static_cast<double>(parts_[automatic_].sampler->recommended_share()) * all);
+        parts_[automatic_].n = std::clamp(own, 1.0, std::max(1.0, all - least));
+        const double left = all - parts_[automatic_].n;
+        std::uint32_t before = 0; // sums are rounded, not what each gets: together it is all that is left
+        double given = 0.0;
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            if (i == automatic_) continue;
+            before += given_[i];
+            const double upto = std::round((left - least) * before / others);
+            parts_[i].n = 1.0 + upto - given;
+            given = upto;
+        }
+    }
     /// w_i / (n_i p_i).
     double weight(const Part& own, const AcdfDirectionSample& s) const {
         const double own_density = own.n * s.pdf;
@@ -87,6 +113,8 @@ private:
     }
 
     std::vector<Part> parts_;
+    std::vector<std::uint32_t> given_;
+    std::size_t automatic_ = SIZE_MAX;
     bool power_;
 };
 
@@ -150,6 +178,10 @@ MisEstimator::MisEstimator(const std::vector<Share>& shares, Heuristic heuristic
     for (const Share& share : shares)
         if (share.n > 0) shares_.push_back(share);
     check_count(shares_.size());
+    std::size_t automatic = 0;
+    for (const Share& share : shares_) automatic += share.automatic;
+    if (automatic > 1 || (automatic == 1 && shares_.size() < 2))
+        throw std::invalid_argument("one sampler beside others divides the samples itself");
 }
 
 std::unique_ptr<PointEstimator> MisEstimator::point_estimator() const {

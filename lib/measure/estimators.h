@@ -29,6 +29,9 @@ private:
 struct Share {
     const LightSampler* sampler = nullptr;
     std::uint32_t n = 0;
+    /// At each point it gives what it recommends itself of all samples instead, at least one and not all of them;
+    /// others share the rest in proportion.
+    bool automatic = false;
 };
 
 enum class Heuristic {
@@ -40,7 +43,8 @@ enum class Heuristic {
 /// samples x of w_i(x) f(x) / (n_i p_i(x)). Unbiased where at least one density is > 0 wherever f is.
 class MisEstimator : public Estimator {
 public:
-    /// Samplers with n = 0 are left out. Throws std::invalid_argument where none remains.
+    /// Samplers with n = 0 are left out. Throws std::invalid_argument where none remains, or several are automatic,
+    /// or one that has no other beside it.
     MisEstimator(const std::vector<Share>& shares, Heuristic heuristic);
     std::unique_ptr<PointEstimator> point_estimator() const override;
     std::uint64_t bytes() const override; ///< of all samplers

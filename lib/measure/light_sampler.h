@@ -26,6 +26,8 @@ public:
     virtual AcdfDirectionSample sample(double u0, double u1) const = 0;
     /// sr^-1, of `sample` at this point; 0 for directions that it never draws.
     virtual float pdf(const float wi[3]) const = 0;
+    /// Which share of the samples to draw from it beside others, in (0, 1]; 1 where it does not know.
+    virtual float recommended_share() const { return 1.0f; }
 };
 
 /// Tables that are built once, for all threads; must outlive the PointSamplers that it makes.

@@ -3,11 +3,13 @@
 #include "measure/compensated_cdf.h"
 #include "measure/downsampled_cdf.h"
 #include "measure/hierarchical_warp.h"
+#include "measure/ideal_row.h"
 #include "measure/local_rivals.h"
 #include "measure/point_samplers.h"
 #include "measure/surface_frame.h"
 #include "measure/tiling.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace acdf::measure {
@@ -49,9 +51,21 @@ struct EnvironmentFile {
     const File& file;
     EnvironmentView view{file.environment()};
     explicit EnvironmentFile(const File& f) : file(f) {}
-    AcdfDirectionSample sample(double u0, double u1) const { return view.sample(u0, u1); }
-    float pdf(const float wi[3]) const { return view.pdf(wi); }
     std::uint64_t bytes() const { return file.size(); }
+};
+
+class EnvironmentPoint final : public PointSampler {
+public:
+    explicit EnvironmentPoint(const EnvironmentFile& file) : view_(file.view) {}
+    void move_to(const ShadingPoint&) override {}
+    AcdfDirectionSample sample(double u0, double u1) const override {
+        return view_.sample(below_one(u0), below_one(u1));
+    }
+    float pdf(const float wi[3]) const override { return view_.pdf(wi); }
+    float recommended_share() const override { return view_.recommended_share(); }
+
+private:
+    EnvironmentView view_;
 };
 
 struct LocalFile {
@@ -64,13 +78,18 @@ struct LocalFile {
 class LocalPoint final : public PointSampler {
 public:
     explicit LocalPoint(const LocalFile& file) : view_(file.view), point_() {}
-    void move_to(const ShadingPoint& point) override { point_ = view_.at(point.n); }
+    void move_to(const ShadingPoint& point) override {
+        point_ = view_.at(point.n);
+        std::copy_n(point.n, 3, normal_);
+    }
     AcdfDirectionSample sample(double u0, double u1) const override { return view_.sample(point_, u0, u1); }
     float pdf(const float wi[3]) const override { return view_.pdf(point_, wi); }
+    float recommended_share() const override { return view_.recommended_share(normal_); }
 
 private:
     LocalEnvironmentView view_;
     AcdfLocalPoint point_;
+    float normal_[3] = {0.0f, 0.0f, 1.0f};
 };
 
 /// A point's surface, with its normal as z.
@@ -201,6 +220,10 @@ LightSamplerPtr compensated_sampler(const compress::Target& target, double s) {
     return std::make_unique<SameEverywhere<CompensatedCdf>>(target, s);
 }
 
+LightSamplerPtr ideal_sampler(const compress::Target& target, double shares) {
+    return std::make_unique<MovedToPoints<IdealRows, IdealRow>>(target, shares);
+}
+
 LightSamplerPtr cosine_sampler() { return std::make_unique<MovedToPoints<NoTable, CosinePoint>>(); }
 
 LightSamplerPtr ggx_sampler(double alpha) {
@@ -212,7 +235,8 @@ LightSamplerPtr tabulated_brdf_sampler(const TabulatedBrdf& table) {
 }
 
 LightSamplerPtr file_sampler(const File& file) {
-    if (file.kind() == ACDF_KIND_ENVIRONMENT) return std::make_unique<SameEverywhere<EnvironmentFile>>(file);
+    if (file.kind() == ACDF_KIND_ENVIRONMENT)
+        return std::make_unique<MovedToPoints<EnvironmentFile, EnvironmentPoint>>(file);
     if (file.kind() == ACDF_KIND_LOCAL) return std::make_unique<MovedToPoints<LocalFile, LocalPoint>>(file);
     if (file.kind() == ACDF_KIND_BRDF) return std::make_unique<MovedToPoints<BrdfFile, BrdfFilePoint>>(file);
     throw std::invalid_argument("a table does not say what light it samples");

@@ -36,6 +36,10 @@ LightSamplerPtr hierarchical_sampler(const compress::Target& target);
 /// sampler of the surface; biased on its own.
 LightSamplerPtr compensated_sampler(const compress::Target& target, double s = 1.0);
 
+/// IdealRow: light x cosine on all texels, made anew at each point; with `shares` > 0 filled up for as many samples
+/// of ours for one of the cosine.
+LightSamplerPtr ideal_sampler(const compress::Target& target, double shares = 0.0);
+
 // ---- of the surface ----
 
 /// CosineHemisphere.

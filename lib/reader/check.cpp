@@ -147,6 +147,7 @@ constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_
 bool belongs(int known, u32 kind) {
     if (known == chunk_local) return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
+    if (known == chunk_company) return kind != ACDF_KIND_BRDF;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
 }
@@ -299,6 +300,8 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_environment(description, payloads.of[chunk_bins], report, parts);
     if (header.kind == ACDF_KIND_TABLE && !report.stopped())
         check_table_kind(description, payloads.of[chunk_bins], report, parts);
+    if (payloads.of[chunk_company].data && belongs(chunk_company, header.kind) && !report.stopped())
+        check_company(payloads.of[chunk_company], header.kind, report, parts);
     return report.verdict();
 }
 

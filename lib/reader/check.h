@@ -56,6 +56,7 @@ struct Parts {
     const std::uint8_t* rows = nullptr;        ///< tiles->row_count rows of tiles->tile_count - 1 codes
     const AcdfLocalHeader* local = nullptr;    ///< of local environments
     const AcdfLight* lights = nullptr;         ///< local->light_count
+    const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
     void* inflated = nullptr; ///< block of the inflated chunks, from std::aligned_alloc; the caller frees it

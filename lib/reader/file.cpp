@@ -165,6 +165,7 @@ File& File::operator=(File&& other) noexcept {
     blend_ = std::exchange(other.blend_, AcdfBlend{});
     local_ = std::exchange(other.local_, nullptr);
     lights_ = std::exchange(other.lights_, nullptr);
+    company_ = std::exchange(other.company_, nullptr);
     views_ = std::exchange(other.views_, nullptr);
     nodes_ = std::exchange(other.nodes_, nullptr);
     metadata_ = std::exchange(other.metadata_, nullptr);
@@ -215,6 +216,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.blend_ = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
     loaded.local_ = parts.local;
     loaded.lights_ = parts.lights;
+    loaded.company_ = parts.company;
     loaded.views_ = parts.views;
     loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
@@ -257,7 +259,7 @@ Text File::metadata(const char* key) const noexcept {
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
-                            cells_});
+                            cells_, company_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
@@ -269,7 +271,9 @@ LocalEnvironmentView File::local() const noexcept {
                          axes_[ACDF_AXIS_THETA].resolution,
                          description_->total,
                          description_->parameterization,
-                         nullptr};
+                         nullptr,
+                         company_};
+    local.company = company_;
     local.bins = bins_;
     local.lights = lights_;
     local.light_count = local_->light_count;
@@ -292,7 +296,7 @@ BrdfView File::brdf() const noexcept {
 TableView File::table() const noexcept {
     u32 indexed = 0;
     while (axes_[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
-    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total});
+    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, company_});
 }
 
 } // namespace acdf

@@ -52,6 +52,31 @@ protected:
     }
 };
 
+TEST_F(LocalCommand, OfACompanyTellsIt) {
+    const json report = made({"--budget", "48KiB", "--with", "cosine", "--shares", "2:1"});
+    EXPECT_TRUE(report.at("combined").get<bool>());
+    EXPECT_LT(report.at("relative_variance").get<double>(), report.at("relative_variance_full_cdf").get<double>());
+    const json info = json::parse(run_acdf({"info", "--json", output}).out);
+    EXPECT_EQ(info.at("company").at("with"), "cosine");
+    EXPECT_NEAR(info.at("company").at("share").get<double>(), 2.0 / 3.0, 1e-6);
+    EXPECT_GT(info.at("company").at("recommended_share").get<double>(), 0.0);
+    EXPECT_EQ(info.at("options"), "--with cosine --shares 2:1 --budget 49152");
+    const json measured = json::parse(run_acdf({"measure", output, "--against", probe, "--json"}).out);
+    EXPECT_TRUE(measured.at("combined").get<bool>());
+    EXPECT_EQ(measured.at("support_violations"), 0);
+    EXPECT_EQ(run_acdf({"validate", output}).code, 0);
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--shares", "2:1"},
+                                                  {"--heuristic", "power"},
+                                                  {"--with", "mean"},
+                                                  {"--with", "cosine", "--shares", "0:1"},
+                                                  {"--with", "cosine", "--cosine-share", "0.2"},
+                                                  {"--with", "cosine", "--no-sharing"}}) {
+        std::vector<std::string> options{"local", probe, "-o", output, "--force"};
+        options.insert(options.end(), wrong.begin(), wrong.end());
+        EXPECT_EQ(run_acdf(options).code, 2) << wrong.front();
+    }
+}
+
 TEST_F(LocalCommand, TellsWhatMeasureTells) {
     const json report = made({"--budget", "40kB"});
     EXPECT_LE(report["bytes"], 40000);

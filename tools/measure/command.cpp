@@ -39,26 +39,40 @@ struct Measured {
 
 nlohmann::ordered_json report(const MeasureArguments& options, const File& file, const Measured& measured) {
     const build::Accuracy& a = measured.accuracy;
-    return {{"file", options.file},
-            {"source", options.source},
-            {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
-            {"noise_percent", noise_json(a.relative_variance)},
-            {"relative_variance_full_cdf", measured.full_cdf},
-            {"least_variance", a.least_variance},
-            {"rms_pdf_error", a.rms_pdf_error},
-            {"kl_divergence", a.kl_divergence},
-            {"max_weight", a.max_weight},
-            {"resampling_error", measured.error},
-            {"support_violations", a.support_violations},
-            {"bytes", file.size()},
-            {"cells", a.cells},
-            {"bins", file.description().bin_count},
-            {"total", a.total}};
+    nlohmann::ordered_json out = {
+        {"file", options.file},
+        {"source", options.source},
+        {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+        {"noise_percent", noise_json(a.relative_variance)},
+        {"relative_variance_full_cdf", measured.full_cdf},
+        {"least_variance", a.least_variance},
+        {"rms_pdf_error", a.rms_pdf_error},
+        {"kl_divergence", a.kl_divergence},
+        {"max_weight", a.max_weight},
+        {"resampling_error", measured.error},
+        {"support_violations", a.support_violations},
+        {"bytes", file.size()},
+        {"cells", a.cells},
+        {"bins", file.description().bin_count},
+        {"total", a.total}};
+    if (a.combined) out["combined"] = true; // of the file and its company
+    return out;
 }
 
 void print_text(const MeasureArguments& options, const File& file, const Measured& measured) {
     const build::Accuracy& a = measured.accuracy;
     std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
+    if (a.combined) {
+        std::printf("  relative variance      %.6g   a sample, with its company: not to be used alone\n",
+                    a.relative_variance);
+        std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
+                    noise_texts(a.relative_variance).c_str());
+        std::printf("  largest weight         %.6g   f over the combined density, over its mean\n", a.max_weight);
+        std::printf("  support violations     %" PRIu64 "   of both together\n", a.support_violations);
+        std::printf("  cells                  %" PRIu64 "\n", a.cells);
+        std::printf("  bytes                  %" PRIu64 "\n", file.size());
+        return;
+    }
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
     std::printf("    noise                %s   at 16, 64, 256 samples; of the light's sum, not of a surface\n",
                 noise_texts(a.relative_variance).c_str());

@@ -86,6 +86,7 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
         {"cells", count_cells(file)},
         {"bins", file.description().bin_count},
         {"total", file.description().total}};
+    if (a.combined) out["combined"] = true; // of the file and its company
     for (const Rival& rival : rivals)
         out["rivals"][rival.key] = {{"relative_variance", rival.relative_variance}, {"bytes", rival.bytes}};
     return out;
@@ -94,8 +95,9 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
 void print_text(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
                 const std::vector<Rival>& rivals) {
     std::printf("%s against %s, %u random normals\n", options.file.c_str(), options.source.c_str(), a.lit_normals);
-    std::printf("  relative variance      %.6g   of one sample of the irradiance, mean over normals\n",
-                a.relative_variance);
+    std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
+                a.combined ? "a sample of the irradiance, with its company: not to be used alone"
+                           : "of one sample of the irradiance, mean over normals");
     std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
                 noise_texts(a.relative_variance).c_str());
     std::printf("    median, worst        %.6g, %.6g\n", a.median, a.worst);

@@ -181,7 +181,12 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
     run.options.reference = !options.no_reference;
     run.options.timing = !options.no_timing;
     const builder::Target target = light_target(options, scene.probe);
-    SamplerBuilder builder(target, brdfs_of(scene), options.data);
+    std::vector<builder::SceneNormal> normals;
+    for (const measure::ScenePoint& point : scene.points.points) {
+        const float* n = point.shading().n;
+        normals.push_back({{n[0], n[1], n[2]}, 1.0});
+    }
+    SamplerBuilder builder(target, brdfs_of(scene), options.data, std::move(normals));
     bool occluders = false;
     for (const measure::Object& object : scene.scene.geometry.objects) occluders |= !object.seen;
     std::vector<measure::ScenePoint> open;

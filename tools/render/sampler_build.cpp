@@ -38,17 +38,23 @@ Table file_table(std::vector<std::uint8_t> bytes) {
     return {loaded, std::move(sampler), file};
 }
 
-Table env_table(const builder::Target& target, std::uint64_t bytes) {
+Table env_table(const builder::Target& target, const SamplerSpec& spec,
+                const std::vector<builder::SceneNormal>& normals) {
     builder::EnvironmentOptions options;
-    options.goal = builder::Goal::of_budget(bytes);
+    options.goal = builder::Goal::of_budget(spec.bytes);
+    options.company = spec.company;
+    if (spec.of_scene) options.normals = normals;
     builder::Environment made;
     throw_unless_built(builder::environment(target, options, made));
     return file_table(std::move(made.bytes));
 }
 
-Table local_table(const builder::Target& target, std::uint64_t bytes) {
+Table local_table(const builder::Target& target, const SamplerSpec& spec,
+                  const std::vector<builder::SceneNormal>& normals) {
     builder::LocalOptions options;
-    options.goal = builder::Goal::of_budget(bytes);
+    options.goal = builder::Goal::of_budget(spec.bytes);
+    options.company = spec.company;
+    if (spec.of_scene) options.normals = normals;
     builder::Local made;
     throw_unless_built(builder::local(target, options, made));
     return file_table(std::move(made.bytes));
@@ -96,6 +102,7 @@ struct SamplerBuilder::Store {
     const compress::Target& target; ///< of it
     std::vector<const input::Brdf*> brdfs;
     std::string data;
+    std::vector<builder::SceneNormal> normals;
     std::map<std::string, Table> tables; ///< by text, and the material where that matters
     std::map<std::string, std::unique_ptr<const measure::StratifiedMap>> maps;
     std::vector<std::unique_ptr<measure::Estimator>> estimators;
@@ -112,9 +119,9 @@ struct SamplerBuilder::Store {
         case SamplerKind::ggx:
             return {nullptr, measure::ggx_sampler(spec.alpha)};
         case SamplerKind::env:
-            return env_table(fitted, spec.bytes);
+            return env_table(fitted, spec, normals);
         case SamplerKind::local:
-            return local_table(fitted, spec.bytes);
+            return local_table(fitted, spec, normals);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
         case SamplerKind::brdf_table:
@@ -129,6 +136,10 @@ struct SamplerBuilder::Store {
             return {nullptr, measure::downsampled_cdf_sampler(target, spec.columns, spec.rows)};
         case SamplerKind::compensated:
             return {nullptr, measure::compensated_sampler(target)};
+        case SamplerKind::ideal:
+            return {nullptr, measure::ideal_sampler(target, spec.company.kind == ACDF_COMPANY_NONE
+                                                                ? 0.0
+                                                                : spec.company.light / spec.company.other)};
         case SamplerKind::strata:
         case SamplerKind::mis:
         case SamplerKind::product:
@@ -166,6 +177,8 @@ struct SamplerBuilder::Store {
         const int parts = spec.divisions ? static_cast<int>(spec.divisions) : measure::product_parts(samples);
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
+        if (light->company())
+            throw SpecError("sampler '" + spec.text + "': its light has no support where its company is enough");
         const Table& made = kept(spec.text + "/" + std::to_string(parts), material, [&] {
             return brdf ? measure::product_sampler(*light, *brdf, parts)
                         : measure::product_sampler(*light, spec.parts[1].alpha, parts);
@@ -176,6 +189,12 @@ struct SamplerBuilder::Store {
         if (spec.parts.empty()) return sampler(spec, material);
         const measure::LightSampler &a = sampler(spec.parts[0], material), &b = sampler(spec.parts[1], material);
         return *kept(spec.text, material, [&] { return measure::half_and_half(a, b); }).sampler;
+    }
+    bool needs_company(const SamplerSpec& spec, std::size_t material) {
+        sampler(spec, material);
+        const auto found = tables.find(spec.text);
+        const auto* loaded = static_cast<const LoadedFile*>(found->second.keep.get());
+        return loaded->file.company() != nullptr;
     }
     const measure::StratifiedMap& stratified(const SamplerSpec& spec, std::uint32_t strata) {
         auto& map = maps[spec.text + "/" + std::to_string(strata)];
@@ -193,6 +212,9 @@ struct SamplerBuilder::Store {
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
         if (spec.kind == SamplerKind::product)
             return std::make_unique<measure::SingleEstimator>(product(spec, material, samples), samples);
+        if (spec.kind == SamplerKind::file && needs_company(spec, material))
+            throw SpecError("sampler '" + spec.text + "': has no support where its company is enough: mis(" +
+                            spec.text + ", cosine)");
         if (spec.kind != SamplerKind::mis)
             return std::make_unique<measure::SingleEstimator>(sampler(spec, material), samples);
         const std::vector<std::uint32_t> counts = divided(samples, spec);
@@ -201,7 +223,7 @@ struct SamplerBuilder::Store {
             const SamplerSpec& part = spec.parts[i];
             shares.push_back(
                 {part.kind == SamplerKind::product ? &product(part, material, counts[i]) : &sampler(part, material),
-                 counts[i]});
+                 counts[i], part.automatic});
         }
         return std::make_unique<measure::MisEstimator>(shares, spec.power ? measure::Heuristic::power
                                                                           : measure::Heuristic::balance);
@@ -222,8 +244,9 @@ struct SamplerBuilder::Store {
 };
 
 SamplerBuilder::SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs,
-                               std::string data)
-    : store_(new Store{target, builder::grid_of(target), std::move(brdfs), std::move(data), {}, {}, {}}) {}
+                               std::string data, std::vector<builder::SceneNormal> normals)
+    : store_(new Store{
+          target, builder::grid_of(target), std::move(brdfs), std::move(data), std::move(normals), {}, {}, {}}) {}
 
 SamplerBuilder::~SamplerBuilder() = default;
 

@@ -23,7 +23,9 @@ struct BuiltSampler {
 class SamplerBuilder {
 public:
     /// `brdfs`: one a material, which are referred to and must outlive the builder; files are relative to `data`.
-    SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs, std::string data);
+    /// `normals`: those that the camera sees, for samplers that are made for them.
+    SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs, std::string data,
+                   std::vector<builder::SceneNormal> normals = {});
     ~SamplerBuilder();
     SamplerBuilder(const SamplerBuilder&) = delete;
     SamplerBuilder& operator=(const SamplerBuilder&) = delete;

@@ -1,5 +1,6 @@
 #include "tools/render/sampler_spec.h"
 
+#include "tools/cli/company_options.h"
 #include "tools/cli/options.h"
 #include "tools/cli/sizes.h"
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <sstream>
 
 namespace acdf::tools {
 namespace {
@@ -43,6 +45,7 @@ constexpr Name names[] = {
     {"strata", SamplerKind::strata, "solid-angle"},
     {"ris", SamplerKind::ris, "32"},
     {"product", SamplerKind::product, "auto"},
+    {"ideal", SamplerKind::ideal, nullptr},
     {"file", SamplerKind::file, ""},
 };
 
@@ -109,9 +112,45 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     }
 }
 
-SamplerSpec parse_single(const std::string& text) {
-    const std::size_t colon = text.find(':');
-    const std::string name = text.substr(0, colon);
+std::string trimmed(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
+    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+/// " --with cosine --shares 2:1 --heuristic power --scene".
+void read_company(const std::string& options, SamplerSpec& spec) {
+    if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && spec.kind != SamplerKind::ideal)
+        fail(spec.text, "takes no options: env, local and ideal do");
+    std::vector<std::string> words;
+    std::istringstream stream(options);
+    for (std::string word; stream >> word;) words.push_back(word);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "--scene" && spec.kind != SamplerKind::ideal) {
+            spec.of_scene = true;
+            continue;
+        }
+        const std::string value = i + 1 < words.size() ? words[i + 1] : "";
+        const bool known = words[i] == "--with"        ? parse_company(value, spec.company)
+                           : words[i] == "--shares"    ? parse_shares(value, spec.company)
+                           : words[i] == "--heuristic" ? parse_heuristic(value, spec.company)
+                                                       : false;
+        if (!known)
+            fail(spec.text, "'" + words[i] + " " + value + "' is no option: --with cosine, --shares 2:1, " +
+                                "--heuristic power or --scene");
+        ++i;
+    }
+    if (spec.kind == SamplerKind::ideal && spec.company.kind > ACDF_COMPANY_COSINE)
+        fail(spec.text, "knows --with cosine alone");
+    if (spec.kind == SamplerKind::local && spec.company.kind == ACDF_COMPANY_MEAN)
+        fail(spec.text, "--with mean is for env");
+}
+
+SamplerSpec parse_single(const std::string& whole) {
+    const std::string text = trimmed(whole);
+    const std::size_t option = text.compare(0, 5, "file:") == 0 ? std::string::npos : text.find(" --");
+    const std::string plain = text.substr(0, option);
+    const std::size_t colon = plain.find(':');
+    const std::string name = plain.substr(0, colon);
     const auto* found =
         std::find_if(std::begin(names), std::end(names), [&](const Name& n) { return name == n.name; });
     if (found == std::end(names)) {
@@ -123,7 +162,9 @@ SamplerSpec parse_single(const std::string& text) {
     spec.kind = found->kind;
     spec.text = text;
     if (colon != std::string::npos && !found->argument) fail(text, "takes no argument");
-    if (found->argument) read_argument(colon == std::string::npos ? found->argument : text.substr(colon + 1), spec);
+    if (found->argument)
+        read_argument(colon == std::string::npos ? found->argument : trimmed(plain.substr(colon + 1)), spec);
+    if (option != std::string::npos) read_company(text.substr(option), spec);
     return spec;
 }
 
@@ -151,6 +192,9 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
     spec.text = text;
     for (const std::string& part : split(text, text.substr(open + 1, text.size() - open - 2)))
         spec.parts.push_back(parse_single(part));
+    for (const SamplerSpec& part : spec.parts)
+        if (part.company.kind != ACDF_COMPANY_NONE)
+            fail(text, "'" + part.text + "' has no support where its company is enough");
     const std::size_t count = spec.parts.size();
     const SamplerSpec &first = spec.parts.front(), &last = spec.parts.back();
     switch (spec.kind) {
@@ -196,7 +240,11 @@ SamplerSpec parse_mis(const std::string& text, std::size_t begin) {
         double share = 1.0;
         const bool weighted = star != std::string::npos && parse_number(part.substr(0, star), share);
         if (!(share >= 1e-6 && share <= 1e6)) fail(text, "shares are from 1e-6 to 1e6");
-        spec.parts.push_back(parse_part(weighted ? part.substr(star + 1) : part));
+        std::string one = trimmed(weighted ? part.substr(star + 1) : part);
+        const bool automatic = one.compare(0, 5, "auto:") == 0;
+        if (automatic) one = one.substr(5);
+        spec.parts.push_back(parse_part(one));
+        spec.parts.back().automatic = automatic;
         const SamplerSpec& last = spec.parts.back();
         if (last.kind == SamplerKind::ris || last.kind == SamplerKind::strata)
             fail(text, "'" + last.text + "' has no density by itself that others could be weighed with");
@@ -204,6 +252,8 @@ SamplerSpec parse_mis(const std::string& text, std::size_t begin) {
     }
     if (spec.parts.size() < 2 || spec.parts.size() > kMostParts)
         fail(text, "combines from 2 to " + std::to_string(kMostParts) + " samplers");
+    if (std::count_if(spec.parts.begin(), spec.parts.end(), [](const SamplerSpec& p) { return p.automatic; }) > 1)
+        fail(text, "one part at most is auto:");
     const double sum = std::accumulate(spec.shares.begin(), spec.shares.end(), 0.0);
     for (double& share : spec.shares) share /= sum;
     return spec;
@@ -224,6 +274,8 @@ SamplerSpec parse_sampler(const std::string& text) {
     SamplerSpec spec = parse_part(text);
     if (spec.kind == SamplerKind::compensated)
         fail(text, "has no support where little light is: mis(compensated,cosine), which is mis-compensated");
+    if (spec.company.kind != ACDF_COMPANY_NONE)
+        fail(text, "has no support where its company is enough: mis(" + text + ", cosine)");
     return spec;
 }
 

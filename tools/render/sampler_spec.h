@@ -1,6 +1,8 @@
 // What is compared, as short texts: "local:1MB", "ris:32", "mis(local:1MB,cosine)".
 #pragma once
 
+#include <acdf/builder.h>
+
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -31,6 +33,7 @@ enum class SamplerKind {
     ris,     ///< ris:32: resampled candidates of the full CDF; ris:32(local:1MB,brdf:64KiB): of both, half each
     mis,     ///< mis(A,B), mis-power(A,B): balance or power heuristic; mis-compensated is
              ///< mis(compensated,cosine)
+    ideal,   ///< ideal: light times cosine on all texels, made at each point; --with cosine: filled up for it
     file,    ///< file:my.acdf: any environment, local environment or BRDF file
     product, ///< product(local:1MB,brdf:64KiB), product:32(file:sky.acdf,ggx:0.1): light times BRDF, in 32 parts
 };
@@ -45,13 +48,17 @@ struct SamplerSpec {
     bool by_radiance = false;            ///< strata: not by solid angle
     bool centre = false;                 ///< brdf-table as described
     bool power = false;                  ///< mis: power heuristic
+    builder::Company company;            ///< env, local, ideal: that it is made for
+    bool of_scene = false;               ///< env, local: made for the normals that the camera sees
+    bool automatic = false;              ///< a part of mis: gives as many samples as it recommends itself
     std::string path;                    ///< file
     std::uint32_t divisions = 0;         ///< product: parts of the sphere; 0: as many as the samples pay for
     std::vector<SamplerSpec> parts;      ///< mis: two or more; product: light and BRDF; ris: two; tiles: a BRDF
     std::vector<double> shares;          ///< mis: of the samples; their sum is 1
 };
 
-/// `mis(4*local:1MB,cosine)` gives the first part four times as many samples as the second. Throws SpecError.
+/// `mis(4*local:1MB,cosine)` gives the first part four times as many samples as the second, `mis(auto:local:1MB
+/// --with cosine,cosine)` as many as the file recommends at each point. Throws SpecError.
 SamplerSpec parse_sampler(const std::string& text);
 
 /// Letters, digits and hyphens: for file names. Distinct texts may have the same.

@@ -238,10 +238,29 @@ private:
     std::shared_ptr<const Data> data_;
 };
 
+/// What a file is to be combined with, by multiple importance sampling. Such a file has no density where the
+/// company is enough: it is not to be used alone, and says so (needs_company of its view).
+struct Company {
+    /// ACDF_COMPANY_COSINE: cos / pi around the normal; _BRDF: lobes as BRDFs have them; _MEAN: as if the company
+    /// were the same everywhere (Karlik et al. 2019), of environments alone.
+    AcdfCompanyKind kind = ACDF_COMPANY_NONE;
+    AcdfHeuristic heuristic = ACDF_HEURISTIC_BALANCE;
+    double light = 1.0, other = 1.0; ///< samples of the file and of the company, in proportion; in [1e-3, 1e3]
+};
+
+/// A normal of a scene, of any length > 0, and how often it occurs, > 0.
+struct SceneNormal {
+    float normal[3] = {0.0f, 0.0f, 1.0f};
+    double weight = 1.0;
+};
+
 struct EnvironmentOptions {
     TargetOptions target; ///< of pixels and rows; a Target has its own
     Goal goal;            ///< cells: in all, about 4.2 bytes each. Of the variance fit only
     FitOptions fit;
+    Company company;                  ///< of the variance fit as a tree, without max_weight or a goal of variance
+    std::vector<SceneNormal> normals; ///< that the company lights; empty: all normals
+    std::string normals_text;         ///< as in LocalOptions
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
 };
@@ -261,12 +280,6 @@ Status environment(const Pixels& pixels, const EnvironmentOptions& options, Envi
 Status environment(const Rows& rows, const EnvironmentOptions& options, Environment& result,
                    const Control& control = {}) noexcept;
 
-/// A normal of a scene, of any length > 0, and how often it occurs, > 0.
-struct SceneNormal {
-    float normal[3] = {0.0f, 0.0f, 1.0f};
-    double weight = 1.0;
-};
-
 /// What the tree of a bin of its own is fitted to.
 enum class BinTarget {
     mean,  ///< right for all normals of the bin
@@ -284,6 +297,7 @@ struct LocalOptions {
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
     BinTarget bin_target = BinTarget::mean; ///< without sharing
     FitOptions fit;                         ///< of a bin's tree, without sharing
+    Company company;                        ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some

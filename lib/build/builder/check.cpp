@@ -82,6 +82,14 @@ void check(const SceneNormal& n) {
     require(n.weight > 0.0 && n.weight <= 1e100, "the weight of a normal is not positive, or above 1e100");
 }
 
+void check(const Company& company, AcdfCompanyKind most) {
+    require(company.kind >= ACDF_COMPANY_NONE && company.kind <= most, "company.kind is none of those of the file");
+    require(company.heuristic == ACDF_HEURISTIC_BALANCE || company.heuristic == ACDF_HEURISTIC_POWER,
+            "company.heuristic is no AcdfHeuristic");
+    for (const double share : {company.light, company.other})
+        require(share >= 1e-3 && share <= 1e3, "a share of the company is not in [0.001, 1000]");
+}
+
 void check_bins(const LocalOptions& options) {
     require(options.subdivisions <= 256, "subdivisions is above 256");
     require(options.columns <= 1024 && options.rows <= 1024, "there are more than 1024 columns or rows of bins");
@@ -111,6 +119,14 @@ void check(const EnvironmentOptions& options) {
     check(options.fit);
     check(options.codec);
     check(options.source);
+    check(options.company, ACDF_COMPANY_MEAN);
+    for (const SceneNormal& n : options.normals) check(n);
+    check_text(options.normals_text, 4096);
+    const bool alone = options.company.kind == ACDF_COMPANY_NONE;
+    require(alone || (options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == Shape::tree &&
+                      options.fit.max_weight == 0.0 && options.goal.kind != Goal::Kind::variance),
+            "a company is for the variance fit as a tree, without max_weight, of a number of cells or a budget");
+    require(!alone || options.normals.empty(), "normals of an environment are those that its company lights");
     if (options.fit.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, 1);
     require(options.fit.shape == Shape::tree || options.goal.kind == Goal::Kind::cells,
@@ -126,6 +142,9 @@ void check(const LocalOptions& options) {
     check(options.codec);
     check(options.source);
     check_text(options.normals_text, 4096);
+    check(options.company, ACDF_COMPANY_BRDF);
+    require(options.company.kind == ACDF_COMPANY_NONE || (options.sharing && options.cosine_share == 0.0),
+            "a company is for bins that share tiles, and takes the place of a cosine_share");
     if (!options.sharing) check(options.fit);
     if (!options.sharing && options.fit.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, options.sharing ? 16 : 1);

@@ -36,6 +36,16 @@ compress::FitOptions internal(const FitOptions& options) {
     return out;
 }
 
+compress::Company internal(const Company& company) {
+    return {company.kind, company.heuristic, company.light, company.other};
+}
+
+std::vector<compress::SceneNormal> internal(const std::vector<SceneNormal>& normals) {
+    std::vector<compress::SceneNormal> out;
+    for (const SceneNormal& n : normals) out.push_back({{n.normal[0], n.normal[1], n.normal[2]}, n.weight});
+    return out;
+}
+
 template <class Options>
 std::string text_of(const Options& options) noexcept {
     try {
@@ -57,6 +67,9 @@ build::EnvironmentOptions internal(const EnvironmentOptions& options) {
     out.fit = internal(options.fit);
     out.fit.goal = internal(options.goal);
     out.codec = options.codec;
+    out.company = internal(options.company);
+    out.scene = internal(options.normals);
+    out.scene_text = options.normals_text;
     return out;
 }
 
@@ -68,8 +81,8 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.columns = options.columns;
     out.rows = options.rows;
     out.tiles = options.tiles;
-    for (const SceneNormal& n : options.normals)
-        out.scene.push_back({{n.normal[0], n.normal[1], n.normal[2]}, n.weight});
+    out.scene = internal(options.normals);
+    out.company = internal(options.company);
     out.sharing = options.sharing;
     out.bin_target =
         options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;

@@ -182,12 +182,33 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     AcdfNormalBins bins;
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
+    if (point.what == ACDF_LOCAL_BLEND && acdf_company_records(local->company) &&
+        acdf_local_bins(local, normal, &bins)) { /* shares tell what is left to the file */
+        const AcdfCompanyRecord* records = acdf_company_records(local->company);
+        double sum = 0.0;
+        int i;
+        for (i = 0; i < bins.count; ++i) sum += bins.weight[i] * (double)records[bins.bin[i]].flux;
+        return acdf_clamp(local->environment.total * sum / point.length, 0.0, 0x1.fffffffffffffp1023);
+    }
     if (point.what == ACDF_LOCAL_BLEND)
         return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
     if (point.root == local->environment.root) return local->environment.total;
     return acdf_clamp(local->environment.total * (double)local->bins[acdf_nearest_bin(&bins)].share, 0.0,
                       0x1.fffffffffffffp1023); /* a file may have a total and a share whose product is too large */
+}
+
+/* Which share of the samples to draw from the file at a normal, in (0, 1]; interpolated between bins. */
+ACDF_FN float acdf_local_recommended_share(const AcdfLocal* local, const float normal[3]) {
+    AcdfNormalBins bins;
+    double sum = 0.0, weight = 0.0;
+    int i;
+    if (!local->company || !acdf_local_bins(local, normal, &bins)) return acdf_company_share(local->company);
+    for (i = 0; i < bins.count; ++i) {
+        sum += bins.weight[i] * (double)acdf_company_bin_share(local->company, bins.bin[i]);
+        weight += bins.weight[i];
+    }
+    return (float)(sum / weight);
 }
 
 /* Whether the bins of a normal are stored. */

@@ -20,6 +20,7 @@ typedef struct AcdfLocal {
     uint32_t rows;
     double cosine_share;
     const AcdfLocalTables* tables; /* runtime tables; null: splits are walked */
+    const AcdfCompany* company;    /* null: to be used alone */
 } AcdfLocal;
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {

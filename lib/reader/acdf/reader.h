@@ -80,6 +80,10 @@ public:
     }
     /// Integral of the sampled function over the sphere (luminance times sr): for light selection.
     double total() const noexcept { return data_.total; }
+    /// Whether the density is 0 where another sampler is to cover the light: used alone it is biased.
+    bool needs_company() const noexcept { return data_.company != nullptr; }
+    /// Of the samples of both, in (0, 1]: how many to draw from this view; 1 where it is to be used alone.
+    float recommended_share() const noexcept { return acdf_company_share(data_.company); }
     /// The plain data, for acdf/sample.h in another language or on a GPU.
     const AcdfEnvironment& data() const noexcept { return data_; }
 
@@ -121,6 +125,13 @@ public:
     /// as much as the samples are noisy; else that of the bin. For light selection. Where a normal's bins are not
     /// stored, that of all light, which is more; 0 for a normal that is zero or NaN.
     double irradiance(const float normal[3]) const noexcept { return acdf_local_irradiance(&data_, normal); }
+    /// Whether densities are 0 where another sampler is to cover the light: used alone they are biased.
+    bool needs_company() const noexcept { return data_.company != nullptr; }
+    /// Of the samples of both at a normal, in (0, 1]: how many to draw from this view; 1 where it is to be used
+    /// alone.
+    float recommended_share(const float normal[3]) const noexcept {
+        return acdf_local_recommended_share(&data_, normal);
+    }
     /// Whether a normal has a density of its own; else it is served by that of the whole environment.
     bool stored(const float normal[3]) const noexcept { return acdf_local_stored(&data_, normal) != 0; }
     /// The density of the whole environment, whatever the normal.
@@ -191,6 +202,14 @@ public:
     }
     /// Sum over the bins of the integral of the table over its sampled axes.
     double total() const noexcept { return data_.total; }
+    /// Whether densities are 0 where another sampler is to cover the table: used alone they are biased.
+    bool needs_company() const noexcept { return data_.company != nullptr; }
+    /// Of the samples of both in a bin, in (0, 1]: how many to draw from this view; 1 where it is to be used alone,
+    /// or an index is out of range.
+    float recommended_share(const std::uint32_t* index) const noexcept {
+        const AcdfBin* bin = acdf_table_bin(&data_, index);
+        return bin ? acdf_company_bin_share(data_.company, static_cast<std::uint32_t>(bin - data_.bins)) : 1.0f;
+    }
     /// What part of `total` a bin holds: to choose a bin by its energy. 0 where an index is out of range.
     double share(const std::uint32_t* index) const noexcept {
         const AcdfBin* bin = acdf_table_bin(&data_, index);
@@ -239,6 +258,8 @@ public:
     const AcdfBlend& blend() const noexcept { return blend_; }
     std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
+    /// What the file is to be combined with; null: it is to be used alone.
+    const AcdfCompany* company() const noexcept { return company_; }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept {
         return 4 * std::uint64_t{cells_ ? cells_->words : local_tables_ ? local_tables_->words : 0};
@@ -270,6 +291,7 @@ private:
     AcdfBlend blend_ = {};
     const AcdfLocalHeader* local_ = nullptr;
     const AcdfLight* lights_ = nullptr;
+    const AcdfCompany* company_ = nullptr;
     const AcdfViews* views_ = nullptr;
     const float* nodes_ = nullptr;
     const std::uint8_t* metadata_ = nullptr;

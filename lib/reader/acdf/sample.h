@@ -15,6 +15,7 @@
 #define ACDF_SAMPLE_H
 
 #include <acdf/cells.h>
+#include <acdf/company.h>
 #include <acdf/grid.h>
 #include <acdf/random.h>
 
@@ -25,11 +26,12 @@ extern "C" {
 typedef struct AcdfEnvironment {
     const uint8_t* tree; /* chunk TREE */
     uint32_t root;
-    uint32_t columns;          /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi; or u from 0 to 1 */
-    uint32_t rows;             /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi; or v from 0 to 1 */
-    double total;              /* integral of the target over the sphere */
-    uint32_t parameterization; /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
-    const AcdfCells* cells;    /* runtime tables; null: the tree is walked */
+    uint32_t columns;           /* axis 0: position 0 is phi = +pi, `columns` is phi = -pi; or u from 0 to 1 */
+    uint32_t rows;              /* axis 1: position 0 is theta = 0 (+z), `rows` is theta = pi; or v from 0 to 1 */
+    double total;               /* integral of the target over the sphere */
+    uint32_t parameterization;  /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
+    const AcdfCells* cells;     /* runtime tables; null: the tree is walked */
+    const AcdfCompany* company; /* null: to be used alone */
 } AcdfEnvironment;
 
 ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {

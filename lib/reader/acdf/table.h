@@ -17,12 +17,13 @@ extern "C" {
 #endif
 
 typedef struct AcdfTable {
-    const uint8_t* tree;    /* chunk TREE */
-    const AcdfBin* bins;    /* row-major over the indexed axes, the last one fastest */
-    const AcdfAxis* axes;   /* indexed ones first */
-    uint32_t axis_count;    /* of both roles, at most ACDF_MAX_AXES */
-    uint32_t indexed_count; /* less than axis_count */
-    double total;           /* sum over the bins of the integral over the sampled axes */
+    const uint8_t* tree;        /* chunk TREE */
+    const AcdfBin* bins;        /* row-major over the indexed axes, the last one fastest */
+    const AcdfAxis* axes;       /* indexed ones first */
+    uint32_t axis_count;        /* of both roles, at most ACDF_MAX_AXES */
+    uint32_t indexed_count;     /* less than axis_count */
+    double total;               /* sum over the bins of the integral over the sampled axes */
+    const AcdfCompany* company; /* null: to be used alone */
 } AcdfTable;
 
 /* Where a point falls. */

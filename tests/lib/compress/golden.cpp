@@ -24,8 +24,8 @@ std::vector<char> bytes_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-const char* const kNames[] = {"smallest", "one_texel",    "untilted", "zlib",          "planes",    "tilted",
-                              "deep",     "shared_child", "wide",     "many_segments", "octahedral"};
+const char* const kNames[] = {"smallest", "one_texel",    "untilted", "zlib",          "planes",     "tilted",
+                              "deep",     "shared_child", "wide",     "many_segments", "octahedral", "company"};
 
 /// A golden file and the samples beside it.
 struct Line {

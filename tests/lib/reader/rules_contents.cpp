@@ -4,6 +4,73 @@
 #include "tests/lib/reader/local_builder.h"
 
 namespace acdf_test {
+namespace {
+
+// COMP of one record a bin, if any, with one number changed.
+Bytes company_chunk(std::uint32_t kind, std::uint32_t records, float flux) {
+    Bytes raw;
+    put32(raw, kind);
+    put32(raw, ACDF_HEURISTIC_BALANCE);
+    put_float(raw, 0.5f);
+    put_float(raw, 0.75f);
+    put32(raw, records);
+    put32(raw, 0);
+    for (std::uint32_t i = 0; i < records; ++i) {
+        put_float(raw, 0.25f);
+        put_float(raw, flux);
+    }
+    return raw;
+}
+std::function<Bytes()> company(FileSpec file, Bytes raw, const std::function<void(Bytes&)>& change = {}) {
+    return [=]() mutable {
+        if (change) change(raw);
+        file.chunks.push_back({"COMP", raw, 1, false});
+        return file.encode();
+    };
+}
+std::function<Bytes()> company_field(std::size_t at, int size, std::uint64_t value) {
+    return company(complete_file(), company_chunk(ACDF_COMPANY_COSINE, 1, 0.0f),
+                   [=](Bytes& raw) { set(raw, at, size, value); });
+}
+FileSpec local_file() { return shared_local().file(); }
+std::uint32_t bins_of(const FileSpec& file) {
+    std::uint32_t count;
+    std::memcpy(&count, file.chunks[0].raw.data() + 24, 4);
+    return count;
+}
+
+} // namespace
+
+std::vector<Case> company_cases() {
+    const FileSpec local = local_file(), table = table_file();
+    const std::uint32_t bins = bins_of(local);
+    const Bytes cosine = company_chunk(ACDF_COMPANY_COSINE, 1, 0.0f);
+    return {
+        {5020, "empty", company(complete_file(), {})},
+        {5020, "cut", company(complete_file(), cosine, [](Bytes& raw) { raw.pop_back(); })},
+        {5020, "too_long", company(complete_file(), cosine, [](Bytes& raw) { raw.push_back(0); })},
+        {5020, "enormous", company_field(16, 4, 0xFFFFFFFF)},
+        {5020, "reserved", company_field(20, 4, 1)},
+        {5020, "all_ours", company_field(8, 4, 0x3F800000)},
+        {5020, "none_ours", company_field(8, 4, 0)},
+        {5020, "nan_share", company_field(8, 4, 0x7FC00000)},
+        {5020, "recommends_none", company_field(12, 4, 0)},
+        {5020, "recommends_nan", company_field(12, 4, 0x7FC00000)},
+        {5020, "record_above_one", company_field(24, 4, 0x3F800001)},
+        {5020, "flux_of_an_environment", company_field(28, 4, 0x3F800000)},
+        {5020, "two_records", company(complete_file(), company_chunk(ACDF_COMPANY_COSINE, 2, 0.0f))},
+        {5020, "local_without_records", company(local, company_chunk(ACDF_COMPANY_COSINE, 0, 0.0f))},
+        {5020, "infinite_flux",
+         company(local, company_chunk(ACDF_COMPANY_COSINE, bins, std::numeric_limits<float>::infinity()))},
+        {5020, "negative_flux", company(local, company_chunk(ACDF_COMPANY_COSINE, bins, -1.0f))},
+        {5021, "none", company_field(0, 4, 0)},
+        {5021, "five", company_field(0, 4, 5)},
+        {5021, "table_beside_an_environment", company_field(0, 4, 4)},
+        {5021, "cosine_beside_a_table", company(table, company_chunk(ACDF_COMPANY_COSINE, 0, 0.0f))},
+        {5021, "heuristic", company_field(4, 4, 2)},
+    };
+}
+
 std::vector<Case> description_cases() {
     return {
         {5001, "zero", payload_field("DESC", 0, 4, 0)},

@@ -175,6 +175,18 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(parse_sampler("file:a(1)").path, "a(1)");
     EXPECT_EQ(parse_sampler("mis(tiles:12x12(brdf),3*product(local,brdf))").parts[1].parts.size(), 2u);
 
+    const SamplerSpec with =
+        parse_sampler("mis(2*auto:local:1MB --with cosine --shares 3:1 --heuristic power --scene, cosine)");
+    EXPECT_TRUE(with.parts[0].automatic && with.parts[0].of_scene);
+    EXPECT_EQ(with.parts[0].company.kind, ACDF_COMPANY_COSINE);
+    EXPECT_EQ(with.parts[0].company.heuristic, ACDF_HEURISTIC_POWER);
+    EXPECT_EQ(with.parts[0].company.light, 3.0);
+    EXPECT_EQ(with.parts[1].kind, SamplerKind::cosine);
+    for (const char* text :
+         {"local:1MB --with cosine", "mis(local --with mean,cosine)", "mis(full-cdf --scene,cosine)",
+          "mis(env --with,cosine)", "mis(env --with sun,cosine)", "mis(env --shares 2,cosine)",
+          "mis(auto:env --with cosine,auto:cosine)", "mis(ideal --with brdf,cosine)"})
+        EXPECT_THROW(parse_sampler(text), SpecError) << text;
     const SamplerSpec compensated = parse_sampler("mis-compensated");
     EXPECT_EQ(compensated.text, "mis-compensated");
     ASSERT_EQ(compensated.parts.size(), 2u);

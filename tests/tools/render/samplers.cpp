@@ -54,6 +54,15 @@ TEST(RenderSamplers, OfLightAreUnbiased) {
                                   400));
 }
 
+TEST(RenderSamplers, OfCompaniesAreUnbiased) {
+    SmallScene scene;
+    expect_unbiased(scene.compare({"mis(env:4KiB --with cosine,cosine)", "mis(auto:env:4KiB --with cosine,cosine)",
+                                   "mis-power(local:48KiB --with cosine --heuristic power,cosine)",
+                                   "mis(auto:local:48KiB --with cosine --shares 3:1, cosine, full-cdf)",
+                                   "mis(env:4KiB --with brdf,cosine)", "ideal", "mis(ideal --with cosine,cosine)"},
+                                  400));
+}
+
 TEST(RenderSamplers, CombinedAreUnbiased) {
     SmallScene scene;
     expect_unbiased(scene.compare(

@@ -1,0 +1,68 @@
+// The noise of a file and its company together, by multiple importance sampling (Veach and Guibas, SIGGRAPH 1995).
+#pragma once
+
+#include "compress/sum.h"
+
+#include <acdf/layout.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace acdf::build {
+
+/// Sums over texels of one integrand f, for densities p of the file and b of its company. Of N samples a `share` is
+/// drawn from the file, the others from the company.
+class Combination {
+public:
+    Combination(double share, AcdfHeuristic heuristic) : share_(share), power_(heuristic == ACDF_HEURISTIC_POWER) {}
+
+    /// A texel of measure `omega`.
+    void add(double f, double omega, double p, double b) {
+        if (!(f > 0.0)) return;
+        const double ours = share_ * p, theirs = (1.0 - share_) * b, most = std::max(ours, theirs);
+        if (!(most > 0.0)) {
+            ++violations_;
+            return;
+        }
+        // What weights multiply, over the larger density so that squares stay in range.
+        const double x = ours / most, y = theirs / most;
+        const double all = power_ ? x * x + y * y : x + y;
+        const double weight_ours = (power_ ? x * x : x) / all, weight_theirs = 1.0 - weight_ours;
+        const double ratio = f / most * f * omega;
+        second_ += ratio * ((x > 0.0 ? weight_ours * weight_ours / x : 0.0) +
+                            (y > 0.0 ? weight_theirs * weight_theirs / y : 0.0));
+        ours_ += weight_ours * f * omega;
+        theirs_ += weight_theirs * f * omega;
+        largest_ = std::max(largest_, f / most / all * (power_ ? std::max(x, y) : 1.0));
+    }
+    /// Adds the sums of other texels.
+    void add(const Combination& other) {
+        second_ += other.second_;
+        ours_ += other.ours_;
+        theirs_ += other.theirs_;
+        largest_ = std::max(largest_, other.largest_);
+        violations_ += other.violations_;
+    }
+
+    double integral() const { return ours_ + theirs_; }
+    std::uint64_t violations() const { return violations_; }
+    double max_weight() const { return integral() > 0.0 ? largest_ / integral() : 0.0; }
+    /// N times the variance of an estimate of N samples, over the square of the integral: comparable with that of
+    /// one sample alone. Infinite with a violation.
+    double relative_variance() const {
+        if (violations_ > 0) return std::numeric_limits<double>::infinity();
+        const double e = integral();
+        const double means = (share_ > 0.0 ? ours_ / e * (ours_ / e) / share_ : 0.0) +
+                             (share_ < 1.0 ? theirs_ / e * (theirs_ / e) / (1.0 - share_) : 0.0);
+        return std::max(0.0, second_ / e / e - means);
+    }
+
+private:
+    double share_;
+    bool power_;
+    double second_ = 0.0, ours_ = 0.0, theirs_ = 0.0, largest_ = 0.0;
+    std::uint64_t violations_ = 0;
+};
+
+} // namespace acdf::build

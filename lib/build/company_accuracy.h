@@ -1,0 +1,22 @@
+// How noisy an environment file and its company are together, over normals.
+#pragma once
+
+#include "build/environment_accuracy.h"
+#include "build/local_accuracy.h"
+
+namespace acdf::build {
+
+/// Of diffuse surfaces of those normals, lit by the target (see Accuracy::combined), and of which share of the
+/// samples the sum of what their estimates have for a second moment is least.
+struct CompanyAccuracy {
+    double relative_variance = 0.0; ///< mean over the normals that see light
+    double max_weight = 0.0;        ///< largest f over combined density, over its mean
+    double recommended_share = 1.0;
+    std::uint64_t support_violations = 0; ///< of both together
+};
+
+/// The file is an environment with a company, of the target's grid. The same for any number of threads.
+CompanyAccuracy measure_beside_company(const File& file, const compress::Target& target,
+                                       const std::vector<Normal>& normals);
+
+} // namespace acdf::build

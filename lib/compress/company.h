@@ -1,0 +1,85 @@
+// Fits for a company: densities that are used together with another sampler, by multiple importance sampling.
+//
+// With n_l samples of the density p and n_b of the company's b, the balance heuristic has the second moment
+// sum of f^2 / (n_l p + n_b b): least where n_l p + n_b b = f / nu wherever that is more than the company gives
+// alone, and p = 0 elsewhere (water filling, docs/method.md). For a multiplier nu the cost of a cell of constant p
+// does not depend on other cells, so that costs stay additive: with A = sqrt(measure . integral of f^2) and
+// D = integral of f^2 / (nu n_b b) a cell costs A - A^2 / 2 D where A < D, and D / 2, left to the company, where
+// not. Both are over 2 nu, so that without a company A is what it always was.
+#pragma once
+
+#include <acdf/layout.h>
+
+#include <vector>
+
+namespace acdf::compress {
+
+/// What a file is made to be combined with.
+struct Company {
+    AcdfCompanyKind kind = ACDF_COMPANY_NONE;
+    AcdfHeuristic heuristic = ACDF_HEURISTIC_BALANCE;
+    double light = 1.0, other = 1.0; ///< samples of the file and of the company, in proportion; > 0
+
+    explicit operator bool() const { return kind != ACDF_COMPANY_NONE; }
+    double share() const { return light / (light + other); }
+};
+
+/// Cost of a cell of A = `alone` and D = `left`; 0: there is no company.
+inline double cell_cost(double alone, double left) {
+    if (!(left > 0.0)) return alone;
+    return alone < left ? alone - 0.5 * alone * (alone / left) : 0.5 * left;
+}
+
+/// A density that the company may have in a direction, sr^-1, and how often it has it.
+struct Lobe {
+    double weight, density;
+};
+
+/// How many samples a cell takes for a multiplier nu. What the company does in a direction is not always known (to
+/// an environment: which normal is lit), so it is a distribution over densities b, with integrands in proportion to
+/// b.
+class Filling {
+public:
+    /// The company is known, and combined by the balance heuristic: A - A^2 / D.
+    Filling() = default;
+    /// Minimises the mean over `lobes`. By the power heuristic a few samples are worse than none: a cell's share
+    /// jumps from 0.
+    Filling(const std::vector<Lobe>& lobes, AcdfHeuristic heuristic);
+
+    /// nu n_l times the integral of p over a cell, in the units of A.
+    double share(double alone, double left) const;
+    /// The same for a density: of light x over the threshold at which the company covers it, over that threshold.
+    double above(double x) const;
+
+private:
+    struct Knot {
+        double x, y;
+    };
+    std::vector<Knot> knots_; ///< empty: y = x - 1
+};
+
+/// The mean of the lobes' squares over that of the lobes: the density that they stand for where nothing is drawn
+/// beside them.
+double effective_density(const std::vector<Lobe>& lobes);
+
+/// The root mean square of the lobes.
+double rms_density(const std::vector<Lobe>& lobes);
+
+/// The densities of a company around a surface's normal.
+class Lobes {
+public:
+    explicit Lobes(AcdfCompanyKind kind);
+
+    /// The density of directions with that cosine to the normal, sr^-1; 0 below it.
+    double density(double cosine) const;
+    /// What light counts there: pi times that, so the cosine itself for ACDF_COMPANY_COSINE.
+    double brightness(double cosine) const { return 3.141592653589793 * density(cosine); }
+    /// Those of all normals in a direction, each as often as any other.
+    const std::vector<Lobe>& of_all_normals() const { return all_; }
+
+private:
+    std::vector<Lobe> all_;
+    std::vector<double> density_; ///< at even steps of the cosine; empty: known
+};
+
+} // namespace acdf::compress

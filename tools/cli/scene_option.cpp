@@ -1,0 +1,40 @@
+#include "tools/cli/scene_option.h"
+
+#include "input/image.h"
+
+#include <map>
+
+namespace acdf::tools {
+
+void SceneOption::add(CLI::App& command, const std::string& help, const char* group) {
+    command.add_option("--scene", path, help)->type_name("FILE")->group(group);
+    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    command
+        .add_option(
+            "--scene-up", input_.up,
+            "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
+        ->transform(CLI::CheckedTransformer(axes).description(""))
+        ->option_text("y|z [z]")
+        ->group(group);
+    command
+        .add_flag("--scene-rgb", input_.rgb_is_normal,
+                  "Take R, G and B of the scene's image as a normal where no channel is named as one")
+        ->group(group);
+}
+
+std::string SceneOption::text() const {
+    return "--scene " + input::file_sha256(path) + (input_.up == input::UpAxis::y ? " --scene-up y" : "") +
+           (input_.rgb_is_normal ? " --scene-rgb" : "");
+}
+
+std::vector<builder::SceneNormal> SceneOption::read(const Note& note) const {
+    std::vector<builder::SceneNormal> out;
+    if (path.empty()) return out;
+    const input::SceneNormals scene = input::read_scene_normals(path, input_);
+    for (const input::WeightedNormal& n : scene.normals) out.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
+    note(path + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
+         std::to_string(scene.skipped) + " skipped");
+    return out;
+}
+
+} // namespace acdf::tools

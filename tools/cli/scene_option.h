@@ -1,0 +1,30 @@
+// The normals of a scene, as options of every subcommand that can be made for them.
+#pragma once
+
+#include "input/scene_normals.h"
+#include "tools/cli/conversion.h"
+
+#include <acdf/builder.h>
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace acdf::tools {
+
+struct SceneOption {
+    std::string path; ///< empty: all normals
+
+    /// `help`: what the normals of the scene are for.
+    void add(CLI::App& command, const std::string& help, const char* group);
+    /// The option in one spelling, with the scene's SHA-256. Throws input::Error.
+    std::string text() const;
+    /// Empty where no scene was given; what was read is noted.
+    std::vector<builder::SceneNormal> read(const Note& note) const;
+
+private:
+    input::SceneOptions input_;
+};
+
+} // namespace acdf::tools
