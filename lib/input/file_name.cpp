@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <system_error>
 
 namespace acdf::input {
 
@@ -23,10 +24,10 @@ std::string file_name(const std::string& path) {
 void require_regular_file(const std::string& path, const char* give) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status))
-        throw input_error(path, status.type() == std::filesystem::file_type::not_found
-                                    ? "it cannot be opened: there is no such file"
-                                    : "it cannot be opened: " + error.message());
+    if (!std::filesystem::exists(status)) // an error that says only so is none to status()
+        throw input_error(
+            path, "it cannot be opened: " +
+                      (error ? error : std::make_error_code(std::errc::no_such_file_or_directory)).message());
     if (std::filesystem::is_directory(status)) throw input_error(path, std::string("it is a folder; give ") + give);
     if (!std::filesystem::is_regular_file(status))
         throw input_error(path, std::string("it is a pipe or a device; give ") + give);
