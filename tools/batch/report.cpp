@@ -202,8 +202,7 @@ std::string summary_table(const BatchReport& report) {
     }
     std::string text = report.jobs.size() <= most_rows ? file_rows(report.jobs) : "";
     text += "kind      jobs    done  up to date  failed        bytes  relative variance   "
-            "noise at 16, 64, 256   seconds
-";
+            "noise at 16, 64, 256   seconds\n";
     for (const auto& [name, sum] : kinds) text += sum.row(name);
     return kinds.size() > 1 ? text + all.row("all") : text;
 }
