@@ -3,6 +3,7 @@
 #include "build/format_names.h"
 #include "input/brdf_models.h"
 #include "tools/cli/built.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -136,7 +137,7 @@ void BrdfConversion::add_fit_options(CLI::App& command) {
             "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
             "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
             "views, the nearest bin serves)")
-        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->transform(one_of(fits))
         ->option_text("NAME [variance]")
         ->group("Fit");
     command

@@ -2,6 +2,7 @@
 #include "build/format_names.h"
 #include "input/image_header.h"
 #include "tools/cli/built.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/company_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
@@ -229,7 +230,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
             "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
             "uniform (equal steps, to compare with)")
-        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->transform(one_of(fits))
         ->option_text("NAME [variance]")
         ->group("Fit");
     const std::map<std::string, builder::Shape> shapes{{"tree", builder::Shape::tree},
@@ -239,7 +240,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             "--shape", fit.shape,
             "What --fit variance makes: tree (refines any segment along any axis: less noise for its size) or "
             "cascade (two levels, as in the paper: a sample takes less time)")
-        ->transform(CLI::CheckedTransformer(shapes).description(""))
+        ->transform(one_of(shapes))
         ->option_text("NAME [tree]")
         ->group("Fit");
     const std::map<std::string, int> orders{{"auto", 0}, {"phi", 1}, {"z", 2}};
@@ -252,7 +253,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
             "file is "
             "kept, in twice the time; a tree takes the axis that gains more)")
-        ->transform(CLI::CheckedTransformer(orders).description(""))
+        ->transform(one_of(orders))
         ->option_text("NAME [auto]")
         ->group("Fit");
     add_goal(command, environment_.goal.cells, budget_, environment_.goal.variance,
@@ -293,7 +294,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         .add_option("--conditional", fit.conditional,
                     "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "
                     "(all alike, as ibid., eq. 4, is printed)")
-        ->transform(CLI::CheckedTransformer(conditionals).description(""))
+        ->transform(one_of(conditionals))
         ->option_text("NAME [energy]")
         ->group("Fit");
 }

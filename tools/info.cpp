@@ -3,6 +3,8 @@
 #include "build/format_names.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/options.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
@@ -182,7 +184,7 @@ Json describe(const std::string& path, const File& file) {
 // ---- for people ----------------------------------------------------------------------------------------
 
 void line(const char* name, const std::string& value) {
-    if (!value.empty()) std::printf("  %-12s %s\n", name, value.c_str());
+    if (!value.empty()) std::printf("  %-12s %s\n", name, printable(value).c_str());
 }
 
 std::string number(double value) {
@@ -232,14 +234,14 @@ std::string source_text(const Json& source) {
 
 void print_table(const char* name, const Json& object) {
     for (const auto& [key, value] : object.items()) {
-        std::printf("  %-12s %-28s %s\n", name, key.c_str(), text_of(value).c_str());
+        std::printf("  %-12s %-28s %s\n", name, printable(key).c_str(), printable(text_of(value)).c_str());
         name = "";
     }
 }
 
 void print(const Json& report) {
     const std::uint64_t bytes = report["bytes"];
-    std::printf("%s: %s, format %s, %llu bytes (%s)\n", text_of(report["file"]).c_str(),
+    std::printf("%s: %s, format %s, %llu bytes (%s)\n", printable(text_of(report["file"])).c_str(),
                 text_of(report["kind"]).c_str(), text_of(report["version"]).c_str(),
                 static_cast<unsigned long long>(bytes), to_readable_size(bytes).c_str());
     line("target", target_text(report));
@@ -284,12 +286,12 @@ int run(const InfoArguments& options) {
             if (reports.size() > 1) std::printf("\n");
             print(reports.back());
         } catch (const Failure& failure) {
-            std::fprintf(stderr, "acdf: %s\n", failure.what());
+            say(std::string("acdf: ") + failure.what());
             exit_code = exit_failed;
         }
     }
     if (options.json && !reports.empty())
-        std::printf("%s\n", (options.files.size() == 1 ? reports[0] : reports).dump(2).c_str());
+        std::fputs(json_text(options.files.size() == 1 ? reports[0] : reports).c_str(), stdout);
     return exit_code;
 }
 

@@ -3,6 +3,7 @@
 #include "input/image.h"
 #include "input/image_header.h"
 #include "tools/cli/built.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/company_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
@@ -104,6 +105,8 @@ void LocalConversion::set_separate() {
 
 void LocalConversion::check() {
     use_renderer(*command_, renderer_, input_, local_.target);
+    for (const char* option : {"--scene-up", "--scene-rgb"})
+        if (scene_.empty() && given(option)) throw CLI::ValidationError(option, "is of the file given by --scene");
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
@@ -259,7 +262,7 @@ void LocalConversion::add_separate(CLI::App& command) {
                                               {"pdf", ACDF_FIT_PDF},
                                               {"variance", ACDF_FIT_VARIANCE}};
     command.add_option("--fit", fit.fit, "How knots are chosen: as in acdf env")
-        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->transform(one_of(fits))
         ->option_text("NAME [variance]")
         ->group(group);
     command.add_option("--knots", knots_, "Segments of a curve over phi and over theta: as in acdf env")
@@ -273,7 +276,7 @@ void LocalConversion::add_separate(CLI::App& command) {
     command
         .add_option_function<builder::Order>(
             "--order", [&fit](builder::Order order) { fit.order = order; }, "Which axis is split first")
-        ->transform(CLI::CheckedTransformer(orders).description(""))
+        ->transform(one_of(orders))
         ->option_text("phi|z [z]")
         ->group(group);
     const std::map<std::string, builder::BinTarget> targets{{"mean", builder::BinTarget::mean},
@@ -283,7 +286,7 @@ void LocalConversion::add_separate(CLI::App& command) {
             "--bin-target", local_.bin_target,
             "What a bin's tree is fitted to: mean (right for all of its normals) or centre (the paper's: biased "
             "for the others)")
-        ->transform(CLI::CheckedTransformer(targets).description(""))
+        ->transform(one_of(targets))
         ->option_text("NAME [mean]")
         ->group(group);
 }

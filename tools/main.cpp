@@ -1,5 +1,6 @@
 // The `acdf` program: a table of subcommands, and the one place where errors become exit codes.
 #include "tools/cli/help.h"
+#include "tools/cli/messages.h"
 #include "tools/commands.h"
 
 #include <acdf/layout.h>
@@ -48,21 +49,14 @@ std::string called(const CLI::App& program) {
     return parsed.empty() ? "acdf" : "acdf " + parsed.front()->get_name();
 }
 
-std::string one_line(std::string text) {
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    for (char& c : text)
-        if (c == '\n') c = ' ';
-    return text;
-}
-
 int usage_error(const CLI::App& program, const CLI::ParseError& error) {
     const std::string name = called(program);
-    std::fprintf(stderr, "%s: %s; see `%s --help`\n", name.c_str(), one_line(error.what()).c_str(), name.c_str());
+    say(name + ": " + on_one_line(error.what()) + "; see `" + name + " --help`");
     return exit_usage;
 }
 
 int failure(const std::string& what) {
-    std::fprintf(stderr, "acdf: %s\n", one_line(what).c_str());
+    say("acdf: " + what);
     return exit_failed;
 }
 

@@ -47,14 +47,28 @@ std::string density_line(std::vector<double> v, const PdfArguments& options, con
     return line + text;
 }
 
+/// The next line without its end; false where there is none. Throws Failure where it is longer than any point: some
+/// inputs never end a line.
+bool next_line(std::istream& in, std::string& line) {
+    constexpr std::size_t longest = 65536;
+    line.clear();
+    for (int c = in.get(); c != std::istream::traits_type::eof(); c = in.get()) {
+        if (c == '\n') return true;
+        if (line.size() == longest) throw Failure("is longer than 65536 characters");
+        line += static_cast<char>(c);
+    }
+    return !line.empty();
+}
+
 /// Writes `answer(point)` for each point in `in`.
 template <class Answer>
 void evaluate(std::istream& in, PointParser parser, const PdfArguments& options, Output& output,
               const Answer& answer) {
     const std::string name = options.directions == "-" ? "stdin" : options.directions;
     std::string line;
-    for (std::uint64_t number = 1; std::getline(in, line); ++number) {
+    for (std::uint64_t number = 1;; ++number) {
         try {
+            if (!next_line(in, line)) break;
             if (const auto point = parser.parse(line)) output.write(answer(*point));
         } catch (const Failure& failure) {
             throw Failure(name + ": line " + std::to_string(number) + ": " + failure.what());
@@ -123,6 +137,7 @@ void run(const PdfArguments& options) {
     if (kind != ACDF_KIND_BRDF) refuse_view(options.file, options.view);
     std::ifstream file;
     if (options.directions != "-") {
+        refuse_endless(options.directions);
         file.open(options.directions);
         if (!file || file.peek() == std::ifstream::traits_type::eof()) {
             const int error = errno;

@@ -1,5 +1,6 @@
 // acdf sample: directions drawn from a file, as CSV.
 #include "measure/sequences.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/normal_option.h"
@@ -144,7 +145,7 @@ void add_sample(CLI::App& program, int& exit_code) {
             "equal area: less noise, needs N in advance) or sobol (least noise; any first part of it is "
             "well spread too)")
         ->option_text("NAME [random]")
-        ->transform(CLI::CheckedTransformer(sequences).description(""))
+        ->transform(one_of(sequences))
         ->group("Sampling");
     command
         ->add_option(

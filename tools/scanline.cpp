@@ -2,6 +2,8 @@
 #include "measure/scanline.h"
 #include "build/format_names.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
@@ -77,8 +79,8 @@ Study study(const compress::Target& target, std::uint32_t row) {
 }
 
 void print_table(const std::string& path, const Study& s) {
-    std::printf("%s: row %u of %u, %.1f degrees from the pole, %u texels, contrast %.3g\n", path.c_str(), s.row,
-                s.rows, s.theta_degrees, s.columns, s.contrast);
+    std::printf("%s: row %u of %u, %.1f degrees from the pole, %u texels, contrast %.3g\n", printable(path).c_str(),
+                s.row, s.rows, s.theta_degrees, s.columns, s.contrast);
     std::printf(
         "RMS error of the PDF over the row, mean 1; in brackets how many times as many knots equally spaced "
         "ones are for the same error\n");
@@ -147,7 +149,7 @@ void run(const ScanlineArguments& options) {
     const builder::Target held = probe_target(options.probe, probe);
     const compress::Target& target = builder::grid_of(held);
     const Study made = study(target, chosen_row(options.row, target));
-    if (options.json) std::printf("%s\n", to_json(options.probe, made).dump(2).c_str());
+    if (options.json) std::fputs(json_text(to_json(options.probe, made)).c_str(), stdout);
     else if (options.csv) print_csv(made);
     else print_table(options.probe, made);
 }

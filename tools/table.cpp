@@ -1,11 +1,15 @@
 // acdf table: an array of numbers of any number of axes to an .acdf file.
 #include "build/builder/sources.h"
+#include "input/file_name.h"
 #include "input/image.h"
 #include "input/npy.h"
 #include "tools/cli/built.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -46,12 +50,13 @@ bool parse_number(const std::string& text, Number& value) {
     return error == std::errc{} && rest == end;
 }
 
-/// The axis that `text` names or counts.
+/// The axis that `text` names or counts. Axes without names are x0, x1, ...
 std::uint32_t axis_of(const std::string& text, const std::vector<std::string>& names, std::size_t axes) {
     for (std::uint32_t i = 0; i < names.size(); ++i)
         if (names[i] == text) return i;
+    const bool by_default = names.empty() && text.rfind('x', 0) == 0;
     std::uint32_t axis = 0;
-    if (!parse_number(text, axis) || axis >= axes)
+    if (!parse_number(by_default ? text.substr(1) : text, axis) || axis >= axes)
         throw CLI::ValidationError("--range", "'" + text + "' is none of the " + std::to_string(axes) + " axes");
     return axis;
 }
@@ -105,7 +110,7 @@ nlohmann::ordered_json report(const TableArguments& options, const input::NpyArr
 }
 
 builder::Table build(TableArguments& options, const input::NpyArray& array) {
-    options.table.source.name = std::filesystem::path(options.array).filename().string();
+    options.table.source.name = input::file_name(options.array);
     options.table.source.sha256 = input::file_sha256(options.array);
     ProgressBar bar(options.quiet);
     builder::Table result;
@@ -128,14 +133,14 @@ void run(TableArguments& options) {
     for (std::uint32_t axis = 0; axis < options.table.indexed; ++axis) bins *= array.shape[axis];
     std::FILE* out = options.output == "-" ? stderr : stdout;
     const builder::TableAccuracy& a = result.accuracy;
-    if (options.json) std::fprintf(out, "%s\n", report(options, array, bins, result).dump(2).c_str());
+    if (options.json) std::fputs(json_text(report(options, array, bins, result)).c_str(), out);
     else if (!options.quiet && bins == 1)
-        std::fprintf(out, "%s: %s, %" PRIu64 " cells, relative variance %.4g\n", options.output.c_str(),
+        std::fprintf(out, "%s: %s, %" PRIu64 " cells, relative variance %.4g\n", printable(options.output).c_str(),
                      to_readable_size(result.bytes.size()).c_str(), a.cells, a.relative_variance);
     else if (!options.quiet)
         std::fprintf(out, "%s: %s, %zu bins, %" PRIu64 " cells, relative variance %.4g (mean; worst %.4g)\n",
-                     options.output.c_str(), to_readable_size(result.bytes.size()).c_str(), bins, a.cells,
-                     a.relative_variance, a.worst);
+                     printable(options.output).c_str(), to_readable_size(result.bytes.size()).c_str(), bins,
+                     a.cells, a.relative_variance, a.worst);
 }
 
 void add_axis_options(CLI::App& command, TableArguments& options) {
@@ -166,7 +171,7 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
             "--bad-values", options.input.bad_values,
             "What to do about NaN, infinities and negative numbers: error (refuse, and say how many and where) "
             "or zero (nothing is drawn there)")
-        ->transform(CLI::CheckedTransformer(policies).description(""))
+        ->transform(one_of(policies))
         ->option_text("NAME [error]")
         ->group("Input");
 }

@@ -1,6 +1,8 @@
 // acdf validate: every broken rule of SPEC.md, by number, severity and byte.
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/options.h"
 #include "tools/commands.h"
 
@@ -38,7 +40,7 @@ const char* severity_name(Severity severity) { return severity == Severity::erro
 
 Report validate_file(const std::string& path) {
     Report report{path, {}, {}};
-    const std::vector<std::uint8_t> bytes = read_bytes(path);
+    const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);
     report.verdict = validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
         report.faults.push_back({finding.rule, finding.offset, finding.detail});
     });
@@ -67,15 +69,16 @@ std::string counted(std::uint64_t n, const char* what) {
 
 void print(const Report& report, const ValidateArguments& options) {
     for (const Fault& fault : report.faults)
-        std::printf("%s: byte %llu: %s %d (%s): %s\n    rule: %s\n", report.path.c_str(),
+        std::printf("%s: byte %llu: %s %d (%s): %s\n    rule: %s\n", printable(report.path).c_str(),
                     static_cast<unsigned long long>(fault.offset), severity_name(fault.rule->severity),
-                    fault.rule->number, fault.rule->id, fault.detail.c_str(), fault.rule->sentence);
+                    fault.rule->number, fault.rule->id, printable(fault.detail).c_str(), fault.rule->sentence);
     if (options.quiet) return;
     const acdf::Verdict& verdict = report.verdict;
-    if (report.faults.empty()) std::printf("%s: valid\n", report.path.c_str());
+    if (report.faults.empty()) std::printf("%s: valid\n", printable(report.path).c_str());
     else
-        std::printf("%s: %s (%s, %s)\n", report.path.c_str(), report.passes(options.strict) ? "valid" : "not valid",
-                    counted(verdict.errors, "error").c_str(), counted(verdict.warnings, "warning").c_str());
+        std::printf("%s: %s (%s, %s)\n", printable(report.path).c_str(),
+                    report.passes(options.strict) ? "valid" : "not valid", counted(verdict.errors, "error").c_str(),
+                    counted(verdict.warnings, "warning").c_str());
 }
 
 // A file that cannot be read outranks one that breaks rules: its rules were never checked.
@@ -89,12 +92,12 @@ int run(const ValidateArguments& options) {
             if (options.json) reports.push_back(to_json(report, options.strict));
             else print(report, options);
         } catch (const Failure& failure) {
-            std::fprintf(stderr, "acdf: %s\n", failure.what());
+            say(std::string("acdf: ") + failure.what());
             unreadable = true;
         }
     }
     if (options.json && !reports.empty())
-        std::printf("%s\n", (options.files.size() == 1 ? reports[0] : reports).dump(2).c_str());
+        std::fputs(json_text(options.files.size() == 1 ? reports[0] : reports).c_str(), stdout);
     return unreadable ? exit_failed : faulty ? exit_faults : exit_done;
 }
 

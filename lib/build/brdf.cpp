@@ -1,5 +1,6 @@
 #include "build/brdf.h"
 
+#include "build/compressed_budget.h"
 #include "build/option_text.h"
 
 #include <acdf/reader.h>
@@ -104,7 +105,11 @@ std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFil
     return compress::store(fit.tree, d, options.codec);
 }
 
-BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& given, const Progress& progress) {
+namespace {
+
+/// `goal`: before compression; what the file says of its options keeps that of `given`.
+BrdfFile build_plain(const Brdf& brdf, const BrdfFileOptions& given, const compress::Goal& goal,
+                     const Progress& progress) {
     BrdfFileOptions options = given;
     const bool isotropic = brdf.isotropic && options.fit.phi_views <= 1;
     options.fit.symmetry = {isotropic, isotropic && brdf.mirror};
@@ -112,13 +117,15 @@ BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& given, const Progre
     const compress::Metadata unknown = metadata(brdf, options, {});
     BrdfFileOptions plain = options; // rows that are not made yet cannot tell how well they compress
     plain.codec = ACDF_CODEC_NONE;
-    options.fit.file_size = [&](const compress::BrdfFit& fit) {
+    compress::BrdfOptions fit_options = options.fit;
+    fit_options.goal = goal;
+    fit_options.file_size = [&](const compress::BrdfFit& fit) {
         return std::uint64_t{brdf_bytes(fit, plain, unknown).size()};
     };
-    options.fit.progress = [&](double share) {
+    fit_options.progress = [&](double share) {
         if (progress) progress(0.8 * share, "fitting");
     };
-    const compress::BrdfFit fit = compress::fit_brdf(reflected, options.fit);
+    const compress::BrdfFit fit = compress::fit_brdf(reflected, fit_options);
     if (progress) progress(0.8, "measuring");
     BrdfFile out;
     out.accuracy = measure_bytes(brdf_bytes(fit, options, unknown), reflected, brdf.isotropic);
@@ -126,6 +133,19 @@ BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& given, const Progre
     out.theta_views = static_cast<std::uint32_t>(fit.nodes.size());
     out.phi_views = fit.phi_views;
     return out;
+}
+
+} // namespace
+
+BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& options, const Progress& progress) {
+    const compress::Goal& goal = options.fit.goal;
+    if (options.codec == ACDF_CODEC_NONE || goal.kind != compress::Goal::Kind::budget)
+        return build_plain(brdf, options, goal, progress);
+    return fill_compressed(goal.budget, [&](std::uint64_t bytes) {
+        compress::Goal plain = goal;
+        plain.budget = bytes;
+        return build_plain(brdf, options, plain, progress);
+    });
 }
 
 } // namespace acdf::build

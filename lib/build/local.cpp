@@ -1,6 +1,7 @@
 #include "build/local.h"
 
 #include "build/company_text.h"
+#include "build/compressed_budget.h"
 #include "build/errors.h"
 #include "build/option_text.h"
 #include "compress/fit_local.h"
@@ -140,13 +141,14 @@ compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, doub
     return size;
 }
 
-Local build_in_budget(const compress::Target& target, const Source& source, const LocalOptions& options,
-                      std::uint64_t budget, const Progress& progress) {
+/// At most `budget` bytes before compression, and nearly as many.
+Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
+                  std::uint64_t budget, const Progress& progress) {
     const NormalBins bins = bins_for(options, double(budget));
     compress::LocalSize size = size_for(options, bins, double(budget));
     for (int tries = 0;; ++tries) {
         Draft draft = shared_draft(target, source, options, bins, size, progress);
-        const std::uint64_t bytes = compress::store(draft.tree, draft.description, options.codec).size();
+        const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
         if (fits && (full || tries > 0)) return finish(std::move(draft), target, source, options, bins);
@@ -164,6 +166,12 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
         }
         size.tree_bytes = static_cast<std::uint64_t>(next);
     }
+}
+
+Local build_in_budget(const compress::Target& target, const Source& source, const LocalOptions& options,
+                      std::uint64_t budget, const Progress& progress) {
+    const auto build = [&](std::uint64_t bytes) { return build_plain(target, source, options, bytes, progress); };
+    return options.codec == ACDF_CODEC_NONE ? build(budget) : fill_compressed(budget, build);
 }
 
 /// The smallest file whose measured variance is low enough.

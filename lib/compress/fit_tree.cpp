@@ -267,10 +267,15 @@ private:
     }
 
     double fail(const Trial& smallest) const {
-        if (goal_.kind == Goal::Kind::cells)
-            throw std::runtime_error(out_of_reach("a number of cells", goal_.cells, double(smallest.cells)));
-        throw std::runtime_error(
-            out_of_reach("a size in bytes", double(goal_.budget), double(size(store_trees(smallest.price)))));
+        const bool cells = goal_.kind == Goal::Kind::cells;
+        const double wanted = cells ? double(goal_.cells) : double(goal_.budget);
+        const double least = cells ? double(smallest.cells) : double(size(store_trees(smallest.price)));
+        if (!(options_.max_weight > 0.0))
+            throw std::runtime_error(out_of_reach(cells ? "a number of cells" : "a size in bytes", wanted, least));
+        char text[160];
+        std::snprintf(text, sizeof text, "so low a bound on weights takes about %.6g %s; %.9g are allowed", least,
+                      cells ? "cells" : "bytes", wanted);
+        throw std::runtime_error(text);
     }
 
     static std::string out_of_reach(const char* what, double wanted, double best) {

@@ -2,6 +2,7 @@
 
 #include "input/brdf_models.h"
 #include "input/brdf_npy.h"
+#include "input/file_name.h"
 #include "input/image.h"
 #include "input/merl.h"
 #include "input/rgl_brdf.h"
@@ -43,7 +44,7 @@ std::unique_ptr<Brdf> read_file(const std::string& path) {
     const std::string extension = file.extension().string();
     const std::vector<std::uint8_t> bytes = read_bytes(path);
     if (bytes.empty()) throw input_error(path, "the file is empty; give a BRDF file");
-    if (is_npy(bytes) || extension == ".npy") return read_brdf_npy(path, file.filename().string());
+    if (is_npy(bytes) || extension == ".npy") return read_brdf_npy(path, file_name(path));
     if (TensorFile::has_magic(bytes.data(), bytes.size()) || extension == ".bsdf" || extension == ".pbsdf")
         return parse_rgl(path, bytes.data(), bytes.size());
     if (bytes.size() == MerlLayout::bytes || extension == ".binary")
@@ -57,7 +58,7 @@ std::unique_ptr<Brdf> open_brdf(const std::string& source) {
     if (is_model(source)) return model_brdf(source);
     try {
         std::unique_ptr<Brdf> brdf = read_file(source);
-        brdf->name = std::filesystem::path(source).filename().string();
+        brdf->name = file_name(source);
         brdf->sha256 = file_sha256(source);
         return brdf;
     } catch (const std::bad_alloc&) {

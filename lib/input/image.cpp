@@ -12,6 +12,7 @@ namespace acdf::input {
 namespace {
 
 constexpr std::int64_t max_pixels = std::int64_t{1} << 30;
+constexpr int max_side = 1 << 16; // of a file's axis of directions
 
 // No codec packs more than this many pixels into a byte (deflate reaches 1032 bytes a byte), so a header that
 // claims more is damaged or hostile: refused before memory is asked for. Small images pass.
@@ -51,9 +52,10 @@ bool is_no_colour(const std::string& name) {
     return n == "a" || n == "alpha" || n == "z" || n == "zback";
 }
 
-// R, G and B of the first layer that has them ("" or "beauty."), else the only channel that is a colour. Most
-// formats name no channels: then the first three, or with one or two the first, as grey.
-bool choose_channels(const images::Header& header, Channels& channels) {
+// R, G and B without a layer, else those of the first layer that has them ("beauty"), else the only channel that is
+// a colour. Most formats name no channels: then the first three, or with one or two the first, as grey. `layers`:
+// those that have the three.
+bool choose_channels(const images::Header& header, Channels& channels, std::vector<std::string>& layers) {
     const bool named = header.format == "openexr";
     const std::vector<std::string>& names = header.channels;
     const int count = header.channel_count;
@@ -70,14 +72,14 @@ bool choose_channels(const images::Header& header, Channels& channels) {
         const int r = find_channel(names, name), g = find_channel(names, layer + "g");
         const int b = find_channel(names, layer + "b");
         if (g < 0 || b < 0) continue;
-        channels.index[0] = r;
-        channels.index[1] = g;
-        channels.index[2] = b;
-        return true;
+        if (layers.empty()) channels = {{r, g, b}};
+        layers.push_back(layer.empty() ? "" : layer.substr(0, layer.size() - 1));
+        if (layer.empty()) channels = {{r, g, b}};
     }
+    if (!layers.empty()) return true;
     int colours = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        if (is_no_colour(names[i]) && names.size() > 1) continue;
+        if (is_no_colour(names[i])) continue;
         std::fill_n(channels.index, 3, static_cast<int>(i));
         ++colours;
     }
@@ -145,6 +147,8 @@ private:
             fail("its size " + size + " is not a size; the file is damaged");
         if (pixels > max_pixels)
             fail("it has " + size + " pixels, more than 2^30; resize it, or the file is damaged");
+        if (window.width > max_side || window.height > max_side)
+            fail("it has " + size + " pixels, more than 65536 on a side; resize it");
         std::error_code ignored;
         const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path_, ignored));
         if (!ignored && pixels > small_image_pixels && pixels / max_pixels_per_byte > bytes)
@@ -162,10 +166,17 @@ private:
             fail("it is stored rotated or flipped; turn it upright (oiiotool IN --reorient -o OUT)");
         if (!overlap(s.data, display_window(s)))
             fail("its data window lies outside its display window; crop it (oiiotool IN --fullpixels -o OUT)");
-        if (!choose_channels(s, channels_))
+        if (!choose_channels(s, channels_, layers_))
             fail("its channels are " + list(s.channels) +
                  ", where R, G, B or a single one is needed; "
                  "rename or choose them (oiiotool IN --ch R=...,G=...,B=... -o OUT)");
+    }
+
+    // A layer that nobody chose is told: the one wanted may be another.
+    void warn_of_layers(Image& image) const {
+        if (layers_.size() < 2 || std::count(layers_.begin(), layers_.end(), "") > 0) return;
+        image.warnings.push_back("there is no R, G and B without a layer; of the layers " + list(layers_) + ", " +
+                                 layers_[0] + " is read (oiiotool IN --ch R=...,G=...,B=... -o OUT takes another)");
     }
 
     EnvironmentTag environment_tag() const {
@@ -261,6 +272,7 @@ private:
             image.warnings.push_back(
                 "OpenEXR puts texel centres on the poles and the seam; texels are read as areas, "
                 "at most half a texel off");
+        warn_of_layers(image);
         if (file_.seek(1)) image.warnings.push_back("the file has several parts; the first is used");
         file_.seek(0);
     }
@@ -268,6 +280,7 @@ private:
     std::string path_;
     images::ImageFile file_;
     Channels channels_;
+    std::vector<std::string> layers_; ///< that have R, G and B
 };
 
 } // namespace

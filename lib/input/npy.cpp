@@ -1,5 +1,6 @@
 #include "input/npy.h"
 
+#include "input/file_name.h"
 #include "input/image.h"
 
 #include <algorithm>
@@ -127,14 +128,12 @@ NpyArray read_npy(std::FILE* file, std::uint64_t size, const std::string& name, 
 }
 
 NpyArray read_npy(const std::string& path, const NpyOptions& options) {
+    require_regular_file(path, "an .npy file"); // before it is opened: a pipe without a writer would never be
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) throw input_error(path, std::string("it cannot be opened: ") + std::strerror(errno));
     struct stat status = {};
     if (fstat(fileno(file.get()), &status) != 0)
         throw input_error(path, std::string("it cannot be read: ") + std::strerror(errno));
-    if (!S_ISREG(status.st_mode))
-        throw input_error(path, S_ISDIR(status.st_mode) ? "it is a folder; give an .npy file"
-                                                        : "it is a pipe or a device; give a file");
     return read_npy(file.get(), static_cast<std::uint64_t>(status.st_size), path, options);
 }
 

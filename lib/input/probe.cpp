@@ -2,10 +2,10 @@
 
 #include "build/probe_rows.h"
 #include "input/detect.h"
+#include "input/file_name.h"
 #include "input/image.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <new>
 
 namespace acdf::input {
@@ -62,7 +62,7 @@ Probe read_probe(const std::string& path, const ProbeOptions& options) {
 Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows& rows) {
     Probe probe;
     probe.source_sha256 = file_sha256(path); // first: it tells missing files and folders apart
-    probe.source_name = std::filesystem::path(path).filename().string();
+    probe.source_name = file_name(path);
     build::RepairedRows repaired({options.bad_pixels, options.uniform_if_black, options.threads}, rows);
     const auto tell = [&](const Detected& detected, const Image& image) {
         probe.source_map = {detected.layout, image.width, image.height};

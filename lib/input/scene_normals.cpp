@@ -1,5 +1,6 @@
 #include "input/scene_normals.h"
 
+#include "input/file_name.h"
 #include "input/image.h"
 #include "input/normal_histogram.h"
 #include "input/scene_sources.h"
@@ -19,12 +20,9 @@ std::string extension_of(const std::string& path) {
 }
 
 void check_file(const std::string& path) {
+    require_regular_file(path, "a mesh, a normal pass or a list");
     std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) throw input_error(path, "there is no such file");
-    if (std::filesystem::is_directory(status)) throw input_error(path, "it is a folder; give a file in it");
-    if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0 && !error)
-        throw input_error(path, "the file is empty");
+    if (std::filesystem::file_size(path, error) == 0 && !error) throw input_error(path, "the file is empty");
 }
 
 } // namespace

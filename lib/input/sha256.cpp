@@ -1,3 +1,4 @@
+#include "input/file_name.h"
 #include "input/image.h"
 
 #include <openssl/evp.h>
@@ -6,14 +7,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 
 namespace acdf::input {
 
 std::string file_sha256(const std::string& path) {
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error)) throw input_error(path, "it is a folder; give an image file");
+    require_regular_file(path, "an image file");
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) throw input_error(path, std::string("it cannot be opened: ") + std::strerror(errno));
 

@@ -40,6 +40,18 @@ TEST(BrdfCommand, fileIsValidAndTellsWhatItIs) {
     EXPECT_EQ(info.at("axes")[2].at("resolution"), info.at("bins"));
 }
 
+// What is budgeted is what is stored.
+TEST(BrdfCommand, compressedFilesFillTheirBudget) {
+    const Folder folder;
+    const std::string path = folder / "a.acdf";
+    const Result made = run_acdf({"brdf", "ggx:alpha=0.4", "-o", path, "--budget", "9000", "--compress", "zlib"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const auto bytes = std::filesystem::file_size(path);
+    EXPECT_LE(bytes, 9000u);
+    EXPECT_GE(bytes, 8100u);
+    EXPECT_NE(run_acdf({"info", path}).out.find("--budget 9000"), std::string::npos);
+}
+
 TEST(BrdfCommand, measureComparesWithOtherSamplers) {
     const Result measured =
         run_acdf({"measure", small_file(), "--against", "ggx:alpha=0.4", "--views", "8", "--json"});

@@ -102,6 +102,14 @@ TEST_F(LocalCommand, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
+// What is budgeted is what is stored.
+TEST_F(LocalCommand, CompressedFilesFillTheirBudget) {
+    const int bytes = made({"--budget", "30000", "--compress", "zlib"})["bytes"];
+    EXPECT_LE(bytes, 30000);
+    EXPECT_GE(bytes, 27000);
+    EXPECT_NE(run_acdf({"info", output}).out.find("--budget 30000"), std::string::npos);
+}
+
 TEST_F(LocalCommand, ScenesAreRead) {
     write_text(folder / "normals.txt", "0 0 1\n0.1 0 1 3\n# a remark\n");
     const json all = made({"--budget", "40kB"}),

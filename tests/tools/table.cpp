@@ -70,7 +70,7 @@ TEST(TableCommand, MakesAFileThatInfoValidateAndMeasureRead) {
 TEST(TableCommand, SampleAndPdfAgree) {
     const Folder folder;
     const std::string source = write_table(folder), file = folder / "a.acdf";
-    ASSERT_EQ(run_acdf({"table", source, "-o", file, "--indexed", "1", "--range", "1=-1:1"}).code, 0);
+    ASSERT_EQ(run_acdf({"table", source, "-o", file, "--indexed", "1", "--range", "x1=-1:1"}).code, 0);
     const Result samples = run_acdf({"sample", file, "-n", "200", "--at", "2"});
     ASSERT_EQ(samples.code, 0) << samples.err;
     EXPECT_EQ(samples.out.substr(0, samples.out.find('\n')), "u0,u1,x0,x1,pdf");

@@ -10,6 +10,8 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/cli/progress.h"
@@ -41,26 +43,18 @@ std::unique_ptr<Conversion> make_conversion(const std::string& kind) {
     return kind == "env" ? env_conversion() : kind == "local" ? local_conversion() : brdf_conversion();
 }
 
-/// Tells errors, a line each, and throws where there are any.
+/// Tells errors, a line for each kind of them, and throws where there are any.
 void refuse(const std::vector<std::string>& errors) {
     if (errors.empty()) return;
-    for (std::size_t i = 0; i + 1 < std::min(errors.size(), kErrorsShown); ++i)
-        std::fprintf(stderr, "acdf: %s\n", errors[i].c_str());
-    if (errors.size() > kErrorsShown)
-        throw Failure(std::to_string(errors.size() - kErrorsShown + 1) + " more errors; nothing was started");
-    throw Failure(errors.back() + "; nothing was started");
+    const std::vector<std::string> lines = grouped(errors);
+    for (std::size_t i = 0; i + 1 < std::min(lines.size(), kErrorsShown); ++i)
+        say("acdf: " + told_in_batch(lines[i]));
+    if (lines.size() > kErrorsShown)
+        throw Failure(std::to_string(lines.size() - kErrorsShown + 1) + " more errors; nothing was started");
+    throw Failure(told_in_batch(lines.back()) + "; nothing was started");
 }
 
 // ---- what is asked for -----------------------------------------------------------------------------------
-
-/// "env.budget=64KiB" as {"env", "--budget=64KiB"}.
-std::pair<std::string, std::string> parse_setting(const std::string& text) {
-    const std::size_t dot = text.find('.');
-    if (dot == std::string::npos || !find_kind(text.substr(0, dot)) || dot + 1 == text.size() ||
-        text[dot + 1] == '-')
-        throw CLI::ValidationError("--set", "needs KIND.OPTION=VALUE, such as env.budget=64KiB, or KIND.OPTION");
-    return {text.substr(0, dot), "--" + text.substr(dot + 1)};
-}
 
 BatchDefaults defaults_of(const BatchArguments& options) {
     BatchDefaults defaults;
@@ -71,17 +65,19 @@ BatchDefaults defaults_of(const BatchArguments& options) {
             defaults.probe_kinds.push_back(kind);
     }
     for (const std::string& text : options.set) {
-        const auto [kind, option] = parse_setting(text);
-        defaults.options[kind].push_back(option);
-    }
-    for (const auto& [kind, list] : defaults.options) {
+        try {
+            defaults.settings.push_back(parse_setting(text));
+        } catch (const std::invalid_argument& error) {
+            throw CLI::ValidationError("--set", error.what());
+        }
+        const BatchSetting& setting = defaults.settings.back();
         BatchJob job;
-        job.kind = find_kind(kind);
-        job.options = list;
+        job.kind = setting.kind;
+        job.options = {setting.option};
         try {
             const JobConversion checked(job, make_conversion);
         } catch (const CLI::ParseError& error) {
-            throw CLI::ValidationError("--set " + kind, error.what());
+            throw CLI::ValidationError(std::string("--set ") + setting.kind->name, error.what());
         }
     }
     return defaults;
@@ -156,10 +152,10 @@ void show_plan(const BatchArguments& options, const std::vector<PlannedJob>& pla
                             {"reason", planned.reason},
                             {"memory", planned.due ? nlohmann::ordered_json(planned.memory) : nullptr}});
         else if (!options.quiet)
-            std::printf("%s %s %s -> %s: %s\n", planned.due ? "make" : "skip", job.kind->name, job.source.c_str(),
-                        job.output.c_str(), planned.reason.c_str());
+            std::printf("%s %s %s -> %s: %s\n", planned.due ? "make" : "skip", job.kind->name,
+                        printable(job.source).c_str(), printable(job.output).c_str(), planned.reason.c_str());
     }
-    if (options.json) std::printf("%s\n", list.dump(2).c_str());
+    if (options.json) std::fputs(json_text(list).c_str(), stdout);
 }
 
 std::vector<JobResult> run_with_progress(const BatchArguments& options, const std::vector<PlannedJob>& plan,
@@ -174,7 +170,8 @@ std::vector<JobResult> run_with_progress(const BatchArguments& options, const st
         if (result) ++ended;
         if (result && result->status == JobResult::Status::failed) {
             ++failed;
-            std::fprintf(stderr, "%sacdf: %s\n", terminal ? "\r\033[K" : "", result->error.c_str());
+            std::fprintf(stderr, "%sacdf: %s\n", terminal ? "\r\033[K" : "",
+                         on_one_line(told_in_batch(result->error)).c_str());
         }
         const std::string text = std::to_string(ended) + " of " + std::to_string(due) + " jobs" +
                                  (failed > 0 ? ", " + std::to_string(failed) + " failed" : "");
@@ -183,8 +180,8 @@ std::vector<JobResult> run_with_progress(const BatchArguments& options, const st
 }
 
 int tell(const BatchArguments& options, const BatchReport& report) {
-    if (options.json) std::printf("%s\n", to_json(report).dump(2).c_str());
-    else if (!options.quiet) std::fputs(summary_table(report).c_str(), stdout);
+    if (options.json) std::fputs(json_text(to_json(report)).c_str(), stdout);
+    else if (!options.quiet) print(summary_table(report));
     return report.count(JobResult::Status::failed) > 0 ? exit_failed : exit_done;
 }
 
@@ -283,9 +280,9 @@ int merge(const BatchArguments& options) {
     } catch (const std::invalid_argument& error) {
         throw Failure(error.what());
     }
-    for (const std::string& problem : merged.problems) std::fprintf(stderr, "acdf: %s\n", problem.c_str());
+    for (const std::string& problem : merged.problems) say("acdf: " + problem);
     for (const JobResult& job : merged.report.jobs)
-        if (!job.error.empty()) std::fprintf(stderr, "acdf: %s\n", job.error.c_str());
+        if (!job.error.empty()) say("acdf: " + job.error);
     const int code = tell(options, merged.report);
     return merged.problems.empty() ? code : exit_failed;
 }

@@ -8,7 +8,10 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <map>
+#include <stdexcept>
 
+#include <fnmatch.h>
 #include <glob.h>
 
 namespace acdf::tools {
@@ -32,6 +35,14 @@ bool is_one_of(const std::array<const char*, N>& list, const std::string& text) 
     return std::find(list.begin(), list.end(), text) != list.end();
 }
 
+/// A picture of `acdf render`: it lies beside the report, and as a .png as well. It is no probe, whatever its
+/// shape.
+bool is_rendering(const fs::path& path) {
+    std::error_code ignored;
+    return lower_extension(path) == ".exr" && fs::exists(path.parent_path() / "render.json", ignored) &&
+           fs::exists(fs::path(path).replace_extension(".png"), ignored);
+}
+
 class Collector {
 public:
     explicit Collector(const BatchDefaults& defaults) : defaults_(defaults) {}
@@ -47,27 +58,27 @@ public:
     BatchJobs take() { return std::move(out_); }
 
 private:
-    /// A job for each kind that the source becomes by default. `stem`: of the output's name.
-    void add_source(const std::string& source, const fs::path& stem) {
+    /// A job for each kind that the source becomes by default. `name`: what the output is called after.
+    void add_source(const std::string& source, const fs::path& name) {
         const JobKind* brdf = find_kind("brdf");
-        if (is_one_of(brdf_extensions, lower_extension(source))) return add(source, brdf, stem);
-        for (const JobKind* kind : defaults_.probe_kinds) add(source, kind, stem);
+        if (is_one_of(brdf_extensions, lower_extension(source))) return add(source, brdf, name);
+        for (const JobKind* kind : defaults_.probe_kinds) add(source, kind, name);
     }
 
-    void add(const std::string& source, const JobKind* kind, const fs::path& stem) {
+    void add(const std::string& source, const JobKind* kind, const fs::path& name) {
         BatchJob job;
         job.origin = source;
         job.kind = kind;
         job.source = source;
-        job.options = default_options(*kind);
-        job.output = stem.string() + kind->suffix;
+        job.options = defaults_.options(*kind, name.string());
+        job.output = fs::path(name).replace_extension().string() + kind->suffix;
         out_.jobs.push_back(std::move(job));
     }
 
     void add_file(const std::string& path, const std::string& origin) {
         if (lower_extension(path) == ".npy")
             out_.errors.push_back(origin + ": may be a BRDF or a table; name it in a manifest, with its kind");
-        else add_source(path, fs::path(path).filename().replace_extension());
+        else add_source(path, fs::path(path).filename());
     }
 
     void add_folder(const std::string& folder) {
@@ -82,14 +93,13 @@ private:
             if (directory && hidden) i.disable_recursion_pending();
             else if (directory && !i->is_symlink()) out_.folders.push_back(path.string());
             const std::string extension = lower_extension(path);
-            if (!directory && !hidden &&
+            if (!directory && !hidden && !is_rendering(path) &&
                 (is_one_of(probe_extensions, extension) || is_one_of(brdf_extensions, extension)))
                 found.push_back(path);
         }
         if (error) out_.errors.push_back(folder + ": cannot be searched: " + error.message());
         std::sort(found.begin(), found.end()); // folders have no order of their own
-        for (const fs::path& path : found)
-            add_source(path.string(), path.lexically_relative(folder).replace_extension());
+        for (const fs::path& path : found) add_source(path.string(), path.lexically_relative(folder));
         if (!error && out_.jobs.size() == before)
             out_.errors.push_back(folder + ": has no probe (" + list(probe_extensions) + ") and no BRDF (" +
                                   list(brdf_extensions) + ") in it or below");
@@ -134,16 +144,11 @@ private:
                                                                     : defaults_.probe_kinds.front();
         job.source = model && job.kind == find_kind("brdf") ? line.source : (base / line.source).string();
         job.base = base.string();
-        job.options = line.options ? *line.options : default_options(*job.kind);
+        job.options = line.options ? *line.options : defaults_.options(*job.kind, line.source);
         const std::string stem =
             model ? line.source : fs::path(line.source).filename().replace_extension().string();
         job.output = line.output.empty() ? stem + job.kind->suffix : line.output;
         out_.jobs.push_back(std::move(job));
-    }
-
-    std::vector<std::string> default_options(const JobKind& kind) const {
-        const auto found = defaults_.options.find(kind.name);
-        return found == defaults_.options.end() ? std::vector<std::string>() : found->second;
     }
 
     template <std::size_t N>
@@ -216,6 +221,34 @@ void check_duplicates(const std::string& folder, BatchJobs& jobs) {
 }
 
 } // namespace
+
+BatchSetting parse_setting(const std::string& text) {
+    const std::size_t equals = text.find('='), colon = text.rfind(':', equals);
+    const std::size_t begin = colon == std::string::npos ? 0 : colon + 1, dot = text.find('.', begin);
+    BatchSetting out;
+    out.kind = dot == std::string::npos ? nullptr : find_kind(text.substr(begin, dot - begin));
+    if (!out.kind || dot + 1 >= text.size() || text[dot + 1] == '-' || begin == 1)
+        throw std::invalid_argument(
+            "needs KIND.OPTION=VALUE, such as env.budget=64KiB, or KIND.OPTION; before it there "
+            "may be a pattern of sources, as in 'angular/*:env.projection=angular'");
+    if (begin > 0) out.pattern = text.substr(0, colon);
+    out.option = "--" + text.substr(dot + 1);
+    return out;
+}
+
+std::vector<std::string> BatchDefaults::options(const JobKind& kind, const std::string& source) const {
+    const auto name = [](const std::string& option) { return option.substr(0, option.find('=')); };
+    std::vector<std::string> out;
+    for (const BatchSetting& setting : settings) {
+        if (setting.kind != &kind) continue;
+        if (!setting.pattern.empty() && fnmatch(setting.pattern.c_str(), source.c_str(), 0) != 0) continue;
+        out.erase(std::remove_if(out.begin(), out.end(),
+                                 [&](const std::string& other) { return name(other) == name(setting.option); }),
+                  out.end());
+        out.push_back(setting.option);
+    }
+    return out;
+}
 
 BatchJobs collect_jobs(const std::vector<std::string>& inputs, const BatchDefaults& defaults) {
     Collector collector(defaults);

@@ -4,7 +4,6 @@
 #include "tools/batch/manifest.h"
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -23,10 +22,24 @@ struct BatchJob {
     double seconds() const { return kind->seconds + kind->seconds_each * double(bytes); }
 };
 
+/// An option for some of the jobs.
+struct BatchSetting {
+    std::string pattern; ///< of the source, as in a shell but that * also takes /; empty: all
+    const JobKind* kind = nullptr;
+    std::string option; ///< "--budget=64KiB"
+};
+
+/// "[PATTERN:]KIND.OPTION[=VALUE]", such as "env.budget=64KiB" or "angular/*:env.projection=angular". Throws
+/// std::invalid_argument.
+BatchSetting parse_setting(const std::string& text);
+
 /// What applies to jobs that do not say otherwise.
 struct BatchDefaults {
     std::vector<const JobKind*> probe_kinds{find_kind("env")}; ///< what probes become
-    std::map<std::string, std::vector<std::string>> options;   ///< by the name of the kind
+    std::vector<BatchSetting> settings;                        ///< of two for one option the later counts
+
+    /// Those for a source, by its name below the folder that was searched, or as it was given.
+    std::vector<std::string> options(const JobKind& kind, const std::string& source) const;
 };
 
 struct BatchJobs {

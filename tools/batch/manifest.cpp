@@ -1,5 +1,7 @@
 #include "tools/batch/manifest.h"
 
+#include "reader/utf8.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -114,20 +116,6 @@ std::string_view take_line(std::string_view& text) {
     return line;
 }
 
-/// Bytes of the UTF-8 sequence at the start of `text`; 0: it is none (Unicode 15, table 3-7).
-std::size_t sequence_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<std::uint8_t>(text[i]) : 0u; };
-    const auto tail = [&](std::size_t i) { return byte(i) >= 0x80 && byte(i) <= 0xbf; };
-    const std::uint32_t a = byte(0), b = byte(1);
-    if (a < 0x80) return 1;
-    if (a >= 0xc2 && a <= 0xdf) return tail(1) ? 2 : 0;
-    if (a >= 0xe0 && a <= 0xef)
-        return tail(1) && tail(2) && !(a == 0xe0 && b < 0xa0) && !(a == 0xed && b > 0x9f) ? 3 : 0;
-    if (a >= 0xf0 && a <= 0xf4)
-        return tail(1) && tail(2) && tail(3) && !(a == 0xf0 && b < 0x90) && !(a == 0xf4 && b > 0x8f) ? 4 : 0;
-    return 0;
-}
-
 } // namespace
 
 const JobKind* find_kind(std::string_view name) {
@@ -154,8 +142,9 @@ Manifest parse_manifest(std::string_view text) {
 }
 
 std::size_t find_non_utf8(std::string_view text) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
     for (std::size_t i = 0; i < text.size();) {
-        const std::size_t n = sequence_length(text.substr(i));
+        const std::size_t n = utf8_sequence(bytes + i, text.size() - i);
         if (n == 0) return i;
         i += n;
     }

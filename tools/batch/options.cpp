@@ -25,9 +25,10 @@ void add_what(CLI::App& command, BatchArguments& options) {
         .add_option(
             "--set", options.set,
             "An option of `acdf env`, `acdf local` or `acdf brdf` for all jobs of that kind, but those with "
-            "options of their own in a manifest")
+            "options of their own in a manifest; before it there may be a pattern of sources, by their names "
+            "below the folder: 'angular/*:env.projection=angular'")
         ->type_name("")
-        ->option_text("KIND.OPTION[=VALUE]")
+        ->option_text("[PATTERN:]KIND.OPTION[=VALUE]")
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group("Input");

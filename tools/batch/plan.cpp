@@ -1,9 +1,11 @@
 #include "tools/batch/plan.h"
 
 #include "build/format_names.h"
+#include "input/file_name.h"
 #include "input/image.h"
 #include "reader/check.h"
 #include "tools/cli/file_input.h"
+#include "tools/cli/messages.h"
 #include "tools/commands.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -30,11 +32,6 @@ AcdfKind file_kind(const JobKind& kind) {
                                                   : ACDF_KIND_BRDF;
 }
 
-bool has_magic(const std::vector<std::uint8_t>& bytes) {
-    constexpr std::uint8_t magic[] = ACDF_MAGIC_BYTES;
-    return bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, sizeof magic) == 0;
-}
-
 std::string first_fault(const std::vector<std::uint8_t>& bytes) {
     std::string fault;
     validate(bytes.data(), bytes.size(), [&](const Finding& finding) {
@@ -48,7 +45,7 @@ std::string first_fault(const std::vector<std::uint8_t>& bytes) {
 /// Whether the file was made of the job's source, which is hashed only here: it costs most.
 bool is_of_source(const File& file, const BatchJob& job) {
     const std::string hash = value_of(file, "source.sha256");
-    const std::string name = fs::path(job.source).filename().string();
+    const std::string name = input::file_name(job.source);
     if (job.bytes == 0) return hash.empty() && value_of(file, "source.name") == job.source;
     return value_of(file, "source.name") == name && hash == input::file_sha256(job.source);
 }
@@ -109,7 +106,7 @@ void look_at(PlannedJob& planned, const std::string& folder, const PlanOptions& 
     if (fs::exists(path)) {
         planned.reason = "forced";
         if (!options.force) {
-            const std::vector<std::uint8_t> bytes = read_bytes(path);
+            const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);
             if (!bytes.empty() && !has_magic(bytes))
                 throw Failure("the output " + path + " exists and is no .acdf file; use --force to replace it");
             planned.reason = why_due(bytes, job, conversions.option_text(), planned);
@@ -121,12 +118,6 @@ void look_at(PlannedJob& planned, const std::string& folder, const PlanOptions& 
 }
 
 } // namespace
-
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (c == '\n' || c == '\r') c = ' ';
-    return text;
-}
 
 JobConversion::JobConversion(const BatchJob& job, const MakeConversion& make)
     : conversion_(make(job.kind->name)), command_("", job.kind->name) {
@@ -149,9 +140,9 @@ void check_options(BatchJobs& jobs, const MakeConversion& make) {
         if (is_new) try {
                 JobConversion(job, make)->option_text(); // reads a scene
             } catch (const CLI::ParseError& error) {
-                found->second = std::string("options of ") + job.kind->name + ": " + one_line(error.what());
+                found->second = std::string("options of ") + job.kind->name + ": " + on_one_line(error.what());
             } catch (const std::runtime_error& error) {
-                found->second = one_line(error.what());
+                found->second = on_one_line(error.what());
             }
         if (!found->second.empty()) jobs.errors.push_back(job.origin + ": " + found->second);
     }
@@ -168,7 +159,7 @@ std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::
         try {
             look_at(plan[i], folder, options, conversions.local());
         } catch (const std::exception& error) {
-            wrong[i] = jobs[i].origin + ": " + one_line(error.what());
+            wrong[i] = jobs[i].origin + ": " + on_one_line(error.what());
         }
     });
     for (std::string& line : wrong)

@@ -55,7 +55,4 @@ std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::
                                   const PlanOptions& options, const MakeConversion& make,
                                   std::vector<std::string>& errors);
 
-/// For tables and logs of a line each.
-std::string one_line(std::string text);
-
 } // namespace acdf::tools

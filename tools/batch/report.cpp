@@ -88,7 +88,53 @@ struct Sum {
     }
 };
 
+constexpr std::size_t most_rows = 60, most_named = 5;
+
+std::string file_rows(const std::vector<JobResult>& jobs) {
+    std::size_t width = 4;
+    for (const JobResult& job : jobs) width = std::max(width, job.output.size());
+    const auto padded = [&](std::string name) { return name.append(width - std::min(width, name.size()), ' '); };
+    std::string text = padded("file") + "       bytes  relative variance   seconds\n";
+    for (const JobResult& job : jobs) {
+        char numbers[96];
+        if (job.status == Status::failed) std::snprintf(numbers, sizeof numbers, " %11s", "failed");
+        else
+            std::snprintf(numbers, sizeof numbers, " %11s %18.3g %9.1f", to_readable_size(job.bytes).c_str(),
+                          job.relative_variance, job.seconds);
+        text += padded(job.output) + numbers + (job.status == Status::up_to_date ? "  up to date\n" : "\n");
+    }
+    return text + "\n";
+}
+
 } // namespace
+
+std::string told_in_batch(const std::string& error) {
+    if (error.find("--projection") == std::string::npos) return error;
+    return error +
+           " (in a batch: --set 'angular/*:env.projection=angular' for a pattern of sources, or in a manifest "
+           "{\"source\": \"angular/a.hdr\", \"options\": {\"projection\": \"angular\"}})";
+}
+
+std::vector<std::string> grouped(const std::vector<std::string>& errors) {
+    std::vector<std::string> whats;
+    std::map<std::string, std::vector<std::string>> names;
+    for (const std::string& error : errors) {
+        const std::size_t colon = error.find(": ");
+        const std::string what = colon == std::string::npos ? error : error.substr(colon + 2);
+        std::vector<std::string>& known = names[what];
+        if (known.empty()) whats.push_back(what);
+        known.push_back(colon == std::string::npos ? "" : error.substr(0, colon));
+    }
+    std::vector<std::string> lines;
+    for (const std::string& what : whats) {
+        const std::vector<std::string>& all = names[what];
+        std::string line;
+        for (std::size_t i = 0; i < std::min(all.size(), most_named); ++i) line += (i > 0 ? ", " : "") + all[i];
+        if (all.size() > most_named) line += " and " + std::to_string(all.size() - most_named) + " more";
+        lines.push_back(line.empty() ? what : line + ": " + what);
+    }
+    return lines;
+}
 
 std::size_t BatchReport::count(Status status) const {
     return static_cast<std::size_t>(
@@ -117,8 +163,11 @@ BatchReport parse_report(const std::string& text) {
             throw std::invalid_argument("there is no such shard");
         for (const Json& job : json.at("jobs")) report.jobs.push_back(parse_job(job));
         return report;
-    } catch (const Json::exception& error) {
-        throw std::invalid_argument(std::string("is no report of `acdf batch --json` (") + error.what() + ")");
+    } catch (const Json::parse_error& error) {
+        throw std::invalid_argument("is no report of `acdf batch --json`: it is no JSON from byte " +
+                                    std::to_string(error.byte) + " on");
+    } catch (const Json::exception&) {
+        throw std::invalid_argument("is no report of `acdf batch --json`: a key is missing, or of another type");
     }
 }
 
@@ -151,8 +200,9 @@ std::string summary_table(const BatchReport& report) {
         kinds[job.kind].add(job);
         all.add(job);
     }
-    std::string text = "kind      jobs    done  up to date  failed        bytes  relative variance   "
-                       "noise at 16, 64, 256   seconds\n";
+    std::string text = report.jobs.size() <= most_rows ? file_rows(report.jobs) : "";
+    text += "kind      jobs    done  up to date  failed        bytes  relative variance   "
+            "noise at 16, 64, 256   seconds\n";
     for (const auto& [name, sum] : kinds) text += sum.row(name);
     return kinds.size() > 1 ? text + all.row("all") : text;
 }

@@ -47,7 +47,13 @@ struct MergedReport {
 /// batches, or there are none.
 MergedReport merge_reports(const std::vector<BatchReport>& reports);
 
-/// A line for each kind, and one for all of more than one.
+/// What a conversion says of an option of its own, told as an option of a batch.
+std::string told_in_batch(const std::string& error);
+
+/// Errors "NAME: what" of the same `what` as one line that names the first few, in the order of the first of each.
+std::vector<std::string> grouped(const std::vector<std::string>& errors);
+
+/// A row for each of up to 60 files, one for each kind, and one for all of more than one.
 std::string summary_table(const BatchReport& report);
 
 } // namespace acdf::tools

@@ -1,6 +1,7 @@
 #include "tools/batch/run.h"
 
 #include "tools/cli/file_input.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/output.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
@@ -53,8 +54,8 @@ void convert(const BatchJob& job, const std::string& folder, const MakeConversio
     std::vector<std::string> inputs;
     for (const std::string* file : conversion->files()) inputs.push_back(*file);
     Output output(path.string(), true, inputs); // what is there was found to be no more than an older file
-    const Converted made =
-        conversion->convert({progress, [&](const std::string& note) { result.notes.push_back(one_line(note)); }});
+    const Converted made = conversion->convert(
+        {progress, [&](const std::string& note) { result.notes.push_back(on_one_line(note)); }});
     output.write(made.bytes.data(), made.bytes.size());
     output.commit(check_reads_back);
     result.bytes = made.bytes.size();
@@ -69,7 +70,7 @@ void run_job(const BatchJob& job, const std::string& folder, const MakeConversio
     } catch (const std::bad_alloc&) {
         result.error = job.source + ": out of memory; a smaller --memory would help";
     } catch (const std::exception& error) {
-        result.error = one_line(error.what());
+        result.error = on_one_line(error.what());
     }
 }
 

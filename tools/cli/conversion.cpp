@@ -1,4 +1,6 @@
 #include "tools/cli/conversion.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 
 #include "tools/cli/file_input.h"
 #include "tools/cli/options.h"
@@ -20,8 +22,7 @@ struct RunOptions {
 Converted convert(Conversion& conversion, bool quiet) {
     ProgressBar bar(quiet);
     return conversion.convert({bar.callback(), [&](const std::string& text) {
-                                   if (!quiet)
-                                       std::fprintf(stderr, "%s: %s\n", conversion.source.c_str(), text.c_str());
+                                   if (!quiet) say(conversion.source + ": " + text);
                                }});
 }
 
@@ -39,10 +40,10 @@ void run(Conversion& conversion, const RunOptions& options) {
     if (options.json) {
         nlohmann::ordered_json report{{"file", options.output}};
         report.update(made.report);
-        std::fprintf(out, "%s\n", report.dump(2).c_str());
+        std::fputs(json_text(report).c_str(), out);
     } else if (!options.quiet) {
-        std::fprintf(out, "%s: %s, %s\n", options.output.c_str(), to_readable_size(made.bytes.size()).c_str(),
-                     made.summary.c_str());
+        std::fprintf(out, "%s: %s, %s\n", printable(options.output).c_str(),
+                     to_readable_size(made.bytes.size()).c_str(), made.summary.c_str());
     }
 }
 

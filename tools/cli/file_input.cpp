@@ -1,7 +1,10 @@
 #include "tools/cli/file_input.h"
 
 #include "build/format_names.h"
+#include "tools/cli/sizes.h"
 #include "tools/commands.h"
+
+#include <acdf/layout.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -27,27 +30,57 @@ std::unique_ptr<std::FILE, Close> open_input(const std::string& path) {
     if (!file)
         throw Failure(path + ": cannot open: " + std::strerror(errno) +
                       (errno == ENOENT ? "; check the name and the folder" : ""));
-    struct stat status = {};
-    if (fstat(fileno(file.get()), &status) == 0 && S_ISDIR(status.st_mode))
-        throw Failure(path + ": is a folder; give the name of a file in it");
     return file;
 }
 
 } // namespace
 
-std::vector<std::uint8_t> read_bytes(const std::string& path) {
+void refuse_endless(const std::string& path) {
+    struct stat status = {};
+    if (path == "-" || stat(path.c_str(), &status) != 0) return;
+    if (S_ISDIR(status.st_mode)) throw Failure(path + ": is a folder; give the name of a file in it");
+    if (!S_ISREG(status.st_mode))
+        throw Failure(path + ": is a pipe or a device; give a file, or - and send it to stdin");
+}
+
+namespace {
+
+/// All bytes, or the first few where `goes_on` says of them that the rest is not worth reading.
+template <class GoesOn>
+std::vector<std::uint8_t> read(const std::string& path, std::uint64_t most, GoesOn goes_on) {
+    refuse_endless(path);
     const auto file = open_input(path);
     std::vector<std::uint8_t> bytes;
     std::uint8_t buffer[65536];
-    while (const std::size_t n = std::fread(buffer, 1, sizeof(buffer), file.get()))
+    while (const std::size_t n = std::fread(buffer, 1, sizeof(buffer), file.get())) {
+        const bool first = bytes.empty();
         bytes.insert(bytes.end(), buffer, buffer + n);
+        if (bytes.size() > most)
+            throw Failure(shown(path) + ": it is longer than " + to_readable_size(most) + ", so no such file");
+        if (first && !goes_on(bytes)) break;
+    }
     if (std::ferror(file.get())) throw Failure(shown(path) + ": cannot read: " + std::strerror(errno));
     return bytes;
 }
 
+} // namespace
+
+bool has_magic(const std::vector<std::uint8_t>& bytes) {
+    constexpr std::uint8_t magic[] = ACDF_MAGIC_BYTES;
+    return bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, sizeof magic) == 0;
+}
+
+std::vector<std::uint8_t> read_bytes(const std::string& path, std::uint64_t most) {
+    return read(path, most, [](const std::vector<std::uint8_t>&) { return true; });
+}
+
+std::vector<std::uint8_t> read_acdf_bytes(const std::string& path) {
+    return read(path, Limits().max_file_bytes, has_magic);
+}
+
 LoadedFile load_file(const std::string& path) {
     LoadedFile loaded;
-    loaded.bytes = read_bytes(path);
+    loaded.bytes = read_acdf_bytes(path);
     const Status status = File::from_memory(loaded.bytes.data(), loaded.bytes.size(), loaded.file);
     if (status.ok()) return loaded;
     std::string text = shown(path) + ": " + status.message;

@@ -9,8 +9,19 @@
 
 namespace acdf::tools {
 
-/// All bytes of the file at `path`, or of stdin for "-". Throws Failure.
-std::vector<std::uint8_t> read_bytes(const std::string& path);
+/// All bytes of the file at `path`, or of stdin for "-", but no more than `most`: some inputs never end. Throws
+/// Failure.
+std::vector<std::uint8_t> read_bytes(const std::string& path, std::uint64_t most = std::uint64_t{1} << 28);
+
+/// The same for an .acdf file: what does not begin like one is not read further, and left to the checks.
+std::vector<std::uint8_t> read_acdf_bytes(const std::string& path);
+
+/// Throws Failure where `path` is a folder, a pipe or a device, unless it is "-": before it is opened, which would wait
+/// for the writer of a pipe for ever.
+void refuse_endless(const std::string& path);
+
+/// Whether bytes begin as an .acdf file does.
+bool has_magic(const std::vector<std::uint8_t>& bytes);
 
 /// A checked file and the bytes it lies in.
 struct LoadedFile {

@@ -1,6 +1,8 @@
 // Options that several subcommands share, so that they read and behave the same everywhere.
 #pragma once
 
+#include "tools/cli/choice.h"
+
 #include <acdf/layout.h>
 
 #include <CLI/CLI.hpp>
@@ -51,7 +53,7 @@ inline CLI::Option* add_codec(CLI::App& command, AcdfCodec& codec) {
         .add_option(
             "--compress", codec,
             "none: usable in place, mapped or linked into a program; zlib: smaller to ship, inflated at load")
-        ->transform(CLI::CheckedTransformer(codecs).description(""))
+        ->transform(one_of(codecs))
         ->option_text("NAME [none]")
         ->group("Output");
 }

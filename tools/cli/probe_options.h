@@ -3,6 +3,8 @@
 
 #include "input/probe.h"
 
+#include "tools/cli/choice.h"
+
 #include <CLI/CLI.hpp>
 
 #include <map>
@@ -20,7 +22,7 @@ inline void add_projection(CLI::App& command, input::Projection& projection, con
         .add_option(name, projection,
                     "How the probe lays out directions: auto (metadata, then shape), latlong, angular (Debevec), "
                     "mirrorball, cube-cross, octahedral (equal-area). Set it where auto refuses")
-        ->transform(CLI::CheckedTransformer(names).description(""))
+        ->transform(one_of(names))
         ->option_text("NAME [auto]")
         ->group("Input");
 }
@@ -36,7 +38,7 @@ inline void add_domain(CLI::App& command, input::Domain& domain) {
             "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe themselves; "
             "for other probes the one of both grids that loses least), latlong, octahedral (equal-area). "
             "Noise is that of a renderer that looks the probe itself up, whatever the grid")
-        ->transform(CLI::CheckedTransformer(names).description(""))
+        ->transform(one_of(names))
         ->option_text("NAME [source]")
         ->group("Input");
 }
@@ -50,7 +52,7 @@ inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
             "--bad-pixels", options.bad_pixels,
             "What becomes of NaN, infinite and negative values: zero; clamp (+infinity becomes the largest "
             "finite value of its channel, the others 0); error (refuse the probe). They are counted and told")
-        ->transform(CLI::CheckedTransformer(policies).description(""))
+        ->transform(one_of(policies))
         ->option_text("NAME [zero]")
         ->group("Input");
     const std::map<std::string, bool> when_black{{"error", false}, {"uniform", true}};
@@ -59,7 +61,7 @@ inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
             "--on-black", options.uniform_if_black,
             "What becomes of a probe without any light: error, or uniform (all directions are equally likely; "
             "the total is next to 0)")
-        ->transform(CLI::CheckedTransformer(when_black).description(""))
+        ->transform(one_of(when_black))
         ->option_text("NAME [error]")
         ->group("Input");
 }

@@ -1,4 +1,5 @@
 #include "tools/cli/probe_source.h"
+#include "tools/cli/messages.h"
 
 #include "build/errors.h"
 #include "tools/commands.h"
@@ -55,7 +56,7 @@ void tell(const input::Probe& probe, const input::ProbeOptions& options, const s
 
 Note notes_of(const std::string& path, bool quiet) {
     return [path, quiet](const std::string& text) {
-        if (!quiet) std::fprintf(stderr, "%s: %s\n", path.c_str(), text.c_str());
+        if (!quiet) say(path + ": " + text);
     };
 }
 
@@ -120,8 +121,7 @@ ProbeTarget source_target(const std::string& path, const File& file, const std::
         load(source, options, builder::TargetRows(stored_options(file), {}, grid), notes_of(source, quiet));
     const Text hash = file.metadata("source.sha256");
     if (hash.size > 0 && std::string(hash.data, hash.size) != out.probe.source_sha256 && !quiet)
-        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
-                     source.c_str());
+        say(path + ": made from another file than " + source + " (its SHA-256 differs)");
     return out;
 }
 

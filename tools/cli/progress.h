@@ -4,11 +4,15 @@
 #include "build/progress.h"
 
 #include <memory>
+#include <string>
 
 namespace acdf::tools {
 
+/// ", 12 s left", from how much is done after `elapsed` seconds; empty where that tells nothing yet.
+std::string time_left(double fraction, double elapsed);
+
 /// Draws on stderr, from the second second on, where that is a terminal; does nothing elsewhere or where `quiet`.
-/// The bar is wiped when the object ends.
+/// It tells how long the rest will take, never runs backwards, and is wiped when the object ends.
 class ProgressBar {
 public:
     explicit ProgressBar(bool quiet);

@@ -1,5 +1,7 @@
 #include "tools/cli/scene_option.h"
 
+#include "tools/cli/choice.h"
+
 #include "input/image.h"
 
 #include <map>
@@ -13,7 +15,7 @@ void SceneOption::add(CLI::App& command, const std::string& help, const char* gr
         .add_option(
             "--scene-up", input_.up,
             "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
-        ->transform(CLI::CheckedTransformer(axes).description(""))
+        ->transform(one_of(axes))
         ->option_text("y|z [z]")
         ->group(group);
     command

@@ -3,6 +3,8 @@
 
 #include "build/option_text.h"
 
+#include "tools/cli/choice.h"
+
 #include <acdf/builder.h>
 
 #include <CLI/CLI.hpp>
@@ -42,7 +44,7 @@ inline void add_target_options(CLI::App& command, builder::TargetOptions& target
             "--filter", target.filter,
             "How your renderer looks the map up: nearest or bilinear. Set it right: a lookup that blends light "
             "into dark texels finds light where a nearest fit has none, which is bias")
-        ->transform(CLI::CheckedTransformer(filters).description(""))
+        ->transform(one_of(filters))
         ->option_text("NAME [nearest]")
         ->group("Fit");
 }

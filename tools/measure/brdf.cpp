@@ -1,4 +1,6 @@
 #include "tools/measure/brdf.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 
 #include "build/brdf.h"
 #include "build/brdf_accuracy.h"
@@ -83,7 +85,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
 
 void print_text(const std::string& path, const File& file, const std::string& source, const build::BrdfAccuracy& a,
                 const Rivals& r) {
-    std::printf("%s against %s, %u random views\n", path.c_str(), source.c_str(), a.views);
+    std::printf("%s against %s, %u random views\n", printable(path).c_str(), printable(source).c_str(), a.views);
     std::printf("  relative variance      %.6g   of one sample, mean over views; n samples have this over n\n",
                 a.relative_variance);
     std::printf("    noise                %s   at 16, 64, 256 samples under even light\n",
@@ -113,8 +115,7 @@ void measure_brdf(const std::string& path, const File& file, const std::string& 
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
     const Text hash = file.metadata("source.sha256");
     if (hash.size > 0 && std::string(hash.data, hash.size) != brdf->sha256 && !quiet)
-        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
-                     source.c_str());
+        say(path + ": made from another file than " + source + " (its SHA-256 differs)");
     const AcdfDescription& d = file.description();
     const compress::Reflected reflected =
         build::reflected_light(*brdf, static_cast<AcdfChannels>(d.channels),
@@ -124,7 +125,7 @@ void measure_brdf(const std::string& path, const File& file, const std::string& 
         build::BrdfAccuracy accuracy = build::summary(build::measure_views(file, reflected, views));
         accuracy.cells = build::brdf_cells(file);
         const Rivals r = rivals(reflected, *brdf, views);
-        if (json) std::printf("%s\n", report(path, file, source, accuracy, r).dump(2).c_str());
+        if (json) std::fputs(json_text(report(path, file, source, accuracy, r)).c_str(), stdout);
         else print_text(path, file, source, accuracy, r);
     } catch (const std::invalid_argument& error) {
         throw Failure(source + ": " + error.what());

@@ -4,6 +4,8 @@
 #include "measure/full_cdf.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
@@ -28,6 +30,7 @@ struct MeasureArguments {
     std::string file, source;
     input::ProbeOptions input;
     std::uint32_t normals = 256, views = build::kMeasuredViews;
+    const CLI::App* command = nullptr;
     bool rivals = false, json = false, quiet = false;
 };
 
@@ -61,7 +64,7 @@ nlohmann::ordered_json report(const MeasureArguments& options, const File& file,
 
 void print_text(const MeasureArguments& options, const File& file, const Measured& measured) {
     const build::Accuracy& a = measured.accuracy;
-    std::printf("%s against %s\n", options.file.c_str(), options.source.c_str());
+    std::printf("%s against %s\n", printable(options.file).c_str(), printable(options.source).c_str());
     if (a.combined) {
         std::printf("  relative variance      %.6g   a sample, with its company: not to be used alone\n",
                     a.relative_variance);
@@ -92,8 +95,18 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
 }
 
+/// An option that has no say for a kind is a mistake of whoever gave it.
+void refuse_options_of_local_files(const MeasureArguments& options) {
+    const auto fail = [](const char* option) {
+        throw CLI::ValidationError(option, "is for files of local environments");
+    };
+    if (options.rivals) fail("--rivals");
+    if (options.command->get_option("--normals")->count() > 0) fail("--normals");
+}
+
 void run(const MeasureArguments& options) {
     const LoadedFile loaded = load_file(options.file);
+    if (loaded.file.kind() != ACDF_KIND_LOCAL) refuse_options_of_local_files(options);
     switch (loaded.file.kind()) {
     case ACDF_KIND_TABLE:
         return measure_table(options.file, loaded.file, options.source, options.json, options.quiet);
@@ -114,8 +127,8 @@ void run(const MeasureArguments& options) {
                             measure::full_cdf_relative_variance(target), source.error};
     const std::string warning =
         resampling_warning(source, measured.accuracy.least_variance, measured.accuracy.relative_variance);
-    if (!warning.empty() && !options.quiet) std::fprintf(stderr, "%s: %s\n", options.file.c_str(), warning.c_str());
-    if (options.json) std::printf("%s\n", report(options, loaded.file, measured).dump(2).c_str());
+    if (!warning.empty() && !options.quiet) say(options.file + ": " + warning);
+    if (options.json) std::fputs(json_text(report(options, loaded.file, measured)).c_str(), stdout);
     else print_text(options, loaded.file, measured);
 }
 
@@ -125,6 +138,7 @@ void add_measure(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<MeasureArguments>();
     CLI::App& command =
         *program.add_subcommand("measure", "How noisy a file's samples are, exactly, by summation over its source");
+    options->command = &command;
     command.add_option("FILE", options->file, "The .acdf file (- is stdin)")
         ->required()
         ->type_name("")

@@ -1,4 +1,6 @@
 #include "tools/measure/local.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 
 #include "build/cells.h"
 #include "build/local_accuracy.h"
@@ -94,7 +96,7 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
 
 void print_text(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
                 const std::vector<Rival>& rivals) {
-    std::printf("%s against %s, %u random normals\n", options.file.c_str(), options.source.c_str(), a.lit_normals);
+    std::printf("%s against %s, %u random normals\n", printable(options.file).c_str(), printable(options.source).c_str(), a.lit_normals);
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
                 a.combined ? "a sample of the irradiance, with its company: not to be used alone"
                            : "of one sample of the irradiance, mean over normals");
@@ -133,7 +135,7 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
     const std::vector<Rival> rivals =
         options.rivals ? rivals_of(builder::grid_of(rival_target(options, file, source)), normals)
                        : std::vector<Rival>{};
-    if (options.json) std::printf("%s\n", report(file, options, accuracy, rivals).dump(2).c_str());
+    if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals)).c_str(), stdout);
     else print_text(file, options, accuracy, rivals);
 }
 

@@ -1,4 +1,6 @@
 #include "tools/measure/table.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 
 #include "build/table.h"
 #include "input/image.h"
@@ -53,7 +55,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
 
 void print_text(const std::string& path, const File& file, const std::string& source,
                 const build::TableAccuracy& a) {
-    std::printf("%s against %s\n", path.c_str(), source.c_str());
+    std::printf("%s against %s\n", printable(path).c_str(), printable(source).c_str());
     std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
     std::printf("    noise                %s   at 16, 64, 256 samples\n", noise_texts(a.relative_variance).c_str());
     if (file.description().bin_count > 1) {
@@ -85,12 +87,11 @@ void measure_table(const std::string& path, const File& file, const std::string&
                       joined(shape, "x") + "; measure against the array it was made from");
     const Text hash = file.metadata("source.sha256");
     if (hash.size > 0 && std::string(hash.data, hash.size) != input::file_sha256(source) && !quiet)
-        std::fprintf(stderr, "%s: made from another file than %s (its SHA-256 differs)\n", path.c_str(),
-                     source.c_str());
+        say(path + ": made from another file than " + source + " (its SHA-256 differs)");
     const std::vector<compress::Grid> bins = build::table_grids(array, file.table().indexed_count());
     try {
         const build::TableAccuracy accuracy = build::summary(build::measure_bins(file, bins));
-        if (json) std::printf("%s\n", report(path, file, source, accuracy).dump(2).c_str());
+        if (json) std::fputs(json_text(report(path, file, source, accuracy)).c_str(), stdout);
         else print_text(path, file, source, accuracy);
     } catch (const std::invalid_argument& error) {
         throw Failure(source + ": " + error.what());

@@ -1,5 +1,6 @@
 // acdf plot: a density in false colours, as in Lawrence et al. 2005, Fig. 5 and 9.
 #include "build/format_names.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/options.h"
@@ -262,7 +263,7 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
             "How the picture lays out directions: latlong (a 2:1 map: all cells at a glance) or angular (the "
             "unit disc of Debevec's light probes and of Lawrence et al. 2005, Fig. 5: less distorted around "
             "the middle, which is +x as in the lat-long map; sides as in a probe of that projection)")
-        ->transform(CLI::CheckedTransformer(layouts).description(""))
+        ->transform(one_of(layouts))
         ->option_text("NAME [latlong]")
         ->group("Picture");
     command

@@ -2,6 +2,8 @@
 #include "build/errors.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -212,11 +214,9 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
 
 void remark(const RenderArguments& options, const LoadedScene& scene) {
     if (options.quiet) return;
-    for (const std::string& warning : scene.probe.warnings)
-        std::fprintf(stderr, "%s: %s\n", scene.file.probe.c_str(), warning.c_str());
+    for (const std::string& warning : scene.probe.warnings) say(scene.file.probe + ": " + warning);
     for (std::size_t i = 0; i < scene.brdfs.size(); ++i)
-        for (const std::string& note : scene.brdfs[i]->notes)
-            std::fprintf(stderr, "%s: %s\n", scene.file.materials[i].brdf.c_str(), note.c_str());
+        for (const std::string& note : scene.brdfs[i]->notes) say(scene.file.materials[i].brdf + ": " + note);
 }
 
 void run(const RenderArguments& options) {
@@ -239,7 +239,7 @@ void run(const RenderArguments& options) {
         throw Failure(options.scene + ": " + error.what());
     }
     PictureWriter(folder, *scene, done).all(stems(done.options.samplers));
-    const std::string json = render_json(*scene, done).dump(2) + "\n";
+    const std::string json = json_text(render_json(*scene, done));
     folder.write("render.json", {json.begin(), json.end()});
     if (options.json) std::fputs(json.c_str(), stdout);
     else std::fputs(render_table(*scene, done).c_str(), stdout);

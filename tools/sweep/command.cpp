@@ -1,7 +1,9 @@
 // acdf sweep: size against noise and time, on a user's own probe or BRDF: a table and a page.
 #include "build/format_names.h"
 #include "input/brdf.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -177,8 +179,7 @@ void run(SweepArguments& options) {
     Output html(path("report.html"), options.force, {options.source});
 
     const Sweep sweep = make_sweep(options, kind);
-    using Json = nlohmann::ordered_json;
-    const std::string text = sweep_json(sweep).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = json_text(sweep_json(sweep));
     csv.write(sweep_csv(sweep));
     json.write(text);
     html.write(sweep_html(sweep));
@@ -203,7 +204,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         .add_option_function<SweepKind>(
             "--kind", [&options](SweepKind kind) { options.kind = kind; },
             "Which files are compared: env, local (for every normal) or brdf; as of the subcommands that make them")
-        ->transform(CLI::CheckedTransformer(kinds).description(""))
+        ->transform(one_of(kinds))
         ->option_text("NAME [by the source: env or brdf]")
         ->group("Sweep");
     command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas")

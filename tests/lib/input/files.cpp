@@ -106,6 +106,31 @@ TEST(InputFiles, ChannelsThatAreNoColourAreRefused) {
     const std::string text = refusal(folder.file("normals.exr"));
     EXPECT_CONTAINS(text, "N.x, N.y, N.z");
     EXPECT_CONTAINS(text, "oiiotool");
+    spec.nchannels = 1;
+    for (const char* name : {"A", "Z"}) {
+        spec.channelnames = {name};
+        write_image(folder.file("one.exr"), spec, std::vector<float>(32, 1.0f));
+        EXPECT_CONTAINS(refusal(folder.file("one.exr")), std::string("its channels are ") + name);
+    }
+}
+
+// A layer that nobody chose is told, unless it is the image itself.
+TEST(InputFiles, LayersAreTold) {
+    const Folder folder;
+    OIIO::ImageSpec spec(8, 4, 6, OIIO::TypeDesc::FLOAT);
+    std::vector<float> pixels;
+    for (int i = 0; i < 32; ++i) pixels.insert(pixels.end(), {1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f});
+    spec.channelnames = {"diffuse.R", "diffuse.G", "diffuse.B", "gloss.R", "gloss.G", "gloss.B"};
+    write_image(folder.file("layers.exr"), spec, pixels);
+    const Probe layered = read_probe(folder.file("layers.exr"));
+    EXPECT_EQ(layered.rgb[0], 1.0f);
+    ASSERT_EQ(layered.warnings.size(), 1u);
+    EXPECT_CONTAINS(layered.warnings[0], "of the layers diffuse, gloss, diffuse is read");
+    spec.channelnames = {"diffuse.R", "diffuse.G", "diffuse.B", "R", "G", "B"};
+    write_image(folder.file("plain.exr"), spec, pixels);
+    const Probe plain = read_probe(folder.file("plain.exr"));
+    EXPECT_EQ(plain.rgb[0], 4.0f) << "R, G and B come before a layer, wherever they stand";
+    EXPECT_TRUE(plain.warnings.empty());
 }
 
 // Nuke and others store only the part that is not black, or more than the image.

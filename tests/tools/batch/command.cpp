@@ -161,6 +161,59 @@ TEST_F(BatchCommand, GoesOnPastFailures) {
     EXPECT_EQ(files_in(out).size(), 3u) << "and no litter";
 }
 
+TEST_F(BatchCommand, SettingsForPatternsOfSources) {
+    write_small_probes(probes + "/sun", 1);
+    write_small_probes(probes + "/sky", 1);
+    const json all = report({probes, "--set", "env.cells=40", "--set", "sun/*:env.cells=20"});
+    EXPECT_EQ(all["done"], 2);
+    const auto cells = [&](const std::string& name) {
+        return json::parse(run_acdf({"info", "--json", out + name}).out)["cells"].get<int>();
+    };
+    EXPECT_LE(cells("/sun/probe000.acdf"), 20);
+    EXPECT_GT(cells("/sky/probe000.acdf"), 20);
+    for (const char* wrong : {"env", ":env.cells=3", "*:tables.cells=3", "*:env.", "*:env.--cells=3"})
+        EXPECT_EQ(batch({probes, "--set", wrong}).code, 2) << wrong;
+}
+
+TEST_F(BatchCommand, TellsWhatToWriteForSourcesThatItCannotTell) {
+    fs::create_directories(probes);
+    std::ofstream square(probes + "/disc.pfm", std::ios::binary); // black corners: an angular map or a mirror ball
+    square << "PF\n32 32\n-1.0\n";
+    for (int i = 0; i < 32 * 32 * 3; ++i) {
+        const int x = i / 3 % 32 - 16, y = i / 96 - 16;
+        const float value = x * x + y * y < 230 ? 1.0f : 0.0f;
+        square.write(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    square.close();
+    report({probes}, 1);
+    EXPECT_NE(messages.find("--set 'angular/*:env.projection=angular'"), std::string::npos) << messages;
+    EXPECT_EQ(report({probes, "--set", "d*:env.projection=angular"})["done"], 1);
+}
+
+TEST_F(BatchCommand, PicturesOfRendersAreNoProbes) {
+    write_small_probes(probes, 1);
+    for (const char* name : {"/render.json", "/full.png"}) write_text(probes + name, "{}");
+    write_text(probes + "/full.exr", "a picture");
+    const json all = report({probes});
+    EXPECT_EQ(all["done"], 1);
+    EXPECT_EQ(all["failed"], 0);
+}
+
+TEST_F(BatchCommand, TheSummaryHasARowAFile) {
+    write_small_probes(probes, 2);
+    const Result result = batch({probes});
+    for (const char* part : {"file ", "probe000.acdf ", "probe001.acdf ", "env "})
+        EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+}
+
+TEST_F(BatchCommand, RefusalsOfOneKindAreOneLine) {
+    write_text(manifest, "{\"source\": \"a.pfm\"}\n{\"source\": \"a.pfm\", \"output\": \"b.acdf\"}\n");
+    const Result result = batch({manifest});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+    EXPECT_NE(result.err.find("library.jsonl:1, "), std::string::npos) << result.err;
+}
+
 TEST_F(BatchCommand, KeepsWithinMemory) {
     write_small_probes(probes, 2);
     write_small_probe(probes + "/large.pfm", 1, 400);

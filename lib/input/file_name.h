@@ -1,0 +1,15 @@
+// What files say of where they came from.
+#pragma once
+
+#include <string>
+
+namespace acdf::input {
+
+/// The name of a file without its folders, for metadata, which is UTF-8: a byte that is none becomes U+FFFD.
+std::string file_name(const std::string& path);
+
+/// Throws Error unless `path` is a file with an end: folders, pipes and devices are refused, as is what is not
+/// there. `give`: what to give instead, such as "an image file".
+void require_regular_file(const std::string& path, const char* give);
+
+} // namespace acdf::input

@@ -1,0 +1,148 @@
+// Names, texts and inputs that are made to hurt: each gets one line, an exit code, and no time.
+#include "tests/tools/run.h"
+
+#include "tools/cli/messages.h"
+#include "tools/cli/progress.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+#include <sys/stat.h>
+
+using namespace acdf::test;
+using nlohmann::json;
+
+namespace {
+
+/// 8 x 4 texels, of which one is bright, as a portable float map.
+void write_probe(const std::string& path, int columns = 8, int rows = 4) {
+    std::ofstream file(path, std::ios::binary);
+    file << "PF\n" << columns << ' ' << rows << "\n-1.0\n";
+    for (int i = 0; i < columns * rows * 3; ++i) {
+        const float value = i < 3 ? 9.0f : 1.0f;
+        file.write(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+}
+
+class Hostile : public testing::Test {
+protected:
+    Folder folder;
+    const std::string probe = folder / "probe.pfm", file = folder / "probe.acdf";
+    void SetUp() override { write_probe(probe); }
+
+    void expect_failure(const std::vector<std::string>& command, int code, const std::string& part,
+                        const std::string& input = "") {
+        const Result result = run_acdf(command, input);
+        EXPECT_EQ(result.code, code) << command[0] << ": " << result.err;
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    }
+};
+
+TEST(Printable, LeavesTextAndTellsTheRest) {
+    using acdf::tools::printable;
+    EXPECT_EQ(printable("a b\tc\n"), "a b\tc\n");
+    EXPECT_EQ(printable("na\xc3\xafve \xe2\x82\xac \xf0\x9f\x98\x80"),
+              "na\xc3\xafve \xe2\x82\xac \xf0\x9f\x98\x80");
+    EXPECT_EQ(printable("\x1b[31m\x07\x7f\r"), "\\x1b[31m\\x07\\x7f\\x0d");
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "2J"),
+              "\\xc2\\x9b2J")
+        << "the one-byte form of ESC [";
+    EXPECT_EQ(printable("\xff\xc3"), "\\xff\\xc3");
+    EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80") << "a surrogate";
+    EXPECT_EQ(acdf::tools::on_one_line("a\nb\n\n"), "a b");
+}
+
+TEST(TimeLeft, IsToldOnceItIsKnown) {
+    using acdf::tools::time_left;
+    EXPECT_EQ(time_left(0.0, 3.0), "");
+    EXPECT_EQ(time_left(0.01, 3.0), "");
+    EXPECT_EQ(time_left(0.5, 3.0), ", 3 s left");
+    EXPECT_EQ(time_left(0.1, 10.0), ", 1:30 min left");
+    EXPECT_EQ(time_left(0.1, 1000.0), ", 2:30 h left");
+}
+
+TEST_F(Hostile, NamesThatAreNotUtf8) {
+    const std::string odd = folder / "odd\xff\x1b[31m.pfm";
+    write_probe(odd);
+    const Result made = run_acdf({"env", odd, "-o", file, "--json"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(json::parse(made.out)["source"], folder / "odd\xef\xbf\xbd\x1b[31m.pfm");
+    EXPECT_EQ(made.err.find('\x1b'), std::string::npos) << made.err;
+    EXPECT_NE(made.err.find("odd\\xff\\x1b[31m.pfm"), std::string::npos) << made.err;
+    const Result info = run_acdf({"info", file});
+    EXPECT_EQ(info.code, 0);
+    EXPECT_EQ(info.out.find('\x1b'), std::string::npos) << info.out;
+    EXPECT_EQ(run_acdf({"validate", file}).code, 0);
+    const Result odd_output = run_acdf({"env", probe, "-o", folder / "o\xff.acdf", "--json"});
+    EXPECT_EQ(odd_output.code, 0) << odd_output.err;
+    EXPECT_FALSE(json::parse(odd_output.out, nullptr, false).is_discarded());
+}
+
+TEST_F(Hostile, InputsWithoutAnEnd) {
+    const std::string pipe = folder / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
+    for (const std::string& input : {pipe, std::string("/dev/zero")}) {
+        const std::string out = folder / "out.acdf";
+        for (const std::vector<std::string>& command :
+             std::vector<std::vector<std::string>>{{"info", input},
+                                                   {"validate", input},
+                                                   {"env", input, "-o", out},
+                                                   {"local", input, "-o", out},
+                                                   {"local", probe, "-q", "--scene", input, "-o", out},
+                                                   {"table", input, "-o", out},
+                                                   {"measure", file, "--against", input},
+                                                   {"plot", input, "-o", folder / "out.png"},
+                                                   {"render", "--scene", input, "-o", folder / "rendered"},
+                                                   {"pdf", file, input}})
+            expect_failure(command, 1, "is a pipe or a device");
+    }
+    expect_failure({"pdf", file}, 1, "longer than 65536 characters", std::string(70000, '1'));
+    expect_failure({"info", "-"}, 1, "not an .acdf file", std::string(1 << 20, '\0'));
+}
+
+TEST_F(Hostile, NamesOfChoicesAreTold) {
+    expect_failure({"env", probe, "--fit", "spline", "-o", file}, 2,
+                   "'spline' is none of cdf, pdf, uniform, variance");
+    expect_failure({"env", probe, "--fit", "2", "-o", file}, 2, "'2' is none of");
+    expect_failure({"env", probe, "--compress", "1", "-o", file}, 2, "'1' is none of");
+    expect_failure({"env", probe, "--on-black", "true", "-o", file}, 2, "'true' is none of error, uniform");
+}
+
+TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
+    ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
+    expect_failure({"measure", file, "--against", probe, "--rivals"}, 2, "--rivals");
+    expect_failure({"measure", file, "--against", probe, "--normals", "7"}, 2, "--normals");
+    expect_failure({"local", probe, "--scene-up", "y", "-o", folder / "l.acdf"}, 2, "--scene-up");
+}
+
+TEST_F(Hostile, ABoundOnWeightsThatIsOutOfReachNamesWhatItTakes) {
+    const Result result =
+        run_acdf({"env", probe, "-q", "--filter", "bilinear", "--cells", "2", "--max-weight", "1.5", "-o", file});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find("so low a bound on weights takes about"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("cells; 2 are allowed"), std::string::npos) << result.err;
+}
+
+TEST_F(Hostile, MapsBeyondTheFormatAreRefusedBeforeTheyAreRead) {
+    const std::string wide = folder / "wide.pfm";
+    write_probe(wide, 70000, 2);
+    expect_failure({"env", wide, "--projection", "latlong", "-o", file}, 1, "more than 65536 on a side");
+}
+
+TEST_F(Hostile, ReportsThatAreNoneAreToldWithoutExceptions) {
+    const std::string report = folder / "report.json";
+    for (const auto& [text, what] :
+         std::vector<std::pair<std::string, std::string>>{{"{\"batch\"", "no JSON from byte"},
+                                                          {"{\"batch\": 3}", "a key is missing"},
+                                                          {"[]", "a key is missing"}}) {
+        write_text(report, text);
+        expect_failure({"batch", "--merge-reports", report}, 1, what);
+        EXPECT_EQ(run_acdf({"batch", "--merge-reports", report}).err.find("json.exception"), std::string::npos);
+    }
+}
+
+} // namespace

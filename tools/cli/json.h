@@ -1,0 +1,15 @@
+// How reports are written for scripts.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace acdf::tools {
+
+/// Indented by two, with a line end. Bytes that are no UTF-8 become U+FFFD: JSON has no way to tell them.
+inline std::string json_text(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+} // namespace acdf::tools

@@ -1,0 +1,21 @@
+// What is said to a person: lines on stderr and text on stdout, in which names of files and texts from files cannot
+// move the cursor, change colours or end the line.
+#pragma once
+
+#include <string>
+
+namespace acdf::tools {
+
+/// `text` with control characters and bytes that are no UTF-8 told as \x1b and the like. Line ends and tabs stay.
+std::string printable(const std::string& text);
+
+/// The same on one line: line ends become spaces.
+std::string on_one_line(std::string text);
+
+/// One line on stderr.
+void say(const std::string& text);
+
+/// Printable text on stdout.
+void print(const std::string& text);
+
+} // namespace acdf::tools
