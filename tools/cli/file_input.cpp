@@ -47,7 +47,7 @@ namespace {
 
 /// All bytes, or the first few where `goes_on` says of them that the rest is not worth reading.
 template <class GoesOn>
-std::vector<std::uint8_t> read(const std::string& path, std::uint64_t most, GoesOn goes_on) {
+std::vector<std::uint8_t> read_while(const std::string& path, std::uint64_t most, GoesOn goes_on) {
     refuse_endless(path);
     const auto file = open_input(path);
     std::vector<std::uint8_t> bytes;
@@ -71,11 +71,11 @@ bool has_magic(const std::vector<std::uint8_t>& bytes) {
 }
 
 std::vector<std::uint8_t> read_bytes(const std::string& path, std::uint64_t most) {
-    return read(path, most, [](const std::vector<std::uint8_t>&) { return true; });
+    return read_while(path, most, [](const std::vector<std::uint8_t>&) { return true; });
 }
 
 std::vector<std::uint8_t> read_acdf_bytes(const std::string& path) {
-    return read(path, Limits().max_file_bytes, has_magic);
+    return read_while(path, Limits().max_file_bytes, has_magic);
 }
 
 LoadedFile load_file(const std::string& path) {

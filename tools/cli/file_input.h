@@ -16,8 +16,8 @@ std::vector<std::uint8_t> read_bytes(const std::string& path, std::uint64_t most
 /// The same for an .acdf file: what does not begin like one is not read further, and left to the checks.
 std::vector<std::uint8_t> read_acdf_bytes(const std::string& path);
 
-/// Throws Failure where `path` is a folder, a pipe or a device, unless it is "-": before it is opened, which would wait
-/// for the writer of a pipe for ever.
+/// Throws Failure where `path` is a folder, a pipe or a device, unless it is "-": before it is opened, which would
+/// wait for the writer of a pipe for ever.
 void refuse_endless(const std::string& path);
 
 /// Whether bytes begin as an .acdf file does.

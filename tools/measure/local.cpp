@@ -96,7 +96,8 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
 
 void print_text(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
                 const std::vector<Rival>& rivals) {
-    std::printf("%s against %s, %u random normals\n", printable(options.file).c_str(), printable(options.source).c_str(), a.lit_normals);
+    std::printf("%s against %s, %u random normals\n", printable(options.file).c_str(),
+                printable(options.source).c_str(), a.lit_normals);
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
                 a.combined ? "a sample of the irradiance, with its company: not to be used alone"
                            : "of one sample of the irradiance, mean over normals");

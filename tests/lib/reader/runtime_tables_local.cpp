@@ -20,11 +20,11 @@ namespace {
 using namespace acdf_test;
 
 /// The same bytes with tables and without.
-struct Pair {
+struct LocalPair {
     std::vector<std::uint8_t> bytes;
     acdf::File fast, plain;
 
-    explicit Pair(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
+    explicit LocalPair(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
         acdf::LoadOptions options;
         options.tables = false;
         EXPECT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), plain, options).ok());
@@ -35,13 +35,14 @@ struct Pair {
     const AcdfLocalTables* tables() const { return fast.local().data().tables; }
 };
 
-struct Served {
+struct LocalServed {
     std::size_t asked = 0, told = 0; ///< directions, and those that tables knew
 };
 
 bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-void expect_same(const Pair& pair, const AcdfLocalPoint points[2], const float direction[3], Served& served) {
+void expect_same(const LocalPair& pair, const AcdfLocalPoint points[2], const float direction[3],
+                 LocalServed& served) {
     const float fast = pair.fast.local().pdf(points[0], direction);
     const float plain = pair.plain.local().pdf(points[1], direction);
     ASSERT_TRUE(same_bits(fast, plain))
@@ -51,7 +52,8 @@ void expect_same(const Pair& pair, const AcdfLocalPoint points[2], const float d
 }
 
 /// Draws of a normal and their densities, directions anywhere, and such beside borders between squares.
-void expect_same(const Pair& pair, const float normal[3], std::mt19937_64& random, Served& served, Served& edges) {
+void expect_same(const LocalPair& pair, const float normal[3], std::mt19937_64& random, LocalServed& served,
+                 LocalServed& edges) {
     const AcdfLocalPoint points[2] = {pair.fast.local().at(normal), pair.plain.local().at(normal)};
     const AcdfEnvironment env = pair.plain.local().data().environment;
     for (int i = 0; i < 8 && !testing::Test::HasFatalFailure(); ++i) {
@@ -80,9 +82,9 @@ void expect_same(const Pair& pair, const float normal[3], std::mt19937_64& rando
     }
 }
 
-Served expect_agreement(const Pair& pair, int normals) {
+LocalServed expect_agreement(const LocalPair& pair, int normals) {
     std::mt19937_64 random(6);
-    Served served, edges;
+    LocalServed served, edges;
     for (int i = 0; i < normals && !testing::Test::HasFatalFailure(); ++i) {
         Normal normal = random_direction(random);
         if (i % 4 == 0) // on edges and corners of the octahedron, of any length
@@ -97,7 +99,7 @@ TEST(LocalRuntimeTables, AgreeOnGoldenFiles) {
     for (const auto& entry : std::filesystem::directory_iterator(ACDF_TEST_DIR "/golden/v1.0")) {
         if (entry.path().extension() != ".acdf") continue;
         std::ifstream in(entry.path(), std::ios::binary);
-        Pair pair({std::istreambuf_iterator<char>(in), {}});
+        LocalPair pair({std::istreambuf_iterator<char>(in), {}});
         if (pair.plain.kind() != ACDF_KIND_LOCAL) continue;
         SCOPED_TRACE(entry.path().filename());
         ++files;
@@ -121,7 +123,7 @@ TEST(LocalRuntimeTables, AgreeOnRandomFiles) {
         options.long_curves = false;
         options.octahedral = seed % 10 == 9;
         SCOPED_TRACE(seed);
-        Pair pair(RandomLocal(seed, options).make().encode());
+        LocalPair pair(RandomLocal(seed, options).make().encode());
         with_tables += pair.tables() != nullptr;
         expect_agreement(pair, 60);
         if (HasFatalFailure()) return;
@@ -130,7 +132,7 @@ TEST(LocalRuntimeTables, AgreeOnRandomFiles) {
 }
 
 TEST(LocalRuntimeTables, AgreeOnHandMadeLights) {
-    Pair pair(lit_local().encode());
+    LocalPair pair(lit_local().encode());
     ASSERT_NE(pair.tables(), nullptr);
     expect_agreement(pair, 500);
 }
@@ -144,9 +146,9 @@ TEST(LocalRuntimeTables, ServeNearlyAllOfUsualFiles) {
     LocalFileOptions options;
     options.size.tiles = 100;
     const LocalMap map(sky, acdf::compress::octahedral_bins(4), options);
-    Pair pair(map.bytes);
+    LocalPair pair(map.bytes);
     ASSERT_NE(pair.tables(), nullptr);
-    const Served served = expect_agreement(pair, 1000);
+    const LocalServed served = expect_agreement(pair, 1000);
     EXPECT_GT(double(served.told), 0.99 * double(served.asked));
 }
 

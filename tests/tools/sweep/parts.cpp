@@ -233,10 +233,9 @@ void expect_consistent(const Sweep& sweep) {
     const auto column = [&](const char* name) {
         return std::size_t(std::find(csv[0].begin(), csv[0].end(), name) - csv[0].begin());
     };
-    std::map<std::string, const char*> charts = {
-        {"variance", "relative_variance"},     {"weight", "max_weight"},
-        {"sample", "ns_per_sample"},           {"pdf", "ns_per_pdf"},
-        {"equal-time", "equal_time_variance"}, {"build", "build_seconds"}};
+    std::map<std::string, const char*> charts = {{"variance", "relative_variance"},     {"weight", "max_weight"},
+                                                 {"sample", "ns_per_sample"},           {"pdf", "ns_per_pdf"},
+                                                 {"equal-time", "equal_time_variance"}, {"build", "build_seconds"}};
     if (sweep.kind == SweepKind::environment) charts["surface"] = "irradiance_variance";
     for (const auto& [chart, name] : charts) {
         std::size_t expected = 0;
