@@ -10,7 +10,7 @@ shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 results=${RESULTS:-$root/build/accuracy}
 page=${PAGE:-$root/docs/accuracy.md}
-sections=(e1 e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7 hidden rivals summary)
+sections=(e1 e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden rivals summary)
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
@@ -92,25 +92,28 @@ e6_plastic() { render e6-plastic e6-plastic 24x24; }
 # E7: the scenes of E6, and one of them behind a wall, with samplers of the product and their rivals.
 e7_samplers=('mis(local:1MB,brdf:64KiB)' 'product(local:1MB,brdf:64KiB)' 'mis(compensated,brdf:64KiB)'
     'mis(tiles:12x12(brdf:64KiB),brdf:64KiB)' 'ris:8(local:1MB,brdf:64KiB)' 'ris:32(local:1MB,brdf:64KiB)')
-e7() {
-    local samples scene options=() sampler
+
+# products SAMPLES SCENE...: one table, a column a scene
+products() {
+    local samples=$1 scene options=() reports=() sampler
+    shift
     for sampler in "${e7_samplers[@]}"; do options+=(--sampler "$sampler"); done
-    for samples in 100 16 4; do
-        local reports=()
-        for scene in e6-cook-torrance e6-nickel e6-plastic e7-hidden; do
-            "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size 16x16 --samples $samples \
-                "${options[@]}" -o "$results/e7-$scene-$samples" --force --quiet --json > "$results/e7-$scene-$samples.json"
-            reports+=("$results/e7-$scene-$samples.json")
-        done
-        echo "| $samples samples a pixel | Cook-Torrance | nickel | plastic | geometric mean | nickel, a wall | bias, standard errors |"
-        echo "|---|---|---|---|---|---|---|"
-        jq -rs "$jq_lib"' . as $runs | def mean: (map(log) | add / length | exp);
-            range($runs[0].samplers | length) as $i | [$runs[].samplers[$i]] as $s |
-            "| `\($s[0].sampler)` | \($s | map("\(.equal_samples_gain.value | sig) / \(.equal_time_gain.value | sig)") | .[0:3] | join(" | ")) | \([$s[0:3][].equal_samples_gain.value] | mean | sig) / \([$s[0:3][].equal_time_gain.value] | mean | sig) | \($s[3] | "\(.equal_samples_gain.value | sig) / \(.equal_time_gain.value | sig)") | \([$s[].bias_standard_errors | fabs] | max | sig) |"' \
-            "${reports[@]}"
-        echo
+    for scene in "$@"; do
+        "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size 16x16 --samples "$samples" \
+            "${options[@]}" -o "$results/$scene-$samples" --force --quiet --json > "$results/e7-$scene-$samples.json"
+        reports+=("$results/e7-$scene-$samples.json")
     done
+    echo "| $samples samples a pixel | $(printf '%s | ' "$@")geometric mean | bias, standard errors |"
+    echo "|---|$(printf -- '---|%.0s' "$@")---|---|"
+    jq -rs "$jq_lib"' . as $runs | def mean: (map(log) | add / length | exp);
+        range($runs[0].samplers | length) as $i | [$runs[].samplers[$i]] as $s |
+        "| `\($s[0].sampler)` | \($s | map("\(.equal_samples_gain.value | sig) / \(.equal_time_gain.value | sig)") | join(" | ")) | \([$s[].equal_samples_gain.value] | mean | sig) / \([$s[].equal_time_gain.value] | mean | sig) | \([$s[].bias_standard_errors | fabs] | max | sig) |"' \
+        "${reports[@]}"
 }
+e7_100() { products 100 e6-cook-torrance e6-nickel e6-plastic; }
+e7_16() { products 16 e6-cook-torrance e6-nickel e6-plastic; }
+e7_4() { products 4 e6-cook-torrance e6-nickel e6-plastic; }
+e7_hidden() { products 16 e7-hidden; }
 
 hidden() {
     render hidden-grace hidden-grace 32x24
