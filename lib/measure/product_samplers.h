@@ -10,7 +10,7 @@
 
 namespace acdf::measure {
 
-/// Into how many parts a point is divided that gets `samples`: what was best at equal time (docs/product.md).
+/// Into how many parts a point is divided that gets `samples`: four times as many, from 8 to 64.
 int product_parts(std::uint32_t samples);
 
 /// `light`: a file of an environment or a local environment. `parts` as in ProductOptions. `bytes` is that of the

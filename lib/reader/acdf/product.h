@@ -23,7 +23,7 @@ namespace acdf {
 /// How much work `at` does.
 struct ProductOptions {
     /// Into how many parts the sphere is divided, 1 to ACDF_CUT_MAX_PARTS: the BRDF is evaluated about once a part.
-    /// More pay where more samples are drawn (docs/product.md). 1: light times cosine and the BRDF half and half.
+    /// More pay where more samples are drawn. 1: light times cosine and the BRDF half and half.
     int parts = 64;
 };
 
