@@ -14,13 +14,19 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/company.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/lobe.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h

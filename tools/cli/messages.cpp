@@ -44,6 +44,6 @@ std::string on_one_line(std::string text) {
 
 void say(const std::string& text) { std::fprintf(stderr, "%s\n", on_one_line(text).c_str()); }
 
-void print(const std::string& text) { std::fputs(printable(text).c_str(), stdout); }
+void put(const std::string& text) { std::fputs(printable(text).c_str(), stdout); }
 
 } // namespace acdf::tools

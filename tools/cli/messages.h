@@ -16,6 +16,6 @@ std::string on_one_line(std::string text);
 void say(const std::string& text);
 
 /// Printable text on stdout.
-void print(const std::string& text);
+void put(const std::string& text);
 
 } // namespace acdf::tools

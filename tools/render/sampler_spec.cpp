@@ -163,7 +163,7 @@ SamplerSpec parse_single(const std::string& whole) {
     spec.text = text;
     if (colon != std::string::npos && !found->argument) fail(text, "takes no argument");
     if (found->argument)
-        read_argument(colon == std::string::npos ? found->argument : trimmed(plain.substr(colon + 1)), spec);
+        read_argument(colon == std::string::npos ? found->argument : plain.substr(colon + 1), spec);
     if (option != std::string::npos) read_company(text.substr(option), spec);
     return spec;
 }

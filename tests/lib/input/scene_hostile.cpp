@@ -45,7 +45,7 @@ std::string refusal_of(const Folder& folder, const std::string& name, const std:
 
 TEST(SceneHostile, NoSceneAtAll) {
     const Folder folder;
-    EXPECT_CONTAINS(scene_refusal(folder.file("missing.obj")), "no such file");
+    EXPECT_CONTAINS(scene_refusal(folder.file("missing.obj")), "No such file");
     EXPECT_CONTAINS(scene_refusal(folder.file("")), "folder");
     for (const char* name : {"a.obj", "a.ply", "a.exr", "a.txt"})
         EXPECT_CONTAINS(refusal_of(folder, name, ""), "empty");
