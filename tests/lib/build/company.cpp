@@ -312,7 +312,7 @@ TEST(Company, VarianceIsThatOfTheSlowReference) {
 
 TEST(Company, LocalFilesComeNearWaterFillingOfEachNormal) {
     const std::vector<Probe> all = probes();
-    for (const std::size_t i : {3, 5}) {
+    for (const std::size_t i : {std::size_t{3}, std::size_t{5}}) {
         Made with, alone;
         make(all[i], kinds[4], 192 << 10, with);
         make(all[i], {true, {}}, 192 << 10, alone);

@@ -48,7 +48,7 @@ std::vector<ShadingPoint> points(int count) {
             for (float& x : wo) x = -x;
         height = std::abs(height);
         if (i % 4 == 1) { // grazing
-            for (int k = 0; k < 3; ++k) wo[k] -= static_cast<float>(height - 0.02) * n[k];
+            for (std::size_t k = 0; k < 3; ++k) wo[k] -= static_cast<float>(height - 0.02) * n[k];
             const auto scale = static_cast<float>(1.0 / length(wo.data()));
             for (float& x : wo) x *= scale;
         }
