@@ -5,6 +5,7 @@
 #include "tests/lib/reader/random.h"
 
 #include "compress/store.h"
+#include "tests/lib/reader/tables_pair.h"
 
 #include <acdf/reader.h>
 
@@ -21,20 +22,8 @@ namespace {
 
 using namespace acdf_test;
 
-/// The same bytes with tables and without.
-struct Pair {
-    std::vector<std::uint8_t> bytes;
-    acdf::File fast, plain;
-
-    explicit Pair(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
-        acdf::LoadOptions options;
-        options.tables = false;
-        EXPECT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), plain, options).ok());
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), fast);
-        EXPECT_TRUE(status.ok()) << status.message;
-        EXPECT_EQ(plain.table_bytes(), 0u);
-        EXPECT_LE(fast.table_bytes(), 8 * fast.size() + (1u << 20));
-    }
+struct Pair : TablesPair {
+    using TablesPair::TablesPair;
     const AcdfCells* cells() const { return fast.environment().data().cells; }
 };
 

@@ -3,6 +3,7 @@
 #include "tests/inputs/local_maps.h"
 #include "tests/lib/reader/local_builder.h"
 #include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/tables_pair.h"
 
 #include <acdf/reader.h>
 
@@ -19,19 +20,8 @@ namespace {
 
 using namespace acdf_test;
 
-/// The same bytes with tables and without.
-struct LocalPair {
-    std::vector<std::uint8_t> bytes;
-    acdf::File fast, plain;
-
-    explicit LocalPair(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
-        acdf::LoadOptions options;
-        options.tables = false;
-        EXPECT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), plain, options).ok());
-        EXPECT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), fast).ok());
-        EXPECT_EQ(plain.table_bytes(), 0u);
-        EXPECT_LE(fast.table_bytes(), 8 * fast.size() + (1u << 20));
-    }
+struct LocalPair : TablesPair {
+    using TablesPair::TablesPair;
     const AcdfLocalTables* tables() const { return fast.local().data().tables; }
 };
 
