@@ -80,11 +80,9 @@ void set_ranges(TableArguments& options, const std::vector<std::uint32_t>& shape
 void remark(const TableArguments& options, const input::NpyArray& array) {
     const input::BadValues& bad = array.bad;
     if (bad.count() > 0 && !options.quiet)
-        std::fprintf(stderr,
-                     "%s: %" PRIu64 " NaN, %" PRIu64 " infinite and %" PRIu64
-                     " negative numbers set to 0, the first at [%s]\n",
-                     options.array.c_str(), bad.nan, bad.infinite, bad.negative,
-                     input::index_text(array.shape, bad.first).c_str());
+        say(options.array + ": " + std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) +
+            " infinite and " + std::to_string(bad.negative) + " negative numbers set to 0, the first at [" +
+            input::index_text(array.shape, bad.first) + "]");
 }
 
 nlohmann::ordered_json report(const TableArguments& options, const input::NpyArray& array, std::size_t bins,

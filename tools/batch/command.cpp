@@ -136,8 +136,8 @@ void sweep(const BatchArguments& options, const std::vector<BatchJob>& jobs) {
     std::size_t removed = 0;
     for (const std::string& folder : folders) removed += remove_stale_temporaries(folder);
     if (removed > 0 && !options.quiet)
-        std::fprintf(stderr, "%s: removed %zu temporary file%s of a run that was killed\n", options.output.c_str(),
-                     removed, removed == 1 ? "" : "s");
+        say(options.output + ": removed " + std::to_string(removed) + " temporary file" +
+            (removed == 1 ? "" : "s") + " of a run that was killed");
 }
 
 void show_plan(const BatchArguments& options, const std::vector<PlannedJob>& plan) {

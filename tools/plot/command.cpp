@@ -3,6 +3,7 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/cli/probe_options.h"
@@ -60,11 +61,9 @@ bool is_stored(const std::string& path) {
     if (path == "-" || fs::path(path).extension() == ".acdf") return true;
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return false;
-    constexpr unsigned char magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
-    char start[ACDF_MAGIC_SIZE] = {};
-    std::ifstream(path, std::ios::binary).read(start, sizeof start);
-    return std::equal(std::begin(magic), std::end(magic), start,
-                      [](unsigned char a, char b) { return a == static_cast<unsigned char>(b); });
+    std::vector<std::uint8_t> start(ACDF_MAGIC_SIZE);
+    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(start.data()), ACDF_MAGIC_SIZE);
+    return has_magic(start);
 }
 
 std::string shown_name(const std::string& path) {
@@ -166,8 +165,8 @@ DensityRange chosen_range(const PlotArguments& options, const DensityImage& imag
     if (!options.range.empty()) return *parse_range(options.range);
     const DensityRange range = automatic_range(image);
     if (!options.quiet)
-        std::fprintf(stderr, "%s: colours span %s sr^-1; --range sets them, for pictures to compare\n",
-                     options.output.c_str(), to_string(range).c_str());
+        say(options.output + ": colours span " + to_string(range) +
+            " sr^-1; --range sets them, for pictures to compare");
     return range;
 }
 
@@ -204,10 +203,8 @@ Drawing draw(const PlotArguments& options, const Plotted& source, bool with_knot
 std::string checked_font(const PlotArguments& options) {
     const std::string font = find_font();
     if (font.empty() && !options.quiet)
-        std::fprintf(stderr,
-                     "%s: no font was found, so the legend has no text; installing DejaVu Sans "
-                     "(fonts-dejavu-core) would help\n",
-                     options.output.c_str());
+        say(options.output + ": no font was found, so the legend has no text; installing DejaVu Sans "
+                             "(fonts-dejavu-core) would help");
     return font;
 }
 

@@ -190,12 +190,6 @@ struct SamplerBuilder::Store {
         const measure::LightSampler &a = sampler(spec.parts[0], material), &b = sampler(spec.parts[1], material);
         return *kept(spec.text, material, [&] { return measure::half_and_half(a, b); }).sampler;
     }
-    bool needs_company(const SamplerSpec& spec, std::size_t material) {
-        sampler(spec, material);
-        const auto found = tables.find(spec.text);
-        const auto* loaded = static_cast<const LoadedFile*>(found->second.keep.get());
-        return loaded->file.company() != nullptr;
-    }
     const measure::StratifiedMap& stratified(const SamplerSpec& spec, std::uint32_t strata) {
         auto& map = maps[spec.text + "/" + std::to_string(strata)];
         if (!map)
@@ -212,7 +206,7 @@ struct SamplerBuilder::Store {
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
         if (spec.kind == SamplerKind::product)
             return std::make_unique<measure::SingleEstimator>(product(spec, material, samples), samples);
-        if (spec.kind == SamplerKind::file && needs_company(spec, material))
+        if (spec.kind == SamplerKind::file && table(spec, material).file->company())
             throw SpecError("sampler '" + spec.text + "': has no support where its company is enough: mis(" +
                             spec.text + ", cosine)");
         if (spec.kind != SamplerKind::mis)

@@ -1,6 +1,5 @@
 #include "tools/sweep/occluders.h"
 
-#include "compress/tiles.h"
 #include "measure/scene_points.h"
 
 #include <tbb/parallel_for.h>
@@ -18,16 +17,8 @@ using Directions = std::vector<std::array<float, 3>>;
 Directions directions_of(const compress::Target& target) {
     Directions out(target.values.size());
     tbb::parallel_for(0u, target.rows, [&](std::uint32_t r) {
-        for (std::uint32_t c = 0; c < target.columns; ++c) {
-            compress::Box texel;
-            texel.begin[0] = r;
-            texel.end[0] = r + 1;
-            texel.begin[1] = c;
-            texel.end[1] = c + 1;
-            const std::array<double, 3> middle = compress::centre(target, texel);
-            for (std::size_t k = 0; k < 3; ++k)
-                out[std::size_t{r} * target.columns + c][k] = static_cast<float>(middle[k]);
-        }
+        for (std::uint32_t c = 0; c < target.columns; ++c)
+            out[std::size_t{r} * target.columns + c] = texel_middle(target, r, c);
     });
     return out;
 }

@@ -12,21 +12,23 @@
 
 namespace acdf::tools {
 
+std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t row, std::uint32_t column) {
+    compress::Box texel;
+    texel.begin[0] = row;
+    texel.end[0] = row + 1;
+    texel.begin[1] = column;
+    texel.end[1] = column + 1;
+    const std::array<double, 3> middle = compress::centre(target, texel);
+    return {static_cast<float>(middle[0]), static_cast<float>(middle[1]), static_cast<float>(middle[2])};
+}
+
 std::vector<float> texel_densities(const compress::Target& target, const measure::LightSampler& sampler) {
     std::vector<float> out(target.values.size());
     tbb::parallel_for(0u, target.rows, [&](std::uint32_t r) {
         const std::unique_ptr<measure::PointSampler> point = sampler.point_sampler();
         point->move_to({});
         for (std::uint32_t c = 0; c < target.columns; ++c) {
-            compress::Box texel;
-            texel.begin[0] = r;
-            texel.end[0] = r + 1;
-            texel.begin[1] = c;
-            texel.end[1] = c + 1;
-            const std::array<double, 3> middle = compress::centre(target, texel);
-            const float wi[3] = {static_cast<float>(middle[0]), static_cast<float>(middle[1]),
-                                 static_cast<float>(middle[2])};
-            out[std::size_t{r} * target.columns + c] = point->pdf(wi);
+            out[std::size_t{r} * target.columns + c] = point->pdf(texel_middle(target, r, c).data());
         }
     });
     return out;

@@ -7,10 +7,15 @@
 #include "measure/light_sampler.h"
 #include "tools/sweep/sweep.h"
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace acdf::tools {
+
+/// The direction of the middle of a texel.
+std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t row, std::uint32_t column);
 
 /// The density of a sampler that does not know the normal, in sr^-1, in the middle of each texel (its z halves the
 /// texel's solid angle).
