@@ -129,6 +129,7 @@ void EnvConversion::check_company() const {
 
 void EnvConversion::check() {
     use_renderer(*command_, renderer_, input_, environment_.target);
+    scene_.check(*command_);
     const AcdfFit fit = environment_.fit.fit;
     for (const OnlyFor& rule : only_for)
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);

@@ -105,9 +105,7 @@ void LocalConversion::set_separate() {
 
 void LocalConversion::check() {
     use_renderer(*command_, renderer_, input_, local_.target);
-    for (const char* option : {"--scene-up", "--scene-rgb"})
-        if (scene_.path.empty() && given(option))
-            throw CLI::ValidationError(option, "is of the file given by --scene");
+    scene_.check(*command_);
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();

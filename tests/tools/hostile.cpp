@@ -116,7 +116,8 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
     expect_failure({"measure", file, "--against", probe, "--rivals"}, 2, "--rivals");
     expect_failure({"measure", file, "--against", probe, "--normals", "7"}, 2, "--normals");
-    expect_failure({"local", probe, "--scene-up", "y", "-o", folder / "l.acdf"}, 2, "--scene-up");
+    for (const char* kind : {"env", "local"})
+        expect_failure({kind, probe, "--scene-up", "y", "-o", folder / "l.acdf"}, 2, "--scene-up");
 }
 
 TEST_F(Hostile, ABoundOnWeightsThatIsOutOfReachNamesWhatItTakes) {

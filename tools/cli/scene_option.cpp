@@ -24,6 +24,12 @@ void SceneOption::add(CLI::App& command, const std::string& help, const char* gr
         ->group(group);
 }
 
+void SceneOption::check(const CLI::App& command) const {
+    for (const char* option : {"--scene-up", "--scene-rgb"})
+        if (path.empty() && command.get_option(option)->count() > 0)
+            throw CLI::ValidationError(option, "is of the file given by --scene");
+}
+
 std::string SceneOption::text() const {
     return "--scene " + input::file_sha256(path) + (input_.up == input::UpAxis::y ? " --scene-up y" : "") +
            (input_.rgb_is_normal ? " --scene-rgb" : "");

@@ -18,6 +18,8 @@ struct SceneOption {
 
     /// `help`: what the normals of the scene are for.
     void add(CLI::App& command, const std::string& help, const char* group);
+    /// Throws CLI::ValidationError where there is an option of the scene, but no scene.
+    void check(const CLI::App& command) const;
     /// The option in one spelling, with the scene's SHA-256. Throws input::Error.
     std::string text() const;
     /// Empty where no scene was given; what was read is noted.
