@@ -11,6 +11,7 @@ install(TARGETS acdf_reader EXPORT acdfTargets COMPONENT reader
 install(FILES
     ${PROJECT_SOURCE_DIR}/format/acdf/layout.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/allocator.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
@@ -19,10 +20,12 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/lobe.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
@@ -34,6 +37,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tree.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/views.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/wavefront.h
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT reader)
 

@@ -1,23 +1,16 @@
 // The C interface: acdf::File behind an opaque pointer. malloc and not new, so that a C program that links the
 // reader needs no C++ runtime library.
-#include <acdf/acdf.h>
-#include <acdf/reader.h>
+#include "c_file.h"
+#include "memory.h"
 
-#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <utility>
 
-struct AcdfFile {
-    acdf::File file;
-};
-
 static_assert(sizeof(AcdfError::message) == sizeof(acdf::Status::message));
 static_assert(ACDF_UNSUPPORTED == static_cast<int>(acdf::ErrorCode::unsupported));
 
-namespace {
-
-void report(const acdf::Status& status, AcdfError* error) {
+void acdf::report(const Status& status, AcdfError* error) {
     if (!error) return;
     error->code = static_cast<AcdfErrorCode>(status.code);
     error->rule = status.rule;
@@ -25,10 +18,15 @@ void report(const acdf::Status& status, AcdfError* error) {
     std::memcpy(error->message, status.message, sizeof(status.message));
 }
 
-AcdfFile* keep(const acdf::Status& status, acdf::File& file, AcdfError* error) {
+namespace {
+
+using acdf::report;
+
+AcdfFile* keep(const acdf::Status& status, acdf::File& file, const AcdfAllocator& allocator, AcdfError* error) {
     report(status, error);
     if (!status.ok()) return nullptr;
-    if (void* place = std::malloc(sizeof(AcdfFile))) return new (place) AcdfFile{std::move(file)};
+    const AcdfBlock block = acdf::take_block(allocator, sizeof(AcdfFile));
+    if (block.data) return new (block.data) AcdfFile(std::move(file), allocator, block);
     acdf::Status failure;
     failure.code = acdf::ErrorCode::out_of_memory;
     std::memcpy(failure.message, "out of memory", sizeof("out of memory"));
@@ -36,63 +34,88 @@ AcdfFile* keep(const acdf::Status& status, acdf::File& file, AcdfError* error) {
     return nullptr;
 }
 
-acdf::LoadOptions plain() {
+acdf::LoadOptions of(const AcdfLoadOptions& from) {
     acdf::LoadOptions options;
-    options.tables = false;
+    if (from.max_file_bytes > 0) options.limits.max_file_bytes = from.max_file_bytes;
+    if (from.max_inflated_bytes > 0) options.limits.max_inflated_bytes = from.max_inflated_bytes;
+    options.tables = !from.plain;
+    options.allocator = from.allocator;
     return options;
 }
 
-AcdfFile* open(const char* path, const acdf::LoadOptions& options, AcdfError* error) {
-    acdf::File file;
-    const acdf::Status status = acdf::File::open(path, file, options);
-    return keep(status, file, error);
-}
-
-AcdfFile* from_memory(const void* data, size_t size, const acdf::LoadOptions& options, AcdfError* error) {
-    acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(data, size, file, options);
-    return keep(status, file, error);
+AcdfLoadOptions plain() {
+    AcdfLoadOptions options = {};
+    options.plain = 1;
+    return options;
 }
 
 } // namespace
 
-AcdfFile* acdf_open(const char* path, AcdfError* error) { return open(path, {}, error); }
-AcdfFile* acdf_open_plain(const char* path, AcdfError* error) { return open(path, plain(), error); }
+AcdfFile::AcdfFile(acdf::File&& from, const AcdfAllocator& memory, const AcdfBlock& place) noexcept
+    : file(std::move(from)), allocator(memory), block(place) {
+    if (file.kind() == ACDF_KIND_ENVIRONMENT) environment = file.environment().data();
+    if (file.kind() == ACDF_KIND_LOCAL) local = file.local().data();
+    if (file.kind() == ACDF_KIND_BRDF) brdf = file.brdf().data();
+    if (file.kind() == ACDF_KIND_TABLE) table = file.table().data();
+}
 
+AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error) {
+    acdf::File file;
+    const acdf::Status status = acdf::File::open(path, file, of(*options));
+    return keep(status, file, options->allocator, error);
+}
+AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error) {
+    acdf::File file;
+    const acdf::Status status = acdf::File::from_memory(data, size, file, of(*options));
+    return keep(status, file, options->allocator, error);
+}
+
+AcdfFile* acdf_open(const char* path, AcdfError* error) {
+    const AcdfLoadOptions options = {};
+    return acdf_open_with(path, &options, error);
+}
+AcdfFile* acdf_open_plain(const char* path, AcdfError* error) {
+    const AcdfLoadOptions options = plain();
+    return acdf_open_with(path, &options, error);
+}
 AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error) {
-    return from_memory(data, size, {}, error);
+    const AcdfLoadOptions options = {};
+    return acdf_from_memory_with(data, size, &options, error);
 }
 AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error) {
-    return from_memory(data, size, plain(), error);
+    const AcdfLoadOptions options = plain();
+    return acdf_from_memory_with(data, size, &options, error);
 }
 
 void acdf_close(AcdfFile* file) {
     if (!file) return;
+    const AcdfAllocator allocator = file->allocator;
+    AcdfBlock block = file->block;
     file->~AcdfFile();
-    std::free(file);
+    acdf::give_block(allocator, block);
 }
 
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    *out = file->file.environment().data();
+    *out = file->environment;
     return 1;
 }
 
 int acdf_local(const AcdfFile* file, AcdfLocal* out) {
     if (file->file.kind() != ACDF_KIND_LOCAL) return 0;
-    *out = file->file.local().data();
+    *out = file->local;
     return 1;
 }
 
 int acdf_brdf(const AcdfFile* file, AcdfBrdf* out) {
     if (file->file.kind() != ACDF_KIND_BRDF) return 0;
-    *out = file->file.brdf().data();
+    *out = file->brdf;
     return 1;
 }
 
 int acdf_table(const AcdfFile* file, AcdfTable* out) {
     if (file->file.kind() != ACDF_KIND_TABLE) return 0;
-    *out = file->file.table().data();
+    *out = file->table;
     return 1;
 }
 

@@ -1,5 +1,6 @@
 // The file as a container: header, chunk table, payloads.
 #include "chunk_table.h"
+#include "memory.h"
 
 #include <zlib.h>
 
@@ -268,8 +269,8 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
 
 } // namespace
 
-Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context,
-              Parts& parts) noexcept {
+Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context, Parts& parts,
+              const AcdfAllocator& allocator) noexcept {
     Report report(sink, context);
     if (!check_header(bytes, size, report) || report.stopped()) return report.verdict();
     const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
@@ -280,7 +281,7 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     if (table.legal && !report.stopped()) check_padding(table, bytes, size, report);
     if (!report.stopped()) check_crcs(table, bytes, report);
     Payloads payloads;
-    if (!report.stopped()) read_payloads(table, bytes, limits, report, parts, payloads);
+    if (!report.stopped()) read_payloads(table, bytes, limits, allocator, report, parts, payloads);
     const Payload& description = payloads.of[chunk_description];
     if (description.data && !report.stopped()) check_description(description, header.kind, report, parts);
     if (payloads.of[chunk_metadata].data && !report.stopped())
@@ -327,7 +328,7 @@ Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* co
         data = static_cast<const u8*>(std::memcpy(copy, bytes, size));
     }
     verdict = check(data, size, limits, sink, context, parts);
-    std::free(parts.inflated);
+    give_block({}, parts.inflated);
     std::free(copy);
     return verdict;
 }

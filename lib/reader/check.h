@@ -59,11 +59,11 @@ struct Parts {
     const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
-    void* inflated = nullptr; ///< block of the inflated chunks, from std::aligned_alloc; the caller frees it
+    AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
 };
 
 /// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.
 Verdict check(const std::uint8_t* bytes, std::uint64_t size, const Limits& limits, FindingSink sink, void* context,
-              Parts& parts) noexcept;
+              Parts& parts, const AcdfAllocator& allocator = {}) noexcept;
 
 } // namespace acdf

@@ -1,18 +1,14 @@
-// `File`: reading, ownership and access. What is right and wrong is decided in check*.cpp.
+// `File`: ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check.h"
+#include "input_file.h"
 #include "make_cells.h"
 #include "make_local_tables.h"
+#include "memory.h"
 
-#include <cerrno>
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace acdf {
 
@@ -82,15 +78,9 @@ bool first_error(const Finding& finding, void* status) {
     return false;
 }
 
-struct Bytes {
-    void* data = nullptr;
-    u64 size = 0;
-};
-
-Status allocate(u64 size, Bytes& bytes) {
-    bytes.size = size;
-    bytes.data = std::aligned_alloc(ACDF_ALIGNMENT, (size / ACDF_ALIGNMENT + 1) * ACDF_ALIGNMENT);
-    return bytes.data ? Status{} : failure(1003, "%llu bytes", static_cast<ull>(size));
+Status take(const AcdfAllocator& allocator, u64 size, AcdfBlock& block) {
+    if (size < SIZE_MAX - ACDF_ALIGNMENT) block = take_block(allocator, static_cast<std::size_t>(size));
+    return block.data ? Status{} : failure(1003, "%llu bytes", static_cast<ull>(size));
 }
 
 Status check_limit(u64 size, const Limits& limits) {
@@ -99,36 +89,16 @@ Status check_limit(u64 size, const Limits& limits) {
                    static_cast<ull>(limits.max_file_bytes));
 }
 
-Status read_all(int descriptor, const Bytes& bytes) {
-    for (u64 done = 0; done < bytes.size;) {
-        constexpr u64 step = u64{1} << 30;
-        const u64 left = bytes.size - done;
-        const ssize_t n = ::read(descriptor, static_cast<u8*>(bytes.data) + done, left < step ? left : step);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return failure(1002, "%s", std::strerror(errno));
-        if (n == 0) return failure(1002, "it shrank to %llu bytes while being read", static_cast<ull>(done));
-        done += static_cast<u64>(n);
-    }
+Status read_path(const char* path, const LoadOptions& options, AcdfBlock& block, u64& size) {
+    InputFile input;
+    if (const char* wrong = input.open(path)) return failure(1001, "%s", wrong);
+    if (const char* wrong = input.measure(size)) return failure(1002, "%s", wrong);
+    if (Status status = check_limit(size, options.limits); !status.ok()) return status;
+    if (Status status = take(options.allocator, size, block); !status.ok()) return status;
+    u64 done = 0;
+    if (const char* wrong = input.read(block.data, size, done)) return failure(1002, "%s", wrong);
+    if (done < size) return failure(1002, "it shrank to %llu bytes while being read", static_cast<ull>(done));
     return {};
-}
-
-Status read_descriptor(int descriptor, const Limits& limits, Bytes& bytes) {
-    struct stat info;
-    if (::fstat(descriptor, &info) != 0) return failure(1002, "%s", std::strerror(errno));
-    if (S_ISDIR(info.st_mode)) return failure(1002, "it is a directory");
-    if (!S_ISREG(info.st_mode)) return failure(1002, "it is a pipe or a device");
-    const u64 size = static_cast<u64>(info.st_size);
-    if (Status status = check_limit(size, limits); !status.ok()) return status;
-    if (Status status = allocate(size, bytes); !status.ok()) return status;
-    return read_all(descriptor, bytes);
-}
-
-Status read_path(const char* path, const Limits& limits, Bytes& bytes) {
-    const int descriptor = ::open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // nonblocking: a pipe is refused
-    if (descriptor < 0) return failure(1001, "%s", std::strerror(errno));
-    const Status status = read_descriptor(descriptor, limits, bytes);
-    ::close(descriptor);
-    return status;
 }
 
 u32 load_u32(const u8* bytes) {
@@ -146,15 +116,17 @@ Text next_text(const u8*& at) {
 
 } // namespace
 
-File::~File() {
-    for (void* block : owned_) std::free(block);
+File::~File() { release(); }
+
+void File::release() noexcept {
+    for (AcdfBlock& block : owned_) give_block(allocator_, block);
 }
 
 File::File(File&& other) noexcept { *this = std::move(other); }
 
 File& File::operator=(File&& other) noexcept {
     if (this == &other) return *this;
-    for (void* block : owned_) std::free(block);
+    release();
     bytes_ = std::exchange(other.bytes_, nullptr);
     size_ = std::exchange(other.size_, 0);
     description_ = std::exchange(other.description_, nullptr);
@@ -172,21 +144,23 @@ File& File::operator=(File&& other) noexcept {
     metadata_count_ = std::exchange(other.metadata_count_, 0);
     cells_ = std::exchange(other.cells_, nullptr);
     local_tables_ = std::exchange(other.local_tables_, nullptr);
-    for (int i = 0; i < 3; ++i) owned_[i] = std::exchange(other.owned_[i], nullptr);
+    allocator_ = other.allocator_;
+    for (int i = 0; i < 3; ++i) owned_[i] = std::exchange(other.owned_[i], AcdfBlock{});
     return *this;
 }
 
 Status File::open(const char* path, File& file, const LoadOptions& options) noexcept {
-    Bytes bytes;
+    AcdfBlock block = {};
+    u64 size = 0;
     file = File();
     if (!path) return failure(1001, "no path is given");
-    Status status = read_path(path, options.limits, bytes);
-    if (status.ok()) status = from_memory(bytes.data, bytes.size, file, options);
+    Status status = read_path(path, options, block, size);
+    if (status.ok()) status = from_memory(block.data, static_cast<std::size_t>(size), file, options);
     if (status.ok()) {
-        file.owned_[0] = bytes.data;
+        file.owned_[0] = block;
         return status;
     }
-    std::free(bytes.data);
+    give_block(options.allocator, block);
     name_file(status, path);
     return status;
 }
@@ -194,16 +168,15 @@ Status File::open(const char* path, File& file, const LoadOptions& options) noex
 Status File::from_memory(const void* data, std::size_t size, File& file, const LoadOptions& options) noexcept {
     File loaded;
     file = File();
+    loaded.allocator_ = options.allocator;
     if (Status status = check_limit(size, options.limits); !status.ok()) return status;
     if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
-        Bytes copy;
-        if (Status status = allocate(size, copy); !status.ok()) return status;
-        loaded.owned_[0] = std::memcpy(copy.data, data, size);
-        data = copy.data;
+        if (Status status = take(options.allocator, size, loaded.owned_[0]); !status.ok()) return status;
+        data = std::memcpy(loaded.owned_[0].data, data, size);
     }
     Status status;
     Parts parts;
-    check(static_cast<const u8*>(data), size, options.limits, first_error, &status, parts);
+    check(static_cast<const u8*>(data), size, options.limits, first_error, &status, parts, options.allocator);
     loaded.owned_[1] = parts.inflated;
     if (!status.ok()) return status;
     loaded.bytes_ = static_cast<const u8*>(data);
@@ -228,12 +201,13 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
 
 // They are only for speed: where there is no memory for them, the file is as good without.
 void File::make_tables() noexcept {
-    const u64 most = 8 * size_ + (u64{1} << 20);
+    const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
     // On the octahedral square a walk needs no trigonometry; its cells are not pieces of azimuth and height.
     if (description_->parameterization != ACDF_PARAM_LATLONG) return;
-    if (kind() == ACDF_KIND_ENVIRONMENT) owned_[2] = cells_ = make_cells(environment().data(), tree_units_, most);
+    if (kind() == ACDF_KIND_ENVIRONMENT)
+        cells_ = make_cells(environment().data(), tree_units_, most, allocator_, owned_[2]);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
-        owned_[2] = local_tables_ = make_local_tables(local().data(), tree_units_, most);
+        local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
 }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {

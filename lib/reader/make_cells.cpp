@@ -3,10 +3,10 @@
 
 #include "make_sides.h"
 #include "make_squares.h"
+#include "memory.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -30,7 +30,7 @@ public:
 
     /// False where there can be no tables.
     bool gather();
-    AcdfCells* assemble(std::size_t most_bytes);
+    AcdfCells* assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block);
 
 private:
     bool count(u32 at);
@@ -140,7 +140,7 @@ void CellsMaker::add_piece(const Side& azimuth, const Side& height, float pdf) {
 
 std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
 
-AcdfCells* CellsMaker::assemble(std::size_t most_bytes) {
+AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
     const std::size_t count = pieces_.size();
     SquaresMaker numbers, directions;
     if (!numbers.make(numbers_.data(), count, kNumberBits) ||
@@ -148,10 +148,11 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes) {
         return nullptr;
     std::size_t words = padded(sizeof(AcdfCells) / 4) + numbers.words() + directions.words();
     words += padded(pieces_.bytes() / 4) + padded(densities_.bytes() / 4);
-    void* const block = 4 * words <= most_bytes ? std::aligned_alloc(ACDF_ALIGNMENT, 4 * words) : nullptr;
-    if (!block) return nullptr;
-    u32* const tables = static_cast<u32*>(std::memset(block, 0, 4 * words));
-    AcdfCells* const cells = new (block) AcdfCells();
+    if (4 * words > most_bytes) return nullptr;
+    block = take_block(allocator, 4 * words);
+    if (!block.data) return nullptr;
+    u32* const tables = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
+    AcdfCells* const cells = new (block.data) AcdfCells();
     std::size_t at = padded(sizeof(AcdfCells) / 4);
     const auto copy = [&](const auto& from) {
         const std::size_t begin = at;
@@ -170,9 +171,10 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes) {
 
 } // namespace
 
-AcdfCells* make_cells(const AcdfEnvironment& environment, u32 tree_units, std::size_t most_bytes) noexcept {
+AcdfCells* make_cells(const AcdfEnvironment& environment, u32 tree_units, std::size_t most_bytes,
+                      const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
     CellsMaker maker(environment, tree_units);
-    return maker.gather() ? maker.assemble(most_bytes) : nullptr;
+    return maker.gather() ? maker.assemble(most_bytes, allocator, block) : nullptr;
 }
 
 } // namespace acdf

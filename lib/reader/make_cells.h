@@ -1,6 +1,7 @@
 // Makes the runtime tables of acdf/cells.h.
 #pragma once
 
+#include <acdf/allocator.h>
 #include <acdf/cells.h>
 #include <acdf/sample.h>
 
@@ -9,11 +10,10 @@
 
 namespace acdf {
 
-/// The tables of an environment whose tree takes `tree_units`, in a block from std::aligned_alloc that the caller
-/// frees, of at most `most_bytes`; null where there are none: for trees with tilts, with more than 65535 cells or
-/// more cells than units, where they would take more bytes, and where memory fails. The work is linear in
-/// tree_units.
-AcdfCells* make_cells(const AcdfEnvironment& environment, std::uint32_t tree_units,
-                      std::size_t most_bytes) noexcept;
+/// The tables of an environment whose tree takes `tree_units`, in `block`, which the caller gives back, of at most
+/// `most_bytes`; null where there are none: for trees with tilts, with more than 65535 cells or more cells than
+/// units, where they would take more bytes, and where memory fails. The work is linear in tree_units.
+AcdfCells* make_cells(const AcdfEnvironment& environment, std::uint32_t tree_units, std::size_t most_bytes,
+                      const AcdfAllocator& allocator, AcdfBlock& block) noexcept;
 
 } // namespace acdf

@@ -2,9 +2,9 @@
 
 #include "make_sides.h"
 #include "make_squares.h"
+#include "memory.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -31,7 +31,7 @@ public:
 
     /// False where there can be no tables.
     bool gather();
-    AcdfLocalTables* assemble() const;
+    AcdfLocalTables* assemble(const AcdfAllocator& allocator, AcdfBlock& block) const;
 
 private:
     bool gather(u32 node, const Cell& box);
@@ -101,7 +101,7 @@ bool LocalTablesMaker::add(const Cell& cell, u32 tile) {
     return pieces_.size() <= most_pieces_;
 }
 
-AcdfLocalTables* LocalTablesMaker::assemble() const {
+AcdfLocalTables* LocalTablesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& block) const {
     const AcdfBlend& blend = local_.blend;
     const std::size_t tiles = blend.tiles->tile_count, rows = blend.tiles->row_count;
     const std::size_t begin = sizeof(AcdfLocalTables) / 4;
@@ -109,10 +109,10 @@ AcdfLocalTables* LocalTablesMaker::assemble() const {
     const std::size_t piece_words = padded(pieces_.bytes() / 4), part_words = padded(2 * rows * tiles);
     const std::size_t words = begin + piece_words + directions_.words() + part_words + padded((tiles + 3) / 4);
     if (4 * words > most_bytes_) return nullptr;
-    void* const block = std::aligned_alloc(ACDF_ALIGNMENT, 4 * words);
-    if (!block) return nullptr;
-    u32* const out = static_cast<u32*>(std::memset(block, 0, 4 * words));
-    AcdfLocalTables* const tables = new (block) AcdfLocalTables();
+    block = take_block(allocator, 4 * words);
+    if (!block.data) return nullptr;
+    u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
+    AcdfLocalTables* const tables = new (block.data) AcdfLocalTables();
     tables->words = static_cast<u32>(words);
     tables->count = static_cast<u32>(pieces_.size());
     tables->pieces = static_cast<u32>(begin);
@@ -142,9 +142,10 @@ void LocalTablesMaker::add_parts(const std::uint8_t* row, u32 node, double produ
 
 } // namespace
 
-AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::size_t most_bytes) noexcept {
+AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::size_t most_bytes,
+                                   const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
     LocalTablesMaker maker(local, tree_units, most_bytes);
-    return maker.gather() ? maker.assemble() : nullptr;
+    return maker.gather() ? maker.assemble(allocator, block) : nullptr;
 }
 
 } // namespace acdf

@@ -1,6 +1,7 @@
 // Makes the runtime tables of acdf/local_tables.h.
 #pragma once
 
+#include <acdf/allocator.h>
 #include <acdf/local.h>
 
 #include <cstddef>
@@ -9,9 +10,9 @@
 namespace acdf {
 
 /// The tables of a local environment on a lat-long grid whose bins share tiles and whose tree takes `tree_units`,
-/// in a block from std::aligned_alloc that the caller frees, of at most `most_bytes` and of what a cache holds;
+/// in `block`, which the caller gives back, of at most `most_bytes` and of what a cache holds;
 /// null where they would take more, and where memory fails. The work is linear in the file.
-AcdfLocalTables* make_local_tables(const AcdfLocal& local, std::uint32_t tree_units,
-                                   std::size_t most_bytes) noexcept;
+AcdfLocalTables* make_local_tables(const AcdfLocal& local, std::uint32_t tree_units, std::size_t most_bytes,
+                                   const AcdfAllocator& allocator, AcdfBlock& block) noexcept;
 
 } // namespace acdf

@@ -1,5 +1,6 @@
 // Payloads: which chunks a reader takes, and how those that are compressed are inflated.
 #include "chunk_table.h"
+#include "memory.h"
 #include "planes.h"
 
 #include <zlib.h>
@@ -73,7 +74,8 @@ bool is_compressed(const ChunkTable& table, u32 i) {
 }
 
 // Memory for all compressed chunks in one block, each part at a multiple of 64; false where there is none.
-bool allocate_inflated(const ChunkTable& table, const Limits& limits, Report& report, Parts& parts) {
+bool allocate_inflated(const ChunkTable& table, const Limits& limits, const AcdfAllocator& allocator,
+                       Report& report, Parts& parts) {
     u64 sum = 0, block = 0;
     for (u32 i = 0; i < table.count; ++i) {
         if (!is_compressed(table, i)) continue;
@@ -87,9 +89,9 @@ bool allocate_inflated(const ChunkTable& table, const Limits& limits, Report& re
         block += round_up(length, ACDF_ALIGNMENT);
     }
     if (block == 0) return true;
-    parts.inflated = std::aligned_alloc(ACDF_ALIGNMENT, block);
-    if (!parts.inflated) report.add(1003, 0, "%llu bytes for inflated chunks", static_cast<ull>(block));
-    return parts.inflated != nullptr;
+    parts.inflated = take_block(allocator, static_cast<std::size_t>(block));
+    if (!parts.inflated.data) report.add(1003, 0, "%llu bytes for inflated chunks", static_cast<ull>(block));
+    return parts.inflated.data != nullptr;
 }
 
 } // namespace
@@ -100,10 +102,10 @@ int known_chunk(u32 type) noexcept {
     return -1;
 }
 
-void read_payloads(const ChunkTable& table, const u8* bytes, const Limits& limits, Report& report, Parts& parts,
-                   Payloads& payloads) {
-    const bool have_memory = allocate_inflated(table, limits, report, parts);
-    u8* block = static_cast<u8*>(parts.inflated);
+void read_payloads(const ChunkTable& table, const u8* bytes, const Limits& limits, const AcdfAllocator& allocator,
+                   Report& report, Parts& parts, Payloads& payloads) {
+    const bool have_memory = allocate_inflated(table, limits, allocator, report, parts);
+    u8* block = static_cast<u8*>(parts.inflated.data);
     for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
         const AcdfChunk& chunk = table.chunks[i];
         const int known = known_chunk(chunk.type);

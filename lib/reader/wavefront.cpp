@@ -1,5 +1,6 @@
 // The tables of BrdfWavefront, and which loops serve.
 #include "wavefront.h"
+#include "memory.h"
 
 #include <acdf/wavefront.h>
 
@@ -318,7 +319,10 @@ BrdfWavefront& BrdfWavefront::operator=(BrdfWavefront&& other) noexcept {
     return *this;
 }
 
-BrdfWavefront::~BrdfWavefront() { std::free(table_); }
+BrdfWavefront::~BrdfWavefront() {
+    AcdfBlock block = {table_, bytes_};
+    give_block({}, block);
+}
 
 Status BrdfWavefront::prepare(const BrdfView& view, BrdfWavefront& out, Instructions most) noexcept {
     const AcdfBrdf& brdf = view.data();
@@ -330,7 +334,7 @@ Status BrdfWavefront::prepare(const BrdfView& view, BrdfWavefront& out, Instruct
         if (!find_borders(brdf, borders)) return out_of_memory(sizeof(std::int32_t) * splits_of(brdf));
         std::size_t all_bytes;
         arrays_in(nullptr, brdf, borders, made.bytes_, all_bytes);
-        char* block = static_cast<char*>(std::aligned_alloc(kAlignment, all_bytes));
+        char* block = static_cast<char*>(take_block({}, all_bytes).data);
         if (!block) return out_of_memory(all_bytes);
         made.table_ = filled(arrays_in(block, brdf, borders, made.bytes_, all_bytes), brdf, borders);
     }

@@ -1,5 +1,5 @@
-/* The C interface of the reader: open a file here, then draw and evaluate with acdf/sample.h, or
- * acdf/table.h for tables.
+/* The C interface of the reader: open a file here, then draw and evaluate with acdf/sample.h, local.h, brdf.h and
+ * table.h, which are inlined, or with acdf/linked.h, which languages without a C compiler can call.
  *
  *   AcdfError error;
  *   AcdfFile* file = acdf_open("probe.acdf", &error);
@@ -15,8 +15,10 @@
 #ifndef ACDF_ACDF_H
 #define ACDF_ACDF_H
 
+#include <acdf/allocator.h>
 #include <acdf/brdf.h>
 #include <acdf/layout.h>
+#include <acdf/linked.h>
 #include <acdf/local.h>
 #include <acdf/sample.h>
 #include <acdf/table.h>
@@ -24,8 +26,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-typedef struct AcdfFile AcdfFile;
 
 /* What kind of failure; the numbers are stable, and those of acdf::ErrorCode. */
 typedef enum AcdfErrorCode {
@@ -38,23 +38,34 @@ typedef enum AcdfErrorCode {
     ACDF_UNSUPPORTED = 6 /* a newer or unknown version, kind, feature or critical chunk */
 } AcdfErrorCode;
 
-typedef struct AcdfError {
+struct AcdfError {
     AcdfErrorCode code;
     int rule;          /* number of the broken rule of SPEC.md, 0 if none */
     uint64_t offset;   /* byte in the file where it shows */
     char message[240]; /* one line, UTF-8, terminated: what is wrong and where */
-} AcdfError;
+};
 
 /* Reads and checks the file at `path`. Null on failure. `error` may be null; it is written on success too. */
 AcdfFile* acdf_open(const char* path, AcdfError* error);
 
-/* Checks `size` bytes at `data`, which must stay as they are until acdf_close: uncompressed chunks are used
- * in place (where `data` is aligned to 8 bytes). Null on failure. */
+/* Checks `size` bytes at `data`, which must stay as they are until acdf_close: they are used in place, unless they
+ * are not aligned to 8 bytes (then copied); compressed chunks are inflated into memory of the file's own. Null on
+ * failure. */
 AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error);
 
 /* The same without runtime tables: nothing is allocated for them, and trees are walked. */
 AcdfFile* acdf_open_plain(const char* path, AcdfError* error);
 AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error);
+
+/* The same with limits, and with the caller's memory. A number that is 0 stands for its default. */
+typedef struct AcdfLoadOptions {
+    uint64_t max_file_bytes;     /* 0: 4 GiB */
+    uint64_t max_inflated_bytes; /* of compressed chunks together; 0: 1 GiB */
+    int plain;                   /* 1: without runtime tables */
+    AcdfAllocator allocator;     /* of what the open file keeps, itself too; all null: the C library's */
+} AcdfLoadOptions;
+AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error);
+AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error);
 
 /* Ends `file` and every view and pointer taken from it. Null is allowed. */
 void acdf_close(AcdfFile* file);

@@ -3,12 +3,9 @@
 #pragma once
 
 #include <acdf/brdf.h>
+#include <acdf/method.h>
 
 #include <cstdint>
-
-#ifndef ACDF_METHOD
-#define ACDF_METHOD
-#endif
 
 namespace acdf {
 

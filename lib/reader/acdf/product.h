@@ -145,7 +145,7 @@ private:
 };
 
 template <class AnyLobe>
-auto ProductSampler<AnyLobe>::guides(const Point& point) const noexcept -> Guides {
+ACDF_METHOD auto ProductSampler<AnyLobe>::guides(const Point& point) const noexcept -> Guides {
     const AcdfGrid grid = acdf_environment_grid(&light_.environment);
     Guides out;
     out.drawn = parts_ < 32 ? 4 : 8;
@@ -171,7 +171,7 @@ auto ProductSampler<AnyLobe>::guides(const Point& point) const noexcept -> Guide
 
 /// The lobe at the heart of a part.
 template <class AnyLobe>
-void ProductSampler<AnyLobe>::look(const Point& point, int part, Rating& rating) const noexcept {
+ACDF_METHOD void ProductSampler<AnyLobe>::look(const Point& point, int part, Rating& rating) const noexcept {
     float world[3], wi[3];
     rating.tile = acdf_cut_heart(&light_, &point.light, &point.cut, part, world);
     point.frame.to_local(world, wi);
@@ -185,8 +185,8 @@ void ProductSampler<AnyLobe>::look(const Point& point, int part, Rating& rating)
 /// Mean and mass, from the heart, which stands for the whole part, and the guides in it: weighed as two samplers'
 /// samples are by the balance heuristic.
 template <class AnyLobe>
-void ProductSampler<AnyLobe>::rate(const Point& point, const Guides& guides, int part,
-                                   Rating& rating) const noexcept {
+ACDF_METHOD void ProductSampler<AnyLobe>::rate(const Point& point, const Guides& guides, int part,
+                                               Rating& rating) const noexcept {
     const AcdfCutPart& box = point.cut.part[part];
     const double solid_angle = rating.solid_angle > 1e-15 ? rating.solid_angle : 1e-15;
     const double even = 1.0 / solid_angle, own = 1.0 / (even + guides.drawn * rating.pdf);
@@ -211,7 +211,8 @@ ACDF_METHOD inline double relative_difference(double a, double b) noexcept {
 
 /// Divides where light times BRDF is large, and the part is.
 template <class AnyLobe>
-void ProductSampler<AnyLobe>::divide(Point& point, const Guides& guides, Rating* ratings) const noexcept {
+ACDF_METHOD void ProductSampler<AnyLobe>::divide(Point& point, const Guides& guides,
+                                                 Rating* ratings) const noexcept {
     AcdfCut& cut = point.cut;
     look(point, 0, ratings[0]);
     ratings[0].solid_angle = 4.0 * ACDF_PI;
@@ -245,7 +246,7 @@ void ProductSampler<AnyLobe>::divide(Point& point, const Guides& guides, Rating*
 
 /// Gives all parts their probabilities. Returns the share of samples that is left to the lobe's own sampler.
 template <class AnyLobe>
-double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Rating* ratings) noexcept {
+ACDF_METHOD double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Rating* ratings) noexcept {
     // What the value may be elsewhere in a part, beside what was seen: a little of what is around it and of the
     // mean.
     constexpr double around = 0.1, anywhere = 0.02;
@@ -291,7 +292,7 @@ double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Rating* ratings) noexc
 }
 
 template <class AnyLobe>
-auto ProductSampler<AnyLobe>::at(const SurfaceFrame& frame, const float wo[3]) const noexcept -> Point {
+ACDF_METHOD auto ProductSampler<AnyLobe>::at(const SurfaceFrame& frame, const float wo[3]) const noexcept -> Point {
     Point point;
     float local_wo[3];
     point.frame = frame;
@@ -320,7 +321,7 @@ auto ProductSampler<AnyLobe>::at(const SurfaceFrame& frame, const float wo[3]) c
 }
 
 template <class AnyLobe>
-float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
+ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
     if (point.light.what == ACDF_LOCAL_BLEND) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
@@ -328,7 +329,8 @@ float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float directi
 
 /// Of the mixture; `light` is that of its first part.
 template <class AnyLobe>
-float ProductSampler<AnyLobe>::density(const Point& point, const float direction[3], float light) const noexcept {
+ACDF_METHOD float ProductSampler<AnyLobe>::density(const Point& point, const float direction[3],
+                                                   float light) const noexcept {
     float wi[3];
     if (!(point.share >= 0.0)) return 0.0f;
     point.frame.to_local(direction, wi);
@@ -338,7 +340,7 @@ float ProductSampler<AnyLobe>::density(const Point& point, const float direction
 }
 
 template <class AnyLobe>
-ProductSample ProductSampler<AnyLobe>::sample(const Point& point, double u0, double u1) const noexcept {
+ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, double u0, double u1) const noexcept {
     ProductSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
     if (!(point.share >= 0.0)) return out;
     const double u = acdf_unit_interval(u0);

@@ -1,0 +1,97 @@
+/* Draws and densities as symbols of the library, singly and in arrays: for what cannot compile the inline functions
+ * of acdf/sample.h, local.h, brdf.h and table.h, such as Python, Rust, Julia or C#. All arguments are numbers and
+ * pointers to them. Each gives what the inline function gives, bit for bit; all are thread-safe, and but for
+ * acdf_brdf_waves allocate nothing.
+ *
+ * Arrays are packed: two doubles u in [0, 1] a sample, three floats a direction, normal or view (unit vectors;
+ * normals of any length > 0), a float a density (sr^-1). They may not overlap. Results have `count` items. Where
+ * normals, views or indices are given, each serves `each` samples that follow one another (at least 1): item i is
+ * of normal i / each; count: one serves all. A function that is called with a file of another kind returns 0 and
+ * writes nothing; arrays return 1 else. */
+#ifndef ACDF_LINKED_H
+#define ACDF_LINKED_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct AcdfFile AcdfFile;
+typedef struct AcdfError AcdfError;
+
+/* ---- environments ---- */
+
+/* Draws a direction; returns its density, > 0. */
+float acdf_draw_environment(const AcdfFile* file, double u0, double u1, float direction[3]);
+/* Density of a direction; 0 where none falls, for NaN and for directions that are not of unit length. */
+float acdf_density_environment(const AcdfFile* file, const float direction[3]);
+int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
+                                float* pdfs);
+int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs);
+/* The random numbers that draw each direction; NaN where the density is 0. */
+int acdf_invert_environment_array(const AcdfFile* file, const float* directions, size_t count, double* u);
+
+/* ---- local environments ---- */
+
+/* Density 0, and the direction unset, where the normal is zero or NaN or nothing shines on it. */
+float acdf_draw_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]);
+float acdf_density_local(const AcdfFile* file, const float normal[3], const float direction[3]);
+/* Directions are 0 where their density is. */
+int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
+                          float* directions, float* pdfs);
+int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
+                             size_t count, float* pdfs);
+/* Luminance times sr, of `count` normals: acdf_local_irradiance. */
+int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size_t count, double* irradiances);
+
+/* ---- BRDFs: wo and wi in the surface's frame, z its normal ---- */
+
+/* Density 0, and wi unset, where wo is not a unit vector above the surface. */
+float acdf_draw_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]);
+float acdf_density_brdf(const AcdfFile* file, const float wo[3], const float wi[3]);
+int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
+                         float* wi, float* pdfs);
+int acdf_density_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
+                            float* pdfs);
+/* The random numbers that draw each wi; NaN where the table's density is 0. */
+int acdf_invert_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
+                           double* u);
+/* In [0, 1], about, of `count` views: acdf_brdf_albedo. */
+int acdf_albedo_brdf_array(const AcdfFile* file, const float* wo, size_t count, double* albedos);
+
+/* The same draws and densities by the processor's vector instructions (acdf/wavefront.h), where it has them: a
+ * fraction of the time, bit for bit, by tables of about twelve times the file. Null where memory fails or the file
+ * is of another kind. `error` may be null. Ends with acdf_brdf_waves_close, before its file does. */
+typedef struct AcdfBrdfWaves AcdfBrdfWaves;
+AcdfBrdfWaves* acdf_brdf_waves(const AcdfFile* file, AcdfError* error);
+void acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,
+                          float* wi, float* pdfs);
+void acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t each, const float* wi,
+                             size_t count, float* pdfs);
+uint64_t acdf_brdf_waves_bytes(const AcdfBrdfWaves* waves); /* of the tables; 0: there are none */
+void acdf_brdf_waves_close(AcdfBrdfWaves* waves);           /* null is allowed */
+
+/* ---- tables: u and x have a number a sampled axis, `index` one an indexed axis (null where there is none) ---- */
+
+/* How many axes are sampled and indexed; 0 where the file is of another kind. */
+uint32_t acdf_table_sampled_axes(const AcdfFile* file);
+uint32_t acdf_table_indexed_axes(const AcdfFile* file);
+/* Density per product of the units of the sampled axes; 0, and x unset, where the bin has no energy or an index is
+ * out of range. */
+double acdf_draw_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x);
+double acdf_density_table(const AcdfFile* file, const uint32_t* index, const double* x);
+/* Points are NaN where their density is 0. */
+int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
+                          double* x, double* pdfs);
+int acdf_density_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
+                             size_t count, double* pdfs);
+/* The random numbers that draw each point; NaN where the density is 0. */
+int acdf_invert_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
+                            double* u);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,32 @@
+// A regular file, opened to be read: the one place that asks the system.
+#pragma once
+
+#include <cstdint>
+
+namespace acdf {
+
+/// Closed when it goes. Functions return null, or what went wrong, valid until the next call.
+class InputFile {
+public:
+    InputFile() noexcept = default;
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+    ~InputFile();
+
+    /// `path` is UTF-8 on Windows, else bytes as the system takes them. Waits for no pipe.
+    const char* open(const char* path) noexcept;
+    /// How many bytes it has; wrong where it is a folder, a pipe or a device.
+    const char* measure(std::uint64_t& size) noexcept;
+    /// Reads up to `size` bytes; `done`: how many there were.
+    const char* read(void* out, std::uint64_t size, std::uint64_t& done) noexcept;
+
+private:
+#if defined(_WIN32)
+    void* handle_ = nullptr;
+    char error_[160] = {};
+#else
+    int descriptor_ = -1;
+#endif
+};
+
+} // namespace acdf

@@ -1,0 +1,42 @@
+// The C++ views and the product in a kernel: compiled for devices by clang, with no toolkit but these lines.
+#define __CUDACC__ 1
+#define __host__ __attribute__((host))
+#define __device__ __attribute__((device))
+#define __global__ __attribute__((global))
+#define __forceinline__ inline __attribute__((always_inline))
+#pragma clang force_cuda_host_device begin
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#pragma clang force_cuda_host_device end
+
+#define ACDF_FN static inline __host__ __device__
+#define ACDF_METHOD __host__ __device__
+#include <acdf/product.h>
+#include <acdf/views.h>
+
+typedef acdf::ProductSampler<acdf::BrdfLobe> Product;
+
+struct Scene {
+    acdf::EnvironmentView sky;
+    acdf::LocalEnvironmentView local;
+    acdf::BrdfView brdf;
+    acdf::TableView table;
+};
+
+__global__ void draw(const Scene* scene, const double* u, const float* normal, float* out) {
+    const acdf::EnvironmentView sky = scene->sky;
+    double x[6], again[2];
+    acdf::DirectionSample s = sky.sample(u[0], u[1]);
+    out[0] = s.pdf + sky.pdf(s.direction) + (float)sky.invert(s.direction, again);
+    s = scene->local.sample(normal, u[0], u[1]);
+    out[1] = s.pdf + scene->local.pdf(normal, s.direction) + (float)scene->local.irradiance(normal);
+    s = scene->brdf.sample(normal, u[0], u[1]);
+    out[2] = s.pdf + scene->brdf.pdf(normal, s.direction) + (float)scene->brdf.albedo(normal);
+    const Product product(scene->local.data(), acdf::BrdfLobe(scene->brdf.data()));
+    const Product::Point point = product.at(normal, normal);
+    s = product.sample(point, u[0], u[1]);
+    out[3] = s.pdf + product.pdf(point, s.direction);
+    out[4] = (float)(scene->table.sample(0, u, x) + scene->table.pdf(0, x));
+}
