@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# accuracy.sh DATA [SECTION...]: writes the tables of docs/accuracy.md from the programs' output.
+# accuracy.sh DATA [SECTION...]: writes the tables of docs/accuracy.md, and that of building in docs/performance.md, from the
+# programs' output.
 # DATA holds probes/ and brdfs/. ACDF names the program (default: build/release/tools/acdf). Without sections all are
-# made, which takes an hour on two cores. Each table stands between <!-- NAME --> and <!-- /NAME --> in the page; what
+# made, which takes an hour on two cores. Each table stands between <!-- NAME --> and <!-- /NAME --> in a page; what
 # the summary needs of the others is kept in RESULTS (default: build/accuracy).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -9,8 +10,7 @@ data=$(cd "${1:?usage: docs/make/accuracy.sh DATA [SECTION...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 results=${RESULTS:-$root/build/accuracy}
-page=${PAGE:-$root/docs/accuracy.md}
-sections=(e1 e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden rivals summary)
+sections=(e1 e1_fits e1_sizes e1_options e1_ratio e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden rivals building summary)
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
@@ -43,6 +43,13 @@ variance, 256 KiB|--budget 256KiB
 ROWS
 }
 
+e1_tables() { ACDF=$acdf TABLES=$1 "$root/docs/make/method_tables.sh" "$data/probes"; }
+e1_fits() { e1_tables fits; }
+e1_sizes() { e1_tables sizes; }
+e1_options() { e1_tables options; }
+e1_ratio() { e1_tables ratio; }
+building() { e1_tables building; }
+
 # ---- E2: rows of it ---------------------------------------------------------------------------------------
 
 e2() {
@@ -62,6 +69,8 @@ e3() { "$root/docs/make/brdf_tables.sh" "$data/brdfs" "$acdf"; }
 e4_sizes() { TABLES=sizes "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_rivals() { TABLES=rivals "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 e4_paper() { TABLES=paper "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
+e4_bins() { TABLES=bins "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
+e4_tiles() { TABLES=tiles "$root/docs/make/local_tables.sh" "$data/probes" "$acdf"; }
 
 # ---- E3 to E6: pictures -----------------------------------------------------------------------------------------
 
@@ -155,24 +164,25 @@ summary() {
     cat <<ROWS
 | # | the paper | ours | made by |
 |---|---|---|---|
-| E2 | 16 times fewer knots on a peaky row, a modest gain on a smooth one | $peaky times and $smooth times (median over 4 to 256 knots, \`cdf\`) | \`acdf scanline\` |
-| E3 | nickel in 3.9 MB with the variance of 65 MB | 64 KiB do as well: the repaired table has $(gain e3-nickel brdf:64KiB brdf-table) its variance | \`acdf render\`, e3-nickel |
-| E3 | metallic blue in 2.3 MB | the same of 64 KiB: $(gain e3-metallic-blue brdf:64KiB brdf-table) | \`acdf render\`, e3-metallic-blue |
-| E4 | 5 times less than the full CDF with rejection | Grace $(gain e4-grace local:1MB full-cdf), St Peter's $(gain e4-stpeters local:1MB full-cdf), Beach $(gain e4-beach local:1MB full-cdf) | \`acdf render\`, e4 |
-| E4 | 20 times less than jittered sampling of a stratified map | Grace $(gain e4-grace local:1MB strata) (by radiance within strata: $(gain e4-grace local:1MB strata:radiance)) | \`acdf render\`, e4-grace |
-| E5 | as few as 3.3 to 5 % of the full CDF's samples above the horizon | full CDF $least, ours $ours in the worst pixel | \`acdf render\`, e5-grace |
-| E6 | combining pays: gains from 1/8 to 8 in one picture | 50 + 50 against 100 of the light: $(gain e6-cook-torrance 'mis(local:1MB,brdf:64KiB)' local:1MB), of the BRDF: $(gain e6-cook-torrance 'mis(local:1MB,brdf:64KiB)' brdf:64KiB) | \`acdf render\`, e6 |
+| E2, Fig. 6 | 16 times fewer knots on a peaky row, a modest gain on a smooth one | $peaky times and $smooth times (median over 4 to 256 knots, \`cdf\`) | \`acdf scanline\` |
+| E3, Fig. 7 | nickel in 3.9 MB with the variance of 65 MB | 64 KiB do as well: the repaired table has $(gain e3-nickel brdf:64KiB brdf-table) its variance | \`acdf render\`, e3-nickel |
+| E3, Fig. 7 | metallic blue in 2.3 MB | the same of 64 KiB: $(gain e3-metallic-blue brdf:64KiB brdf-table) | \`acdf render\`, e3-metallic-blue |
+| E4, Fig. 10 | 5 times less than the full CDF with rejection | Grace $(gain e4-grace local:1MB full-cdf), St Peter's $(gain e4-stpeters local:1MB full-cdf), Beach $(gain e4-beach local:1MB full-cdf) | \`acdf render\`, e4 |
+| E4, Fig. 10 | 20 times less than jittered sampling of a stratified map | Grace $(gain e4-grace local:1MB strata) (by radiance within strata: $(gain e4-grace local:1MB strata:radiance)) | \`acdf render\`, e4-grace |
+| E5, Fig. 8 | as few as 3.3 to 5 % of the full CDF's samples above the horizon | full CDF $least, ours $ours in the worst pixel | \`acdf render\`, e5-grace |
+| E6, Fig. 11 | combining pays: gains from 1/8 to 8 in one picture | 50 + 50 against 100 of the light: $(gain e6-cook-torrance 'mis(local:1MB,brdf:64KiB)' local:1MB), of the BRDF: $(gain e6-cook-torrance 'mis(local:1MB,brdf:64KiB)' brdf:64KiB) | \`acdf render\`, e6 |
 ROWS
 }
 
 # ---- into the page ------------------------------------------------------------------------------------------------------
 
-put() { # NAME: replaces what stands between its marks
+put() { # NAME: replaces what stands between its marks, in the page that has them
+    local page
+    page=$(grep -lFx "<!-- $1 -->" "$root"/docs/*.md) || { echo "no place for $1 in docs/*.md" >&2; exit 1; }
     awk -v name="$1" -v table="$results/$1.md" '
-        $0 == "<!-- " name " -->" { print; while ((getline line < table) > 0) print line; inside = 1; found = 1; next }
+        $0 == "<!-- " name " -->" { print; while ((getline line < table) > 0) print line; inside = 1; next }
         $0 == "<!-- /" name " -->" { inside = 0 }
-        !inside { print }
-        END { if (!found) exit 1 }' "$page" > "$results/page.md" || { echo "no place for $1 in $page" >&2; exit 1; }
+        !inside { print }' "$page" > "$results/page.md"
     cat "$results/page.md" > "$page"
 }
 

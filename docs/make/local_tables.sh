@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the tables of docs/local.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
+# Makes the tables of local files in docs/accuracy.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
 # TABLES="sizes rivals bins shape paper cosine" chooses among them.
 set -euo pipefail
 probes=$1

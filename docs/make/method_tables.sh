@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# method_tables.sh PROBES: the tables of docs/method.md, from the probes in a folder, as Markdown on stdout.
+# method_tables.sh PROBES: tables of environment files (docs/accuracy.md, docs/performance.md), from the probes in a folder, as Markdown on stdout.
 # ACDF names the program (default: build/release/tools/acdf). The table of layouts comes from the program `layouts`
 # beside it in tests/bench (-DACDF_BUILD_BENCHMARKS=ON), and is left out where that is not built; LAYOUTS names it.
 # TABLES chooses some of: fits sizes options ratio layouts building. The last needs oiiotool, for maps of other sizes.

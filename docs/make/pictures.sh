@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# pictures.sh DATA [NAME...]: the pictures of README.md and of the pages, into docs/figures. DATA holds probes/ and brdfs/.
+# Names: noise local_file brdf render sweep plot; all of them without. ACDF names the program (default:
+# build/release/tools/acdf). Needs oiiotool, jq and, for `sweep`, chromium; tools/packages.txt lists them.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+data=$(cd "${1:?usage: docs/make/pictures.sh DATA [NAME...]}" && pwd)
+shift
+acdf=${ACDF:-$root/build/release/tools/acdf}
+figures=$root/docs/figures
+work=$(mktemp -d)
+trap 'rm -rf -- "$work"' EXIT
+
+# panel IN OUT TITLE DETAILS: a picture with two lines of text below it
+panel() {
+    local width height text="font=DejaVuSans:color=0.12,0.12,0.12:xalign=center"
+    read -r width height < <(oiiotool --info "$1" | sed -n "s/.*: *\([0-9]*\) x *\([0-9]*\),.*/\1 \2/p")
+    oiiotool "$1" --ch R,G,B --pattern constant:color=1,1,1 "$((width + 8))x$((height + 52))" 3 --paste +4+4 \
+        --text:x=$((width / 2 + 4)):y=$((height + 24)):size=15:"$text" "$3" \
+        --text:x=$((width / 2 + 4)):y=$((height + 43)):size=12:"$text" "$4" -d uint8 -o "$2"
+}
+
+side_by_side() { # OUT IN...
+    local out=$1
+    shift
+    oiiotool "$@" --mosaic "$#x1" -d uint8 -o "$figures/$out.png"
+}
+
+# figure_of SAMPLER KEY: a number of render.json, to three digits
+figure_of() {
+    printf '%.3g' "$(jq --arg s "$1" ".samplers[] | select(.sampler == \$s) | $2" "$work/render/render.json")"
+}
+
+# lit SCENE SAMPLES SAMPLER...: renders a scene into $work/render
+lit() {
+    local scene=$1 samples=$2 options=() sampler
+    shift 2
+    for sampler in "$@"; do options+=(--sampler "$sampler"); done
+    "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size 320x240 --samples "$samples" --seeds 4 \
+        --sequence independent --no-reference --no-timing --quiet --force -o "$work/render" "${options[@]}" > /dev/null
+}
+
+# The light of Grace Cathedral on matte surfaces: as many samples of the full table and of a file.
+noise() {
+    lit e4-grace 16 full-cdf local:1MB
+    panel "$work/render/full-cdf.png" "$work/1.png" "full-resolution CDF, 4 MiB" \
+        "16 samples a pixel, relative variance $(figure_of full-cdf .relative_variance.value)"
+    panel "$work/render/local-1MB.png" "$work/2.png" "acdf local, 1 MB" \
+        "16 samples a pixel, relative variance $(figure_of local:1MB .relative_variance.value)"
+    side_by_side noise "$work"/[12].png
+}
+
+# The densities of one local file for two normals.
+local_file() {
+    "$acdf" local "$data/probes/venice_sunset_1k.hdr" -o "$work/venice_sunset.acdf" --force --quiet
+    "$acdf" plot "$work/venice_sunset.acdf" -o "$work/1.png" --normal 0,0,1 --width 512 --no-knots --range 1e-5:10 --force --quiet
+    "$acdf" plot "$work/venice_sunset.acdf" -o "$work/2.png" --normal 1,0.3,0.2 --width 512 --no-knots --range 1e-5:10 --force --quiet
+    side_by_side local "$work"/[12].png
+}
+
+# The lobe of one BRDF file for two views.
+brdf() {
+    "$acdf" brdf "$data/brdfs/nickel.binary" -o "$work/nickel.acdf" --force --quiet
+    "$acdf" plot "$work/nickel.acdf" -o "$work/1.png" --view 30 --width 512 --range 1e-4:100 --force --quiet
+    "$acdf" plot "$work/nickel.acdf" -o "$work/2.png" --view 75 --width 512 --range 1e-4:100 --force --quiet
+    side_by_side brdf "$work"/[12].png
+}
+
+# Two of the pictures that `acdf render` writes of a sampler: variance, gain.
+render() {
+    lit hidden-grace 16 full-cdf local:1MB
+    local map
+    for map in variance gain; do oiiotool "$work/render/local-1MB-$map.png" --resize 60% -o "$work/$map.png"; done
+    side_by_side render "$work"/{variance,gain}.png
+}
+
+# The top of a sweep's page.
+sweep() {
+    (cd "$data/probes" && "$acdf" sweep noon_grass_1k.hdr -o "$work/sweep" --force --quiet > /dev/null)
+    chromium --headless --no-sandbox --disable-gpu --disable-background-networking --hide-scrollbars --window-size=1100,1000 \
+        --user-data-dir="$work/profile" --screenshot="$figures/sweep.png" "file://$work/sweep/report.html" 2> "$work/log"
+}
+
+# One probe in files of two sizes.
+plot() {
+    local size
+    for size in 4KiB 64KiB; do
+        "$acdf" env "$data/probes/venice_sunset_1k.hdr" -o "$work/venice_sunset.acdf" --budget $size --force --quiet
+        "$acdf" plot "$work/venice_sunset.acdf" -o "$work/$size.png" --width 512 --range 1e-3:30 --force --quiet
+    done
+    side_by_side plot "$work"/{4KiB,64KiB}.png
+}
+
+pictures=("$@")
+((${#pictures[@]})) || pictures=(noise local_file brdf render sweep plot)
+for picture in "${pictures[@]}"; do
+    echo "$picture" >&2
+    "$picture"
+done
