@@ -1,0 +1,46 @@
+"""Importance sampling of measured light and reflectance from small .acdf files.
+
+    >>> import acdf, numpy as np
+    >>> sky = acdf.build_environment(np.ones((32, 64, 3), np.float32), budget="4KiB")
+    >>> u = np.random.default_rng(1).random((1000, 2))
+    >>> directions, pdf = sky.sample(u)
+    >>> directions.shape, pdf.shape
+    ((1000, 3), (1000,))
+    >>> bool(np.allclose(pdf, 1 / (4 * np.pi), rtol=1e-3))
+    True
+
+`open` reads a file, the `build_...` functions make one from arrays. Both return an `Environment`, a `LocalEnvironment`, a
+`Brdf` or a `Table`. Directions are unit vectors in a right-handed frame with z up, densities are per steradian.
+"""
+
+from ._acdf import __version__, format_version
+from ._errors import BuildError, FileError
+from .build import build_brdf, build_environment, build_local, build_table
+from .files import Brdf, Environment, File, LocalEnvironment, Samples, Table, open
+
+__all__ = [
+    "Brdf",
+    "BuildError",
+    "Environment",
+    "File",
+    "FileError",
+    "LocalEnvironment",
+    "Samples",
+    "Table",
+    "__version__",
+    "build_brdf",
+    "build_environment",
+    "build_local",
+    "build_table",
+    "format_version",
+    "open",
+    "plot",
+]
+
+
+def __getattr__(name):  # matplotlib is asked for with the first picture
+    if name == "plot":
+        import importlib
+
+        return importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

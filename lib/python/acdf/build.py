@@ -1,0 +1,187 @@
+"""Files from arrays, by acdf::builder. The same input, options and version give the same bytes, for any number of threads."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Callable, Optional, Sequence, Tuple, Union
+
+from . import _acdf
+from .files import Brdf, Environment, LocalEnvironment, Table, open
+
+Size = Union[int, str]
+Progress = Callable[[float, str], Optional[bool]]
+
+_UNITS = {
+    "": 1, "b": 1, "byte": 1, "bytes": 1, "k": 10**3, "kb": 10**3, "m": 10**6, "mb": 10**6, "g": 10**9, "gb": 10**9,
+    "ki": 2**10, "kib": 2**10, "mi": 2**20, "mib": 2**20, "gi": 2**30, "gib": 2**30,
+}  # fmt: skip
+
+
+def parse_size(size: Size) -> int:
+    """Bytes: a number, or text as the command line takes it.
+
+    >>> parse_size("64KiB"), parse_size("1.5 MB"), parse_size(1000)
+    (65536, 1500000, 1000)
+    """
+    if isinstance(size, str):
+        found = re.fullmatch(r"(\d+\.?\d*|\.\d+) *([A-Za-z]*)", size)
+        if not found or found[2].lower() not in _UNITS:
+            raise ValueError(f"budget: {size!r} is no size; give for example '64KiB'")
+        return int(float(found[1]) * _UNITS[found[2].lower()])
+    return int(size)
+
+
+def _options(given: dict) -> dict:
+    if given.get("budget") is not None:
+        given["budget"] = parse_size(given["budget"])
+    return given
+
+
+def build_environment(
+    image: Any,
+    *,
+    budget: Optional[Size] = None,
+    cells: Optional[int] = None,
+    variance: Optional[float] = None,
+    projection: str = "latlong",
+    domain: str = "source",
+    filter: str = "nearest",
+    channel: str = "luminance",
+    bad_texels: str = "zero",
+    uniform_if_black: bool = False,
+    fit: str = "variance",
+    max_weight: float = 0.0,
+    company: str = "none",
+    heuristic: str = "balance",
+    shares: Tuple[float, float] = (1.0, 1.0),
+    normals: Optional[Any] = None,
+    normal_weights: Optional[Any] = None,
+    compress: str = "none",
+    source_name: str = "",
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Environment:
+    """An environment map from pixels.
+
+    image: linear radiance of shape (height, width), or (height, width, channels) with 1, 3 or 4 channels (the fourth is
+        ignored), rows from the top. float16, float32 and float64 are read in place, whatever their strides.
+    budget, cells, variance: one goal: at most so many bytes ("64KiB"), about so many cells (4096, the default), or at most
+        this relative variance.
+    projection: "latlong", "angular", "mirrorball", "vertical-cross", "horizontal-cross", "stacked-cube", "octahedral".
+    domain: the grid of the fit: "source", "latlong" or "octahedral".
+    filter: how the renderer looks the map up: "nearest" or "bilinear". Set it right: else there may be bias.
+    channel: whose noise counts: "luminance", "rgb", "max", "red", "green", "blue", "average".
+    bad_texels: what NaN, infinite and negative values become: "zero", "clamp"; or "error".
+    fit: "variance", "cdf", "pdf" or "uniform".
+    max_weight: the largest weight of a sample over the mean, at least 1; 0: no bound.
+    company, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "cosine", "brdf" or
+        "mean"; "balance" or "power"; samples of the file and of the company, in proportion; the normals of the scene.
+    compress: "none", "zlib" or "planes".
+    threads: at most so many; 0: all cores.
+    progress: called with the share that is done and what is being done; returning False cancels.
+
+    Raises ValueError for options, BuildError for sources that no file can be made of.
+
+    >>> import acdf, numpy as np
+    >>> image = np.full((32, 64, 3), 0.1)
+    >>> image[8, 20] = 500.0
+    >>> sky = acdf.build_environment(image, budget="2KiB", channel="rgb")
+    >>> sky.size <= 2048, sky.info()["accuracy"]["relative_variance"] < 0.01
+    (True, True)
+    """
+    return open(_acdf.build_environment(image, _options({k: v for k, v in locals().items() if k != "image"})))
+
+
+def build_local(
+    image: Any,
+    *,
+    budget: Optional[Size] = None,
+    cells: Optional[int] = None,
+    variance: Optional[float] = None,
+    projection: str = "latlong",
+    domain: str = "source",
+    filter: str = "nearest",
+    channel: str = "luminance",
+    bad_texels: str = "zero",
+    uniform_if_black: bool = False,
+    subdivisions: Optional[int] = None,
+    tiles: Optional[int] = None,
+    normals: Optional[Any] = None,
+    normal_weights: Optional[Any] = None,
+    cosine_share: float = 0.0,
+    sharing: bool = True,
+    company: str = "none",
+    heuristic: str = "balance",
+    shares: Tuple[float, float] = (1.0, 1.0),
+    compress: str = "none",
+    source_name: str = "",
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> LocalEnvironment:
+    """A local environment map from pixels: a density for every normal. The default budget is 1 MiB.
+
+    Options are those of build_environment, and:
+    subdivisions, tiles: how many bins of normals (4 n^2 + 2) and shared tiles; None: as suits the size.
+    normals, normal_weights: only what a scene has, of shape (n, 3), and how often each occurs; None: all normals.
+    cosine_share: of samples that are drawn around the normal instead, in [0, 0.99].
+    sharing: bins share tiles; else each has a tree of its own.
+    """
+    return open(_acdf.build_local(image, _options({k: v for k, v in locals().items() if k != "image"})))
+
+
+def build_brdf(
+    source: Any,
+    *,
+    budget: Optional[Size] = None,
+    cells: Optional[int] = None,
+    variance: Optional[float] = None,
+    channel: str = "luminance",
+    isotropic: bool = True,
+    mirrored: bool = True,
+    sharing: bool = True,
+    theta_views: Optional[int] = None,
+    phi_views: Optional[int] = None,
+    diffuse_share: float = 0.0,
+    compress: str = "none",
+    source_name: str = "",
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Brdf:
+    """A BRDF from a table or a function. The default budget is 64 KiB.
+
+    source: rho in sr^-1, without the cosine. Either an array over (theta_o, phi_o, theta_h, phi_h), h the half-vector, whose
+        values stand at the centres of cells that divide theta in [0, pi/2] and phi in [0, 2 pi) equally; with a single
+        phi_o it is isotropic. Or a function of wo and wi, tuples of three numbers, that returns one number or three. A
+        function is called millions of times, under the interpreter's lock: a table is much faster.
+    isotropic, mirrored: of a function: whether it depends on the difference of azimuths alone, and not on its sign. False is
+        always right.
+    theta_views, phi_views: stored views; None: as suits the size.
+    diffuse_share: of samples that follow the cosine, in [0, 0.99].
+    """
+    return open(_acdf.build_brdf(source, _options({k: v for k, v in locals().items() if k != "source"})))
+
+
+def build_table(
+    array: Any,
+    *,
+    budget: Optional[Size] = None,
+    cells: Optional[int] = None,
+    variance: Optional[float] = None,
+    indexed: int = 0,
+    names: Optional[Sequence[str]] = None,
+    ranges: Optional[Sequence[Tuple[float, float]]] = None,
+    max_weight: float = 0.0,
+    bad_as_zero: bool = False,
+    compress: str = "none",
+    source_name: str = "",
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Table:
+    """A density over any table of numbers >= 0, in one to six axes; each number is constant on its box of the grid.
+
+    indexed: so many leading axes are chosen by who samples: each index is a bin with a density of its own.
+    names, ranges: of each axis; by default x0, x1, ..., and from 0 to its length.
+    cells: a bin, on average.
+    bad_as_zero: NaN, infinite and negative numbers count as 0; else they are a BuildError.
+    """
+    return open(_acdf.build_table(array, _options({k: v for k, v in locals().items() if k != "array"})))

@@ -1,0 +1,249 @@
+"""Open files: densities to draw from and to evaluate, for arrays.
+
+Random numbers `u` are float64 in [0, 1] of shape (..., 2); directions, normals and views are float32 of shape (..., 3). Such
+arrays are used as they lie if they are contiguous, others are converted. Results have the leading shape of what was asked.
+`out` takes arrays of such results, of the right type and contiguous, to be written to: large new ones cost time.
+Loops run without the interpreter's lock, so several threads may draw at once.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _acdf
+
+_NEW = (None, None)
+Path = Union[str, "os.PathLike[str]"]
+
+
+class Samples(NamedTuple):
+    """What was drawn: directions (of tables points), and the density of each.
+
+    Where nothing can be drawn the density is 0; the direction is 0 then, a point NaN.
+    """
+
+    direction: np.ndarray
+    pdf: np.ndarray
+
+
+class File:
+    """An open file of any kind. It never changes: any number of threads may use it."""
+
+    def __init__(self, handle: _acdf.OpenFile):
+        self._handle = handle
+        self._description = handle.describe()
+
+    @property
+    def kind(self) -> str:
+        """"environment", "local", "brdf" or "table"."""
+        return self._description["kind"]
+
+    @property
+    def size(self) -> int:
+        """Bytes of the whole file."""
+        return self._description["bytes"]
+
+    @property
+    def total(self) -> float:
+        """The integral of what is sampled: of light over the sphere (luminance times sr), of a table over its sampled axes,
+        of a BRDF the sum of the albedos of its stored views."""
+        return self._description["total"]
+
+    def info(self) -> Dict[str, Any]:
+        """What is inside: axes, size, fit, and what the builder measured; named as in `acdf info --json`.
+
+        >>> import acdf, numpy as np
+        >>> acdf.build_environment(np.ones((8, 16)), cells=64).info()["axes"][0]["name"]
+        'phi'
+        """
+        out = {key: value for key, value in self._description.items() if key not in ("metadata", "company")}
+        if self._description["company"] is not None:
+            out["company"] = self._description["company"]
+        groups: Dict[str, Dict[str, Any]] = {"source": {}, "accuracy": {}, "metadata": {}}
+        for key, value in self._description["metadata"].items():
+            group, _, name = key.partition(".")
+            if key == "tool":
+                out["tool"] = value
+            elif key == "fit.options":
+                out["options"] = value
+            elif group in ("source", "accuracy") and name:
+                groups[group][name] = _number(value) if group == "accuracy" else value
+            else:
+                groups["metadata"][key] = value
+        out.update({name: group for name, group in groups.items() if group})
+        return out
+
+    @property
+    def needs_company(self) -> bool:
+        """Whether it is to be combined with another sampler, by multiple importance sampling: used alone it is biased."""
+        return self._description["company"] is not None
+
+    def to_bytes(self) -> bytes:
+        """The whole file."""
+        return self._handle.to_bytes()
+
+    def save(self, path: Path) -> None:
+        """Writes the file to `path`. Raises OSError."""
+        temporary = f"{os.fspath(path)}.{os.getpid()}.part"
+        try:
+            with _builtin_open(temporary, "wb") as out:
+                out.write(self.to_bytes())
+            os.replace(temporary, path)
+        except BaseException:
+            if os.path.exists(temporary):
+                os.unlink(temporary)
+            raise
+
+    def __repr__(self) -> str:
+        return f"<acdf.{type(self).__name__}, {self.size} bytes>"
+
+    def __reduce__(self):
+        return open, (self.to_bytes(),)
+
+
+class Environment(File):
+    """An environment map: one density over the sphere."""
+
+    def sample(self, u: Any, *, out: Optional[Samples] = None) -> Samples:
+        """Draws a direction for each pair of numbers. u[..., 0] moves along phi, u[..., 1] along theta.
+
+        >>> import acdf, numpy as np
+        >>> sky = acdf.build_environment(np.ones((8, 16)), cells=64)
+        >>> sky.sample([0.5, 0.25]).direction.shape
+        (3,)
+        """
+        return Samples(*self._handle.sample(None, u, tuple(out or _NEW)))
+
+    def pdf(self, directions: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+        """The density in sr^-1 with which `sample` draws each direction, float32; 0 where none falls, and for vectors that
+        are NaN or not of unit length.
+
+        >>> import acdf, numpy as np
+        >>> sky = acdf.build_environment(np.ones((8, 16)), cells=64)
+        >>> np.round(sky.pdf([[0, 0, 1], [0, 0, 2]]), 3).tolist()
+        [0.07999999821186066, 0.0]
+        """
+        return self._handle.pdf(None, directions, out)
+
+    def invert(self, directions: Any) -> np.ndarray:
+        """The numbers u that draw each direction; NaN where the density is 0."""
+        return self._handle.invert(None, directions)
+
+
+class LocalEnvironment(File):
+    """A density for every normal: of light above its horizon, times the cosine.
+
+    Normals have any length > 0. Their leading shape begins that of `u` or of the directions: one normal (3,) serves all,
+    (n, 3) serve n samples (n, 2), or n groups of m (n, m, 2).
+    """
+
+    def sample(self, normals: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
+        """Draws directions. Density 0 where the normal is zero or NaN, or nothing shines on it; a direction below the
+        horizon counts as 0.
+
+        >>> import acdf, numpy as np
+        >>> light = acdf.build_local(np.ones((16, 32)), budget="64KiB")
+        >>> light.sample([0, 0, 1], np.random.default_rng(1).random((5, 2))).pdf.shape
+        (5,)
+        """
+        return Samples(*self._handle.sample(normals, u, tuple(out or _NEW)))
+
+    def pdf(self, normals: Any, directions: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+        """Densities in sr^-1, float32: exactly those of `sample` for what it returned."""
+        return self._handle.pdf(normals, directions, out)
+
+    def irradiance(self, normals: Any) -> np.ndarray:
+        """The integral of light times cosine for each normal, about (luminance times sr): to choose between lights."""
+        return self._handle.total_of(normals)
+
+
+class Brdf(File):
+    """A density of wi for every wo, both unit vectors in the surface's frame, z its normal. It follows what the surface
+    reflects, times the cosine.
+
+    The leading shape of `wo` begins that of `u` or `wi`, as for normals. Arrays of some thousands are drawn by vector
+    instructions, bit for bit the same, with tables of about twelve times the file.
+    """
+
+    def sample(self, wo: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
+        """Draws wi. Density 0 where wo is not a unit vector above the surface; wi below it counts as 0."""
+        return Samples(*self._handle.sample(wo, u, tuple(out or _NEW)))
+
+    def pdf(self, wo: Any, wi: Any, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+        """Densities of wi in sr^-1, float32."""
+        return self._handle.pdf(wo, wi, out)
+
+    def invert(self, wo: Any, wi: Any) -> np.ndarray:
+        """The numbers u that draw wi; NaN where the table's density is 0."""
+        return self._handle.invert(wo, wi)
+
+    def albedo(self, wo: Any) -> np.ndarray:
+        """The share of light that is reflected to each wo, about."""
+        return self._handle.total_of(wo)
+
+
+class Table(File):
+    """A density over the sampled axes of a table, for every bin of its indexed axes.
+
+    `u` and points have a number a sampled axis. `index` has an integer a indexed axis, and is None where there is none; its
+    leading shape begins that of `u`. Points and densities are float64.
+    """
+
+    def sample(self, u: Any, index: Optional[Any] = None, *, out: Optional[Samples] = None) -> Samples:
+        """Draws points, in the units of the axes; the density is per product of those.
+
+        >>> import acdf, numpy as np
+        >>> table = acdf.build_table(np.arange(1.0, 65.0).reshape(8, 8), ranges=[(0, 1), (0, 1)])
+        >>> point, pdf = table.sample(np.random.default_rng(1).random((100, 2)))
+        >>> bool((point > 0).all() and (point < 1).all() and (pdf > 0).all())
+        True
+        """
+        return Samples(*self._handle.sample(index, u, tuple(out or _NEW)))
+
+    def pdf(self, x: Any, index: Optional[Any] = None, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+        """Densities of points; 0 outside the axes and for NaN."""
+        return self._handle.pdf(index, x, out)
+
+    def invert(self, x: Any, index: Optional[Any] = None) -> np.ndarray:
+        """The numbers u that draw each point; NaN where the density is 0."""
+        return self._handle.invert(index, x)
+
+
+_builtin_open = open
+_KINDS = {"environment": Environment, "local": LocalEnvironment, "brdf": Brdf, "table": Table}
+
+
+def open(source: Union[Path, bytes, bytearray, memoryview], *, tables: bool = True) -> Any:
+    """Opens a file by its path, or the bytes of one. `bytes` are used in place, other buffers are copied.
+
+    tables: whether tables are made in memory that answer in a fraction of the time.
+
+    Returns an Environment, LocalEnvironment, Brdf or Table. Raises FileError for bytes that are no such file, OSError
+    where it cannot be read, MemoryError.
+
+    >>> import acdf
+    >>> acdf.open(b"no such thing" * 9)
+    Traceback (most recent call last):
+        ...
+    acdf._errors.FileError: wrong magic (rule 2001 at byte 0: ...
+    """
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        handle = _acdf.open_bytes(bytes(source), tables)
+    else:
+        path = os.fspath(source)
+        if not os.path.exists(path):
+            raise FileNotFoundError(2, os.strerror(2), path)
+        handle = _acdf.open_path(path, tables)
+    return _KINDS[handle.describe()["kind"]](handle)
+
+
+def _number(text: str) -> Any:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text

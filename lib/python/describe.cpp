@@ -1,0 +1,109 @@
+// What is inside a file, as plain Python values; names as in `acdf info --json`.
+#include "build/company_text.h"
+#include "build/format_names.h"
+#include "python/file.h"
+
+#include <cstring>
+
+namespace acdf::python {
+namespace {
+
+py::str text_of(AcdfText text) { return py::str(text.data, text.size); }
+
+py::list axes_of(const AcdfFile* file) {
+    py::list out;
+    for (std::uint32_t i = 0; const AcdfAxis* axis = acdf_axis(file, i); ++i) {
+        const char* name = reinterpret_cast<const char*>(axis->name);
+        py::dict one;
+        one["name"] = py::str(name, strnlen(name, sizeof axis->name));
+        one["role"] = build::role_name(axis->role);
+        one["measure"] = build::measure_name(axis->measure);
+        one["resolution"] = axis->resolution;
+        one["low"] = axis->low;
+        one["high"] = axis->high;
+        out.append(one);
+    }
+    return out;
+}
+
+py::list chunks_of(const AcdfFile* file) {
+    py::list out;
+    const AcdfHeader* header = acdf_header(file);
+    const auto* chunks = reinterpret_cast<const AcdfChunk*>(header + 1);
+    for (std::uint32_t i = 0; i < header->chunk_count; ++i) {
+        py::dict one;
+        one["type"] = build::chunk_name(chunks[i].type);
+        one["codec"] = build::codec_name(chunks[i].codec);
+        one["offset"] = chunks[i].offset;
+        one["stored"] = chunks[i].stored_length;
+        one["raw"] = chunks[i].raw_length;
+        out.append(one);
+    }
+    return out;
+}
+
+py::object company_of(const AcdfFile* file) {
+    const AcdfCompany* company = nullptr;
+    AcdfEnvironment environment;
+    AcdfLocal local;
+    AcdfTable table;
+    if (acdf_environment(file, &environment)) company = environment.company;
+    if (acdf_local(file, &local)) company = local.company;
+    if (acdf_table(file, &table)) company = table.company;
+    if (!company) return py::none();
+    py::dict out;
+    out["with"] = build::company_name(static_cast<AcdfCompanyKind>(company->kind));
+    out["heuristic"] = build::heuristic_name(static_cast<AcdfHeuristic>(company->heuristic));
+    out["share"] = company->share;
+    out["recommended_share"] = company->recommended_share;
+    return std::move(out);
+}
+
+py::dict metadata_of(const AcdfFile* file) {
+    py::dict out;
+    AcdfText key, value;
+    for (std::uint32_t i = 0; acdf_metadata_pair(file, i, &key, &value); ++i) out[text_of(key)] = text_of(value);
+    return out;
+}
+
+py::dict description_of(const OpenFile& open) {
+    const AcdfFile* file = open.file();
+    const AcdfHeader* header = acdf_header(file);
+    const AcdfDescription* description = acdf_description(file);
+    py::dict out;
+    out["kind"] = build::kind_name(header->kind);
+    out["version"] = std::to_string(header->version_major) + "." + std::to_string(header->version_minor);
+    out["bytes"] = acdf_size(file);
+    out["table_bytes"] = acdf_table_bytes(file);
+    out["bins"] = description->bin_count;
+    out["company"] = company_of(file);
+    out["axes"] = axes_of(file);
+    out["fit"] = build::fit_name(description->fit);
+    out["filter"] = build::filter_name(description->filter);
+    out["parameterization"] = build::parameterization_name(description->parameterization);
+    py::list weights;
+    for (const auto weight : description->channel_weights) weights.append(weight);
+    out["channel_weights"] = weights;
+    out["total"] = description->total;
+    out["chunks"] = chunks_of(file);
+    out["metadata"] = metadata_of(file);
+    return out;
+}
+
+} // namespace
+
+void add_file(py::module_& module) {
+    py::class_<OpenFile>(module, "OpenFile")
+        .def("describe", &description_of)
+        .def("sample", &OpenFile::sample)
+        .def("pdf", &OpenFile::pdf)
+        .def("invert", &OpenFile::invert)
+        .def("total_of", &OpenFile::total_of)
+        .def("to_bytes", [](const OpenFile& open) {
+            return py::bytes(reinterpret_cast<const char*>(acdf_header(open.file())), acdf_size(open.file()));
+        });
+    module.def("open_path", &OpenFile::from_path);
+    module.def("open_bytes", &OpenFile::from_bytes);
+}
+
+} // namespace acdf::python

@@ -1,0 +1,53 @@
+// An open file as Python holds it: over the C interface alone (acdf/acdf.h).
+#pragma once
+
+#include "python/arrays.h"
+
+#include <acdf/acdf.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace acdf::python {
+
+/// Keeps what it reads alive. Loops over arrays run without the interpreter's lock.
+class OpenFile {
+public:
+    static std::unique_ptr<OpenFile> from_path(const std::string& path, bool tables);
+    /// Uses the bytes in place: they cannot change.
+    static std::unique_ptr<OpenFile> from_bytes(const py::bytes& bytes, bool tables);
+
+    const AcdfFile* file() const { return file_.get(); }
+    /// Directions (or points) and their densities. `place`: normals, views, indices; None for environments. `out`:
+    /// where they are written, or None for new arrays.
+    py::tuple sample(const py::object& place, const py::object& u, const py::tuple& out) const;
+    py::array pdf(const py::object& place, const py::object& x, const py::object& out) const;
+    py::array invert(const py::object& place, const py::object& x) const;
+    /// Irradiance of normals, or albedo of views.
+    py::array total_of(const py::object& place) const;
+
+private:
+    struct Close {
+        void operator()(AcdfFile* file) const { acdf_close(file); }
+        void operator()(AcdfBrdfWaves* waves) const { acdf_brdf_waves_close(waves); }
+    };
+
+    explicit OpenFile(AcdfFile* file, py::object keeps) : keeps_(std::move(keeps)), file_(file) {}
+    const AcdfBrdfWaves* waves(std::size_t count) const;
+    py::tuple sample_table(const py::object& place, const py::object& u, const py::tuple& out) const;
+
+    py::object keeps_;
+    std::unique_ptr<AcdfFile, Close> file_;
+    mutable std::once_flag asked_;
+    mutable std::unique_ptr<AcdfBrdfWaves, Close> waves_; ///< of BRDFs, made for the first large array
+};
+
+/// Adds OpenFile to the module.
+void add_file(py::module_& module);
+
+/// Raises what an error of the reader is in Python: OSError, MemoryError, or acdf.FileError.
+[[noreturn]] void raise(const AcdfError& error);
+
+} // namespace acdf::python
