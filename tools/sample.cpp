@@ -3,6 +3,7 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/normal_option.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -113,6 +114,9 @@ void run(const SampleArguments& options) {
     Output output(options.output, options.force, {options.file});
     const LoadedFile loaded = load_file(options.file);
     const AcdfKind kind = loaded.file.kind();
+    if (loaded.file.company() && !options.quiet)
+        say(options.file +
+            ": is made for a company (--with) and not to be used alone: its samples leave out light");
     if (kind != ACDF_KIND_LOCAL) refuse_normal(options.file, options.normal);
     if (kind != ACDF_KIND_BRDF) refuse_view(options.file, options.view);
     if (kind == ACDF_KIND_ENVIRONMENT) sample_environment(loaded.file, options, output);
