@@ -53,8 +53,8 @@ void recommend(const std::vector<std::uint8_t>& bytes, const compress::Target& t
                const EnvironmentOptions& options, compress::Description& description) {
     File file;
     if (!File::from_memory(bytes.data(), bytes.size(), file).ok()) return; // told by measure_bytes
-    const CompanyAccuracy both = measure_beside_company(file, target, test_normals(options.scene, 64));
-    description.chunks = {compress::company_chunk(options.company, static_cast<float>(both.recommended_share), {})};
+    const double share = recommended_share(file, target, test_normals(options.scene, 64));
+    description.chunks = {compress::company_chunk(options.company, static_cast<float>(share), {})};
 }
 
 Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {

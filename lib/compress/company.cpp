@@ -11,14 +11,6 @@ namespace {
 
 constexpr std::size_t kCosines = 64;
 
-/// What a sample of each, a of ours and b of the company's, adds to the second moment over f^2.
-double reciprocal(double a, double b, AcdfHeuristic heuristic) {
-    if (heuristic == ACDF_HEURISTIC_BALANCE) return 1.0 / (a + b);
-    const double most = std::max(a, b), x = std::min(a, b) / most; // squares stay in range
-    const double squares = 1.0 + x * x;
-    return (1.0 + x * x * x) / (squares * squares) / most;
-}
-
 /// Density of light that a GGX lobe draws for a view: visible normals (Heitz, JCGT 2018), reflected.
 double ggx_density(double alpha, const std::array<double, 3>& wo, const std::array<double, 3>& wi) {
     std::array<double, 3> h{};
@@ -58,51 +50,59 @@ double brdf_density(double cosine) {
 
 } // namespace
 
-double effective_density(const std::vector<Lobe>& lobes) {
-    double first = 0.0, second = 0.0;
-    for (const Lobe& lobe : lobes) {
-        first += lobe.weight * lobe.density;
-        second += lobe.weight * lobe.density * lobe.density;
-    }
-    return second / first;
+double second_moment(double a, double b, AcdfHeuristic heuristic) {
+    if (heuristic == ACDF_HEURISTIC_BALANCE) return 1.0 / (a + b);
+    const double most = std::max(a, b), x = std::min(a, b) / most; // squares stay in range
+    const double squares = 1.0 + x * x;
+    return (1.0 + x * x * x) / (squares * squares) / most;
 }
 
-double rms_density(const std::vector<Lobe>& lobes) {
-    double weight = 0.0, second = 0.0;
-    for (const Lobe& lobe : lobes) {
-        weight += lobe.weight;
-        second += lobe.weight * lobe.density * lobe.density;
-    }
-    return std::sqrt(second / weight);
+double weight_of_company(double a, double b, AcdfHeuristic heuristic) {
+    if (heuristic == ACDF_HEURISTIC_BALANCE) return b / (a + b);
+    const double most = std::max(a, b), x = a / most, y = b / most;
+    return y * y / (x * x + y * y);
 }
 
-Filling::Filling(const std::vector<Lobe>& lobes, AcdfHeuristic heuristic) {
-    // With y = n_l p over n_b times the effective density and x = light over threshold, x^2 kappa(y) + y is to be
-    // least; kappa falls from 1. Only y on the lower hull of kappa ever are best.
-    const double effective = effective_density(lobes);
-    double whole = 0.0;
-    for (const Lobe& lobe : lobes) whole += lobe.weight * lobe.density * lobe.density;
-    const auto kappa = [&](double y) {
-        double sum = 0.0;
-        for (const Lobe& lobe : lobes)
-            if (lobe.density > 0.0)
-                sum +=
-                    lobe.weight * lobe.density * lobe.density * reciprocal(effective * y, lobe.density, heuristic);
-        return effective * sum / whole;
-    };
-    std::vector<Knot> hull{{0.0, 1.0}}; // of y and kappa here
-    const auto slope = [](const Knot& a, const Knot& b) { return (a.y - b.y) / (b.x - a.x); };
-    for (double y = 1e-3; y < 1e5; y *= 1.05) {
-        const Knot next{y, kappa(y)};
-        while (hull.size() > 1 && slope(hull.back(), next) >= slope(hull[hull.size() - 2], hull.back()))
-            hull.pop_back();
-        hull.push_back(next);
+double moment_fall(double a, double b, AcdfHeuristic heuristic) {
+    if (heuristic == ACDF_HEURISTIC_BALANCE) return 1.0 / ((a + b) * (a + b));
+    const double most = std::max(a, b), x = a / most, y = b / most, squares = x * x + y * y;
+    return x * (x * x * x + 4.0 * y * y * y - 3.0 * x * y * y) / (squares * squares * squares) / (most * most);
+}
+
+double weight_fall(double a, double b, AcdfHeuristic heuristic) {
+    if (heuristic == ACDF_HEURISTIC_BALANCE) return b / ((a + b) * (a + b));
+    const double most = std::max(a, b), x = a / most, y = b / most, squares = x * x + y * y;
+    return 2.0 * x * y * y / (squares * squares) / most;
+}
+
+std::size_t falling_hull(const double* y, const double* cost, std::size_t count, HullPoint* out) {
+    const auto slope = [&](const HullPoint& a, std::size_t k) { return (a.cost - cost[k]) / (y[k] - a.y); };
+    std::size_t last = 0;
+    out[0] = {y[0], cost[0], 0.0, 0};
+    for (std::size_t k = 1; k < count; ++k) {
+        double to_next = slope(out[last], k);
+        while (last > 0 && to_next >= out[last - 1].slope) to_next = slope(out[--last], k);
+        if (!(to_next > 0.0)) continue;
+        out[last].slope = to_next;
+        out[++last] = {y[k], cost[k], 0.0, k};
     }
-    knots_.push_back({std::sqrt(1.0 / slope(hull[0], hull[1])), hull[1].x});
-    for (std::size_t i = 1; i + 1 < hull.size(); ++i) {
-        const double both = slope(hull[i - 1], hull[i]) * slope(hull[i], hull[i + 1]);
-        knots_.push_back({std::sqrt(1.0 / std::sqrt(both)), hull[i].x});
+    return last + 1;
+}
+
+Filling::Filling(AcdfHeuristic heuristic) {
+    if (heuristic == ACDF_HEURISTIC_BALANCE) return;
+    // With y = n_l p over n_b b and x = light over threshold, x^2 moment(y) + y is to be least; the moment falls
+    // from 1, and only y on its hull ever are best.
+    std::vector<double> y{0.0}, moment{1.0};
+    for (double next = 1e-3; next < 1e5; next *= 1.05) {
+        y.push_back(next);
+        moment.push_back(second_moment(next, 1.0, heuristic));
     }
+    std::vector<HullPoint> hull(y.size());
+    hull.resize(falling_hull(y.data(), moment.data(), y.size(), hull.data()));
+    knots_.push_back({std::sqrt(1.0 / hull[0].slope), hull[1].y});
+    for (std::size_t i = 1; i + 1 < hull.size(); ++i)
+        knots_.push_back({std::sqrt(1.0 / std::sqrt(hull[i - 1].slope * hull[i].slope)), hull[i].y});
 }
 
 double Filling::above(double x) const {
@@ -122,20 +122,14 @@ double Filling::share(double alone, double left) const {
     return alone * (above(x) / x);
 }
 
-Lobes::Lobes(AcdfCompanyKind kind) {
-    if (kind == ACDF_COMPANY_MEAN || kind == ACDF_COMPANY_TABLE) {
-        all_.push_back({1.0, 1.0 / (4.0 * ACDF_PI)});
-        return;
-    }
-    for (std::size_t i = 0; i < kCosines; ++i) {
-        const double cosine = (double(i) + 0.5) / double(kCosines);
-        if (kind != ACDF_COMPANY_COSINE) density_.push_back(brdf_density(cosine));
-        all_.push_back({1.0 / double(kCosines), density_.empty() ? cosine / ACDF_PI : density_.back()});
-    }
+Lobes::Lobes(AcdfCompanyKind kind) : even_(kind == ACDF_COMPANY_MEAN || kind == ACDF_COMPANY_TABLE) {
+    if (even_ || kind == ACDF_COMPANY_COSINE) return;
+    for (std::size_t i = 0; i < kCosines; ++i)
+        density_.push_back(brdf_density((double(i) + 0.5) / double(kCosines)));
 }
 
 double Lobes::density(double cosine) const {
-    if (all_.size() == 1) return all_.front().density;
+    if (even_) return 1.0 / (4.0 * ACDF_PI);
     if (!(cosine > 0.0)) return 0.0;
     if (density_.empty()) return cosine / ACDF_PI;
     const double place = std::clamp(cosine * double(kCosines) - 0.5, 0.0, double(kCosines) - 1.0);

@@ -30,21 +30,30 @@ inline double cell_cost(double alone, double left) {
     return alone < left ? alone - 0.5 * alone * (alone / left) : 0.5 * left;
 }
 
-/// A density that the company may have in a direction, sr^-1, and how often it has it.
-struct Lobe {
-    double weight, density;
-};
+/// What samples add to the second moment of an estimate, over f^2: a of ours and b of the company's.
+double second_moment(double a, double b, AcdfHeuristic heuristic);
+/// The weight that the company's samples have there.
+double weight_of_company(double a, double b, AcdfHeuristic heuristic);
+/// How fast both fall with a.
+double moment_fall(double a, double b, AcdfHeuristic heuristic);
+double weight_fall(double a, double b, AcdfHeuristic heuristic);
 
-/// How many samples a cell takes for a multiplier nu. What the company does in a direction is not always known (to
-/// an environment: which normal is lit), so it is a distribution over densities b, with integrands in proportion to
-/// b.
+/// A point of a hull, and how steeply it falls from there to the next; 0 for the last.
+struct HullPoint {
+    double y, cost, slope;
+    std::size_t node; ///< its place among the costs
+};
+/// The lower hull of costs at ascending y, as far as it falls. `out` has place for `count` points; returns how many
+/// there are.
+std::size_t falling_hull(const double* y, const double* cost, std::size_t count, HullPoint* out);
+
+/// How many samples a cell takes for a multiplier nu, where the company's density is known.
 class Filling {
 public:
-    /// The company is known, and combined by the balance heuristic: A - A^2 / D.
+    /// Combined by the balance heuristic: A - A^2 / D.
     Filling() = default;
-    /// Minimises the mean over `lobes`. By the power heuristic a few samples are worse than none: a cell's share
-    /// jumps from 0.
-    Filling(const std::vector<Lobe>& lobes, AcdfHeuristic heuristic);
+    /// By the power heuristic a few samples are worse than none: a cell's share jumps from 0.
+    explicit Filling(AcdfHeuristic heuristic);
 
     /// nu n_l times the integral of p over a cell, in the units of A.
     double share(double alone, double left) const;
@@ -58,13 +67,6 @@ private:
     std::vector<Knot> knots_; ///< empty: y = x - 1
 };
 
-/// The mean of the lobes' squares over that of the lobes: the density that they stand for where nothing is drawn
-/// beside them.
-double effective_density(const std::vector<Lobe>& lobes);
-
-/// The root mean square of the lobes.
-double rms_density(const std::vector<Lobe>& lobes);
-
 /// The densities of a company around a surface's normal.
 class Lobes {
 public:
@@ -74,11 +76,9 @@ public:
     double density(double cosine) const;
     /// What light counts there: pi times that, so the cosine itself for ACDF_COMPANY_COSINE.
     double brightness(double cosine) const { return 3.141592653589793 * density(cosine); }
-    /// Those of all normals in a direction, each as often as any other.
-    const std::vector<Lobe>& of_all_normals() const { return all_; }
 
 private:
-    std::vector<Lobe> all_;
+    bool even_;                   ///< the same everywhere
     std::vector<double> density_; ///< at even steps of the cosine; empty: known
 };
 

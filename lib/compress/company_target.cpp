@@ -1,5 +1,6 @@
 #include "compress/company_target.h"
 
+#include "compress/company_demand.h"
 #include "compress/light.h"
 #include "compress/sum.h"
 
@@ -12,41 +13,34 @@
 namespace acdf::compress {
 namespace {
 
-constexpr int kSteps = 8; // of p and means in turns: the noise falls with each, the last ones by less than 1 %
-
-/// What light counts over a grid of directions: `light` is its weight, to `shift` more of it; the company's
-/// effective density there.
-struct Levels {
-    CoarseMap light, shift, density;
-
-    /// What a density has to follow of radiance L.
-    static double followed(double light, double shift, double radiance) {
-        return light * std::sqrt(std::max(0.0, radiance * (radiance + shift)));
-    }
-};
+constexpr std::uint32_t kColumns = 128, kRows = 64; // of directions whose noise curves are found
+constexpr int kSteps = 8; // of p and means in turns: the noise falls with each, the last ones by less than 0.1 %
 
 /// Light as points, and the normals that it shines on.
 class Lighting {
 public:
-    Lighting(const Target& target, const NormalBins& normals, const Company& company, const Lobes& lobes,
-             const Filling& filling)
-        : normals_(normals), lobes_(lobes), filling_(filling), share_(company.share()),
-          ratio_(company.light / company.other), difference_(normals.normals.size(), 0.0) {
-        grid_.columns = CoarseMap::columns;
-        grid_.rows = CoarseMap::rows;
+    Lighting(const Target& target, const NormalBins& normals, const Company& company)
+        : normals_(normals), lobes_(company.kind), kernel_(lobes_, company.heuristic),
+          heuristic_(company.heuristic), share_(company.share()), difference_(normals.normals.size(), 0.0),
+          curves_(std::size_t{kColumns} * kRows) {
+        grid_.columns = kColumns;
+        grid_.rows = kRows;
         grid_.parameterization = target.parameterization;
         for (const LightPoint& p : light_points(target)) add(p);
         weigh_normals();
         start();
         for (int step = 0; step < kSteps; ++step) {
             compare_means();
-            find_levels();
+            find_curves();
             fill();
         }
-        find_levels();
     }
 
-    const Levels& levels() const { return levels_; }
+    /// What light from a place of the sphere, in fractions of columns and rows, wants at the price that all pay.
+    Demand::Line line(double column, double row, double radiance) const {
+        const auto i = std::size_t(row * grid_.rows) * grid_.columns + std::size_t(column * grid_.columns);
+        return Demand(curves_[i], radiance).line(price_);
+    }
 
 private:
     struct Point {
@@ -57,21 +51,15 @@ private:
 
     void add(const LightPoint& p) {
         if (!(p.measure > 0.0) || !(p.amount > 0.0)) return;
-        double u[2];
-        place_of(p.direction, u);
-        const auto column = std::min(static_cast<std::uint32_t>(u[0] * grid_.columns), grid_.columns - 1);
-        const auto row = std::min(static_cast<std::uint32_t>(u[1] * grid_.rows), grid_.rows - 1);
-        points_.push_back(
-            {p.direction, p.amount / p.measure, p.measure, 0.0, std::size_t{row} * grid_.columns + column});
+        points_.push_back({p.direction, p.amount / p.measure, p.measure, 0.0, place_of(p.direction)});
     }
-    void place_of(const Direction& d, double u[2]) const {
+    std::size_t place_of(const Direction& d) const {
         const AcdfGrid grid{grid_.columns, grid_.rows, static_cast<std::uint32_t>(grid_.parameterization)};
         const float direction[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])};
-        std::uint32_t square[2];
-        double position[2] = {0.0, 0.0};
+        std::uint32_t square[2] = {0, 0};
+        double position[2];
         acdf_grid_square(&grid, direction, square, position);
-        u[0] = position[0] / grid_.columns;
-        u[1] = position[1] / grid_.rows;
+        return std::size_t{square[1]} * grid_.columns + square[0];
     }
 
     /// The noise of a normal counts relative to its irradiance, that of the darkest to a tenth of the mean: a few
@@ -100,78 +88,73 @@ private:
         for (Point& p : points_) p.density = sum > 0.0 ? p.density / sum : p.radiance / flux;
     }
 
-    /// For each normal the mean of f over the combined density for samples of ours, less that for the company's.
-    /// Since the numbers of samples are fixed, only what deviates from its own mean is noise.
+    /// For each normal the mean of what a sample of ours adds, less that of the company's. Since the numbers of
+    /// samples are fixed, only what deviates from its own mean is noise.
     void compare_means() {
         tbb::parallel_for(std::size_t{0}, difference_.size(), [&](std::size_t n) {
-            double sum = 0.0;
-            for (const Point& p : points_) {
-                const double cosine = dot(p.direction, normals_.normals[n]);
-                if (!(cosine > 0.0)) continue;
-                const double b = lobes_.density(cosine), f = p.radiance * lobes_.brightness(cosine);
-                sum += (p.density - b) * (f / (share_ * p.density + (1.0 - share_) * b)) * p.measure;
-            }
-            difference_[n] = sum;
+            double ours = 0.0, theirs = 0.0;
+            if (weight_[n] > 0.0)
+                for (const Point& p : points_) {
+                    const double cosine = dot(p.direction, normals_.normals[n]);
+                    if (!(cosine > 0.0)) continue;
+                    const double f = p.radiance * lobes_.brightness(cosine) * p.measure;
+                    const double weight =
+                        weight_of_company(share_ * p.density, (1.0 - share_) * lobes_.density(cosine), heuristic_);
+                    ours += f * (1.0 - weight);
+                    theirs += f * weight;
+                }
+            difference_[n] = ours / share_ - theirs / (1.0 - share_);
         });
     }
 
-    /// Means over normals are those where a density begins to pay, at p = 0: there they decide.
-    void find_levels() {
-        const double scale = effective_density(lobes_.of_all_normals()) / rms_density(lobes_.of_all_normals());
-        tbb::parallel_for(std::size_t{0}, levels_.light.values.size(), [&](std::size_t i) {
+    void find_curves() {
+        tbb::parallel_for(std::size_t{0}, curves_.size(), [&](std::size_t i) {
             const Direction d =
                 direction_at(grid_, double(i / grid_.columns) + 0.5, double(i % grid_.columns) + 0.5);
-            double square = 0.0, inverse = 0.0, shift = 0.0;
+            NoiseKernel::Histogram square{}, mean{};
             for (std::size_t n = 0; n < weight_.size(); ++n) {
                 const double cosine = dot(d, normals_.normals[n]);
                 if (!(cosine > 0.0) || !(weight_[n] > 0.0)) continue;
-                const double brightness = lobes_.brightness(cosine), own = weight_[n] * brightness * brightness;
-                const double density = lobes_.density(cosine), at_threshold = own / (density * density);
-                square += own;
-                inverse += at_threshold;
-                shift += at_threshold * difference_[n];
+                NoiseKernel::add(square, cosine, weight_[n]);
+                NoiseKernel::add(mean, cosine, 2.0 * (1.0 - share_) * weight_[n] * difference_[n]);
             }
-            levels_.light.values[i] = std::sqrt(square);
-            levels_.density.values[i] = inverse > 0.0 ? std::sqrt(square / inverse) * scale : 0.0;
-            levels_.shift.values[i] = inverse > 0.0 ? 2.0 * (1.0 - share_) / ACDF_PI * (shift / inverse) : 0.0;
+            curves_[i] = kernel_.curve(square, mean);
         });
     }
 
+    /// Draws all that is worth the price at which the samples are as many as there are.
     void fill() {
-        std::vector<double> followed;
-        for (const Point& p : points_)
-            followed.push_back(
-                Levels::followed(levels_.light.values[p.place], levels_.shift.values[p.place], p.radiance));
-        const auto taken = [&](std::size_t i, double nu) {
-            const double threshold = nu * levels_.density.values[points_[i].place];
-            return followed[i] > 0.0 && threshold > 0.0
-                       ? filling_.above(followed[i] / threshold) * threshold * points_[i].measure
-                       : 0.0;
+        std::vector<Demand> demands;
+        for (const Point& p : points_) demands.emplace_back(curves_[p.place], p.radiance);
+        const auto asked = [&](double price) {
+            double sum = 0.0;
+            for (std::size_t i = 0; i < points_.size(); ++i) sum += demands[i].at(price) * points_[i].measure;
+            return sum;
         };
-        double all = 0.0;
-        for (std::size_t i = 0; i < points_.size(); ++i) all += followed[i] * points_[i].measure;
-        if (!(all > 0.0)) return; // as they were
-        double low = 1e-6 * all / ratio_, high = all / ratio_, sum = 0.0;
+        const double wanted = share_ / (1.0 - share_);
+        double low = 0.0, high = 0.0;
+        for (const Demand& demand : demands) high = std::max(high, demand.highest());
+        if (!(high > 0.0)) return; // as they were
+        for (low = high; low > 1e-30 * high && asked(low) < wanted; low *= 1e-2) high = low;
         for (int step = 0; step < 40; ++step) {
-            const double nu = std::sqrt(low * high);
-            sum = 0.0;
-            for (std::size_t i = 0; i < points_.size(); ++i) sum += taken(i, nu);
-            (sum > nu * ratio_ ? low : high) = nu;
+            const double price = std::sqrt(low * high);
+            (asked(price) > wanted ? low : high) = price;
         }
-        sum = 0.0;
-        for (std::size_t i = 0; i < points_.size(); ++i) sum += taken(i, low);
-        for (std::size_t i = 0; i < points_.size(); ++i)
-            points_[i].density = sum > 0.0 ? taken(i, low) / points_[i].measure / sum : 0.0;
+        price_ = low;
+        const double sum = asked(price_);
+        if (!(sum > 0.0)) return;
+        for (std::size_t i = 0; i < points_.size(); ++i) points_[i].density = demands[i].at(price_) / sum;
     }
 
     const NormalBins& normals_;
-    const Lobes& lobes_;
-    const Filling& filling_;
-    double share_, ratio_;
+    Lobes lobes_;
+    NoiseKernel kernel_;
+    AcdfHeuristic heuristic_;
+    double share_, price_ = 1.0;
     Target grid_;
     std::vector<Point> points_;
     std::vector<double> weight_, difference_; ///< one a normal
-    Levels levels_;
+    std::vector<NoiseCurve> curves_;          ///< of directions of the grid
 };
 
 /// Calls `visit(texel, row, column)` for all texels, rows in parallel.
@@ -183,15 +166,12 @@ void for_each_texel(const Target& target, const Visit& visit) {
 }
 
 /// nu n_b at which the shares of all texels come to nu n_l.
-double solve_threshold(const Target& target, const std::vector<float>& density, const Filling& filling,
-                       double ratio) {
+double solve_threshold(const Target& target, const std::vector<float>& density, double ratio) {
     const auto excess = [&](double nu) {
         std::vector<double> rows(target.rows, 0.0);
         for_each_texel(target, [&](std::size_t i, std::uint32_t r, std::uint32_t c) {
-            const double threshold = nu * double{density[i]};
-            if (threshold > 0.0)
-                rows[r] += filling.above(target.values[i] / threshold) * threshold * target.column_measure[c] *
-                           target.row_measure[r];
+            const double above = target.values[i] - nu * double{density[i]};
+            if (above > 0.0) rows[r] += above * target.column_measure[c] * target.row_measure[r];
         });
         Sum sum;
         for (const double row : rows) sum.add(row);
@@ -207,12 +187,14 @@ double solve_threshold(const Target& target, const std::vector<float>& density, 
     return low;
 }
 
+/// What cells cost beside a company of that density.
 void fill(Target& target, const std::vector<float>& density, double nu) {
+    target.filling = std::make_shared<const Filling>();
     target.left.resize(target.values.size());
     target.least.resize(target.values.size());
     for_each_texel(target, [&](std::size_t i, std::uint32_t, std::uint32_t) {
         const double g = target.values[i], threshold = nu * double{density[i]};
-        const double left = threshold > 0.0 ? std::min(g * (g / threshold), 3e38) : 3e38;
+        const double left = threshold > 0.0 ? std::min(g * (g / threshold), 3e38) : g > 0.0 ? 3e38 : 0.0;
         target.left[i] = static_cast<float>(left);
         target.least[i] = static_cast<float>(cell_cost(g, left));
     });
@@ -224,29 +206,19 @@ Target company_target(const Target& target, const NormalBins& normals, const Com
     Target out = target;
     out.mean_square = 0.0;
     out.peaks.clear();
+    std::vector<float> density(target.values.size(), 1.0f);
     if (company.kind == ACDF_COMPANY_MEAN) {
-        const double mean = integral(target) / (4.0 * ACDF_PI);
-        out.filling = std::make_shared<const Filling>();
-        fill(out, std::vector<float>(target.values.size(), 1.0f), 2.0 * (1.0 - company.share()) * mean);
+        fill(out, density, 2.0 * (1.0 - company.share()) * integral(target) / (4.0 * ACDF_PI));
         return out;
     }
-    const Lobes lobes(company.kind);
-    const auto filling = std::make_shared<const Filling>(lobes.of_all_normals(), company.heuristic);
-    const Lighting lighting(target, normals, company, lobes, *filling);
-    const Levels& levels = lighting.levels();
-    std::vector<float> density(target.values.size());
-    const auto follow = [&](double shifted) {
-        for_each_texel(target, [&](std::size_t i, std::uint32_t r, std::uint32_t c) {
-            const double column = double(c) / target.columns, row = double(r) / target.rows;
-            out.values[i] = static_cast<float>(Levels::followed(
-                levels.light.at(column, row), shifted * levels.shift.at(column, row), target.values[i]));
-            density[i] = static_cast<float>(levels.density.at(column, row));
-        });
-    };
-    follow(1.0);
-    if (!(integral(out) > 0.0)) follow(0.0); // an even sky: wherever samples go, they are worth as little
-    out.filling = filling;
-    fill(out, density, solve_threshold(out, density, *filling, company.light / company.other));
+    const Lighting lighting(target, normals, company);
+    for_each_texel(target, [&](std::size_t i, std::uint32_t r, std::uint32_t c) {
+        const Demand::Line line =
+            lighting.line(double(c) / target.columns, double(r) / target.rows, target.values[i]);
+        out.values[i] = static_cast<float>(line.light);
+        density[i] = static_cast<float>(line.company);
+    });
+    fill(out, density, solve_threshold(out, density, company.light / company.other));
     return out;
 }
 

@@ -11,6 +11,9 @@ namespace {
 // A split into k parts is worth its gain per knot, but not quite: with half a knot on top, a bright spot is cut
 // out by two knots at once even where the first one alone gains little more per knot.
 constexpr double kKnotOffset = 0.5;
+// Of the cost of the whole. Where each slice is left to the company no border is better than any other, though what
+// lies within the slices may differ.
+constexpr double kNoGain = 1e-12;
 
 /// The last joins: the borders that vanish with them, and the sum of costs before each.
 struct LastJoins {
@@ -67,6 +70,11 @@ Division divide(const Slices& slices, double undivided, DivisionScratch& scratch
         if (gain <= division.gain_per_knot) continue;
         division.gain_per_knot = gain;
         division.knots = knots;
+    }
+    if (!slices.left.empty() && division.gain_per_knot <= kNoGain * undivided) {
+        division.knots = 1;
+        division.cuts[0] = static_cast<std::uint32_t>(slices.size() / 2);
+        return division;
     }
     std::copy(last.border.begin() + std::ptrdiff_t(last.count - division.knots),
               last.border.begin() + std::ptrdiff_t(last.count), division.cuts.begin());

@@ -12,17 +12,11 @@ namespace {
 
 constexpr double kPieceStep = 0.02; // radians across which light in a cell has one cosine
 
-/// What the company is at a surface whose normal is known.
-std::shared_ptr<const Filling> filling_of(const Company& company) {
-    if (company.heuristic == ACDF_HEURISTIC_BALANCE) return std::make_shared<const Filling>();
-    return std::make_shared<const Filling>(std::vector<Lobe>{{1.0, 1.0}}, company.heuristic);
-}
-
 } // namespace
 
 LocalCompany::LocalCompany(const Target& target, const std::vector<LightPoint>& points, const NormalBins& bins,
                            const std::vector<double>& irradiance, const Company& company)
-    : lobes_(company.kind), filling_(filling_of(company)), ratio_(company.light / company.other),
+    : lobes_(company.kind), filling_(std::make_shared<const Filling>(company.heuristic)), ratio_(company.light / company.other),
       nu_(bins.normals.size(), 0.0) {
     tbb::parallel_for(std::size_t{0}, nu_.size(), [&](std::size_t b) {
         if (irradiance[b] > 0.0) nu_[b] = solve(points, bins.normals[b], irradiance[b]);
