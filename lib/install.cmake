@@ -18,6 +18,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/company.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
@@ -28,11 +29,14 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/pieces.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h

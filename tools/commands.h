@@ -36,6 +36,7 @@ void add_validate(CLI::App& program, int& exit_code);
 void add_sample(CLI::App& program, int& exit_code);
 void add_pdf(CLI::App& program, int& exit_code);
 void add_plot(CLI::App& program, int& exit_code);
+void add_export(CLI::App& program, int& exit_code);
 void add_scanline(CLI::App& program, int& exit_code);
 void add_sweep(CLI::App& program, int& exit_code);
 void add_render(CLI::App& program, int& exit_code);

@@ -26,7 +26,7 @@ constexpr Command commands[] = {
     {"Start here", add_demo}, {"Make", add_env},         {"Make", add_local},       {"Make", add_brdf},
     {"Make", add_table},      {"Inspect", add_info},     {"Inspect", add_validate}, {"Inspect", add_measure},
     {"Inspect", add_plot},    {"Inspect", add_scanline}, {"Inspect", add_render},   {"Inspect", add_sweep},
-    {"Use", add_sample},      {"Use", add_pdf},          {"Make", add_batch},
+    {"Use", add_sample},      {"Use", add_pdf},          {"Use", add_export},       {"Make", add_batch},
 };
 
 constexpr const char* description =

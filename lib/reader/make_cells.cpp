@@ -21,12 +21,15 @@ constexpr double kNumberSteps = 0x1p31;
 constexpr std::size_t kMostPieces = 65535;
 // A draw stays this part of its numbers inside its piece: more than a float rounds.
 constexpr double kPart = 0x1p-21;
+// Tables for shaders may be made for minutes: no part of them may be missing.
+constexpr std::size_t kWholeWork = std::size_t{1} << 14;
 
 class CellsMaker {
 public:
-    CellsMaker(const AcdfEnvironment& environment, u32 tree_units)
+    /// total: tables that answer always.
+    CellsMaker(const AcdfEnvironment& environment, u32 tree_units, bool total)
         : environment_(environment), sides_(environment.columns, environment.rows),
-          most_steps_(2 * std::size_t{tree_units} + 64) {}
+          most_steps_(2 * std::size_t{tree_units} + 64), total_(total) {}
 
     /// False where there can be no tables.
     bool gather();
@@ -36,11 +39,14 @@ private:
     bool count(u32 at);
     bool add(const Cell& cell);
     void add_piece(const Side& azimuth, const Side& height, float pdf);
+    void add_whole_piece(const Side& azimuth, const Side& height, float pdf);
 
     AcdfEnvironment environment_;
     Sides sides_;
     std::size_t most_steps_, steps_ = 0, cells_ = 0;
+    bool total_;
     Growable<AcdfPiece> pieces_;
+    Growable<AcdfPieceEnds> ends_;
     Growable<float> densities_;
     Growable<KeyBox> numbers_, keys_;
 };
@@ -56,7 +62,8 @@ bool CellsMaker::gather() {
         sides_.remember(most_steps_) &&
         each_cell(environment_.tree, environment_.root, whole, [&](const Cell& cell) { return add(cell); }) &&
         pieces_.size() <= kMostPieces;
-    return done && !(pieces_.failed() || densities_.failed() || numbers_.failed() || keys_.failed());
+    return done &&
+           !(pieces_.failed() || ends_.failed() || densities_.failed() || numbers_.failed() || keys_.failed());
 }
 
 // Whether the cells are few enough, in proportion to the tree, and without tilts: before any work is spent on them.
@@ -113,7 +120,77 @@ AcdfPieceAxis dark_axis(const Side& side, bool down) {
     return {0, any ? 1.0f : 0.0f, static_cast<float>(down ? to : from), static_cast<float>(to - from)};
 }
 
+// All steps of random numbers that lead into a side. Each leads into one of an axis, if not into a dark one.
+Steps all_steps(const Side& side) {
+    return {static_cast<std::int64_t>(std::ceil(side.low * kNumberSteps)),
+            static_cast<std::int64_t>(std::ceil(side.high * kNumberSteps)) - 1};
+}
+
+// An axis whose numbers, too few to be sure of most, lead evenly to all within its margins.
+AcdfPieceAxis narrow_axis(const Side& side, const Steps& all, bool down) {
+    AcdfPieceAxis axis = dark_axis(side, down);
+    axis.low = static_cast<u32>(down ? all.last : all.first);
+    axis.width = static_cast<float>(all.last - all.first + 1) * 0x1p21f;
+    axis.slope /= axis.width;
+    return axis;
+}
+
+// What rounding makes of the ends of a piece must be in its keys: one more on each side.
+void widen(u32& low, u32& high, u32 first, u32 last) {
+    low = low > first ? std::min(low, last) - 1 : first;
+    high = high < last ? std::max(high, first) + 1 : last;
+}
+
+// Everything in a piece: no step of a number and no direction between two of them.
+AcdfPieceEnds ends_of(const Side& azimuth, const Side& height, const Steps steps[2]) {
+    AcdfPieceEnds ends = {};
+    for (int axis = 0; axis < 2; ++axis) {
+        ends.numbers[axis][0] = static_cast<u32>(steps[axis].first);
+        ends.numbers[axis][1] =
+            static_cast<u32>(std::max(steps[axis].last + 1 - steps[axis].first, std::int64_t{0}));
+    }
+    for (int i = 0; i < 2; ++i) {
+        ends.slope[i] = static_cast<float>(azimuth.ends[i]);
+        ends.cap[i] = static_cast<float>(height.ends[i]);
+    }
+    if (azimuth.ends[1] >= 1.0) ends.slope[1] = 2.0f; // of a quarter, and the equator, ends included
+    if (height.ends[1] >= 1.0) ends.cap[1] = 2.0f;
+    return ends;
+}
+
+void CellsMaker::add_whole_piece(const Side& azimuth, const Side& height, float pdf) {
+    const Side* const sides[2] = {&azimuth, &height};
+    const Steps steps[2] = {all_steps(azimuth), all_steps(height)};
+    const bool drawn = pdf > 0.0f && steps[0].first <= steps[0].last && steps[1].first <= steps[1].last;
+    AcdfPieceAxis axes[2];
+    KeyBox number = {{1, 1}, {0, 0}}, key;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Side& side = *sides[axis];
+        const bool down = axis == 1 && side.piece == 1;
+        const Steps sure = steps_within(side);
+        const bool few = 2 * (sure.last - sure.first) < steps[axis].last - steps[axis].first;
+        axes[axis] = !drawn ? dark_axis(side, down)
+                     : few  ? narrow_axis(side, steps[axis], down)
+                            : drawn_axis(side, sure, down);
+        axes[axis].width = tagged(axes[axis].width, axis == 0 ? 3u : 1u, side.piece);
+        if (drawn) {
+            number.low[axis] = static_cast<u32>(steps[axis].first);
+            number.high[axis] = static_cast<u32>(steps[axis].last);
+        }
+        key.low[axis] = static_cast<u32>(side.key[0]);
+        key.high[axis] = static_cast<u32>(side.key[1]);
+    }
+    widen(key.low[0], key.high[0], azimuth.piece << 23, ((azimuth.piece + 1) << 23) - 1);
+    widen(key.low[1], key.high[1], height.piece << 24, ((height.piece + 1) << 24) - 1);
+    pieces_.add({axes[0], axes[1]});
+    ends_.add(ends_of(azimuth, height, steps));
+    densities_.add(pdf);
+    numbers_.add(number);
+    keys_.add(key);
+}
+
 void CellsMaker::add_piece(const Side& azimuth, const Side& height, float pdf) {
+    if (total_) return add_whole_piece(azimuth, height, pdf);
     const Side* const sides[2] = {&azimuth, &height};
     AcdfPieceAxis axes[2];
     KeyBox number, key;
@@ -142,12 +219,14 @@ std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; 
 
 AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
     const std::size_t count = pieces_.size();
+    const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
     SquaresMaker numbers, directions;
-    if (!numbers.make(numbers_.data(), count, kNumberBits) ||
-        !directions.make(keys_.data(), count, ACDF_DIRECTION_BITS))
+    if (!numbers.make(numbers_.data(), count, kNumberBits, work) ||
+        !directions.make(keys_.data(), count, ACDF_DIRECTION_BITS, work))
         return nullptr;
+    if (total_ && !(numbers.complete() && directions.complete())) return nullptr;
     std::size_t words = padded(sizeof(AcdfCells) / 4) + numbers.words() + directions.words();
-    words += padded(pieces_.bytes() / 4) + padded(densities_.bytes() / 4);
+    words += padded(pieces_.bytes() / 4) + padded(densities_.bytes() / 4) + padded(ends_.bytes() / 4);
     if (4 * words > most_bytes) return nullptr;
     block = take_block(allocator, 4 * words);
     if (!block.data) return nullptr;
@@ -164,6 +243,7 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
     cells->count = static_cast<u32>(count);
     cells->pieces = copy(pieces_);
     cells->densities = copy(densities_);
+    if (total_) cells->ends = copy(ends_);
     at = numbers.place(tables, at, cells->numbers);
     directions.place(tables, at, cells->directions);
     return cells;
@@ -173,8 +253,13 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
 
 AcdfCells* make_cells(const AcdfEnvironment& environment, u32 tree_units, std::size_t most_bytes,
                       const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
-    CellsMaker maker(environment, tree_units);
+    CellsMaker maker(environment, tree_units, false);
     return maker.gather() ? maker.assemble(most_bytes, allocator, block) : nullptr;
+}
+
+AcdfCells* make_shader_cells(const AcdfEnvironment& environment, u32 tree_units, AcdfBlock& block) noexcept {
+    CellsMaker maker(environment, tree_units, true);
+    return maker.gather() ? maker.assemble(SIZE_MAX, {}, block) : nullptr;
 }
 
 } // namespace acdf

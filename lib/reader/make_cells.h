@@ -16,4 +16,9 @@ namespace acdf {
 AcdfCells* make_cells(const AcdfEnvironment& environment, std::uint32_t tree_units, std::size_t most_bytes,
                       const AcdfAllocator& allocator, AcdfBlock& block) noexcept;
 
+/// The same for shaders: tables that answer always (AcdfPieceEnds), of any size. Null too where a block of cells
+/// cannot name all that a point may lie in, which takes cells of less than 2^-11 radians about a pole.
+AcdfCells* make_shader_cells(const AcdfEnvironment& environment, std::uint32_t tree_units,
+                             AcdfBlock& block) noexcept;
+
 } // namespace acdf

@@ -66,8 +66,10 @@ int Sides::azimuths(const Cell& cell, Side* out) const {
         side.margin[0] = side.margin[1] = kMargin;
         const double tangents[2] = {to == end && piece.end < 1.0 ? -1.0 : tangent(last),
                                     from == low ? tangent(first) : 1.0};
-        for (int i = 0; i < 2; ++i)
+        for (int i = 0; i < 2; ++i) {
+            side.ends[i] = tangents[i];
             side.key[i] = (2.0 * piece.quarter + 1.0 + tangents[i]) * static_cast<double>(ACDF_SLOPE_STEPS);
+        }
         from = to;
     }
     return count;
@@ -91,6 +93,7 @@ int Sides::heights(const Cell& cell, Side* out) const {
             side.margin[i] = row[i]->margin;
             const double key = row[i]->cap * static_cast<double>(ACDF_CAP_STEPS);
             side.key[i] = south ? static_cast<double>(kSouthKeys) - key : key;
+            side.ends[i ^ static_cast<int>(south)] = row[i]->cap;
         }
     }
     return count;

@@ -51,7 +51,8 @@ struct Side {
     double low, high;    ///< random numbers
     double local[2];     ///< at low and high: local azimuth, or 1 - |z|
     double margin[2];    ///< of `local`, in which nothing is sure
-    double key[2];       ///< of acdf_direction_place: the lesser, and the greater
+    double key[2];       ///< of acdf_place_of: the lesser, and the greater
+    double ends[2];      ///< tangents of azimuth or 1 - |z|: the lesser, and the greater
 };
 
 /// Cuts cells of a grid.

@@ -15,17 +15,14 @@ constexpr u32 kEmptyEntry = kEmptyBlock; // whatever the shifts
 constexpr u32 kByteBits = 8;
 constexpr u32 kMostBits = 16;         // of the grid
 constexpr std::size_t kLookedAt = 32; // cells, to choose an axis
-// Cells that a grid may look at for each that it holds, a division of a list counted once each: usual trees take 20
-// to 30.
-constexpr std::size_t kWork = 96;
 
 std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
 
 } // namespace
 
-bool SquaresMaker::make(const KeyBox* boxes, std::size_t count, u32 key_bits) noexcept {
+bool SquaresMaker::make(const KeyBox* boxes, std::size_t count, u32 key_bits, std::size_t work_a_box) noexcept {
     boxes_ = boxes;
-    work_ = kWork * (count + ACDF_BLOCK_CELLS);
+    work_ = work_a_box * (count + ACDF_BLOCK_CELLS);
     const Rectangle whole = {{0, 0}, {key_bits, key_bits}};
     block(whole, 0); // no cells: the empty one
     list_.reserve(4 * count);
@@ -73,7 +70,10 @@ SquaresMaker::Grid SquaresMaker::shaped(const Rectangle& rectangle, std::size_t 
 void SquaresMaker::divide(const Grid& grid, const Rectangle& rectangle, std::size_t first) {
     const std::size_t end = list_.size(), count = end - first;
     if (count <= ACDF_BLOCK_CELLS) return fill(grid, rectangle, block(rectangle, first));
-    if (work_ < 2 * count || list_.failed()) return; // the entries stay empty
+    if (work_ < 2 * count || list_.failed()) { // the entries stay empty
+        complete_ = false;
+        return;
+    }
     work_ -= 2 * count;
     const int axis = best_axis(grid, rectangle, first);
     if (axis < 0) return refine(grid, rectangle, first);
@@ -117,9 +117,12 @@ int SquaresMaker::best_axis(const Grid& grid, const Rectangle& rectangle, std::s
 
 // A finer grid in a rectangle as small as an entry.
 void SquaresMaker::refine(const Grid& grid, const Rectangle& rectangle, std::size_t first) {
-    if (rectangle.log2[0] + rectangle.log2[1] < ACDF_FINER_BITS) return;
     const std::size_t number = (finer_.size() >> ACDF_FINER_BITS);
-    if (number >> 28 || !finer_.add(1u << ACDF_FINER_BITS, kEmptyEntry)) return;
+    if (rectangle.log2[0] + rectangle.log2[1] < ACDF_FINER_BITS || number >> 28 ||
+        !finer_.add(1u << ACDF_FINER_BITS, kEmptyEntry)) {
+        complete_ = false;
+        return;
+    }
     const Grid finer = shaped(rectangle, first, ACDF_FINER_BITS, number + 1);
     fill(grid, rectangle, ACDF_SQUARES_FINER | finer.bits[0] << 28 | static_cast<u32>(number));
     divide(finer, rectangle, first);
@@ -128,7 +131,10 @@ void SquaresMaker::refine(const Grid& grid, const Rectangle& rectangle, std::siz
 /// Adds a block with the cells from `first` on and returns its entry.
 u32 SquaresMaker::block(const Rectangle& rectangle, std::size_t first) {
     const std::size_t number = block_cells_.size() / ACDF_BLOCK_CELLS;
-    if (number >> ACDF_SQUARES_BLOCK_BITS) return kEmptyEntry;
+    if (number >> ACDF_SQUARES_BLOCK_BITS) {
+        complete_ = false;
+        return kEmptyEntry;
+    }
     auto* const bytes = reinterpret_cast<std::int8_t*>(block_boxes_.add(ACDF_BLOCK_CELLS, 0));
     std::uint16_t* const cells = block_cells_.add(ACDF_BLOCK_CELLS, 0);
     if (!bytes || !cells) return kEmptyEntry;

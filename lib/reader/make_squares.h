@@ -21,7 +21,14 @@ public:
     /// Over boxes (at most 65536) of keys of `key_bits` bits. Boxes with low > high are in no block. The work is in
     /// proportion to `count`, whatever the boxes: where it would be more, entries name the empty block. Returns
     /// false where memory fails.
-    bool make(const KeyBox* boxes, std::size_t count, std::uint32_t key_bits) noexcept;
+    bool make(const KeyBox* boxes, std::size_t count, std::uint32_t key_bits,
+              std::size_t work_a_box = kUsualWork) noexcept;
+    /// Whether every entry names all boxes that it touches.
+    bool complete() const noexcept { return complete_; }
+
+    /// Boxes that may be looked at for each that there is, a division of a list counted once each: usual trees take
+    /// 20 to 30.
+    static constexpr std::size_t kUsualWork = 96;
 
     /// Words that `place` writes.
     std::size_t words() const noexcept;
@@ -48,6 +55,7 @@ private:
     const KeyBox* boxes_ = nullptr;
     Grid grid_ = {};
     std::size_t work_ = 0; ///< that is left
+    bool complete_ = true;
     Growable<std::uint32_t> entries_, finer_, block_boxes_;
     Growable<std::uint16_t> block_cells_;
     Growable<std::uint16_t> list_; ///< a stack of lists of cells: of the rectangle, of both halves, of theirs

@@ -6,10 +6,7 @@
  * cell's borders than all roundings together; else it says so, and the caller walks. So every draw and every
  * density is that of the walk; only where in its cell a draw lies differs, by the rounding of floats.
  *
- * The sphere is cut into eight pieces along z = 0 and the meridians half-way between the x and the y axes, and
- * cells with it. In each, azimuth is measured from the x or y axis in its middle: sine and cosine need no
- * reduction, and minor over major coordinate, in [-1, 1], orders directions by azimuth. Heights are measured from
- * the nearer pole. */
+ * Cells are cut where the pieces of the sphere are (acdf/pieces.h). */
 #ifndef ACDF_CELLS_H
 #define ACDF_CELLS_H
 
@@ -28,7 +25,8 @@ typedef struct AcdfCells {
     AcdfSquares directions; /* keys: acdf_direction_keys */
     uint32_t pieces;        /* AcdfPiece, `count` of them */
     uint32_t densities;     /* f32, sr^-1; 0: no sample falls there */
-    uint32_t reserved[4];
+    uint32_t ends;          /* AcdfPieceEnds, `count` of them, of tables for shaders (acdf/shader.h); else 0 */
+    uint32_t reserved[3];
 } AcdfCells;
 
 /* The random numbers of an axis that surely lead into a piece, and where they lead. They begin at low, in steps of
@@ -44,40 +42,15 @@ typedef struct AcdfPiece {
     AcdfPieceAxis azimuth, height;
 } AcdfPiece;
 
-ACDF_INLINE uint32_t acdf_float_bits(float x) {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-ACDF_INLINE float acdf_bits_float(uint32_t bits) {
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
+/* Of tables that answer always: all of the numbers that lead into a piece, and of the directions that lie in it.
+ * Each pair of numbers and each direction are in one. */
+typedef struct AcdfPieceEnds {
+    uint32_t numbers[2][2]; /* of azimuth and of height: the first, in steps of 2^-31, and how many */
+    float slope[2];         /* from, and to less than: acdf_place_of */
+    float cap[2];
+} AcdfPieceEnds;
 
 /* ---- drawing ---------------------------------------------------------------------------------------- */
-
-/* Sine and cosine for |y| <= pi/4, interpolated at the Chebyshev nodes of y^2; error below 1e-7. */
-ACDF_INLINE float acdf_sine_float(float y) {
-    const float q = y * y;
-    return y + y * q * (-0.16666651f + q * (0.0083320351f + q * -0.00019503819f));
-}
-ACDF_INLINE float acdf_cosine_float(float y) {
-    const float q = y * y;
-    return 1.0f + q * (-0.5f + q * (0.041666616f + q * (-0.0013886617f + q * 2.4379725e-5f)));
-}
-
-/* The direction at a local azimuth in a quarter (0: around +x, then +y, -x, -y) and 1 - |z|; south: 0 or 1. */
-ACDF_INLINE void acdf_piece_direction(float azimuth, float cap, uint32_t quarter, uint32_t south,
-                                      float direction[3]) {
-    const float radius = sqrtf(cap * (2.0f - cap)); /* exact near the poles, where z is not */
-    const uint32_t major = acdf_float_bits(radius * acdf_cosine_float(azimuth));
-    const uint32_t minor = acdf_float_bits(radius * acdf_sine_float(azimuth));
-    const uint32_t swapped = (major ^ minor) & (0u - (quarter & 1u));
-    direction[0] = acdf_bits_float((major ^ swapped) ^ ((quarter + 1u) & 2u) << 30);
-    direction[1] = acdf_bits_float((minor ^ swapped) ^ (quarter & 2u) << 30);
-    direction[2] = acdf_bits_float(acdf_float_bits(1.0f - cap) ^ south << 31);
-}
 
 /* d of a number in steps of 2^-52. */
 ACDF_INLINE float acdf_draw_distance(uint64_t number, uint32_t low) {
@@ -91,6 +64,7 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
     const double shifted[2] = {u0 + 1.0, u1 + 1.0}; /* u in steps of 2^-52 are the bits of its fraction */
     const uint16_t* found;
     uint64_t n[2];
+    AcdfVector drawn;
     uint32_t mask;
     memcpy(n, shifted, sizeof n);
     n[0] ^= 0x3FF0000000000000u;
@@ -106,9 +80,11 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
                        width1 = acdf_float_bits(piece->height.width);
         /* 0 <= d < width by their bits; in the south for -d */
         if (!(acdf_float_bits(d0) < width0 && (acdf_float_bits(d1) ^ width1 << 31) < width1)) continue;
-        acdf_piece_direction(piece->azimuth.origin + d0 * piece->azimuth.slope,
-                             piece->height.origin + d1 * piece->height.slope, width0 & 3u, width1 & 1u,
-                             out->direction);
+        drawn = acdf_piece_direction(piece->azimuth.origin + d0 * piece->azimuth.slope,
+                                     piece->height.origin + d1 * piece->height.slope, width0 & 3u, width1 & 1u);
+        out->direction[0] = drawn.x;
+        out->direction[1] = drawn.y;
+        out->direction[2] = drawn.z;
         out->pdf = ((const float*)(const void*)(tables + cells->densities))[cell];
         return 1;
     }
@@ -125,34 +101,14 @@ ACDF_INLINE float acdf_atan_float(float t) {
     return t * (low + q2 * q2 * high);
 }
 
-/* A direction as pieces see it. */
-typedef struct AcdfPlace {
-    uint32_t
-        key[2]; /* quarter, then `slope` in steps of 2^-22; `cap` in steps of 2^-24, in the south all bits turned */
-    float slope; /* minor over major coordinate, tangent of the local azimuth */
-    float cap;   /* 1 - |z| */
-} AcdfPlace;
-
-enum { ACDF_DIRECTION_BITS = 25 };
-#define ACDF_SLOPE_STEPS 4194304.0f
-#define ACDF_CAP_STEPS 16777215.0f
-
 /* Returns 0 where floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by
  * more than 5e-5 or that are not finite. */
 ACDF_INLINE int acdf_direction_place(const float direction[3], AcdfPlace* place) {
     const float x = direction[0], y = direction[1], z = direction[2];
     const float sin2 = x * x + y * y, length2 = sin2 + z * z;
-    const uint32_t mask = (1u << ACDF_DIRECTION_BITS) - 1;
-    const int steep = fabsf(y) > fabsf(x);
-    const float minor = steep ? -x : y, major = steep ? y : x;
     /* 0.9999 to 1.0001 and 2^-40 up, by their bits */
     if (acdf_float_bits(length2) - 0x3F7FF972u > 0x000009D4u || acdf_float_bits(sin2) < 0x2B800000u) return 0;
-    place->slope = minor / major;
-    place->cap = sin2 * (2.0f - length2) / (1.0f + fabsf(z) * (1.5f - 0.5f * length2)); /* exact near the poles */
-    place->key[0] = (((uint32_t)steep | (acdf_float_bits(major) >> 30 & 2u)) << 23) +
-                    (uint32_t)(int32_t)(place->slope * ACDF_SLOPE_STEPS + ACDF_SLOPE_STEPS);
-    place->key[0] &= mask; /* the last quarter's end is the first one's beginning */
-    place->key[1] = ((uint32_t)(int32_t)(place->cap * ACDF_CAP_STEPS) ^ (0u - (acdf_float_bits(z) >> 31))) & mask;
+    *place = acdf_place_of(x, y, z, sin2, length2);
     return 1;
 }
 
@@ -165,7 +121,7 @@ ACDF_INLINE int acdf_cells_pdf(const AcdfCells* cells, const float direction[3],
     uint32_t mask;
     float azimuth;
     if (!acdf_direction_place(direction, &place)) return 0;
-    mask = acdf_squares_find(tables, &cells->directions, place.key[0], place.key[1], &found);
+    mask = acdf_squares_find(tables, &cells->directions, place.key0, place.key1, &found);
     azimuth = acdf_atan_float(place.slope);
     for (; mask; mask &= mask - 1) {
         const uint32_t cell = found[acdf_lowest_bit(mask)];

@@ -52,7 +52,7 @@ ACDF_INLINE const AcdfTilePiece* acdf_local_find_piece(const AcdfLocalTables* ta
     uint32_t mask;
     float azimuth;
     if (!acdf_direction_place(direction, &place)) return 0;
-    mask = acdf_squares_find(words, &tables->directions, place.key[0], place.key[1], &found);
+    mask = acdf_squares_find(words, &tables->directions, place.key0, place.key1, &found);
     azimuth = acdf_atan_float(place.slope);
     for (; mask; mask &= mask - 1) {
         const AcdfTilePiece* piece =

@@ -8,7 +8,8 @@
 #ifndef ACDF_SQUARES_H
 #define ACDF_SQUARES_H
 
-#include <acdf/elementary.h>
+#include <acdf/layout.h>
+#include <acdf/pieces.h>
 
 #if defined(__SSE2__) && !defined(__CUDACC__) && !defined(__HIPCC__) && !defined(__SYCL_DEVICE_ONLY__)
 #define ACDF_SQUARES_SSE2 1
@@ -39,25 +40,9 @@ typedef struct AcdfSquares {
     uint32_t blocks; /* how many there are; block 0 names none */
 } AcdfSquares;
 
-/* An entry: shifts of both keys (5 bits each) and the number of a block; or the flag, and of a finer grid the bits
- * along key 0 (3 bits) and the number. */
-#define ACDF_SQUARES_FINER 0x80000000u
-#define ACDF_SQUARES_BLOCK_BITS 21
-enum { ACDF_BLOCK_CELLS = 16, ACDF_FINER_BITS = 4 };
-
-ACDF_INLINE uint32_t acdf_squares_entry(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
-                                        uint32_t key1) {
-    uint32_t shift0 = squares->shift0, shift1 = squares->shift1;
-    uint32_t entry = tables[squares->grid + ((key1 >> shift1) << squares->bits0) + (key0 >> shift0)];
-    while (entry & ACDF_SQUARES_FINER) {
-        const uint32_t bits0 = entry >> 28 & 7u, bits1 = ACDF_FINER_BITS - bits0;
-        shift0 -= bits0;
-        shift1 -= bits1;
-        entry = tables[squares->finer + (entry & 0x0FFFFFFFu) * 16u +
-                       ((key1 >> shift1 & ((1u << bits1) - 1)) << bits0 | (key0 >> shift0 & ((1u << bits0) - 1)))];
-    }
-    return entry;
-}
+enum { ACDF_BLOCK_CELLS = 16 };
+ACDF_STATIC_ASSERT(offsetof(AcdfSquares, bits0) == 4 * ACDF_SQUARES_BITS0);
+ACDF_STATIC_ASSERT(offsetof(AcdfSquares, cells) == 4 * ACDF_SQUARES_CELLS);
 
 /* Bit i: whether cell i of a block may hold the point; never of those that it lacks. */
 ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byte0, uint32_t byte1) {
@@ -70,12 +55,7 @@ ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byt
         _mm_or_si128(_mm_cmpgt_epi8(_mm_load_si128(box + 2), at1), _mm_cmpgt_epi8(at1, _mm_load_si128(box + 3)));
     return (uint32_t)_mm_movemask_epi8(_mm_or_si128(out0, out1)) ^ 0xFFFFu;
 #else
-    const int8_t* box = (const int8_t*)(const void*)boxes;
-    const int32_t at0 = (int32_t)byte0 - 128, at1 = (int32_t)byte1 - 128;
-    uint32_t mask = 0, i;
-    for (i = 0; i < ACDF_BLOCK_CELLS; ++i)
-        mask |= (uint32_t)(box[i] <= at0 && at0 <= box[16 + i] && box[32 + i] <= at1 && at1 <= box[48 + i]) << i;
-    return mask;
+    return acdf_boxes_around(boxes, 0, byte0, byte1);
 #endif
 }
 
@@ -93,8 +73,9 @@ ACDF_INLINE uint32_t acdf_lowest_bit(uint32_t mask) {
 /* The cells that may hold a point: *cells[i] for each bit i that is set in what is returned. */
 ACDF_INLINE uint32_t acdf_squares_find(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
                                        uint32_t key1, const uint16_t** cells) {
-    const uint32_t entry = acdf_squares_entry(tables, squares, key0, key1);
-    const uint32_t block = entry & ((1u << ACDF_SQUARES_BLOCK_BITS) - 1);
+    const uint32_t at = (uint32_t)((const uint32_t*)(const void*)squares - tables);
+    const uint32_t entry = acdf_squares_entry(tables, at, key0, key1);
+    const uint32_t block = entry & ACDF_SQUARES_BLOCK_MASK;
     const uint32_t byte0 = key0 >> (entry >> 26) & 0xFFu, byte1 = key1 >> (entry >> 21 & 31u) & 0xFFu;
     *cells = (const uint16_t*)(const void*)(tables + squares->cells + 8u * block);
     ACDF_PREFETCH(*cells);

@@ -1,0 +1,35 @@
+// Words for a shader's buffer or texture, from which acdf/shader.h draws; `acdf export` writes them, too.
+#pragma once
+
+#include <acdf/reader.h>
+#include <acdf/shader.h>
+
+namespace acdf {
+
+/// The tables of one environment file, which outlive it. They are offsets and never addresses: they may be copied
+/// anywhere, aligned to four bytes, and tables of several files may stand one after the other in one buffer.
+class ShaderTables {
+public:
+    ShaderTables() noexcept = default;
+    ~ShaderTables();
+    ShaderTables(ShaderTables&& other) noexcept;
+    ShaderTables& operator=(ShaderTables&& other) noexcept;
+    ShaderTables(const ShaderTables&) = delete;
+    ShaderTables& operator=(const ShaderTables&) = delete;
+
+    /// Makes the tables of a file that is not empty. `unsupported` where there are none: files of another kind or
+    /// on the octahedral square, with cells that tilt (--fit pdf), of more than 65,535 pieces of cells (some 60,000
+    /// cells) or with more than 16 cells in a circle of 2^-11 radians about a pole. `out` then is empty. Work and
+    /// memory are in proportion to the cells, some 100 bytes each.
+    static Status make(const File& file, ShaderTables& out) noexcept;
+
+    /// Little-endian, as a GPU takes them.
+    const std::uint32_t* words() const noexcept { return static_cast<const std::uint32_t*>(block_.data); }
+    /// How many; 0: empty.
+    std::size_t size() const noexcept { return block_.data ? words()[0] : 0; }
+
+private:
+    AcdfBlock block_ = {};
+};
+
+} // namespace acdf

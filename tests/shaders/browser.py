@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""browser.py FOLDER PAGE [FLAG...]: opens a page of a folder in headless Chromium, and waits for what it sends back.
+
+The page fetches files of the folder from the server that it came from. It sends: POST /NAME with the bytes of a file,
+which is written to the folder; POST /done with a line that ends the run, "ok", "skipped: why" or what is wrong.
+Ends with 0, 77 or 1."""
+import http.server
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+
+FLAGS = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
+         "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--enable-unsafe-webgpu",
+         "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan"]
+LONGEST = 300.0  # seconds
+
+
+class Handler(http.server.SimpleHTTPRequestHandler):
+    extensions_map = {**http.server.SimpleHTTPRequestHandler.extensions_map, ".wasm": "application/wasm",
+                      ".js": "text/javascript", ".mjs": "text/javascript"}
+
+    def do_POST(self):
+        body = self.rfile.read(int(self.headers["Content-Length"]))
+        name = os.path.basename(self.path)
+        self.send_response(200)
+        self.end_headers()
+        if name == "done":
+            self.server.answer = body.decode()
+            self.server.answered.set()
+        else:
+            with open(os.path.join(self.directory, name), "wb") as file:
+                file.write(body)
+
+    def log_message(self, *arguments):
+        pass
+
+
+def main(folder, page, *flags):
+    server = http.server.ThreadingHTTPServer(
+        ("127.0.0.1", 0), lambda *arguments: Handler(*arguments, directory=folder))
+    server.answered, server.answer = threading.Event(), "no answer within %.0f s" % LONGEST
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    with tempfile.TemporaryDirectory() as profile:
+        with open(os.path.join(folder, "browser.log"), "w", encoding="utf-8") as log:
+            browser = subprocess.Popen(
+                ["chromium", *FLAGS, *flags, "--enable-logging=stderr", "--user-data-dir=" + profile,
+                 "http://127.0.0.1:%d/%s" % (server.server_port, page)],
+                stdout=log, stderr=log, env={**os.environ, "HOME": profile})
+            server.answered.wait(LONGEST)
+            browser.terminate()
+            browser.wait()
+    server.shutdown()
+    print(server.answer)
+    if server.answer.startswith("skipped"):
+        return 77
+    if server.answer != "ok":
+        with open(os.path.join(folder, "browser.log"), encoding="utf-8", errors="replace") as log:
+            sys.stderr.write("".join(line for line in log if "CONSOLE" in line))
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

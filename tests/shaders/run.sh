@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT: exports an environment, draws and evaluates COUNT times on a device, and
+# compares with the reader. DEVICE: c, opencl, webgl, webgpu; or glslang, which only compiles.
+set -euo pipefail
+device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+skip() {
+    echo "skipped: $1 (tools/packages.txt names the package)"
+    exit 77
+}
+need() { command -v "$1" >/dev/null || skip "no $1"; }
+
+make_file() {
+    "$make_sky" "$work/sky.exr"
+    "$acdf" env "$work/sky.exr" --budget 16KiB -o "$work/sky.acdf" --quiet
+    "$compare" inputs "$work/sky.acdf" "$count" "$work"
+}
+
+# Steps of 2^-24 by which coordinates may be off. Where floats are IEEE's, and sums of products are not fused: none.
+check() { "$compare" check "$work/sky.acdf" "$count" "$work" "$1"; }
+
+on_c() {
+    make_file
+    "$acdf" export "$work/sky.acdf" --target c -o "$work/exported.h"
+    "${CC:-cc}" -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -ffp-contract=off -I"$work" "$here/device.c" \
+        -o "$work/device" -lm
+    "$work/device" "$work"
+    check 0
+    "$acdf" export "$work/sky.acdf" --target c --tables "$work/tables.bin" -o "$work/exported.h" --force
+    "${CC:-cc}" -std=c99 -O2 -Werror -ffp-contract=off -DTABLES_FILE -I"$work" "$here/device.c" -o "$work/device" -lm
+    rm "$work/draws.bin" "$work/densities.bin"
+    "$work/device" "$work"
+    check 0
+}
+
+on_opencl() {
+    printf '#define CL_TARGET_OPENCL_VERSION 120\n#include <CL/cl.h>\n' >"$work/has.c"
+    cc -c "$work/has.c" -o "$work/has.o" 2>/dev/null || skip "no CL/cl.h"
+    cc "$here/opencl.c" -o "$work/device" -lOpenCL 2>/dev/null || skip "no libOpenCL"
+    make_file
+    "$acdf" export "$work/sky.acdf" --target c --tables "$work/tables.bin" -o "$work/exported.h"
+    status=0
+    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" || status=$?
+    [ "$status" != 77 ] || exit 77
+    [ "$status" = 0 ]
+    check 0
+}
+
+# Each dialect by the compiler of the Khronos group, for OpenGL, WebGL and Vulkan.
+on_glslang() {
+    need glslangValidator
+    make_file
+    "$acdf" export "$work/sky.acdf" --target glsl -o "$work/sky.glsl"
+    "$acdf" export "$work/sky.acdf" --target hlsl -o "$work/sky.hlsl"
+    local main='void main() { answer = acdf_sample(uvec2(1u, 2u)) + acdf_sample(vec2(0.5)) * acdf_pdf(vec3(0.0, 0.0, 1.0)); }'
+    for version in '300 es' '330' '430'; do
+        {
+            printf '#version %s\nprecision highp float;\nprecision highp int;\n' "$version"
+            cat "$work/sky.glsl"
+            printf 'out vec4 answer;\n%s\n' "$main"
+        } >"$work/shader.frag"
+        glslangValidator "$work/shader.frag" || { echo "GLSL $version does not compile" >&2; exit 1; }
+    done
+    for version in '310 es' '430'; do
+        {
+            printf '#version %s\n#define ACDF_BUFFER 0\nlayout(local_size_x = 64) in;\n' "$version"
+            printf 'layout(std430, binding = 1) buffer Answers { vec4 answer; };\n'
+            cat "$work/sky.glsl"
+            printf '%s\n' "$main"
+        } >"$work/shader.comp"
+        glslangValidator "$work/shader.comp" || { echo "GLSL $version with buffers does not compile" >&2; exit 1; }
+    done
+    glslangValidator -V "$work/shader.comp" -o "$work/shader.spv"
+    {
+        cat "$work/sky.hlsl"
+        printf 'RWStructuredBuffer<float4> answers : register(u0);\n[numthreads(64, 1, 1)]\n'
+        printf 'void main(uint3 id : SV_DispatchThreadID) {\n'
+        printf '    answers[id.x] = acdf_sample(id.xy) + acdf_sample(float2(0.5, 0.5)) * acdf_pdf(float3(0.0, 0.0, 1.0));\n}\n'
+    } >"$work/shader.hlsl"
+    glslangValidator -D -V -S comp -e main "$work/shader.hlsl" -o "$work/hlsl.spv"
+    echo "GLSL, GLSL with buffers, SPIR-V and HLSL compile"
+}
+
+# A page in headless Chromium, whose GPU is software: it fetches what lies in $work and sends the answers back.
+on_browser() {
+    need chromium
+    need python3
+    make_file
+    "$acdf" export "$work/sky.acdf" --target "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
+    cp "$here/$1.html" "$work/index.html"
+    python3 "$here/browser.py" "$work" index.html || exit "$?"
+    check "$3"
+}
+
+case $device in
+c) on_c ;;
+opencl) on_opencl ;;
+glslang) on_glslang ;;
+webgl) on_browser webgl glsl 4 ;;
+webgpu) on_browser webgpu wgsl 4 ;;
+*)
+    echo "usage: run.sh c|opencl|glslang|webgl|webgpu ACDF COMPARE MAKE_SKY COUNT" >&2
+    exit 2
+    ;;
+esac

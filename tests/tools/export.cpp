@@ -1,0 +1,114 @@
+// acdf export: what each target writes, and what is refused with one line. What the texts compute is tested on
+// devices (tests/shaders).
+#include "tests/tools/run.h"
+
+#include <acdf/shader_tables.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstring>
+
+namespace acdf::test {
+namespace {
+
+using nlohmann::json;
+
+class Export : public testing::Test {
+protected:
+    Folder folder;
+    const std::string file = folder / "sky.acdf", text = folder / "sky.txt", tables = folder / "sky.bin";
+    void SetUp() override { write_bytes(file, small_environment()); }
+
+    std::vector<std::uint32_t> words() const {
+        File opened;
+        ShaderTables made;
+        EXPECT_TRUE(File::open(file.c_str(), opened).ok());
+        EXPECT_TRUE(ShaderTables::make(opened, made).ok());
+        return {made.words(), made.words() + made.size()};
+    }
+    void expect_failure(const std::vector<std::string>& command, int code, const std::string& part) {
+        const Result result = run_acdf(command);
+        EXPECT_EQ(result.code, code) << result.err;
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    }
+};
+
+TEST_F(Export, TablesAreThoseOfTheReader) {
+    for (const char* target : {"c", "glsl", "hlsl", "wgsl", "json"}) {
+        const Result result = run_acdf({"export", file, "--target", target, "--tables", tables, "-o", text, "-f"});
+        ASSERT_EQ(result.code, 0) << result.err;
+        const std::string bytes = read_text(tables);
+        const std::vector<std::uint32_t> expected = words();
+        ASSERT_EQ(bytes.size(), 4 * expected.size());
+        EXPECT_EQ(std::memcmp(bytes.data(), expected.data(), bytes.size()), 0);
+    }
+}
+
+TEST_F(Export, FunctionsAreTheSameForAllFiles) {
+    for (const char* target : {"glsl", "hlsl", "wgsl"}) {
+        const Result result = run_acdf({"export", file, "--target", target});
+        ASSERT_EQ(result.code, 0) << result.err;
+        for (const char* name : {"acdf_sample(", "acdf_pdf(", "acdf_tables"})
+            EXPECT_NE(result.out.find(name), std::string::npos) << target << ' ' << name;
+        EXPECT_EQ(result.out.find("double"), std::string::npos) << target;
+        EXPECT_EQ(result.out.find("ACDF_U32"), std::string::npos) << target;
+        EXPECT_EQ(result.out.find("#include"), std::string::npos) << target;
+        EXPECT_EQ(run_acdf({"export", file, "--target", target}).out, result.out);
+    }
+}
+
+TEST_F(Export, WithoutTablesCAndJsonHoldThem) {
+    const std::vector<std::uint32_t> expected = words();
+    const json told = json::parse(run_acdf({"export", file, "--target", "json"}).out);
+    EXPECT_EQ(told["tables"].get<std::vector<std::uint32_t>>(), expected);
+    EXPECT_EQ(told["words"], expected.size());
+    EXPECT_EQ(told["total"], 2.5);
+    EXPECT_EQ(told["resolution"], json({8, 4}));
+    EXPECT_EQ(told["texture"]["height"], (expected.size() + 2047) / 2048);
+    const json apart = json::parse(run_acdf({"export", file, "--target", "json", "--tables", tables}).out);
+    EXPECT_FALSE(apart.contains("tables"));
+    const std::string c = run_acdf({"export", file, "--target", "c"}).out;
+    EXPECT_NE(c.find("acdf_tables[" + std::to_string(expected.size()) + "]"), std::string::npos);
+    EXPECT_EQ(run_acdf({"export", file, "--target", "c", "--tables", tables, "-f"}).out.find("acdf_tables["),
+              std::string::npos);
+}
+
+TEST_F(Export, RefusesWithOneLine) {
+    expect_failure({"export", file}, 2, "--target");
+    expect_failure({"export", file, "--target", "metal"}, 2, "'metal' is none of c, glsl, hlsl, json, wgsl");
+    expect_failure({"export", file, "--target", "glsl", "--tables", "-"}, 2, "stdout takes one of the two");
+    expect_failure({"export", folder / "none.acdf", "--target", "c"}, 1, "cannot open");
+    expect_failure({"export", file, "--target", "c", "-o", file, "-f"}, 1, file);
+    expect_failure({"export", file, "--target", "c", "--tables", file, "-f"}, 1, file);
+    expect_failure({"export", file, "--target", "c", "-o", text, "--tables", text}, 1, "both");
+    write_text(tables, "mine");
+    expect_failure({"export", file, "--target", "c", "--tables", tables, "-o", text}, 1, "--force");
+    EXPECT_EQ(read_text(tables), "mine");
+    EXPECT_FALSE(std::filesystem::exists(text)) << "neither of the two, or both";
+    write_text(text, "no file");
+    expect_failure({"export", text, "--target", "c"}, 1, "not an .acdf file");
+}
+
+TEST_F(Export, RefusesWhatHasNoTables) {
+    compress::Cascade tilted;
+    tilted.curves.push_back({1, {2}, {0.75, 0.25}, {}, {0.5, -0.5}});
+    tilted.roots = {0};
+    compress::Description description = compress::environment_description(8, 4);
+    description.total = 1.0;
+    write_bytes(file, compress::store(compress::encode_tree(tilted), description));
+    expect_failure({"export", file, "--target", "glsl", "--tables", tables, "-o", text}, 1, "--fit pdf");
+    EXPECT_FALSE(std::filesystem::exists(tables));
+    EXPECT_FALSE(std::filesystem::exists(text));
+    const std::string golden = std::string(ACDF_TEST_DIR) + "/golden/v1.0/";
+    for (const auto& entry : std::filesystem::directory_iterator(golden)) {
+        if (entry.path().extension() != ".acdf") continue;
+        File opened;
+        ASSERT_TRUE(File::open(entry.path().c_str(), opened).ok());
+        if (opened.kind() == ACDF_KIND_ENVIRONMENT) continue;
+        expect_failure({"export", entry.path(), "--target", "c"}, 1, "export");
+    }
+}
+
+} // namespace
+} // namespace acdf::test

@@ -1,0 +1,157 @@
+// acdf export: draws and densities of an environment for shaders: functions in their languages, and tables.
+#include "shader/texts.h"
+#include "tools/cli/choice.h"
+#include "tools/cli/file_input.h"
+#include "tools/cli/help.h"
+#include "tools/cli/json.h"
+#include "tools/cli/options.h"
+#include "tools/cli/output.h"
+#include "tools/commands.h"
+
+#include <acdf/shader_tables.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <map>
+#include <optional>
+
+namespace acdf::tools {
+namespace {
+
+enum class Target { c, glsl, hlsl, wgsl, json };
+
+struct ExportArguments {
+    std::string file;
+    Target target = Target::c;
+    std::string output = "-", tables;
+    bool force = false;
+};
+
+constexpr int texture_width = 2048; // of the texture that head.txt of GLSL reads
+
+/// A line of eight words a row.
+std::string rows_of_words(const ShaderTables& tables, const char* format, const char* indent) {
+    std::string text;
+    char word[24];
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        std::snprintf(word, sizeof word, format, static_cast<unsigned>(tables.words()[i]));
+        text += i % 8 == 0 ? indent : " ";
+        text += word;
+        if (i + 1 < tables.size()) text += i % 8 == 7 ? ",\n" : ",";
+    }
+    return text + "\n";
+}
+
+std::string c_text(const ShaderTables& tables, bool with_words) {
+    std::string text = shader_text_c;
+    if (!with_words) return text;
+    return text + "\n#if !defined(ACDF_TABLES_H) && !defined(__OPENCL_VERSION__)\n#define ACDF_TABLES_H\n" +
+           "static const uint32_t acdf_tables[" + std::to_string(tables.size()) + "] = {\n" +
+           rows_of_words(tables, "0x%08Xu", "    ") + "};\n#endif\n";
+}
+
+/// What a program needs to make a buffer or a texture of the tables, and to check that they are the file's.
+std::string description(const ExportArguments& options, const LoadedFile& loaded, const ShaderTables& tables) {
+    const auto& cells = *reinterpret_cast<const AcdfCells*>(tables.words());
+    const std::size_t rows = (tables.size() + texture_width - 1) / texture_width;
+    nlohmann::ordered_json json = {{"what", "tables for the functions of acdf export"},
+                                   {"version", ACDF_VERSION},
+                                   {"element", "uint32, little-endian"},
+                                   {"words", tables.size()},
+                                   {"texture", {{"format", "r32ui"}, {"width", texture_width}, {"height", rows}}},
+                                   {"pieces", cells.count},
+                                   {"resolution", {loaded.file.axis(0).resolution, loaded.file.axis(1).resolution}},
+                                   {"total", loaded.file.description().total},
+                                   {"recommended_share", loaded.file.environment().recommended_share()},
+                                   {"needs_company", loaded.file.environment().needs_company()}};
+    const std::string head = json.dump(2);
+    if (!options.tables.empty()) return head + "\n";
+    return head.substr(0, head.size() - 2) + ",\n  \"tables\": [\n" + rows_of_words(tables, "%u", "    ") +
+           "  ]\n}\n";
+}
+
+std::string text_of(const ExportArguments& options, const LoadedFile& loaded, const ShaderTables& tables) {
+    switch (options.target) {
+    case Target::c:
+        return c_text(tables, options.tables.empty());
+    case Target::glsl:
+        return shader_text_glsl;
+    case Target::hlsl:
+        return shader_text_hlsl;
+    case Target::wgsl:
+        return shader_text_wgsl;
+    case Target::json:
+        break;
+    }
+    return description(options, loaded, tables);
+}
+
+void run(const ExportArguments& options) {
+    if (options.output == "-" && options.tables == "-")
+        throw CLI::ValidationError("--tables", "stdout takes one of the two; name a file with -o or --tables");
+    if (!options.tables.empty() && options.tables == options.output)
+        throw Failure(options.tables + ": is named for both, the text and the tables; name two files");
+    Output output(options.output, options.force, {options.file});
+    std::optional<Output> words;
+    if (!options.tables.empty())
+        words.emplace(options.tables, options.force, std::vector<std::string>{options.file});
+    const LoadedFile loaded = load_environment(options.file, "export");
+    ShaderTables tables;
+    if (const Status status = ShaderTables::make(loaded.file, tables); !status.ok())
+        throw Failure(options.file + ": " + status.message);
+    output.write(text_of(options, loaded, tables));
+    if (words) {
+        words->write(tables.words(), 4 * tables.size());
+        words->commit();
+    }
+    output.commit();
+}
+
+} // namespace
+
+void add_export(CLI::App& program, int& exit_code) {
+    static const std::map<std::string, Target> targets = {{"c", Target::c},
+                                                          {"glsl", Target::glsl},
+                                                          {"hlsl", Target::hlsl},
+                                                          {"wgsl", Target::wgsl},
+                                                          {"json", Target::json}};
+    auto options = std::make_shared<ExportArguments>();
+    CLI::App* command = program.add_subcommand(
+        "export", "Write an environment for shaders: functions that draw and evaluate, and their tables");
+    command->add_option("FILE", options->file, "The .acdf file of an environment (- is stdin)")
+        ->required()
+        ->type_name("");
+    command
+        ->add_option(
+            "--target", options->target,
+            "The language of the functions: glsl (WebGL 2, OpenGL, Vulkan), wgsl (WebGPU), hlsl (and Slang) "
+            "or c (C99, C++, CUDA, HIP, OpenCL C). json: no functions, but a description of the tables, for a "
+            "program that loads them")
+        ->required()
+        ->option_text("NAME (required)")
+        ->transform(one_of(targets))
+        ->group("Output");
+    command
+        ->add_option(
+            "--tables", options->tables,
+            "The file for the tables: 32-bit words, little-endian, for a buffer or a texture. Without it c "
+            "and json hold them as text, and the others do without: their functions are the same for all "
+            "files")
+        ->type_name("FILE")
+        ->group("Output");
+    add_output(*command, options->output, options->force, "The text to write, stdout by default");
+    command->footer(help_footer(
+        "Draws and densities are those of the reader, of 32-bit words and floats alone: some 100 bytes a cell. "
+        "docs/shaders.md tells how to bind the tables, and how nearly results agree.",
+        "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
+        "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"
+        "acdf export sky.acdf --target c -o sky.h               # functions and tables in one header\n"
+        "acdf export sky.acdf --target json --tables sky.bin    # how large the texture is"));
+    command->callback([options, &exit_code] {
+        run(*options);
+        exit_code = exit_done;
+    });
+}
+
+} // namespace acdf::tools
