@@ -142,7 +142,7 @@ void add_export(CLI::App& program, int& exit_code) {
         ->group("Output");
     add_output(*command, options->output, options->force, "The text to write, stdout by default");
     command->footer(help_footer(
-        "Draws and densities are those of the reader, of 32-bit words and floats alone: some 100 bytes a cell. "
+        "Draws and densities are those of the reader, of 32-bit words and floats alone: some 130 bytes a cell. "
         "docs/shaders.md tells how to bind the tables, and how nearly results agree.",
         "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
         "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"

@@ -11,8 +11,6 @@
 
 namespace acdf {
 
-static_assert(sizeof(std::size_t) == 8, "files may exceed 4 GiB: a 64-bit machine is needed");
-
 void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
     if (stopped_) return;
     Finding finding;

@@ -76,13 +76,15 @@ bool is_compressed(const ChunkTable& table, u32 i) {
 // Memory for all compressed chunks in one block, each part at a multiple of 64; false where there is none.
 bool allocate_inflated(const ChunkTable& table, const Limits& limits, const AcdfAllocator& allocator,
                        Report& report, Parts& parts) {
+    constexpr u64 addressed = SIZE_MAX / 16; // with what is made of them: 256 MiB where addresses have 32 bits
+    const u64 most = limits.max_inflated_bytes < addressed ? limits.max_inflated_bytes : addressed;
     u64 sum = 0, block = 0;
     for (u32 i = 0; i < table.count; ++i) {
         if (!is_compressed(table, i)) continue;
         const u64 length = table.chunks[i].raw_length;
-        if (length > limits.max_inflated_bytes - sum) {
+        if (length > most - sum) {
             report.add(3012, table.offset_of(i) + offsetof(AcdfChunk, raw_length),
-                       "more than the limit of %llu bytes", static_cast<ull>(limits.max_inflated_bytes));
+                       "more than the limit of %llu bytes", static_cast<ull>(most));
             return false;
         }
         sum += length;

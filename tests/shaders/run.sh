@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT: exports an environment, draws and evaluates COUNT times on a device, and
 # compares with the reader. DEVICE: c, opencl, webgl, webgpu; or glslang, which only compiles.
+# PROBE and BUDGET in the environment name another source than the sky of tests, and the size of the file.
 set -euo pipefail
 device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -14,8 +15,9 @@ skip() {
 need() { command -v "$1" >/dev/null || skip "no $1"; }
 
 make_file() {
-    "$make_sky" "$work/sky.exr"
-    "$acdf" env "$work/sky.exr" --budget 16KiB -o "$work/sky.acdf" --quiet
+    local probe=${PROBE:-$work/sky.exr}
+    [ -n "${PROBE-}" ] || "$make_sky" "$probe"
+    "$acdf" env "$probe" --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
     "$compare" inputs "$work/sky.acdf" "$count" "$work"
 }
 

@@ -20,7 +20,7 @@ public:
     /// Makes the tables of a file that is not empty. `unsupported` where there are none: files of another kind or
     /// on the octahedral square, with cells that tilt (--fit pdf), of more than 65,535 pieces of cells (some 60,000
     /// cells) or with more than 16 cells in a circle of 2^-11 radians about a pole. `out` then is empty. Work and
-    /// memory are in proportion to the cells, some 100 bytes each.
+    /// memory are in proportion to the cells, some 130 bytes each.
     static Status make(const File& file, ShaderTables& out) noexcept;
 
     /// Little-endian, as a GPU takes them.

@@ -2,6 +2,8 @@
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 
+// What follows is WGSL.
+// clang-format off
 #define ACDF_U32 u32
 #define ACDF_F32 f32
 #define ACDF_TABLES u32
@@ -29,4 +31,5 @@
 #define ACDF_MIN(a, b) min(a, b)
 #define ACDF_RATIO(minor, major) clamp((minor) / (major), -1.0f, 1.0f) // divisions may round beyond
 
+// clang-format on
 #endif

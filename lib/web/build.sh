@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# build.sh BUILD VERSION: the reader in WebAssembly, and the npm package around it, in BUILD/web/package. BUILD has the
+# shaders' texts (target acdf_shader). Needs clang, lld, wasi-libc, libc++ and compiler-rt for WebAssembly; ends with 77
+# where they are missing. CLANG names another clang++.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+build=$(cd "$1" && pwd) version=$2
+clang=${CLANG:-clang++}
+work=$build/web
+mkdir -p "$work/objects" "$work/package"
+
+flags=(--target=wasm32-wasi -O2 -ffp-contract=off -fvisibility=hidden -DNDEBUG -Wall -Wextra)
+includes=(-I"$root/format" -I"$root/lib/reader" -I"$root/lib" -I"$here/zlib")
+libcxx=$(echo "$("$clang" -print-resource-dir)"/../../../include/wasm32-wasi/c++/v1)
+if ! echo '#include <utility>
+#include <cstdlib>' | "$clang" --target=wasm32-wasi -isystem "$libcxx" -isystem /usr/include/wasm32-wasi -x c++ -c - \
+    -o "$work/objects/probe.o" 2>/dev/null; then
+    echo "skipped: no C++ for WebAssembly (wasi-libc, libc++-14-dev-wasm32, libclang-rt-14-dev-wasm32, lld)" >&2
+    exit 77
+fi
+rm -f "$work"/objects/*.o
+
+# All of the reader but what opens files by name, vectors of this machine's processor and the symbols for other languages.
+for source in "$here/exports.cpp" "$root"/lib/reader/*.cpp; do
+    name=$(basename "$source" .cpp)
+    case $name in
+    c_api | linked | product_c | wavefront* | input_file_windows) continue ;;
+    esac
+    "$clang" "${flags[@]}" -std=c++17 -fno-exceptions -fno-rtti -isystem "$libcxx" -isystem /usr/include/wasm32-wasi \
+        "${includes[@]}" -c "$source" -o "$work/objects/$name.o"
+done
+"$clang" "${flags[@]}" -x c -std=c99 -isystem /usr/include/wasm32-wasi -c "$here/zlib/inflate.c" \
+    -o "$work/objects/inflate.o"
+"$clang" --target=wasm32-wasi -mexec-model=reactor -Wl,--export-dynamic,--gc-sections,--strip-all \
+    "$work"/objects/*.o -L/usr/lib/wasm32-wasi -lc++ -lc++abi -o "$work/package/acdf.wasm"
+
+cp "$here"/package/{acdf.mjs,acdf.d.ts,shaders.d.ts,README.md} "$root/LICENSE" "$work/package/"
+sed "s/@VERSION@/$version/" "$here/package/package.json" >"$work/package/package.json"
+for language in glsl wgsl; do
+    printf 'export const %s = `' "$language"
+    sed 's/[`\\$]/\\&/g' "$build/lib/shader/acdf_environment.$language"
+    printf '`;\n'
+done >"$work/package/shaders.mjs"
+chmod 644 "$work/package/acdf.wasm"
