@@ -7,12 +7,12 @@
 //
 //   u0 u1  x y z  pdf
 //
-// in hexadecimal floating point (C99 %a), of a local environment with the normal before it, of a BRDF with wo. None
-// of the files is symmetric, so that a mirrored, turned or transposed frame shows.
+// in hexadecimal floating point (C99 %a), of a local environment with the normal before it (where it has places
+// with position and normal), of a BRDF with wo. None of the files is symmetric, so that a mirrored, turned or
+// transposed frame shows.
 #include "compress/fit.h"
 #include "compress/store.h"
-
-#include <acdf/reader.h>
+#include "golden_samples.h"
 
 #include <cstdio>
 #include <cstring>
@@ -170,9 +170,31 @@ Description local_axes(Description d, const std::vector<AxisDescription>& normal
     return d;
 }
 
+/// Four places, told apart by position and, in the last two, by the normal's z; two of them mixed at each border.
+Chunk places_chunk() {
+    Chunk chunk{ACDF_CHUNK_PLACES, {}};
+    const AcdfPlaces header = {
+        3, 4, 1, 0, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
+    const AcdfPlaceSplit splits[] = {{1.0f, 0.25f, 0 | ACDF_PLACE_ROW << 3, 1},
+                                     {0.5f, 0.5f, 1 | (ACDF_PLACE_ROW | 1) << 3, 2},
+                                     {0.25f, 0.125f, 5 | (ACDF_PLACE_ROW | 2) << 3, ACDF_PLACE_ROW | 3}};
+    const std::uint16_t columns[] = {0, ACDF_NO_COLUMN};
+    const std::uint8_t rows[] = {240, 30,  200, 200, 255, 7,
+                                 17,  100, 128, 90,  180, 44}; // mixture, light and odds of each
+    const auto add = [&](const void* data, std::size_t size) {
+        const auto* first = static_cast<const std::uint8_t*>(data);
+        chunk.bytes.insert(chunk.bytes.end(), first, first + size);
+    };
+    add(&header, sizeof header);
+    add(splits, sizeof splits);
+    add(columns, sizeof columns);
+    add(rows, sizeof rows);
+    return chunk;
+}
+
 /// A local environment with everything that bins can share: tiles with a curve and without, one of them a light;
 /// bin 7 is not stored.
-Golden local(const char* name, AcdfParameterization parameterization) {
+Golden local(const char* name, AcdfParameterization parameterization, bool places = false) {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
                               {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
                               {kTheta, {3}, {0.75, 0.25}, {3, -1}, {}},
@@ -193,6 +215,7 @@ Golden local(const char* name, AcdfParameterization parameterization) {
                                {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
     d.chunks = shared_chunks(rows);
     d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, 1, {5, 0}, {12, 3}}}));
+    if (places) d.chunks.push_back(places_chunk());
     return {name, store(tree, d)};
 }
 
@@ -278,78 +301,6 @@ Golden brdf_separate() {
     return {"brdf_separate", store(tree, d)};
 }
 
-// ---- samples --------------------------------------------------------------------------------------------
-
-/// The corners, then a sequence with full mantissas (a 64-bit linear congruential generator; Knuth 1997, §3.3.4).
-std::vector<std::pair<double, double>> random_numbers() {
-    std::vector<std::pair<double, double>> numbers = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {0.5, 0.5}};
-    std::uint64_t state = 2005;
-    const auto next = [&] {
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        return static_cast<double>(state >> 11) * 0x1p-53;
-    };
-    while (numbers.size() < 16) {
-        const double u0 = next(), u1 = next();
-        numbers.push_back({u0, u1});
-    }
-    return numbers;
-}
-
-/// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is drawn.
-constexpr float kNormals[][3] = {{0, 0, 1},  {1, 0, 0},    {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f},
-                                 {-2, 1, 1}, {0, 0.5f, -5}};
-
-std::string local_samples(const acdf::LocalEnvironmentView& view) {
-    std::string text;
-    for (const auto& n : kNormals)
-        for (const auto& [u0, u1] : random_numbers()) {
-            const acdf::DirectionSample s = view.sample(n, u0, u1);
-            char line[300];
-            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{n[0]}, double{n[1]},
-                          double{n[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
-                          double{s.direction[2]}, double{s.pdf});
-            text += line;
-        }
-    return text;
-}
-
-/// The same with wo: at normal incidence, between and at stored views, grazing.
-constexpr float kViews[][3] = {{0, 0, 1},        {0.6f, 0, 0.8f},         {-0.48f, 0.64f, 0.6f},
-                               {0, -0.8f, 0.6f}, {-0.96f, -0.28f, 1e-3f}, {0.28f, -0.96f, 0.01f}};
-
-std::string brdf_samples(const acdf::BrdfView& view) {
-    std::string text;
-    for (const auto& wo : kViews)
-        for (const auto& [u0, u1] : random_numbers()) {
-            const acdf::DirectionSample s = view.sample(wo, u0, u1);
-            char line[300];
-            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{wo[0]}, double{wo[1]},
-                          double{wo[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
-                          double{s.direction[2]}, double{s.pdf});
-            text += line;
-        }
-    return text;
-}
-
-std::string samples(const Golden& golden) {
-    acdf::File file;
-    acdf::LoadOptions walked; // as SPEC.md says it, to the last bit
-    walked.tables = false;
-    const acdf::Status status = acdf::File::from_memory(golden.bytes.data(), golden.bytes.size(), file, walked);
-    if (!status.ok()) throw std::runtime_error(golden.name + ": " + status.message);
-    if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
-    if (file.kind() == ACDF_KIND_BRDF) return brdf_samples(file.brdf());
-    std::string text;
-    for (const auto& [u0, u1] : random_numbers()) {
-        const acdf::DirectionSample s = file.environment().sample(u0, u1);
-        char line[200];
-        std::snprintf(line, sizeof line, "%a %a  %a %a %a  %a\n", u0, u1, double{s.direction[0]},
-                      double{s.direction[1]}, double{s.direction[2]}, double{s.pdf});
-        text += line;
-    }
-    return text;
-}
-
 void write(const std::string& path, const void* data, std::size_t size) {
     std::ofstream out(path, std::ios::binary);
     out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
@@ -380,12 +331,13 @@ int main(int argc, char** argv) try {
           local("local", ACDF_PARAM_LATLONG),
           local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
           local_grid(),
+          local("places", ACDF_PARAM_LATLONG, true),
           brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
           brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
           brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),
           brdf("brdf_floor", {0.25f, 0.75f}, 1, ACDF_VIEWS_MIRRORED, 0.25f),
           brdf_separate()}) {
-        const std::string text = samples(golden);
+        const std::string text = golden_samples(golden.name, golden.bytes);
         write(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
         write(folder + golden.name + ".txt", text.data(), text.size());
     }

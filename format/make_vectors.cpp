@@ -125,9 +125,35 @@ const std::vector<std::vector<float>> kNormals = {{0, 0, 1},
                                                   {0, 0, 0},
                                                   {kNanF, 0, 1},
                                                   {1e-30f, 2e-30f, -1e-30f}};
+/// Of a file with places: in its cells, on their borders, at the bounds of all, outside, and not a number.
+const std::vector<std::vector<float>> kPositions = {{0, 1, 0},    {-1, 1, 1.5f}, {0.2f, 1, 0.6f}, {0.6f, 2, 0.375f},
+                                                    {2, 4, 2.5f}, {5, 1, 0},     {kNanF, 0, 1}};
 const std::vector<std::vector<float>> kViews = {{0, 0, 1},        {0.6f, 0, 0.8f},         {-0.48f, 0.64f, 0.6f},
                                                 {0, -0.8f, 0.6f}, {-0.96f, -0.28f, 1e-3f}, {0.28f, -0.96f, 0.01f},
                                                 {0, 0, -1},       {0.6f, 0, 0.6f}};
+
+/// As conditional_rows, of a local environment with places: a position comes before each normal.
+std::string place_rows(const acdf::LocalEnvironmentView& view) {
+    std::string text = "call,px,py,pz,nx,ny,nz,u0,u1,x,y,z,pdf\n";
+    std::size_t offset = 0;
+    const auto numbers = random_numbers(40);
+    const auto all = directions(40);
+    for (const auto& p : kPositions)
+        for (const auto& n : kNormals) {
+            const AcdfLocalPoint point = view.at(p.data(), n.data());
+            for (std::size_t i = 0; i < 4; ++i) {
+                const auto& [u0, u1] = numbers[(offset + i) % numbers.size()];
+                const Direction s = view.sample(point, u0, u1);
+                text += row("sample", cells(p.data()), cells(n.data()), number(u0), number(u1), cells(s.direction),
+                            number(s.pdf));
+                const auto& d = all[(offset + i) % all.size()];
+                text += row("pdf", cells(p.data()), cells(n.data()), "", "", cells(d.data()),
+                            number(view.pdf(point, d.data())));
+            }
+            offset += 7;
+        }
+    return text;
+}
 
 // ---- tables ---------------------------------------------------------------------------------------------
 
@@ -228,6 +254,7 @@ std::string table_rows(const acdf::TableView& view) {
 std::string rows_of(const acdf::File& file) {
     switch (file.kind()) {
     case ACDF_KIND_LOCAL:
+        if (file.local().has_places()) return place_rows(file.local());
         return conditional_rows(file.local(), kNormals, "nx,ny,nz");
     case ACDF_KIND_BRDF:
         return conditional_rows(file.brdf(), kViews, "ox,oy,oz");

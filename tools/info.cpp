@@ -133,6 +133,12 @@ Json local_json(const File& file) {
     report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
     report["lights"] = local.light_count;
     report["cosine_share"] = local.cosine_share;
+    if (const AcdfPlaces* places = local.places.header)
+        report["places"] = {{"cells", places->split_count + 1},
+                            {"rows", places->row_count},
+                            {"columns", places->column_count},
+                            {"low", places->low},
+                            {"high", places->high}};
     return report;
 }
 
@@ -213,7 +219,11 @@ std::string local_text(const Json& local) {
                                    ? "a tree each"
                                    : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
                                          " rows, " + text_of(local["lights"]) + " lights";
-    return bins + shared + "; cosine share " + number(local["cosine_share"]);
+    const std::string places = local.contains("places")
+                                   ? "; " + text_of(local["places"]["cells"]) + " places from " +
+                                         local["places"]["low"].dump() + " to " + local["places"]["high"].dump()
+                                   : "";
+    return bins + shared + "; cosine share " + number(local["cosine_share"]) + places;
 }
 
 std::string company_text(const Json& company) {

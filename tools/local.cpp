@@ -2,12 +2,14 @@
 #include "build/format_names.h"
 #include "input/image.h"
 #include "input/image_header.h"
+#include "input/mesh_surface.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/company_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/mesh_places.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
@@ -47,6 +49,7 @@ private:
     void add_size(CLI::App& command);
     void add_separate(CLI::App& command);
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Local& result) const;
+    std::string scene_text() const;
 
     std::string normals_, budget_, knots_;
     SceneOption scene_;
@@ -54,8 +57,11 @@ private:
     const Renderer* renderer_ = nullptr;
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
-    bool no_sharing_ = false;
+    bool no_sharing_ = false, places_ = false;
 };
+
+/// The default budget of a file that tells places apart.
+constexpr std::uint64_t kPlacesBytes = std::uint64_t{4} << 20;
 
 constexpr double kWorthwhile = 1.5; ///< gain below which a file without normals would do as well
 
@@ -112,8 +118,13 @@ void LocalConversion::check() {
     const bool alone = local_.company.kind == ACDF_COMPANY_NONE;
     for (const char* option : {"--shares", "--heuristic"})
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
-    for (const char* option : {"--no-sharing", "--cosine-share"})
+    for (const char* option : {"--no-sharing", "--cosine-share", "--places"})
         if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+    if (!places_) return;
+    if (scene_.path.empty()) throw CLI::ValidationError("--places", "needs --scene MESH");
+    for (const char* option : {"--no-sharing", "--cells", "--target-variance"})
+        if (given(option)) throw CLI::ValidationError("--places", std::string("goes without ") + option);
+    if (!given("--budget")) local_.goal = builder::Goal::of_budget(kPlacesBytes);
 }
 
 std::vector<std::string*> LocalConversion::files() {
@@ -121,11 +132,13 @@ std::vector<std::string*> LocalConversion::files() {
     return {&source, &scene_.path};
 }
 
+std::string LocalConversion::scene_text() const { return scene_.text() + (places_ ? " --places" : ""); }
+
 std::string LocalConversion::option_text() const {
     builder::LocalOptions told = local_;
     if (!scene_.path.empty()) {
         told.normals = {{}}; // any: only the text tells which
-        told.normals_text = scene_.text();
+        told.normals_text = scene_text();
     }
     told.source.reading = reading_text(input_);
     return builder::option_text(told);
@@ -136,7 +149,18 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
     builder::LocalOptions local = local_;
     if (scene_.path.empty()) return local;
     local.normals = scene_.read(note);
-    local.normals_text = scene_.text();
+    local.normals_text = scene_text();
+    if (places_) {
+        // A mesh may be wound either way, and rooms are seen from inside.
+        for (std::size_t i = 0, count = local.normals.size(); i < count; ++i) {
+            const builder::SceneNormal n = local.normals[i];
+            local.normals.push_back({{-n.normal[0], -n.normal[1], -n.normal[2]}, n.weight});
+        }
+        auto surface =
+            std::make_shared<const input::MeshSurface>(input::read_triangles(scene_.path, scene_.input().up));
+        note(scene_.path + ": places on " + std::to_string(surface->triangles().count()) + " triangles");
+        local.places = places_on(std::move(surface), scene_.input().up);
+    }
     return local;
 }
 
@@ -155,6 +179,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"bytes", result.bytes.size()},
         {"bins", file.description().bin_count},
         {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
+        {"places", file.local().has_places() ? file.local().data().places.header->row_count : 0},
         {"normals_measured", result.normals},
         {"relative_variance", a.relative_variance},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},
@@ -224,6 +249,12 @@ void LocalConversion::add_bins(CLI::App& command) {
                "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
                "whole environment, unbiased but noisier",
                "Normals");
+    command
+        .add_flag(
+            "--places", places_,
+            "Tell the places of the scene (a mesh) apart: what it hides from a place is not drawn there. Positions "
+            "are told in the mesh's own coordinates; three quarters of the budget, by default 4 MiB, are for this")
+        ->group("Normals");
     command
         .add_option(
             "--cosine-share", local.cosine_share,

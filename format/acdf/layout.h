@@ -87,6 +87,7 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
 #define ACDF_CHUNK_COMPANY ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
+#define ACDF_CHUNK_PLACES ACDF_FOURCC('P', 'L', 'A', 'C')
 
 #define ACDF_CHUNK_FLAG_CRITICAL 1u
 
@@ -225,6 +226,32 @@ typedef struct AcdfCompanyRecord {
     float flux;              /* of local environments: irradiance of the bin over `total`; else 0 */
 } AcdfCompanyRecord;
 
+/* Chunk PLAC, of local environments: what of the light reaches a place (SPEC.md §5.9). This, then `split_count`
+ * splits, then a uint16 for each split of TILE, its column in a row or ACDF_NO_COLUMN, then `row_count` rows of
+ * 1 + lights + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
+typedef struct AcdfPlaces {
+    uint32_t split_count;
+    uint32_t row_count;
+    uint32_t column_count;
+    uint32_t reserved;     /* 0 */
+    float low[3];          /* the box of all cells */
+    float high[3];         /* above `low` */
+    float transform[3][4]; /* from positions in the scene to those of cells: x' = t[0] x + t[1] y + t[2] z + t[3] */
+} AcdfPlaces;
+
+/* A split of a cell in two. Splits stand in preorder: the lower part, if it is a split, follows at once. */
+typedef struct AcdfPlaceSplit {
+    float position;
+    float blend; /* on both sides of it the two parts are mixed, linearly, as far as this */
+    uint32_t
+        lower; /* bits 0-2: axis, of the position or (3 to 5) the normal; bits 3-31: the lower part, as `upper` */
+    uint32_t upper; /* a later split, or ACDF_PLACE_ROW | a row */
+} AcdfPlaceSplit;
+
+#define ACDF_NO_COLUMN 0xFFFFu
+#define ACDF_PLACE_ROW 0x10000000u
+#define ACDF_MAX_PLACE_SPLITS_DEEP 64u /* on a path */
+
 #define ACDF_NO_ROOT 0xFFFFFFFFu /* of a tile: it is a cell; of a bin: it is not stored */
 #define ACDF_TILE_FLAG 0x8000u
 #define ACDF_MAX_TILES 32768u
@@ -265,5 +292,7 @@ ACDF_STATIC_ASSERT(sizeof(AcdfLight) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfCompany) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfCompanyRecord) == 8);
+ACDF_STATIC_ASSERT(sizeof(AcdfPlaces) == 88);
+ACDF_STATIC_ASSERT(sizeof(AcdfPlaceSplit) == 16);
 
 #endif

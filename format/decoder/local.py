@@ -6,6 +6,7 @@ from .description import NOT_STORED, PI, check_sphere_axes, is_axis
 from .refused import require
 from .sphere import (NOTHING, Environment, Sphere, clamp, direction_of, f32, of_unit_length, random_number,
                      sin_cos)
+from .places import Places
 from .square import grid_of
 from .tiles import sum_of
 from .tree import LEAST
@@ -93,18 +94,20 @@ class Point:
     """What a normal draws from: `tree` (a root), or `mixture` and `lights` (weights), or nothing."""
 
     tree = mixture = None
+    cells = ()  # of its position
 
 
 class Local:
-    def __init__(self, tree, d, tiles, chunk):
+    def __init__(self, tree, d, tiles, chunk, places=None):
         check_sphere_axes(d)
         self.N, self.grid = read_normals(d.axes, d.bin_count)
         self.sigma, self.lights = read_local_chunk(chunk, tiles, d.bins)
         self.tree, self.tiles, self.bins = tree, tiles, d.bins
         self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
+        self.places = None if places is None else Places(places, tiles, len(self.lights))
 
-    def point(self, normal):
+    def point(self, normal, position=None):
         out, n = Point(), direction_of(normal)
         if n is None or n == [0.0, 0.0, 0.0]:
             return out
@@ -120,7 +123,20 @@ class Local:
             return out
         mixture = [(self.bins[b][0], m * self.bins[b][1]) for b, m in served]
         self.weigh(out, [(row, w) for row, w in mixture if w > 0])
+        if position is not None and self.places is not None and out.mixture is not None:
+            self.look_from(out, self.places.cells(position, n))
         return out
+
+    def look_from(self, out, cells):
+        """§6.11: the weights as the place sees them."""
+        if not cells:
+            return
+        out.cells = cells
+        visible = Places.visibility(cells, 0)
+        out.mixture = [(row, w * visible) for row, w in out.mixture]
+        out.weights = [w * Places.visibility(cells, 1 + k) for k, w in enumerate(out.weights)]
+        out.light_sum, out.row_sum = sum_of(out.weights), sum_of([w for _, w in out.mixture])
+        out.S = out.light_sum + out.row_sum
 
     def grid_bin(self, n):
         column, row = self.grid.grid(n)[1]
@@ -154,13 +170,15 @@ class Local:
             p = max(point.weights[k] / point.S, LEAST)
             return self.tiles.draw_within(self.tree, self.lights[k].tile, p, u, box, s)
         u[0] = clamp((x - point.light_sum) / (point.S - point.light_sum), 0, 1)
-        tile, q = self.tiles.draw(point.mixture, u)
+        tile, q = (self.places.draw(point.mixture, point.cells, u) if point.cells else
+                   self.tiles.draw(point.mixture, u))
         p = max(point.row_sum / point.S * q, LEAST)
         return self.tiles.draw_within(self.tree, tile, p, u, box, s)
 
     def find(self, point, square, box, s):
         """The cell of a direction."""
-        tile, q = self.tiles.find(point.mixture, square)
+        tile, q = (self.places.find(point.mixture, point.cells, square) if point.cells else
+                   self.tiles.find(point.mixture, square))
         if q > 0:
             p = max(point.row_sum / point.S * q, LEAST)
         else:
@@ -191,8 +209,8 @@ class Local:
         pdf = (1 - self.sigma) * light + (self.sigma * kappa * (1 / PI) if kappa > 0 else 0.0)
         return f32(max(pdf, 1.17549435e-38)) if pdf != 0 else 0.0
 
-    def sample(self, normal, u0, u1):
-        point, u = self.point(normal), [random_number(u0), random_number(u1)]
+    def sample(self, normal, u0, u1, position=None):
+        point, u = self.point(normal, position), [random_number(u0), random_number(u1)]
         if point.tree is None and point.mixture is None:
             return NOTHING
         if u[0] < self.sigma:
@@ -221,8 +239,8 @@ class Local:
         sine, cosine = sin_cos(2 * v - 1)
         return [f32(r * (si * cosine + ti * sine) + h * ei) for si, ti, ei in zip(s, t, (ex, ey, ez))]
 
-    def pdf(self, normal, direction):
-        point, v = self.point(normal), direction_of(direction)
+    def pdf(self, normal, direction, position=None):
+        point, v = self.point(normal, position), direction_of(direction)
         if point.tree is None and point.mixture is None or not of_unit_length(v):
             return 0.0
         return self.density(point, v, self.light_pdf(point, v))

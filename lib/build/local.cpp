@@ -141,9 +141,32 @@ compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, doub
     return size;
 }
 
-/// At most `budget` bytes before compression, and nearly as many.
+/// What a file of `budget` bytes gives to all that is there without places.
+std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
+    if (!options.places.scene) return budget;
+    return options.places.local_bytes > 0 ? options.places.local_bytes : budget / 4;
+}
+
+/// Adds places in what `budget` leaves.
+void add_places(Draft& draft, const LocalOptions& options, std::uint64_t budget, const Progress& progress) {
+    const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
+    File file;
+    if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
+        throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
+    compress::PlacesSize size;
+    constexpr std::uint64_t record = sizeof(AcdfChunk) + ACDF_ALIGNMENT;
+    size.bytes = budget > bytes.size() + record ? budget - bytes.size() - record : 0;
+    draft.description.chunks.push_back(
+        compress::fit_places(file.local().data(), file.description().bin_count, options.places.scene,
+                             options.places.frame, size, [&](double share) {
+                                 if (progress) progress(0.2 + 0.7 * share, "looking from places");
+                             }));
+}
+
+/// At most `whole_budget` bytes before compression, and nearly as many.
 Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
-                  std::uint64_t budget, const Progress& progress) {
+                  std::uint64_t whole_budget, const Progress& progress) {
+    const std::uint64_t budget = local_budget(options, whole_budget);
     const NormalBins bins = bins_for(options, double(budget));
     compress::LocalSize size = size_for(options, bins, double(budget));
     for (int tries = 0;; ++tries) {
@@ -151,7 +174,10 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
-        if (fits && (full || tries > 0)) return finish(std::move(draft), target, source, options, bins);
+        if (fits && (full || tries > 0)) {
+            if (options.places.scene) add_places(draft, options, whole_budget, progress);
+            return finish(std::move(draft), target, source, options, bins);
+        }
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
         const std::int64_t next = static_cast<std::int64_t>(size.tree_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
@@ -238,6 +264,7 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
     if (!o.scene.empty()) text += o.scene_text.empty() ? "--scene " : o.scene_text + " ";
     text += company_text(o.company);
+    if (o.places.scene && o.scene_text.find("--places") == std::string::npos) text += "--places ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {
         if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";

@@ -5,6 +5,7 @@
 #include "build/local_accuracy.h"
 #include "build/progress.h"
 #include "compress/fit_local_separate.h"
+#include "compress/fit_places.h"
 #include "compress/normals.h"
 
 #include <cstdint>
@@ -13,6 +14,13 @@
 #include <vector>
 
 namespace acdf::build {
+
+/// Where a scene gathers light, and what hides it there.
+struct ScenePlaces {
+    compress::PlaceScene scene;    ///< empty: places are not told apart
+    std::uint64_t local_bytes = 0; ///< of the budget, for what is there without places; 0: a quarter
+    compress::PlacesFrame frame;
+};
 
 /// What `acdf local` was asked for, beside the probe.
 struct LocalOptions {
@@ -27,6 +35,7 @@ struct LocalOptions {
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
+    ScenePlaces places;     ///< only with sharing and a budget
     std::string scene_text; ///< what `scene` was read from and how, as options in one spelling
     AcdfCodec codec = ACDF_CODEC_NONE;
     compress::Company company; ///< of bins that share tiles

@@ -198,7 +198,8 @@ std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& desc
     payloads.push_back({ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree, description)});
     payloads.push_back({ACDF_CHUNK_TREE, ACDF_CHUNK_FLAG_CRITICAL, tree.bytes});
     for (const Chunk& chunk : description.chunks)
-        payloads.push_back({chunk.type, ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
+        payloads.push_back(
+            {chunk.type, chunk.type == ACDF_CHUNK_PLACES ? 0 : ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
     if (!description.metadata.empty())
         payloads.push_back({ACDF_CHUNK_METADATA, 0, metadata_payload(description.metadata)});
     return assemble(description.kind, std::move(payloads), codec);

@@ -1,53 +1,15 @@
-#include "input/image.h"
+#include "input/mesh_file.h"
 #include "input/scene_sources.h"
 
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace acdf::input {
 namespace {
-
-/// Shows the importer the mesh and nothing else: material libraries that an OBJ names are none of its business.
-class OneFile : public Assimp::DefaultIOSystem {
-public:
-    explicit OneFile(std::string path) : path_(std::move(path)) {}
-    bool Exists(const char* path) const override { return path == path_ && DefaultIOSystem::Exists(path); }
-    Assimp::IOStream* Open(const char* path, const char* mode) override {
-        return path == path_ ? DefaultIOSystem::Open(path, mode) : nullptr;
-    }
-
-private:
-    std::string path_;
-};
-
-/// Refuses a PLY header that claims more elements than the file has bytes, before memory is asked for.
-void check_ply_counts(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    char line[1024];
-    std::error_code error;
-    const std::uint64_t size = std::filesystem::file_size(path, error);
-    if (error || !file.getline(line, sizeof line) || std::string(line).substr(0, 3) != "ply")
-        throw input_error(path, "it does not begin with \"ply\": no PLY mesh, or damaged");
-    while (file.getline(line, sizeof line)) {
-        std::istringstream words(line);
-        std::string word, name;
-        std::uint64_t count = 0;
-        words >> word;
-        if (word == "end_header") return;
-        if (word != "element") continue;
-        if (!(words >> name >> count) || count > size)
-            throw input_error(path, "its header claims more elements than the file has bytes; it is damaged");
-    }
-    throw input_error(path, "its header does not end; it is cut short or damaged");
-}
 
 struct Vector {
     double x = 0.0, y = 0.0, z = 0.0;
@@ -115,13 +77,8 @@ void add_polygon(const aiMesh& mesh, const aiFace& face, NormalHistogram& histog
 } // namespace
 
 void add_mesh_normals(const std::string& path, bool ply, NormalHistogram& histogram) {
-    if (ply) check_ply_counts(path);
-    Assimp::Importer importer;                // logs nowhere but where a program asks it to
-    importer.SetIOHandler(new OneFile(path)); // owned by the importer
-    const aiScene* scene = importer.ReadFile(path, 0);
-    if (!scene)
-        throw input_error(path, std::string("no mesh that can be read (") + importer.GetErrorString() +
-                                    "); give triangles or polygons as .obj or .ply");
+    Assimp::Importer importer; // logs nowhere but where a program asks it to
+    const aiScene* scene = read_mesh(importer, path, ply);
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
         const aiMesh& mesh = *scene->mMeshes[m];
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) // lines and points have no normal

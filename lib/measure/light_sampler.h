@@ -8,10 +8,12 @@
 
 namespace acdf::measure {
 
-/// Where light is gathered. Unit directions away from the surface, in the frame of docs/conventions.md.
+/// Where light is gathered. n and wo are unit directions away from the surface, in the frame of
+/// docs/conventions.md.
 struct ShadingPoint {
     float n[3] = {0.0f, 0.0f, 1.0f};  ///< normal
     float wo[3] = {0.0f, 0.0f, 1.0f}; ///< towards the viewer
+    float position[3] = {};           ///< in the scene
 };
 
 /// A sampler in the hands of one thread: at one shading point at a time.

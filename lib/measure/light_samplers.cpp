@@ -79,7 +79,7 @@ class LocalPoint final : public PointSampler {
 public:
     explicit LocalPoint(const LocalFile& file) : view_(file.view), point_() {}
     void move_to(const ShadingPoint& point) override {
-        point_ = view_.at(point.n);
+        point_ = view_.has_places() ? view_.at(point.position, point.n) : view_.at(point.n);
         std::copy_n(point.n, 3, normal_);
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return view_.sample(point_, u0, u1); }

@@ -61,6 +61,19 @@ std::optional<Hit> meet(const Box3& box, const Ray& ray, double least) {
     return hit_at(ray, distance, n);
 }
 
+std::optional<Hit> meet(const Mesh& mesh, const Ray& ray, double least) {
+    if (!mesh.surface) return std::nullopt;
+    const auto hit = mesh.surface->tree().first(ray.origin, ray.direction, least);
+    if (!hit) return std::nullopt;
+    return hit_at(ray, hit->distance, mesh.surface->triangles().face_normal(hit->triangle));
+}
+
+bool is_met(const Shape& shape, const Ray& ray) {
+    const auto* mesh = std::get_if<Mesh>(&shape);
+    if (!mesh) return intersect(shape, ray, 0.0).has_value();
+    return mesh->surface && mesh->surface->tree().any(ray.origin, ray.direction, 0.0);
+}
+
 } // namespace
 
 std::optional<Hit> intersect(const Shape& shape, const Ray& ray, double least) {
@@ -90,7 +103,7 @@ std::optional<Hit> Geometry::trace(const Ray& ray) const {
 bool Geometry::hidden(const Vec3& position, const Vec3& n, const Vec3& direction) const {
     const Ray ray{position + kLift * n, direction};
     return std::any_of(objects.begin(), objects.end(),
-                       [&](const Object& object) { return intersect(object.shape, ray, 0.0).has_value(); });
+                       [&](const Object& object) { return is_met(object.shape, ray); });
 }
 
 } // namespace acdf::measure

@@ -1,9 +1,12 @@
-// Analytic scenes, as simple as set-ups of publications are: what samplers are compared on.
+// Scenes as simple as set-ups of publications are, of analytic shapes and meshes: what samplers are compared on.
 #pragma once
+
+#include "input/mesh_surface.h"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -34,7 +37,11 @@ struct Plane {
 struct Box3 {
     Vec3 low{}, high{};
 };
-using Shape = std::variant<Sphere, Plane, Box3>;
+/// Triangles, both sides of them.
+struct Mesh {
+    std::shared_ptr<const input::MeshSurface> surface; ///< null until its file is read: then it is nowhere
+};
+using Shape = std::variant<Sphere, Plane, Box3, Mesh>;
 
 struct Object {
     Shape shape;

@@ -15,7 +15,8 @@ void to_float(const Vec3& v, float out[3]) {
 
 /// Whether a point of object `own`, seen from outside, can lie behind `other` at all.
 bool may_hide(const Object& other, bool own, bool inside) {
-    // All shapes are convex: seen from outside, none hides a direction above its own horizon.
+    if (std::holds_alternative<Mesh>(other.shape)) return true;
+    // All other shapes are convex: seen from outside, none hides a direction above its own horizon.
     if (own) return inside && !std::holds_alternative<Plane>(other.shape);
     return true;
 }
@@ -45,6 +46,7 @@ ScenePoint::ScenePoint(const Scene& scene, const Ray& ray, const Hit& hit)
     wo_[2] = dot(wo, n_);
     to_float(n_, shading_.n);
     to_float(wo, shading_.wo);
+    to_float(position_, shading_.position);
     lonely_ = true;
     for (std::uint32_t i = 0; i < scene.geometry.objects.size(); ++i) {
         const Object& object = scene.geometry.objects[i];

@@ -49,6 +49,7 @@ enum KnownChunk {
     chunk_local,
     chunk_views,
     chunk_company,
+    chunk_places,
     known_chunks
 };
 
@@ -93,6 +94,8 @@ void check_environment(const Payload& description, const Payload& bins, Report& 
 /// The same of local environments, and LOCL. Sets parts.local and parts.lights.
 void check_local_kind(const Payload& description, const Payload& local, const TileBoxes& boxes, Report& report,
                       Parts& parts) noexcept;
+/// PLAC of a local environment; needs what check_local_kind sets. Sets parts.places if it is right.
+void check_places(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
 /// COMP, where there is one; needs parts.description. Sets parts.company.

@@ -36,15 +36,16 @@ const Rule rules[] = {
     {3007, error, malformed, "chunk-bounds", "A payload lies inside the file."},
     {3008, error, malformed, "file-end", "`file_length` is the end of the last payload, rounded up to 64."},
     {3009, error, malformed, "chunk-flags",
-     "Only flag bit 0 may be set; it is clear for META and set for all other known types; `reserved` is zero."},
+     "Only flag bit 0 may be set; it is clear for META and PLAC and set for all other known types; `reserved` is "
+     "zero."},
     {3010, error, malformed, "raw-length", "With codec 0, `raw_length` equals `stored_length`."},
     {3011, error, malformed, "deflate-ratio",
      "With codec 1 or 2, `raw_length` is less than 1032 (`stored_length` + 1)."},
     {3012, error, ErrorCode::limit_exceeded, "inflate-limit",
      "The compressed chunks inflate to no more than the reader's limit."},
     {3013, error, malformed, "chunk-kind",
-     "TILE and ROWS come only in files of kinds 2 and 3, LOCL only in those of kind 2, VIEW only in those of kind "
-     "3."},
+     "TILE and ROWS come only in files of kinds 2 and 3, LOCL and PLAC only in those of kind 2, VIEW only in those "
+     "of kind 3."},
     {3014, error, malformed, "chunk-type", "The type of a chunk is four printable ASCII characters."},
 
     {4001, error, malformed, "chunk-crc", "`crc` is the CRC-32 of the stored bytes."},
@@ -140,6 +141,18 @@ const Rule rules[] = {
     {7007, error, malformed, "light-row",
      "In the row of a bin of positive share a light's tile has probability 0."},
     {7008, error, malformed, "environment-share", "The share of an environment's bin is 1."},
+    {7009, error, malformed, "places",
+     "PLAC comes with TILE and is as long as its counts tell, with at least one row; `reserved` is zero."},
+    {7010, error, malformed, "place-bounds",
+     "The bounds of places are finite and rise, and the transform is finite."},
+    {7011, error, malformed, "place-splits",
+     "Splits of places stand in preorder, at most 64 on a path, each met once, and lead to rows that are there."},
+    {7012, error, malformed, "place-split",
+     "A split of places is on one of axes 0 to 5, its position finite, its blend finite and not negative."},
+    {7013, error, malformed, "place-columns",
+     "The columns of splits of tiles are numbered from 0 in their order, all of them; FFFF where a split has "
+     "none."},
+    {7014, error, malformed, "place-odds", "No odds of a place are 0 or 255: no part of the light has none."},
 
     {8001, error, malformed, "brdf-axes",
      "A BRDF has the axes of §6.8, cos_theta_h of at most 268435456 steps and the others of at most 65536."},

@@ -76,14 +76,15 @@ def compare_table_row(view, row, fail, where):
 
 
 def compare_direction_row(view, row, fail, where):
-    """Kinds 1 to 3; of 2 and 3 a normal or a view comes first."""
+    """Kinds 1 to 3; of 2 and 3 a normal or a view comes first, of 2 there may be a position."""
     letter = {Local: "n", Brdf: "o"}.get(type(view))
     given = [numbers(row, [letter + axis for axis in "xyz"])] if letter else []
     wanted_direction, wanted = numbers(row, "xyz"), float(np.float32(row["pdf"]))
-    found = view.pdf(*given, wanted_direction)
+    place = {"position": numbers(row, ["px", "py", "pz"])} if "px" in row else {}
+    found = view.pdf(*given, wanted_direction, **place)
     if row["call"] == "pdf":
         return fail.check(is_density(found, wanted), f"{where}: {found}")
-    *direction, pdf = view.sample(*given, *numbers(row, ["u0", "u1"]))
+    *direction, pdf = view.sample(*given, *numbers(row, ["u0", "u1"]), **place)
     same = [float(np.float32(x)) for x in wanted_direction] == direction
     fail.check(all(map(is_near, direction, wanted_direction)), f"{where}: {direction}")
     # A neighbouring float has another density where that varies fast: then it is found for the direction told.

@@ -81,6 +81,13 @@ void check_conditional(const Row& row, const View& view, const char* prefix) {
         [&](const float* d) { return view.pdf(given.data(), d); });
 }
 
+void check_place(const Row& row, const acdf::LocalEnvironmentView& view) {
+    const AcdfLocalPoint point = view.at(direction(row, "p").data(), direction(row, "n").data());
+    check_direction(
+        row, [&](double u0, double u1) { return view.sample(point, u0, u1); },
+        [&](const float* d) { return view.pdf(point, d); });
+}
+
 void check_table(const Row& row, const acdf::TableView& view) {
     std::vector<std::uint32_t> index;
     for (const double i : numbered(row, "i")) index.push_back(static_cast<std::uint32_t>(i));
@@ -97,6 +104,7 @@ void check_table(const Row& row, const acdf::TableView& view) {
 void check_row(const Row& row, const acdf::File& file) {
     switch (file.kind()) {
     case ACDF_KIND_LOCAL:
+        if (row.count("px")) return check_place(row, file.local());
         return check_conditional(row, file.local(), "n");
     case ACDF_KIND_BRDF:
         return check_conditional(row, file.brdf(), "o");

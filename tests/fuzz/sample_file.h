@@ -99,6 +99,13 @@ inline void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom
         const acdf::DirectionSample again = view.sample(point, u0, u1);
         require(again.pdf == s.pdf && view.pdf(point, any) == view.pdf(normal, any));
         (void)view.stored(normal);
+        float position[3];
+        random.any_vector(position);
+        const AcdfLocalPoint placed = view.at(position, normal);
+        const acdf::DirectionSample seen = view.sample(placed, u0, u1);
+        require(is_density(static_cast<double>(seen.pdf)) &&
+                is_density(static_cast<double>(view.pdf(placed, any))));
+        require(seen.pdf == 0.0f || (is_unit(seen.direction) && view.pdf(placed, seen.direction) > 0.0f));
         if (s.pdf == 0.0f) continue;
         require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
     }

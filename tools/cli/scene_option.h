@@ -24,6 +24,7 @@ struct SceneOption {
     std::string text() const;
     /// Empty where no scene was given; what was read is noted.
     std::vector<builder::SceneNormal> read(const Note& note) const;
+    const input::SceneOptions& input() const { return input_; }
 
 private:
     input::SceneOptions input_;

@@ -188,7 +188,7 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
         const float* n = point.shading().n;
         normals.push_back({{n[0], n[1], n[2]}, 1.0});
     }
-    SamplerBuilder builder(target, brdfs_of(scene), options.data, std::move(normals));
+    SamplerBuilder builder(target, brdfs_of(scene), options.data, std::move(normals), &scene.scene.geometry);
     bool occluders = false;
     for (const measure::Object& object : scene.scene.geometry.objects) occluders |= !object.seen;
     std::vector<measure::ScenePoint> open;

@@ -141,6 +141,11 @@ std::unique_ptr<LoadedScene> load_scene(const SceneFile& file, const std::string
         out->scene.materials.push_back({out->brdfs.back().get(), material.tint});
     }
     out->scene.geometry = file.geometry;
+    for (const SceneMesh& mesh : file.meshes) {
+        const std::string path = (std::filesystem::path(data) / mesh.file).string();
+        out->scene.geometry.objects[mesh.object].shape =
+            measure::Mesh{std::make_shared<const input::MeshSurface>(input::read_triangles(path, mesh.up))};
+    }
     out->scene.camera = file.camera;
     out->scene.width = file.width;
     out->scene.height = file.height;

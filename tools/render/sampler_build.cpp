@@ -6,6 +6,7 @@
 #include "measure/product_rivals.h"
 #include "measure/product_samplers.h"
 #include "measure/stratified_map.h"
+#include "measure/surface_points.h"
 #include "tools/cli/built.h"
 #include "tools/cli/file_input.h"
 #include "tools/commands.h"
@@ -60,6 +61,28 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
     return file_table(std::move(made.bytes));
 }
 
+Table places_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes) {
+    builder::LocalOptions options;
+    options.goal = builder::Goal::of_budget(bytes);
+    const compress::PlaceScene scene = measure::place_scene(geometry);
+    options.places.point = [&](std::uint64_t index, builder::PlacePoint& out) {
+        compress::PlacePoint point;
+        if (!scene.points(index, point)) return false;
+        std::copy_n(point.position.begin(), 3, out.position);
+        std::copy_n(point.normal.begin(), 3, out.normal);
+        return true;
+    };
+    options.places.occluded = [&](const builder::PlacePoint& from, const float direction[3]) {
+        compress::PlacePoint point;
+        std::copy_n(from.position, 3, point.position.begin());
+        std::copy_n(from.normal, 3, point.normal.begin());
+        return scene.occluded(point, {direction[0], direction[1], direction[2]});
+    };
+    builder::Local made;
+    throw_unless_built(builder::local(target, options, made));
+    return file_table(std::move(made.bytes));
+}
+
 Table brdf_table(const input::Brdf& brdf, std::uint64_t bytes) {
     builder::BrdfOptions options;
     options.source.name = brdf.name;
@@ -92,7 +115,7 @@ bool knows_brdf(const SamplerSpec& spec) {
 bool is_ours(const SamplerSpec& spec) {
     if (!spec.parts.empty()) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
     return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
-           spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
+           spec.kind == SamplerKind::places || spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
 }
 
 } // namespace
@@ -103,6 +126,7 @@ struct SamplerBuilder::Store {
     std::vector<const input::Brdf*> brdfs;
     std::string data;
     std::vector<builder::SceneNormal> normals;
+    const measure::Geometry* geometry;
     std::map<std::string, Table> tables; ///< by text, and the material where that matters
     std::map<std::string, std::unique_ptr<const measure::StratifiedMap>> maps;
     std::vector<std::unique_ptr<measure::Estimator>> estimators;
@@ -122,6 +146,9 @@ struct SamplerBuilder::Store {
             return env_table(fitted, spec, normals);
         case SamplerKind::local:
             return local_table(fitted, spec, normals);
+        case SamplerKind::places:
+            if (!geometry) throw SpecError("sampler '" + spec.text + "': there is no scene to look from");
+            return places_table(fitted, *geometry, spec.bytes);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
         case SamplerKind::brdf_table:
@@ -238,9 +265,17 @@ struct SamplerBuilder::Store {
 };
 
 SamplerBuilder::SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs,
-                               std::string data, std::vector<builder::SceneNormal> normals)
-    : store_(new Store{
-          target, builder::grid_of(target), std::move(brdfs), std::move(data), std::move(normals), {}, {}, {}}) {}
+                               std::string data, std::vector<builder::SceneNormal> normals,
+                               const measure::Geometry* geometry)
+    : store_(new Store{target,
+                       builder::grid_of(target),
+                       std::move(brdfs),
+                       std::move(data),
+                       std::move(normals),
+                       geometry,
+                       {},
+                       {},
+                       {}}) {}
 
 SamplerBuilder::~SamplerBuilder() = default;
 

@@ -4,6 +4,7 @@
 #include "build/builder/sources.h"
 #include "input/brdf.h"
 #include "measure/estimator.h"
+#include "measure/scene.h"
 #include "tools/render/sampler_spec.h"
 
 #include <memory>
@@ -22,10 +23,11 @@ struct BuiltSampler {
 
 class SamplerBuilder {
 public:
-    /// `brdfs`: one a material, which are referred to and must outlive the builder; files are relative to `data`.
-    /// `normals`: those that the camera sees, for samplers that are made for them.
+    /// `brdfs`: one a material, which are referred to and must outlive the builder, as `geometry`, where there is
+    /// one: places are those on it. Files are relative to `data`. `normals`: those that the camera sees, for
+    /// samplers that are made for them.
     SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs, std::string data,
-                   std::vector<builder::SceneNormal> normals = {});
+                   std::vector<builder::SceneNormal> normals = {}, const measure::Geometry* geometry = nullptr);
     ~SamplerBuilder();
     SamplerBuilder(const SamplerBuilder&) = delete;
     SamplerBuilder& operator=(const SamplerBuilder&) = delete;

@@ -35,6 +35,7 @@ constexpr Name names[] = {
     {"tiles", SamplerKind::tiles, "32x16"},
     {"env", SamplerKind::env, "64KiB"},
     {"local", SamplerKind::local, "1MB"},
+    {"places", SamplerKind::places, "4MB"},
     {"brdf", SamplerKind::brdf, "64KiB"},
     {"brdf-table", SamplerKind::brdf_table, "mean"},
     {"ggx", SamplerKind::ggx, "0.1"},
@@ -73,6 +74,7 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     switch (spec.kind) {
     case SamplerKind::env:
     case SamplerKind::local:
+    case SamplerKind::places:
     case SamplerKind::brdf:
         return read_size(argument, spec);
     case SamplerKind::tiles:

@@ -22,6 +22,7 @@ enum class SamplerKind {
                 ///< weighed by the BRDF, too
     env,        ///< env:64KiB: what `acdf env` makes
     local,      ///< local:1MB: what `acdf local` makes
+    places,     ///< places:4MB: what `acdf local --places` makes for the scene
     brdf,       ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
     brdf_table, ///< brdf-table[:centre]: the full table of the paper, repaired or as described
     ggx,        ///< ggx:0.1: normals of a lobe visible to the viewer
@@ -41,7 +42,7 @@ enum class SamplerKind {
 struct SamplerSpec {
     SamplerKind kind = SamplerKind::full_cdf;
     std::string text;                    ///< as given: its name in tables
-    std::uint64_t bytes = 0;             ///< env, local, brdf: the budget
+    std::uint64_t bytes = 0;             ///< env, local, places, brdf: the budget
     std::uint32_t columns = 0, rows = 0; ///< tiles, downsampled
     std::uint32_t candidates = 0;        ///< ris
     double alpha = 0.0;                  ///< ggx

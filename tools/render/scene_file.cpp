@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace acdf::tools {
 namespace {
@@ -71,14 +72,39 @@ measure::Shape read_shape(const JsonValue& value, JsonObject& object) {
     std::vector<measure::Shape> shapes;
     for (const Kind& kind : kinds)
         object.if_has(kind.key, [&](const JsonValue& shape) { shapes.push_back(kind.read(shape)); });
-    if (shapes.size() != 1) value.fail("needs one of 'sphere', 'plane' and 'box'");
+    if (shapes.size() != 1) value.fail("needs one of 'sphere', 'plane', 'box' and 'mesh'");
     return shapes.front();
+}
+
+/// The file of a mesh, if the object is one.
+std::optional<SceneMesh> read_mesh(JsonObject& object) {
+    std::optional<SceneMesh> out;
+    object.if_has("mesh", [&](const JsonValue& value) {
+        JsonObject mesh(value);
+        out.emplace();
+        out->file = mesh.at("file").text();
+        mesh.if_has("up", [&](const JsonValue& up) {
+            const std::string axis = up.text();
+            if (axis != "y" && axis != "z") up.fail("is no axis that points up: y, z");
+            if (axis == "y") out->up = input::UpAxis::y;
+        });
+        mesh.finish();
+    });
+    return out;
 }
 
 void read_object(const JsonValue& value, SceneFile& scene) {
     JsonObject object(value);
     measure::Object out;
-    out.shape = read_shape(value, object);
+    if (std::optional<SceneMesh> mesh = read_mesh(object)) {
+        mesh->object = scene.geometry.objects.size();
+        scene.meshes.push_back(*mesh);
+        out.shape = measure::Mesh{};
+        if (object.has("sphere") || object.has("plane") || object.has("box"))
+            value.fail("needs one of 'sphere', 'plane', 'box' and 'mesh'");
+    } else {
+        out.shape = read_shape(value, object);
+    }
     object.if_has("seen", [&](const JsonValue& seen) { out.seen = seen.truth(); });
     SceneMaterial material;
     object.if_has("brdf", [&](const JsonValue& brdf) { material.brdf = brdf.text(); });

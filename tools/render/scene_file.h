@@ -25,12 +25,20 @@ struct SceneMaterial {
     bool operator==(const SceneMaterial& other) const { return brdf == other.brdf && tint == other.tint; }
 };
 
+/// The file of an object that is a mesh.
+struct SceneMesh {
+    std::size_t object = 0; ///< of the geometry
+    std::string file;       ///< relative to the data folder
+    input::UpAxis up = input::UpAxis::z;
+};
+
 /// A scene as written: nothing is loaded.
 struct SceneFile {
     std::string description;
     measure::Camera camera;
     measure::Geometry geometry; ///< its materials are indices into `materials`
     std::vector<SceneMaterial> materials;
+    std::vector<SceneMesh> meshes;
     std::string probe;    ///< a file, relative to the data folder, or
     std::string built_in; ///< the name of one of demo_probes()
     input::Projection projection = input::Projection::automatic;

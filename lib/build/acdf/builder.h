@@ -286,6 +286,25 @@ enum class BinTarget {
     centre ///< the middle one, as in ibid., §7.1: biased for others, which may see what it does not
 };
 
+/// A point of a scene where light is gathered: on a surface, or in the air.
+struct PlacePoint {
+    float position[3] = {}, normal[3] = {0.0f, 0.0f, 1.0f};
+};
+
+/// What of the light reaches which place of a scene. Both callbacks are called by several threads at once, and tell
+/// the same for the same arguments: the file is then the same for any number of threads. A point must not lie on
+/// what hides light from it, but a little above.
+struct Places {
+    /// Point `index` of an endless sequence all over the scene, any of which is about as even; false where that
+    /// number has none.
+    std::function<bool(std::uint64_t index, PlacePoint& point)> point;
+    /// Whether anything lies on the ray from a point towards a direction, in the frame of directions.
+    std::function<bool(const PlacePoint& point, const float direction[3])> occluded;
+    /// From the scene's coordinates, in which a renderer tells positions, to those of points here, a row a
+    /// coordinate: x' = t[0] x + t[1] y + t[2] z + t[3].
+    float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+};
+
 struct LocalOptions {
     TargetOptions target;                 ///< of pixels and rows; a Target has its own
     Goal goal = Goal::of_budget(1 << 20); ///< cells: of the curves that bins share, or without sharing of a bin
@@ -301,6 +320,7 @@ struct LocalOptions {
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
+    Places places; ///< both callbacks: bins share tiles, the goal is a budget, and places take three quarters of it
 };
 
 struct Local {

@@ -133,8 +133,18 @@ void check(const EnvironmentOptions& options) {
             "the goal of a cascade is a number of cells");
 }
 
+static void check_places(const LocalOptions& options) {
+    require(!options.places.point == !options.places.occluded, "places need both callbacks, or none");
+    if (!options.places.point) return;
+    require(options.sharing, "places are for bins that share tiles");
+    require(options.goal.kind == Goal::Kind::budget, "the goal of places is a budget");
+    for (const auto& row : options.places.transform)
+        for (const float t : row) require(std::isfinite(t), "the transform of places is not finite");
+}
+
 void check(const LocalOptions& options) {
     check_bins(options);
+    check_places(options);
     for (const SceneNormal& n : options.normals) check(n);
     require(is_share(options.cosine_share, 0.99), "cosine_share is not in [0, 0.99]");
     require(options.bin_target == BinTarget::mean || options.bin_target == BinTarget::centre,

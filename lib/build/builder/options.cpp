@@ -1,7 +1,9 @@
 #include "build/builder/options.h"
 
+#include "build/errors.h"
 #include "build/option_text.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace acdf::builder {
@@ -73,6 +75,46 @@ build::EnvironmentOptions internal(const EnvironmentOptions& options) {
     return out;
 }
 
+namespace {
+
+/// A callback of the caller's, whose exceptions are told apart from others.
+template <class Call>
+bool called(const Call& call) {
+    try {
+        return call();
+    } catch (...) {
+        throw build::CallbackFailed();
+    }
+}
+
+PlacePoint external(const compress::PlacePoint& point) {
+    PlacePoint out;
+    std::copy_n(point.position.begin(), 3, out.position);
+    std::copy_n(point.normal.begin(), 3, out.normal);
+    return out;
+}
+
+build::ScenePlaces internal(const Places& places) {
+    build::ScenePlaces out;
+    if (!places.point) return out;
+    out.scene.points = [point = places.point](std::uint64_t index, compress::PlacePoint& result) {
+        PlacePoint told;
+        if (!called([&] { return point(index, told); })) return false;
+        std::copy_n(told.position, 3, result.position.begin());
+        std::copy_n(told.normal, 3, result.normal.begin());
+        return true;
+    };
+    out.scene.occluded = [occluded = places.occluded](const compress::PlacePoint& point,
+                                                      const std::array<float, 3>& direction) {
+        const PlacePoint told = external(point);
+        return called([&] { return occluded(told, direction.data()); });
+    };
+    for (int k = 0; k < 3; ++k) std::copy_n(places.transform[k], 4, out.frame.transform[k]);
+    return out;
+}
+
+} // namespace
+
 build::LocalOptions internal(const LocalOptions& options) {
     build::LocalOptions out;
     out.target = internal(options.target);
@@ -91,6 +133,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     if (!out.sharing && out.fit.fit != ACDF_FIT_VARIANCE && !out.fit.order) out.fit.order = compress::Order::z;
     out.cosine_share = options.cosine_share;
     out.scene_text = options.normals_text;
+    out.places = internal(options.places);
     out.codec = options.codec;
     return out;
 }

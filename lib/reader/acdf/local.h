@@ -14,6 +14,22 @@
 extern "C" {
 #endif
 
+/* A tile of the mixture, by the walk of the normal alone or of normal and place. */
+ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
+                                        AcdfRange* range, double* probability) {
+    if (point->place.count > 0)
+        return acdf_place_sample_tile(&local->places, &local->blend, &point->mix, &point->place, u, range,
+                                      probability);
+    return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
+}
+ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
+                                      AcdfRange* range, double* probability) {
+    if (point->place.count > 0)
+        return acdf_place_find_tile(&local->places, &local->blend, &point->mix, &point->place, square, range,
+                                    probability);
+    return acdf_blend_find_tile(&local->blend, &point->mix, square, range, 0, probability);
+}
+
 /* Draws a cell of lights and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                        AcdfRange* range) {
@@ -28,7 +44,7 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
         probability = acdf_positive(probability / point->sum);
         tile = light->tile;
     } else {
-        tile = acdf_blend_sample_tile(&local->blend, &point->mix, u, range, &probability);
+        tile = acdf_local_sample_tile(local, point, u, range, &probability);
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
     root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
@@ -41,7 +57,7 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
                                      AcdfRange* range) {
     double probability, inside;
     uint32_t low = 0, high = local->light_count, root;
-    const uint32_t tile = acdf_blend_find_tile(&local->blend, &point->mix, square, range, 0, &probability);
+    const uint32_t tile = acdf_local_find_tile(local, point, square, range, &probability);
     root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
     if (probability > 0.0) {
         probability = acdf_mixture_sum(&point->mix) / point->sum * probability;
@@ -52,7 +68,7 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
             else high = middle;
         }
         if (low == local->light_count || local->lights[low].tile != tile) return 0.0;
-        probability = acdf_light_weight(&local->lights[low], point) / point->sum;
+        probability = acdf_local_light_weight(local, point, low) / point->sum;
         if (!(probability > 0.0)) return 0.0;
     }
     if (root == ACDF_NO_ROOT) return acdf_positive(probability);
@@ -92,7 +108,8 @@ ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint*
     double t[2] = {0.5, 0.5}, position[2], p;
     uint32_t square[2];
     float told;
-    if (point->what == ACDF_LOCAL_BLEND && local->tables && acdf_local_table_pdf(local, point, direction, &told))
+    if (point->what == ACDF_LOCAL_BLEND && local->tables && point->place.count == 0 &&
+        acdf_local_table_pdf(local, point, direction, &told))
         return told;
     if (point->what == ACDF_LOCAL_NOTHING || !acdf_grid_square(&grid, direction, square, position)) return 0.0f;
     acdf_sphere_ranges(grid.columns, grid.rows, range);

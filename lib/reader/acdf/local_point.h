@@ -4,6 +4,7 @@
 
 #include <acdf/local_tables.h>
 #include <acdf/normals.h>
+#include <acdf/places.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,6 +22,7 @@ typedef struct AcdfLocal {
     double cosine_share;
     const AcdfLocalTables* tables; /* runtime tables; null: splits are walked */
     const AcdfCompany* company;    /* null: to be used alone */
+    AcdfPlaceTable places;         /* its header is null where places are not told apart */
 } AcdfLocal;
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
@@ -38,10 +40,11 @@ typedef struct AcdfLocalPoint {
     float surface[3]; /* the normal as given */
     double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
     double length;    /* of that */
-    AcdfMixture mix;  /* of the blend */
+    AcdfMixture mix;  /* of the blend; the weights are those that reach the place */
     const double* parts[ACDF_MAX_ROWS_MIXED]; /* of the rows in the runtime tables, where there are such */
     double lights;                            /* sum of the weights of the lights */
     double sum;                               /* of all weights */
+    AcdfPlaceMixture place;                   /* empty: the position is not known, or does not matter */
 } AcdfLocalPoint;
 
 /* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
@@ -55,6 +58,12 @@ ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* p
     if (fabs(height) < radius)
         return (double)light->share * ((height + radius) * (height + radius) / (4.0 * radius));
     return (double)light->share * (height > 0.0 ? height : 0.0);
+}
+
+/* The same of light `k` as its place sees it. */
+ACDF_FN double acdf_local_light_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
+    const double weight = acdf_light_weight(&local->lights[k], point);
+    return point->place.count > 0 ? weight * acdf_place_visibility(&point->place, 1 + k) : weight;
 }
 
 /* The bin of the largest weight. */
@@ -85,11 +94,15 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
     out->root = 0;
     for (i = 0; i < 3; ++i) out->surface[i] = normal[i];
     out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
-    out->mix.count = 0;
+    out->mix.count = out->place.count = 0;
     for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
         out->mix.row[i] = 0;
         out->mix.weight[i] = 0.0;
         out->parts[i] = 0;
+    }
+    for (i = 0; i < ACDF_MAX_PLACES_MIXED; ++i) {
+        out->place.row[i] = 0;
+        out->place.weight[i] = 0.0;
     }
     if (!acdf_local_bins(local, normal, &bins)) return;
     if (!local->blend.tiles) {
@@ -115,6 +128,24 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
     if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
 }
 
+/* Finds what serves a normal at a position of the scene. Outside of all cells, and where places are not told apart,
+ * that is what serves the normal. */
+ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3], const float normal[3],
+                                 AcdfLocalPoint* out) {
+    double visible;
+    uint32_t k;
+    int i;
+    acdf_local_at(local, normal, out);
+    if (out->what != ACDF_LOCAL_BLEND) return;
+    acdf_place_at(&local->places, position, normal, &out->place);
+    if (out->place.count == 0) return;
+    visible = acdf_place_visibility(&out->place, 0);
+    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
+    out->lights = 0.0;
+    for (k = 0; k < local->light_count; ++k) out->lights += acdf_local_light_weight(local, out, k);
+    out->sum = out->lights + acdf_mixture_sum(&out->mix);
+}
+
 /* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left
  * of u[0] takes its place. */
 ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
@@ -128,7 +159,7 @@ ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const Acd
     }
     *weight = 0.0;
     for (k = 0; k < local->light_count; ++k) {
-        const double w = acdf_light_weight(&local->lights[k], point);
+        const double w = acdf_local_light_weight(local, point, k);
         if (!(w > 0.0)) continue;
         if (light) x -= *weight;
         light = &local->lights[k];

@@ -133,6 +133,7 @@ private:
     const AcdfLocalHeader* local_ = nullptr;
     const AcdfLight* lights_ = nullptr;
     const AcdfCompany* company_ = nullptr;
+    AcdfPlaceTable places_ = {};
     const AcdfViews* views_ = nullptr;
     const float* nodes_ = nullptr;
     const std::uint8_t* metadata_ = nullptr;

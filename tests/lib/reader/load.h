@@ -6,6 +6,8 @@
 
 #include <check.h>
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <memory>
 #include <set>
@@ -60,6 +62,11 @@ inline Findings findings(const Bytes& bytes, const acdf::Limits& limits = {}) {
         limits);
     out.text = text.str();
     return out;
+}
+
+inline void expect_valid(const Bytes& file) {
+    const Findings found = findings(file);
+    EXPECT_TRUE(found.rules.empty()) << found.text;
 }
 
 inline std::string text(acdf::Text t) { return {t.data ? t.data : "", t.size}; }

@@ -3,6 +3,8 @@
 
 #include "tests/lib/reader/files.h"
 
+#include <optional>
+
 namespace acdf_test {
 
 constexpr std::uint32_t tile_flag = 0x8000, no_root = 0xFFFFFFFF;
@@ -19,6 +21,42 @@ struct LightSpec {
     std::array<std::uint32_t, 2> low{}, high{};
 };
 
+struct PlaceSplitSpec {
+    float position, blend;
+    std::uint32_t axis;
+    std::uint32_t part[2]; ///< a split, or place_row | a row
+};
+constexpr std::uint32_t place_row = 0x10000000;
+
+/// Chunk PLAC.
+struct PlacesSpec {
+    float low[3] = {-1.0f, -2.0f, 0.0f}, high[3] = {3.0f, 2.0f, 4.0f};
+    float transform[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    std::vector<PlaceSplitSpec> splits;
+    std::vector<std::uint16_t> columns; ///< one a split of tiles
+    std::vector<Bytes> rows;
+
+    Bytes encode() const {
+        Bytes out;
+        std::uint32_t count = 0;
+        for (std::uint16_t column : columns) count += column != 0xFFFF;
+        for (std::size_t v : {splits.size(), rows.size(), std::size_t{count}, std::size_t{0}})
+            put32(out, static_cast<std::uint32_t>(v));
+        for (float x : low) put_float(out, x);
+        for (float x : high) put_float(out, x);
+        for (float x : transform) put_float(out, x);
+        for (const PlaceSplitSpec& split : splits) {
+            put_float(out, split.position);
+            put_float(out, split.blend);
+            put32(out, split.axis | split.part[0] << 3);
+            put32(out, split.part[1]);
+        }
+        for (std::uint16_t column : columns) put16(out, column);
+        for (const Bytes& row : rows) out.insert(out.end(), row.begin(), row.end());
+        return out;
+    }
+};
+
 /// A local environment. Bins have rows where there are tiles, else trees.
 struct LocalSpec {
     std::uint32_t columns = 8, rows = 8;
@@ -33,6 +71,7 @@ struct LocalSpec {
     std::vector<BinSpec> bins;                   ///< root: the row, or a curve of `tree`; no_root: not stored
     std::vector<LightSpec> lights;
     float cosine_share = 0.0f;
+    std::optional<PlacesSpec> places;
     double total = 3.0;
     bool zlib = false;
     bool octahedral = false; ///< axes u and v
@@ -104,6 +143,7 @@ struct LocalSpec {
             file.chunks.push_back({"ROWS", row_chunk(), 1, zlib});
         }
         file.chunks.push_back({"LOCL", local_chunk(), 1, zlib});
+        if (places) file.chunks.push_back({"PLAC", places->encode(), 0, zlib});
         return file;
     }
     Bytes encode() { return file().encode(); }
@@ -139,6 +179,19 @@ inline LocalSpec lit_local() {
     spec.lights[0].tile = 1;
     spec.lights[0].low = {3, 0};
     spec.lights[0].high = {8, 2};
+    return spec;
+}
+
+/// lit_local with four places: x < 1; above it y < 0.5; the rest, by the z of normals. Both splits of tiles are
+/// told apart.
+inline LocalSpec placed_local() {
+    LocalSpec spec = lit_local();
+    spec.places.emplace();
+    spec.places->splits = {{1.0f, 0.25f, 0, {place_row, 1}},
+                           {0.5f, 0.5f, 1, {place_row | 1, 2}},
+                           {0.1f, 0.2f, 5, {place_row | 2, place_row | 3}}};
+    spec.places->columns = {0, 1};
+    spec.places->rows = {{240, 30, 200, 60}, {200, 255, 1, 254}, {0, 100, 128, 9}, {90, 17, 30, 250}};
     return spec;
 }
 

@@ -295,11 +295,6 @@ std::vector<Case> local_cases() {
 
 namespace {
 
-void expect_valid(const Bytes& file) {
-    const Findings found = findings(file);
-    EXPECT_TRUE(found.rules.empty()) << found.text;
-}
-
 TEST(LocalRules, whatIsAtTheirLimitsIsRight) {
     expect_valid(chain_of_splits(48)());
     expect_valid(curve_of_tile(0, even_curve(0, {1, 2}))());

@@ -77,7 +77,7 @@ TEST(RenderSceneFile, MistakesAreNamedWithTheirPlace) {
         {"/objects", 7, "objects: is number, not an array"},
         {"/objects/1/sphere/radius", 0, "objects[1].sphere.radius: is 0"},
         {"/objects/1/box", Json::parse(R"({"low": [0, 0, 0], "high": [1, 1, 1]})"),
-         "objects[1]: needs one of 'sphere', 'plane' and 'box'"},
+         "objects[1]: needs one of 'sphere', 'plane', 'box' and 'mesh'"},
         {"/objects/1/brdf", 3, "objects[1].brdf: is number, not a string"},
         {"/objects/1/tint", {0, 2, 0}, "objects[1].tint[1]: is 2"},
         {"/objects/2/box/low", {9, 0, 0}, "objects[2].box: has a side whose 'low' is not below its 'high'"},

@@ -1,0 +1,102 @@
+#include "golden_samples.h"
+
+#include <acdf/reader.h>
+
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace {
+
+/// The corners, then a sequence with full mantissas (a 64-bit linear congruential generator; Knuth 1997, §3.3.4).
+std::vector<std::pair<double, double>> random_numbers() {
+    std::vector<std::pair<double, double>> numbers = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {0.5, 0.5}};
+    std::uint64_t state = 2005;
+    const auto next = [&] {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return static_cast<double>(state >> 11) * 0x1p-53;
+    };
+    while (numbers.size() < 16) {
+        const double u0 = next(), u1 = next();
+        numbers.push_back({u0, u1});
+    }
+    return numbers;
+}
+
+/// For each of these normals, of any length, a line `nx ny nz  u0 u1  x y z  pdf`; pdf 0 where nothing is drawn.
+constexpr float kNormals[][3] = {{0, 0, 1},  {1, 0, 0},    {-1, -0.001f, 0.5f}, {0.3f, -0.7f, -0.2f},
+                                 {-2, 1, 1}, {0, 0.5f, -5}};
+
+std::string local_samples(const acdf::LocalEnvironmentView& view) {
+    std::string text;
+    for (const auto& n : kNormals)
+        for (const auto& [u0, u1] : random_numbers()) {
+            const acdf::DirectionSample s = view.sample(n, u0, u1);
+            char line[300];
+            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{n[0]}, double{n[1]},
+                          double{n[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
+                          double{s.direction[2]}, double{s.pdf});
+            text += line;
+        }
+    return text;
+}
+
+/// The same with a position of the scene before the normal: in each cell, between them, at the bounds and outside.
+constexpr float kPositions[][3] = {{0, 1, 0},       {-1, 1, 1.5f},     {1.5f, 1, 1.5f},
+                                   {0.2f, 1, 0.6f}, {0.6f, 2, 0.375f}, {5, 1, 0}};
+
+std::string place_samples(const acdf::LocalEnvironmentView& view) {
+    std::string text;
+    for (const auto& x : kPositions)
+        for (const auto& n : kNormals)
+            for (const auto& [u0, u1] : random_numbers()) {
+                const acdf::DirectionSample s = view.sample(view.at(x, n), u0, u1);
+                char line[400];
+                std::snprintf(line, sizeof line, "%a %a %a  %a %a %a  %a %a  %a %a %a  %a\n", double{x[0]},
+                              double{x[1]}, double{x[2]}, double{n[0]}, double{n[1]}, double{n[2]}, u0, u1,
+                              double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]},
+                              double{s.pdf});
+                text += line;
+            }
+    return text;
+}
+
+/// The same with wo: at normal incidence, between and at stored views, grazing.
+constexpr float kViews[][3] = {{0, 0, 1},        {0.6f, 0, 0.8f},         {-0.48f, 0.64f, 0.6f},
+                               {0, -0.8f, 0.6f}, {-0.96f, -0.28f, 1e-3f}, {0.28f, -0.96f, 0.01f}};
+
+std::string brdf_samples(const acdf::BrdfView& view) {
+    std::string text;
+    for (const auto& wo : kViews)
+        for (const auto& [u0, u1] : random_numbers()) {
+            const acdf::DirectionSample s = view.sample(wo, u0, u1);
+            char line[300];
+            std::snprintf(line, sizeof line, "%a %a %a  %a %a  %a %a %a  %a\n", double{wo[0]}, double{wo[1]},
+                          double{wo[2]}, u0, u1, double{s.direction[0]}, double{s.direction[1]},
+                          double{s.direction[2]}, double{s.pdf});
+            text += line;
+        }
+    return text;
+}
+
+} // namespace
+
+std::string golden_samples(const std::string& name, const std::vector<std::uint8_t>& bytes) {
+    acdf::File file;
+    acdf::LoadOptions walked; // as SPEC.md says it, to the last bit
+    walked.tables = false;
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, walked);
+    if (!status.ok()) throw std::runtime_error(name + ": " + status.message);
+    if (file.kind() == ACDF_KIND_LOCAL && file.local().has_places()) return place_samples(file.local());
+    if (file.kind() == ACDF_KIND_LOCAL) return local_samples(file.local());
+    if (file.kind() == ACDF_KIND_BRDF) return brdf_samples(file.brdf());
+    std::string text;
+    for (const auto& [u0, u1] : random_numbers()) {
+        const acdf::DirectionSample s = file.environment().sample(u0, u1);
+        char line[200];
+        std::snprintf(line, sizeof line, "%a %a  %a %a %a  %a\n", u0, u1, double{s.direction[0]},
+                      double{s.direction[1]}, double{s.direction[2]}, double{s.pdf});
+        text += line;
+    }
+    return text;
+}

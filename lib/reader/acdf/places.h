@@ -1,0 +1,216 @@
+/* Only the light that a place can see: one freestanding header over acdf/blend.h, valid C99, C++17 and
+ * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.9).
+ *
+ * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the lights, of the
+ * mixture as a whole and, at each split of tiles that counts, of its two parts reaches it. Those *visibilities*
+ * multiply what rows of normals give to the two parts; the products are made to add up to 1 again at each split, so
+ * that the density is exact whatever the bytes are. Near the border of two cells their visibilities are mixed,
+ * linearly: nothing jumps. */
+#ifndef ACDF_PLACES_H
+#define ACDF_PLACES_H
+
+#include <acdf/blend.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ACDF_MAX_PLACES_MIXED = 4 };
+
+typedef struct AcdfPlaceTable {
+    const AcdfPlaces* header;     /* chunk PLAC; null where there is none */
+    const AcdfPlaceSplit* splits; /* behind it */
+    const uint16_t* columns;      /* one a split of tiles */
+    const uint8_t* rows;
+    uint32_t light_count;
+} AcdfPlaceTable;
+
+/* The rows of cells around a position, and their weights, whose sum is 1. None: places are not told apart. */
+typedef struct AcdfPlaceMixture {
+    const uint8_t* row[ACDF_MAX_PLACES_MIXED];
+    double weight[ACDF_MAX_PLACES_MIXED];
+    int count;
+} AcdfPlaceMixture;
+
+/* The visibility that a byte stands for: 31/32 to 2^-16, in steps of 1/16 to 1/31. */
+ACDF_FN double acdf_visibility(uint8_t code) {
+    return (double)((16u + (code & 15u)) << (code >> 4)) * (1.0 / 1048576.0);
+}
+
+/* Number `index` of a row: 0 is the mixture, 1 + k light k. */
+ACDF_FN double acdf_place_visibility(const AcdfPlaceMixture* place, uint32_t index) {
+    double sum = 0.0;
+    int i;
+    for (i = 0; i < place->count; ++i) sum += place->weight[i] * acdf_visibility(place->row[i][index]);
+    return sum;
+}
+
+/* A position of the scene and a normal among the cells; 0 where it lies outside. */
+ACDF_FN int acdf_place_coordinates(const AcdfPlaceTable* table, const float position[3], const float normal[3],
+                                   double out[6]) {
+    const AcdfPlaces* header = table->header;
+    const double x = (double)normal[0], y = (double)normal[1], z = (double)normal[2];
+    const double length = sqrt(x * x + y * y + z * z);
+    int k;
+    for (k = 0; k < 3; ++k) out[3 + k] = (double)normal[k] / length;
+    for (k = 0; k < 3; ++k) {
+        const float* t = header->transform[k];
+        out[k] = (double)t[0] * (double)position[0] + (double)t[1] * (double)position[1] +
+                 (double)t[2] * (double)position[2] + (double)t[3];
+        if (!(out[k] >= (double)header->low[k] && out[k] <= (double)header->high[k])) return 0;
+    }
+    return 1;
+}
+
+/* Finds the cells around a position and a normal (of any length but 0); `out` becomes empty outside of all of them.
+ * Where it is within reach of so many borders that more than four cells would be mixed, the lighter side of a
+ * border is left out. */
+ACDF_FN void acdf_place_at(const AcdfPlaceTable* table, const float position[3], const float normal[3],
+                           AcdfPlaceMixture* out) {
+    uint32_t node[ACDF_MAX_PLACES_MIXED];
+    double x[6];
+    int i;
+    out->count = 0;
+    if (!table->header || !acdf_place_coordinates(table, position, normal, x)) return;
+    node[0] = table->header->split_count > 0 ? 0 : ACDF_PLACE_ROW;
+    out->weight[0] = 1.0;
+    out->count = 1;
+    for (i = 0; i < out->count; ++i) {
+        while (!(node[i] & ACDF_PLACE_ROW)) {
+            const AcdfPlaceSplit* split = &table->splits[node[i]];
+            const double above = x[split->lower & 7u] - (double)split->position, blend = (double)split->blend;
+            const uint32_t part[2] = {split->lower >> 3, split->upper};
+            if (above < blend && above > -blend && out->count < ACDF_MAX_PLACES_MIXED) {
+                const double share = out->weight[i] * ((above + blend) / (2.0 * blend));
+                node[out->count] = part[1];
+                out->weight[out->count++] = share;
+                out->weight[i] -= share;
+                node[i] = part[0];
+            } else {
+                node[i] = part[above >= 0.0];
+            }
+        }
+    }
+    for (i = 0; i < out->count; ++i)
+        out->row[i] = table->rows +
+                      (size_t)(node[i] & ~ACDF_PLACE_ROW) * (1 + table->light_count + table->header->column_count);
+}
+
+/* What of the weights of rows falls into the two parts of a split, times their visibility; `lower` is what of each
+ * row falls into the lower one, without it. */
+ACDF_INLINE void acdf_place_split(const AcdfPlaceTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
+                                  const int rows, const AcdfPlaceMixture* place, const int places, uint32_t node,
+                                  const double* weight, double* lower, double part[2]) {
+    const uint16_t* codebook = blend->tiles->codebook;
+    const uint32_t column = table->columns[node];
+    int i;
+    part[0] = part[1] = 0.0;
+    for (i = 0; i < rows; ++i) {
+        part[0] += lower[i] = weight[i] * ((double)codebook[mix->row[i][node]] * (1.0 / 65535.0));
+        part[1] += weight[i] - lower[i];
+    }
+    if (column != ACDF_NO_COLUMN) {
+        const uint32_t at = 1 + table->light_count + column;
+        double odds = 0.0;
+        for (i = 0; i < places; ++i) odds += place->weight[i] * (double)codebook[place->row[i][at]];
+        part[0] *= odds;
+        part[1] *= 65535.0 - odds;
+    }
+}
+
+ACDF_INLINE uint32_t acdf_place_sample_rows(const AcdfPlaceTable* table, const AcdfBlend* blend,
+                                            const AcdfMixture* mix, const int rows, const AcdfPlaceMixture* place,
+                                            const int places, double* u, AcdfRange* range, double* probability) {
+    double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
+    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
+    int i;
+    for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit* split = &blend->splits[node];
+        const uint32_t axis = split->place & 7u, position = split->place >> 3;
+        double sum, x;
+        acdf_place_split(table, blend, mix, rows, place, places, node, weight, lower, part);
+        sum = part[0] + part[1];
+        x = u[axis] * sum;
+        if (!(x < part[0]) && part[1] > 0.0) {
+            u[axis] = acdf_unit_interval((x - part[0]) / part[1]);
+            p *= part[1] / sum;
+            for (i = 0; i < rows; ++i) weight[i] -= lower[i];
+            range[axis].low = position;
+            node = split->child[1];
+        } else {
+            u[axis] = acdf_unit_interval(x / part[0]);
+            p *= part[0] / sum;
+            for (i = 0; i < rows; ++i) weight[i] = lower[i];
+            range[axis].high = position;
+            node = split->child[0];
+        }
+    }
+    *probability = acdf_positive(p);
+    return node & ~ACDF_TILE_FLAG;
+}
+
+ACDF_INLINE uint32_t acdf_place_find_rows(const AcdfPlaceTable* table, const AcdfBlend* blend,
+                                          const AcdfMixture* mix, const int rows, const AcdfPlaceMixture* place,
+                                          const int places, const uint32_t* square, AcdfRange* range,
+                                          double* probability) {
+    double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
+    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
+    int i, lit = rows > 0;
+    for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit* split = &blend->splits[node];
+        const uint32_t axis = split->place & 7u, position = split->place >> 3;
+        const int upper = square[axis] >= position;
+        acdf_place_split(table, blend, mix, rows, place, places, node, weight, lower, part);
+        if (upper)
+            for (i = 0; i < rows; ++i) weight[i] -= lower[i];
+        else
+            for (i = 0; i < rows; ++i) weight[i] = lower[i];
+        if (upper) range[axis].low = position;
+        else range[axis].high = position;
+        if (part[upper] > 0.0) p *= part[upper] / (part[0] + part[1]);
+        else lit = 0;
+        node = split->child[upper];
+    }
+    *probability = lit ? acdf_positive(p) : 0.0;
+    return node & ~ACDF_TILE_FLAG;
+}
+
+/* The walks for as many rows of normals and of places as there are, each known to the compiler where that is usual.
+ */
+#define ACDF_PLACE_WALK(rows, places)                                                                              \
+    if (mix->count == (rows) && place->count == (places)) return ACDF_PLACE_CALL(rows, places)
+#define ACDF_PLACE_WALKS                                                                                           \
+    ACDF_PLACE_WALK(3, 1);                                                                                         \
+    ACDF_PLACE_WALK(3, 2);                                                                                         \
+    ACDF_PLACE_WALK(3, 4);                                                                                         \
+    ACDF_PLACE_WALK(1, 1);                                                                                         \
+    return ACDF_PLACE_CALL(mix->count, place->count)
+
+/* Draws a tile, as acdf_blend_sample_tile does, of a mixture as a place sees it (which has a row at least). */
+ACDF_FN uint32_t acdf_place_sample_tile(const AcdfPlaceTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
+                                        const AcdfPlaceMixture* place, double* u, AcdfRange* range,
+                                        double* probability) {
+#define ACDF_PLACE_CALL(rows, places)                                                                              \
+    acdf_place_sample_rows(table, blend, mix, rows, place, places, u, range, probability)
+    ACDF_PLACE_WALKS;
+#undef ACDF_PLACE_CALL
+}
+
+/* Finds the tile of a grid square, as acdf_blend_find_tile does. */
+ACDF_FN uint32_t acdf_place_find_tile(const AcdfPlaceTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
+                                      const AcdfPlaceMixture* place, const uint32_t* square, AcdfRange* range,
+                                      double* probability) {
+#define ACDF_PLACE_CALL(rows, places)                                                                              \
+    acdf_place_find_rows(table, blend, mix, rows, place, places, square, range, probability)
+    ACDF_PLACE_WALKS;
+#undef ACDF_PLACE_CALL
+}
+#undef ACDF_PLACE_WALK
+#undef ACDF_PLACE_WALKS
+
+#ifdef __cplusplus
+}
+#endif
+#endif

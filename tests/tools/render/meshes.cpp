@@ -1,0 +1,137 @@
+// Scenes of triangles: `acdf local --scene MESH --places` makes a file, `acdf render` looks from the same mesh.
+#include "tests/tools/render/scenes.h"
+
+#include <acdf/reader.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace acdf::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A room that is open above one half of its floor, and a box in it; with z up, or with y up.
+std::string room(bool y_up = false) {
+    const double points[][3] = {{-2, -2, 0},     {2, -2, 0},      {2, 2, 0},       {-2, 2, 0},     {-2, -2, 2},
+                                {2, -2, 2},      {2, 2, 2},       {-2, 2, 2},      {2, 0, 2},      {-2, 0, 2},
+                                {-0.5, 0.6, 0},  {0.5, 0.6, 0},   {0.5, 1.2, 0},   {-0.5, 1.2, 0}, {-0.5, 0.6, 0.7},
+                                {0.5, 0.6, 0.7}, {0.5, 1.2, 0.7}, {-0.5, 1.2, 0.7}};
+    std::string text;
+    for (const auto& p : points) {
+        text += "v";
+        for (int k = 0; k < 3; ++k) text += " " + std::to_string(p[y_up ? (k + 1) % 3 : k]);
+        text += "\n";
+    }
+    return text + "f 1 2 3 4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 9 10\n" // half a roof
+                  "f 15 16 17 18\nf 11 12 16 15\nf 12 13 17 16\nf 13 14 18 17\nf 14 11 15 18\n";
+}
+
+std::string mesh_scene(const std::string& file) {
+    return R"({"camera": {"from": [-1.7, 1.7, 1.7], "to": [0.6, -0.6, 0.3], "fov": 60}, "image": {"width": 12, "height": 9},
+ "light": {"probe": "probe.exr", "projection": "latlong"}, "objects": [{"mesh": {"file": ")" +
+           file + R"("}, "brdf": "lambert:albedo=0.5"}], "samples": 8, "samplers": ["local:64KiB"]})";
+}
+
+struct MeshFolder : SceneFolder {
+    MeshFolder() : SceneFolder(mesh_scene("room.obj")) { write_text(*this / "room.obj", room()); }
+
+    Result local(const std::string& output, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"local", *this / "probe.exr", "-o", *this / output, "--budget", "64KiB"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_acdf(arguments);
+    }
+    Result render(const std::string& scene, const std::string& output, std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{"render", "--scene",     *this / scene,  "--data",
+                                           data(),   "-o",          *this / output, "--seeds",
+                                           "150",    "--no-timing", "--json",       "--no-reference"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_acdf(arguments);
+    }
+};
+
+TEST(MeshPlaces, AreDrawnFromInPictures) {
+    MeshFolder folder;
+    const Result made = folder.local("room.acdf", {"--scene", folder / "room.obj", "--places", "--json"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_NE(made.err.find("places on 22 triangles"), std::string::npos) << made.err;
+    EXPECT_GT(Json::parse(made.out).at("places"), 50);
+    EXPECT_EQ(run_acdf({"validate", folder / "room.acdf"}).code, 0);
+    const Json info = Json::parse(run_acdf({"info", "--json", folder / "room.acdf"}).out);
+    EXPECT_GT(info.at("local").at("places").at("cells"), 50);
+    EXPECT_NE(std::string(info.at("options")).find(" --places"), std::string::npos) << info.at("options");
+    EXPECT_LE(info.at("bytes"), 65536);
+    const Json measured =
+        Json::parse(run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.exr", "--json"}).out);
+    EXPECT_EQ(measured.at("support_violations"), 0);
+
+    const Result result =
+        folder.render("scene.json", "out",
+                      {"--sampler", "local:64KiB", "--sampler", "file:room.acdf", "--sampler", "places:64KiB"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json samplers = Json::parse(result.out).at("samplers");
+    ASSERT_EQ(samplers.size(), 3u);
+    for (const Json& one : samplers) {
+        EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
+        if (one.at("sampler") == "local:64KiB") continue;
+        EXPECT_GT(one.at("equal_samples_gain").at("value"), 2.0) << one;
+        EXPECT_LE(one.at("bytes"), 65536) << one;
+    }
+}
+
+/// What has come and what has gone since the file was made.
+TEST(MeshPlaces, OfAnotherSceneAreUnbiased) {
+    MeshFolder folder;
+    ASSERT_EQ(folder.local("room.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    std::string changed = room();
+    changed.replace(changed.find("f 5 6 9 10"), 10, "f 7 8 10 9");               // the other half of the roof
+    write_text(folder / "changed.obj", changed.substr(0, changed.find("f 15"))); // no box
+    write_text(folder / "changed.json", mesh_scene("changed.obj"));
+    const Result result = folder.render("changed.json", "out", {"--sampler", "file:room.acdf"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_LT(std::fabs(double(Json::parse(result.out).at("samplers")[0].at("bias_standard_errors"))), 4.0);
+}
+
+TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
+    MeshFolder folder;
+    write_text(folder / "y.obj", room(true));
+    ASSERT_EQ(folder.local("z.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    ASSERT_EQ(folder.local("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--places"}).code, 0);
+    File z, y;
+    ASSERT_TRUE(File::open((folder / "z.acdf").c_str(), z).ok());
+    ASSERT_TRUE(File::open((folder / "y.acdf").c_str(), y).ok());
+    const float n[3] = {0, 0, 1};
+    for (int i = 0; i < 200; ++i) {
+        const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
+                    turned[3] = {p[1], p[2], p[0]};
+        const AcdfLocalPoint a = z.local().at(p, n), b = y.local().at(turned, n);
+        ASSERT_GT(a.place.count, 0);
+        const DirectionSample s = z.local().sample(a, i / 200.0, 0.3), t = y.local().sample(b, i / 200.0, 0.3);
+        EXPECT_EQ(s.pdf, t.pdf);
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(s.direction[k], t.direction[k]);
+    }
+}
+
+TEST(MeshPlaces, MistakesAreOneLine) {
+    MeshFolder folder;
+    write_text(folder / "broken.obj", "v 0 0 0\n");
+    const auto refused = [&](const std::vector<std::string>& options, int code, const std::string& part) {
+        const Result result = folder.local("no.acdf", options);
+        EXPECT_EQ(result.code, code) << result.err;
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        EXPECT_FALSE(std::filesystem::exists(folder / "no.acdf"));
+    };
+    refused({"--places"}, 2, "--places");
+    refused({"--places", "--scene", folder / "room.obj", "--no-sharing"}, 2, "--places");
+    refused({"--places", "--scene", folder / "probe.exr"}, 1, "probe.exr");
+    refused({"--places", "--scene", folder / "broken.obj"}, 1, "broken.obj");
+    write_text(folder / "none.json", mesh_scene("none.obj"));
+    const Result missing = folder.render("none.json", "out");
+    EXPECT_EQ(missing.code, 1);
+    EXPECT_NE(missing.err.find("none.obj"), std::string::npos) << missing.err;
+}
+
+} // namespace
+} // namespace acdf::test
