@@ -14,6 +14,8 @@
 #include "compress/store.h"
 #include "golden_samples.h"
 
+#include <acdf/sphere.h>
+
 #include <cstdio>
 #include <cstring>
 #include <exception>
