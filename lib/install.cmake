@@ -50,7 +50,10 @@ install(EXPORT acdfTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPON
 if(TARGET acdf_builder)
     install(TARGETS acdf_builder EXPORT acdfBuilderTargets COMPONENT builder
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-    install(FILES ${PROJECT_SOURCE_DIR}/lib/build/acdf/accuracy.h ${PROJECT_SOURCE_DIR}/lib/build/acdf/builder.h
+    install(FILES
+        ${PROJECT_SOURCE_DIR}/lib/build/acdf/accuracy.h
+        ${PROJECT_SOURCE_DIR}/lib/build/acdf/builder.h
+        ${PROJECT_SOURCE_DIR}/lib/build/acdf/outcome.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/acdf COMPONENT builder)
     install(EXPORT acdfBuilderTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT builder)
 endif()
