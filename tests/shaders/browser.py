@@ -15,7 +15,7 @@ FLAGS = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable
          "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
          "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--enable-unsafe-webgpu",
          "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan"]
-LONGEST = 300.0  # seconds
+LONGEST = float(os.environ.get("ACDF_BROWSER_SECONDS", 300))
 
 
 class Handler(http.server.SimpleHTTPRequestHandler):

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT: exports an environment, draws and evaluates COUNT times on a device, and
-# compares with the reader. DEVICE: c, opencl, webgl, webgpu; or glslang, which only compiles.
+# compares with the reader. DEVICE: c, opencl, webgl, webgpu; or glslang
+# and kernels, which only compile.
 # PROBE and BUDGET in the environment name another source than the sky of tests, and the size of the file.
 set -euo pipefail
 device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5
@@ -86,6 +87,26 @@ on_glslang() {
     echo "GLSL, GLSL with buffers, SPIR-V and HLSL compile"
 }
 
+# CUDA and HIP, as far as there is no device: clang makes code for one, of which no number is a double.
+on_kernels() {
+    need clang++
+    make_file
+    "$acdf" export "$work/sky.acdf" --target c --tables "$work/tables.bin" -o "$work/exported.h"
+    cp "$here/kernel.cu" "$work"
+    local flags=(-std=c++17 -O2 -S -emit-llvm -nostdinc++ --cuda-device-only -Wno-unknown-cuda-version)
+    local cuda=(-x cuda --cuda-gpu-arch=sm_70 -nocudainc -nocudalib) hip=(-x hip --offload-arch=gfx906 -nogpuinc -nogpulib)
+    for language in cuda hip; do
+        local -n target=$language
+        clang++ "${flags[@]}" "${target[@]}" "$work/kernel.cu" -o "$work/kernel.ll"
+        grep -q 'define.*answer' "$work/kernel.ll" || { echo "$language: no kernel" >&2; exit 1; }
+        if grep -q '\bdouble\b' "$work/kernel.ll"; then
+            echo "$language: the kernel computes in doubles" >&2
+            exit 1
+        fi
+    done
+    echo "CUDA and HIP compile for devices, without doubles"
+}
+
 # A page in headless Chromium, whose GPU is software: it fetches what lies in $work and sends the answers back.
 on_browser() {
     need chromium
@@ -101,10 +122,11 @@ case $device in
 c) on_c ;;
 opencl) on_opencl ;;
 glslang) on_glslang ;;
+kernels) on_kernels ;;
 webgl) on_browser webgl glsl 4 ;;
 webgpu) on_browser webgpu wgsl 4 ;;
 *)
-    echo "usage: run.sh c|opencl|glslang|webgl|webgpu ACDF COMPARE MAKE_SKY COUNT" >&2
+    echo "usage: run.sh c|opencl|glslang|kernels|webgl|webgpu ACDF COMPARE MAKE_SKY COUNT" >&2
     exit 2
     ;;
 esac

@@ -1,0 +1,20 @@
+// The exported C in a kernel: compiled for devices by clang, with no toolkit but these lines.
+#define __CUDACC__ 1
+#define __host__ __attribute__((host))
+#define __device__ __attribute__((device))
+#define __global__ __attribute__((global))
+#pragma clang force_cuda_host_device begin
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+#pragma clang force_cuda_host_device end
+
+#include "exported.h"
+
+__global__ void answer(const uint32_t* tables, const uint32_t* words, const float* directions, float* out) {
+    const AcdfShaderSample s = acdf_sample(tables, words[0], words[1]);
+    out[0] = s.x + s.y + s.z;
+    out[1] = s.pdf + acdf_pdf(tables, s.x, s.y, s.z);
+    out[2] = acdf_pdf(tables, directions[0], directions[1], directions[2]);
+    out[3] = acdf_sample_float(tables, out[0], out[1]).pdf;
+}
