@@ -14,7 +14,7 @@ test -e "$build/web/package/acdf.wasm" || skip "the package was not built: no C+
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$here/../../docs/viewer/build.sh" "$build"
-cp "$build/web/viewer.html" "$here/viewer_test.html" "$work"
+cp "$build/web/viewer.html" "$here/viewer_test.html" "$here"/../golden/v1.0/{brdf,places}.acdf "$work"
 cd "$work"
 "$make_sky" sky.exr
 "$acdf" env sky.exr --budget 8KiB --compress zlib -o sky.acdf --quiet
