@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# path_tracer.sh BUILD: docs/figures/path_tracer.png, by docs/examples/path_tracer: 16 samples a pixel, light drawn from the
+# cosine, from `acdf env` and from `acdf local` times the surface's lobe.
+set -euo pipefail
+build=$(cd "$1" && pwd)
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cmake --install "$build" --prefix "$work/prefix" --component reader >/dev/null
+cmake -S "$root/docs/examples/path_tracer" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+cmake --build "$work/build" >/dev/null
+cd "$work"
+python3 "$root/tests/inputs/sky_pfm.py" 1024 sky.pfm
+"$build/tools/acdf" env sky.pfm --budget 16KiB -o environment.acdf --quiet
+"$build/tools/acdf" local sky.pfm --budget 64KiB -o product.acdf --quiet
+cp product.acdf cosine.acdf
+for sampler in cosine environment product; do
+    echo "$sampler: $(build/path_tracer $sampler $sampler.acdf sky.pfm $sampler.pfm 16 320)"
+done
+oiiotool cosine.pfm environment.pfm product.pfm --mosaic 3x1 --mulc 0.1 --clamp:min=0:max=1 --powc 0.4545 -d uint8 \
+    --attrib:type=string Software "" -o "$root/docs/figures/path_tracer.png"
