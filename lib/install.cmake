@@ -1,5 +1,6 @@
 # Installs the reader and the builder, components `reader` and, which needs the first, `builder`: headers, a static library
-# each, one CMake package and a pkg-config file each.
+# each, one CMake package and a pkg-config file each. Both as shared libraries: `runtime`, and what links to them, `shared`.
+# The program: `tools`, its pages and completions `manual`. The Python package: `python`.
 # Everything is relocatable: the prefix may be moved or staged after installation.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -75,7 +76,32 @@ if(TARGET acdf_builder)
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT builder)
 endif()
 
+if(ACDF_BUILD_SHARED)
+    set(shared acdf_reader_shared)
+    if(TARGET acdf_builder_shared)
+        list(APPEND shared acdf_builder_shared)
+    endif()
+    install(TARGETS ${shared} EXPORT acdfSharedTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT shared)
+    install(EXPORT acdfSharedTargets NAMESPACE acdf:: DESTINATION ${ACDF_CMAKE_DIR} COMPONENT shared)
+endif()
+
 if(TARGET acdf)
     install(TARGETS acdf RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
     install(TARGETS acdf_images_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/acdf COMPONENT tools)
+endif()
+
+# The Python package: where Debian's interpreter looks; in a wheel at its root.
+if(TARGET acdf_python)
+    set(python_folder ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages)
+    if(SKBUILD)
+        set(python_folder .)
+    endif()
+    install(TARGETS acdf_python LIBRARY DESTINATION ${python_folder}/acdf COMPONENT python)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/python/acdf DESTINATION ${python_folder} COMPONENT python
+        FILES_MATCHING PATTERN *.py PATTERN *.pyi PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+endif()
+
+if(NOT SKBUILD)
+    include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)
 endif()

@@ -39,6 +39,7 @@ void add_plot(CLI::App& program, int& exit_code);
 void add_export(CLI::App& program, int& exit_code);
 void add_scanline(CLI::App& program, int& exit_code);
 void add_sweep(CLI::App& program, int& exit_code);
+void add_completion(CLI::App& program, int& exit_code);
 void add_render(CLI::App& program, int& exit_code);
 
 /// The whole program, as main calls it and `demo` calls it in turn.

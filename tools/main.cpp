@@ -26,7 +26,8 @@ constexpr Command commands[] = {
     {"Start here", add_demo}, {"Make", add_env},         {"Make", add_local},       {"Make", add_brdf},
     {"Make", add_table},      {"Inspect", add_info},     {"Inspect", add_validate}, {"Inspect", add_measure},
     {"Inspect", add_plot},    {"Inspect", add_scanline}, {"Inspect", add_render},   {"Inspect", add_sweep},
-    {"Use", add_sample},      {"Use", add_pdf},          {"Use", add_export},       {"Make", add_batch},
+    {"Use", add_sample},      {"Use", add_pdf},          {"Use", add_export},       {"Use", add_completion},
+    {"Make", add_batch},
 };
 
 constexpr const char* description =
@@ -38,9 +39,10 @@ constexpr const char* footer =
     "Results go to stdout, messages to stderr; - stands for stdin or stdout.\n"
     "Exit codes: 0 done, 1 input or I/O error (one line on stderr), 2 wrong usage, 3 `validate` found faults";
 
+// Of libraries: those that it was compiled with.
 std::string version_text() {
     return "acdf " ACDF_VERSION "\nformat " + std::to_string(ACDF_VERSION_MAJOR) + "." +
-           std::to_string(ACDF_VERSION_MINOR);
+           std::to_string(ACDF_VERSION_MINOR) + "\n" ACDF_LIBRARIES;
 }
 
 // The name with which the user called what failed: "acdf", or "acdf info".
@@ -85,7 +87,8 @@ int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code
 int acdf::tools::run_program(int argc, char** argv) {
     CLI::App program(description, "acdf");
     program.formatter(std::make_shared<HelpFormatter>());
-    program.set_version_flag("--version", version_text, "The versions of this program and of the format it writes");
+    program.set_version_flag("--version", version_text,
+                             "The versions of this program, of the format it writes, and of its libraries");
     program.set_help_flag("-h,--help", "Show this help");
     program.require_subcommand(0, 1);
     program.footer(footer);

@@ -6,7 +6,7 @@ build=$(realpath "${1:-build/release}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-c++ -std=c++17 -O2 -ffp-contract=off -Iformat -Ilib/reader tests/bench/python_arrays.cpp "$build/lib/reader/libacdf.a" -lz \
+c++ -std=c++17 -O3 -DNDEBUG -ffp-contract=off -Iformat -Ilib/reader tests/bench/python_arrays.cpp "$build/lib/reader/libacdf.a" -lz \
     -o "$work/loops"
 export PYTHONPATH=$build/lib/python
 /usr/bin/python3 - "$work" <<'MAKE'

@@ -75,10 +75,36 @@ TEST_F(Commands, HelpOfTheProgramListsEveryCommand) {
         EXPECT_NE(result.out.find(std::string("\n  ") + name + " "), std::string::npos) << result.out;
 }
 
-TEST_F(Commands, VersionNamesProgramAndFormat) {
+TEST_F(Commands, VersionNamesProgramFormatAndLibraries) {
     const Result result = run_acdf({"--version"});
     EXPECT_EQ(result.code, 0);
-    EXPECT_EQ(result.out, "acdf " ACDF_VERSION "\nformat 1.0\n");
+    EXPECT_EQ(result.out.rfind("acdf " ACDF_VERSION "\nformat 1.0\n", 0), 0u) << result.out;
+    std::istringstream lines(result.out);
+    std::set<std::string> names;
+    for (std::string name, version; lines >> name >> version; names.insert(name))
+        EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(version[0]))) << name << " " << version;
+    for (const char* library : {"zlib", "oneTBB", "OpenSSL", "nlohmann-json", "CLI11", "assimp", "OpenImageIO"})
+        EXPECT_EQ(names.count(library), 1u) << library;
+}
+
+TEST_F(Commands, CompletionsKnowEveryCommandAndOption) {
+    const std::string bash = run_acdf({"completion", "bash"}).out, zsh = run_acdf({"completion", "zsh"}).out;
+    for (const std::string& name : command_names()) {
+        EXPECT_NE(bash.find("\n    " + name + ") options='"), std::string::npos) << name;
+        EXPECT_NE(zsh.find("\n            '" + name + ":"), std::string::npos) << name;
+        std::istringstream help(run_acdf({name, "--help"}).out);
+        const std::size_t begin = bash.find("\n    " + name + ") "), end = bash.find('\n', begin + 1);
+        const std::string known = bash.substr(begin, end - begin);
+        int options = 0;
+        for (std::string line; std::getline(help, line);) { // "  -o,--output FILE ..."
+            if (line.rfind("  -", 0) != 0) continue;
+            std::istringstream spellings(line.substr(2, line.find(' ', 2) - 2));
+            for (std::string option; std::getline(spellings, option, ','); ++options)
+                EXPECT_NE((known + " ").find(option), std::string::npos) << name << " " << option;
+        }
+        EXPECT_GE(options, 2) << name;
+    }
+    expect_one_line_error(run_acdf({"completion", "fish"}), 2, "fish");
 }
 
 TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {

@@ -39,7 +39,7 @@ std::string HelpFormatter::make_description(const CLI::App* app) const {
 
 std::string HelpFormatter::make_subcommand(const CLI::App* app) const {
     std::stringstream out;
-    CLI::detail::format_help(out, app->get_name(), first_line(app->get_description()), 12);
+    CLI::detail::format_help(out, app->get_name(), first_line(app->get_description()), 13);
     return out.str();
 }
 
