@@ -18,7 +18,7 @@ struct Loaded {
 
 // Keeps the bytes beside the file that uses them.
 inline std::unique_ptr<Loaded> loaded(EnvironmentSpec spec) {
-    auto out = std::unique_ptr<Loaded>(new Loaded{spec.encode(), {}, acdf::EnvironmentView({})});
+    auto out = std::unique_ptr<Loaded>(new Loaded{spec.encode(), {}, acdf::EnvironmentView()});
     const acdf::Status status = acdf::File::from_memory(out->bytes.data(), out->bytes.size(), out->file);
     EXPECT_TRUE(status.ok()) << status.message;
     if (status.ok()) out->view = out->file.environment();
