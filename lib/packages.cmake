@@ -6,7 +6,7 @@ set(maintainer "the acdf authors <acdf@packages.invalid>")
 # ---- pages and completions ----
 
 find_program(ACDF_HELP2MAN help2man)
-if(TARGET acdf AND ACDF_HELP2MAN)
+if(TARGET acdf AND ACDF_HELP2MAN AND NOT ACDF_SANITIZE)
     set(manual ${PROJECT_BINARY_DIR}/manual)
     add_custom_command(OUTPUT ${manual}/acdf.1.gz
         COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/manual.sh $<TARGET_FILE:acdf> ${manual}

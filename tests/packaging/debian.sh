@@ -25,6 +25,10 @@ grep -q 'Depends:.*libtbb12' python3-acdf.info
 grep -q 'Depends:.*libacdf0 (= ' libacdf-dev.info
 grep -q 'Depends:.*zlib1g' libacdf0.info
 
+# apt would install them: all that they depend on is there.
+apt-get install --simulate --no-install-recommends ./*.deb >apt.log 2>&1 || { cat apt.log; exit 1; }
+grep -q '^Inst python3-acdf' apt.log
+
 if command -v lintian >/dev/null; then
     # Left out: no bug of Debian's is closed by a first version; libraries lie in /usr/lib, which one architecture can have;
     # CPack calls ldconfig itself, beside the trigger.
