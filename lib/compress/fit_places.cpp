@@ -18,9 +18,9 @@ namespace {
 /// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/places.md).
 constexpr std::uint32_t kColumns = 127;
 /// How far cells are mixed, of the smaller one at their border.
-constexpr double kBlend = 0.1;
+constexpr double kBlend = 0.4;
 /// Points of a cell, in the mean; rounds in which they are found; and candidates for each.
-constexpr std::size_t kPointsOfCell = 40;
+constexpr std::size_t kPointsOfCell = 80;
 constexpr std::uint32_t kRounds = 3;
 constexpr std::uint64_t kCandidates = 24;
 /// Around the points: light is gathered next to them, too.

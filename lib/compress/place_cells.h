@@ -31,7 +31,6 @@ struct PlaceSums {
 struct PlaceCaution {
     double floor = 0.02; ///< the least factor: such a share of the samples goes where the normal alone sends them
     double prior = 1.0;  ///< points that the factors of the cell around count as
-    double around = 0.0; ///< what points around the cell count, each
 };
 
 /// What rows are to multiply the light of a part with: the root of the share that arrives, which is best where
@@ -57,18 +56,6 @@ public:
     const std::vector<float>& prior(std::uint32_t cell) const {
         return nodes_[nodes_[node_of_cell_[cell]].parent].factors;
     }
-    /// Calls visit(point) for all points that lie in a cell or, on each axis, within `reach` of its extents of it.
-    template <class Visit>
-    void for_each_around(std::uint32_t cell, float reach, const Visit& visit) const {
-        const Node& own = nodes_[node_of_cell_[cell]];
-        Box low = own.low, high = own.high;
-        for (std::size_t k = 0; k < axes; ++k) {
-            const float margin = reach * (high[k] - low[k]);
-            low[k] -= margin;
-            high[k] += margin;
-        }
-        visit_box(0, low, high, visit);
-    }
 
 private:
     struct Node {
@@ -90,26 +77,6 @@ private:
     void divide(std::uint32_t index);
     void number(std::uint32_t node);
     double thinnest(std::uint32_t node, std::uint32_t axis, bool at_low) const;
-
-    template <class Visit>
-    void visit_box(std::uint32_t index, const Box& low, const Box& high, const Visit& visit) const {
-        const Node& node = nodes_[index];
-        for (std::size_t k = 0; k < axes; ++k)
-            if (node.high[k] < low[k] || node.low[k] > high[k]) return;
-        if (node.first_child != 0) {
-            visit_box(node.first_child, low, high, visit);
-            visit_box(node.first_child + 1, low, high, visit);
-            return;
-        }
-        for (std::uint32_t i = node.begin; i < node.end; ++i) {
-            bool inside = true;
-            for (std::size_t k = 0; k < axes; ++k) {
-                const float x = points_[order_[i]].coordinate(k);
-                inside = inside && x >= low[k] && x <= high[k];
-            }
-            if (inside) visit(order_[i]);
-        }
-    }
 
     const PlaceLight& light_;
     const std::vector<PlacePoint>& points_;

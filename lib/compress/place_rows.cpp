@@ -9,8 +9,6 @@
 namespace acdf::compress {
 namespace {
 
-/// How far around a cell points count, of its extents.
-constexpr float kReach = 0.5f;
 /// One of so many points is asked how well the others serve it.
 constexpr std::size_t kEach = 8;
 
@@ -22,8 +20,8 @@ struct Share {
 
 /// Sums of all cells, points near a border in those on both sides of it, as readers mix them.
 struct CellSums {
-    std::vector<PlaceSums> own, around; ///< around: what of the weights of points in reach is not the cell's own
-    std::vector<Share> shares;
+    std::vector<PlaceSums> of;
+    std::vector<Share> shares; ///< those of a cell together
 };
 
 std::vector<Share> shares_of(const CellNumbers& numbers, const std::vector<PlacePoint>& points) {
@@ -36,18 +34,14 @@ std::vector<Share> shares_of(const CellNumbers& numbers, const std::vector<Place
 
 CellSums cell_sums(const PlaceCells& tree, const CellNumbers& numbers, const PlaceLight& light,
                    const std::vector<PlacePoint>& points) {
-    CellSums out{std::vector<PlaceSums>(tree.cell_count(), PlaceSums(light.parts)), {}, shares_of(numbers, points)};
-    out.around = out.own;
+    CellSums out{std::vector<PlaceSums>(tree.cell_count(), PlaceSums(light.parts)), shares_of(numbers, points)};
     const auto first_of = [&](std::uint32_t cell) {
         return std::lower_bound(out.shares.begin(), out.shares.end(), cell,
                                 [](const Share& s, std::uint32_t c) { return s.cell < c; });
     };
     tbb::parallel_for(0u, tree.cell_count(), [&](std::uint32_t cell) {
-        tree.for_each_around(cell, kReach, [&](std::uint32_t i) { out.around[cell].add(light, i, 1.0); });
-        for (auto s = first_of(cell); s != out.shares.end() && s->cell == cell; ++s) {
-            out.own[cell].add(light, s->point, s->weight);
-            out.around[cell].add(light, s->point, -s->weight);
-        }
+        for (auto s = first_of(cell); s != out.shares.end() && s->cell == cell; ++s)
+            out.of[cell].add(light, s->point, s->weight);
     });
     return out;
 }
@@ -57,7 +51,7 @@ CellSums cell_sums(const PlaceCells& tree, const CellNumbers& numbers, const Pla
 void rescale_by_cells(PlaceLight& light, const CellSums& sums) {
     std::vector<double> arrives(light.points(), 0.0);
     for (const Share& share : sums.shares) {
-        const PlaceSums& cell = sums.own[share.cell];
+        const PlaceSums& cell = sums.of[share.cell];
         double sum = 0.0;
         for (std::size_t p = 0; p < light.parts; ++p)
             if (cell.all[p] > 0.0) sum += light.all(share.point, p) * (cell.seen[p] / cell.all[p]);
@@ -65,17 +59,6 @@ void rescale_by_cells(PlaceLight& light, const CellSums& sums) {
     }
     for (std::size_t i = 0; i < arrives.size(); ++i)
         if (light.scale[i] > 0.0) light.rescale(i, arrives[i] / light.scale[i]);
-}
-
-/// The factor of a part with all that is believed of it; `weight` of a point is left out that is given `all`.
-double factor_without(const CellSums& sums, std::uint32_t cell, std::size_t p, double weight, double all,
-                      double seen, double prior, const PlaceCaution& caution) {
-    const PlaceSums& own = sums.own[cell];
-    const PlaceSums& around = sums.around[cell];
-    const double a = caution.around, left = weight > 0.0 ? weight + a * (1.0 - weight) : 0.0;
-    return place_factor(std::max(own.all[p] + a * around.all[p] - left * all, 0.0),
-                        std::max(own.seen[p] + a * around.seen[p] - left * seen, 0.0),
-                        std::max(own.points + a * around.points - left, 0.5), prior, caution);
 }
 
 /// The second moment of points, each by what the others of its cells tell.
@@ -86,13 +69,15 @@ double moment_of_others(const CellSums& sums, const PlaceCells& tree, const Plac
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const Share& share = sums.shares[i];
             if (share.point % kEach != 0) continue;
+            const PlaceSums& cell = sums.of[share.cell];
             const std::vector<float>& prior = tree.prior(share.cell);
             double arrives = 0.0, drawn = 0.0;
             for (std::size_t p = 0; p < light.parts; ++p) {
                 const double all = light.all(share.point, p), seen = light.seen(share.point, p);
                 if (!(all > 0.0)) continue;
-                const double factor =
-                    factor_without(sums, share.cell, p, share.weight, all, seen, double{prior[p]}, caution);
+                const double factor = place_factor(std::max(cell.all[p] - share.weight * all, 0.0),
+                                                   std::max(cell.seen[p] - share.weight * seen, 0.0),
+                                                   cell.points - share.weight, double{prior[p]}, caution);
                 arrives += seen / factor;
                 drawn += all * factor;
             }
@@ -108,14 +93,13 @@ PlaceCaution best_caution(const CellSums& sums, const PlaceCells& tree, const Pl
     PlaceCaution best;
     double least = -1.0;
     for (const double floor : {0.001, 0.003, 0.01, 0.03, 0.1})
-        for (const double prior : {0.1, 0.5, 2.0})
-            for (const double around : {0.0, 0.03, 0.1, 0.3}) {
-                const PlaceCaution caution{floor, prior, around};
-                const double moment = moment_of_others(sums, tree, light, caution);
-                if (least >= 0.0 && moment >= least) continue;
-                least = moment;
-                best = caution;
-            }
+        for (const double prior : {0.5, 1.0, 2.0}) {
+            const PlaceCaution caution{floor, prior};
+            const double moment = moment_of_others(sums, tree, light, caution);
+            if (least >= 0.0 && moment >= least) continue;
+            least = moment;
+            best = caution;
+        }
     return best;
 }
 
@@ -144,12 +128,12 @@ PlaceRows place_rows(const PlaceCells& tree, const CellNumbers& numbers, PlaceLi
     const std::size_t size = std::size_t{tree.cell_count()} * light.parts;
     PlaceRows out{std::vector<float>(size), std::vector<float>(size)};
     tbb::parallel_for(0u, tree.cell_count(), [&](std::uint32_t cell) {
+        const PlaceSums& known = sums.of[cell];
         for (std::size_t p = 0; p < light.parts; ++p) {
             const std::size_t i = cell * light.parts + p;
-            out.all[i] = static_cast<float>(sums.own[cell].all[p] +
-                                            caution.around * std::max(sums.around[cell].all[p], 0.0));
+            out.all[i] = static_cast<float>(known.all[p]);
             out.factors[i] = static_cast<float>(
-                factor_without(sums, cell, p, 0.0, 0.0, 0.0, double{tree.prior(cell)[p]}, caution));
+                place_factor(known.all[p], known.seen[p], known.points, double{tree.prior(cell)[p]}, caution));
         }
     });
     return out;

@@ -1,4 +1,4 @@
-// What rows of places hold: how much is believed of the points of a cell, and of those around it.
+// What rows of places hold: how much is believed of the points of a cell.
 #pragma once
 
 #include "compress/place_cells.h"

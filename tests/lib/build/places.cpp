@@ -61,8 +61,13 @@ struct Wall {
 
 /// The floor from -4 to 4, and the wall's two sides.
 bool point_of(std::uint64_t index, PlacePoint& point) {
-    std::mt19937_64 random(index);
-    const auto u = [&] { return float(double(random() >> 11) * 0x1p-53); };
+    std::uint64_t state = index; // SplitMix64 (Steele et al. 2014)
+    const auto u = [&] {
+        std::uint64_t z = state += 0x9E3779B97F4A7C15u;
+        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+        return float(double((z ^ z >> 31) >> 11) * 0x1p-53);
+    };
     const float a = u(), b = u();
     if (index % 4 != 0) {
         point = {{8.0f * a - 4.0f, 8.0f * b - 4.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
