@@ -5,6 +5,7 @@
 #include "input/npy.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
+#include "tools/cli/company_options.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -30,7 +31,7 @@ namespace acdf::tools {
 namespace {
 
 struct TableArguments {
-    std::string array, output;
+    std::string array, other, output;
     std::vector<std::string> ranges;
     std::string budget;
     input::NpyOptions input;
@@ -89,22 +90,41 @@ nlohmann::ordered_json report(const TableArguments& options, const input::NpyArr
                               const builder::Table& result) {
     const builder::TableAccuracy& a = result.accuracy;
     const input::BadValues& bad = array.bad;
-    return {{"file", options.output},
-            {"source", options.array},
-            {"shape", array.shape},
-            {"indexed", options.table.indexed},
-            {"bad_values", {{"nan", bad.nan}, {"infinite", bad.infinite}, {"negative", bad.negative}}},
-            {"bytes", result.bytes.size()},
-            {"bins", bins},
-            {"bins_with_energy", a.lit_bins},
-            {"cells", a.cells},
-            {"total", result.total},
-            {"relative_variance", a.relative_variance},
-            {"relative_variance_median", a.median},
-            {"relative_variance_worst", a.worst},
-            {"kl_divergence", a.kl_divergence},
-            {"max_weight", a.max_weight},
-            {"support_violations", a.support_violations}};
+    nlohmann::ordered_json out{
+        {"file", options.output},
+        {"source", options.array},
+        {"shape", array.shape},
+        {"indexed", options.table.indexed},
+        {"bad_values", {{"nan", bad.nan}, {"infinite", bad.infinite}, {"negative", bad.negative}}},
+        {"bytes", result.bytes.size()},
+        {"bins", bins},
+        {"bins_with_energy", a.lit_bins},
+        {"cells", a.cells},
+        {"total", result.total},
+        {"relative_variance", a.relative_variance},
+        {"relative_variance_median", a.median},
+        {"relative_variance_worst", a.worst},
+        {"kl_divergence", a.kl_divergence},
+        {"max_weight", a.max_weight},
+        {"support_violations", a.support_violations}};
+    if (a.combined) out["combined"] = true; // of the file and its company
+    return out;
+}
+
+/// The table that is the company, as `table` refers to it.
+input::NpyArray read_other(TableArguments& options) {
+    for (const char* option : {"--shares", "--heuristic"})
+        if (options.other.empty() && options.given(option))
+            throw CLI::ValidationError(option, "is for files with a company (--with)");
+    if (options.other.empty()) return {};
+    for (const char* option : {"--max-weight", "--target-variance"})
+        if (options.given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+    input::NpyArray other = input::read_npy(options.other, options.input);
+    options.table.company.kind = ACDF_COMPANY_TABLE;
+    options.table.other = {other.values.data(), builder::Number::float32, other.shape, {}};
+    options.table.other_source.name = input::file_name(options.other);
+    options.table.other_source.sha256 = input::file_sha256(options.other);
+    return other;
 }
 
 builder::Table build(TableArguments& options, const input::NpyArray& array) {
@@ -119,9 +139,12 @@ builder::Table build(TableArguments& options, const input::NpyArray& array) {
 void run(TableArguments& options) {
     read_goal(*options.command, options.budget, options.table.goal);
     const auto limit = limit_threads(options.threads);
-    Output output(options.output, options.force, {options.array}); // refuses early, before the work
+    Output output(options.output, options.force, {options.array, options.other}); // refuses early, before the work
     const input::NpyArray array = input::read_npy(options.array, options.input);
     remark(options, array);
+    const input::NpyArray other = read_other(options);
+    if (!options.other.empty() && other.shape != array.shape)
+        throw Failure(options.other + ": its shape is not that of " + options.array);
     set_ranges(options, array.shape);
     const builder::Table result = build(options, array);
     output.write(result.bytes.data(), result.bytes.size());
@@ -133,12 +156,15 @@ void run(TableArguments& options) {
     const builder::TableAccuracy& a = result.accuracy;
     if (options.json) std::fputs(json_text(report(options, array, bins, result)).c_str(), out);
     else if (!options.quiet && bins == 1)
-        std::fprintf(out, "%s: %s, %" PRIu64 " cells, relative variance %.4g\n", printable(options.output).c_str(),
-                     to_readable_size(result.bytes.size()).c_str(), a.cells, a.relative_variance);
+        std::fprintf(out, "%s: %s, %" PRIu64 " cells, %srelative variance %.4g%s\n",
+                     printable(options.output).c_str(), to_readable_size(result.bytes.size()).c_str(), a.cells,
+                     a.combined ? "with its company " : "", a.relative_variance,
+                     a.combined ? " a sample; not to be used alone" : "");
     else if (!options.quiet)
-        std::fprintf(out, "%s: %s, %zu bins, %" PRIu64 " cells, relative variance %.4g (mean; worst %.4g)\n",
+        std::fprintf(out, "%s: %s, %zu bins, %" PRIu64 " cells, %srelative variance %.4g (mean; worst %.4g)%s\n",
                      printable(options.output).c_str(), to_readable_size(result.bytes.size()).c_str(), bins,
-                     a.cells, a.relative_variance, a.worst);
+                     a.cells, a.combined ? "with its company " : "", a.relative_variance, a.worst,
+                     a.combined ? "; not to be used alone" : "");
 }
 
 void add_axis_options(CLI::App& command, TableArguments& options) {
@@ -186,6 +212,19 @@ void add_size_options(CLI::App& command, TableArguments& options) {
         ->group("Size and accuracy");
 }
 
+void add_company_options(CLI::App& command, TableArguments& options) {
+    command
+        .add_option(
+            "--with", options.other,
+            "Another table of the same shape, which your renderer also draws from, weighing both by multiple "
+            "importance sampling: within each bin its numbers are its density. Where that is enough the "
+            "density of the file is 0: never use such a file alone")
+        ->type_name("")
+        ->option_text("OTHER.npy")
+        ->group("Company");
+    add_weighing(command, options.table.company);
+}
+
 } // namespace
 
 void add_table(CLI::App& program, int& exit_code) {
@@ -201,6 +240,7 @@ void add_table(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_axis_options(command, *options);
     add_size_options(command, *options);
+    add_company_options(command, *options);
     add_output(command, options->output, options->force, "The .acdf file to write")->required();
     add_codec(command, options->table.codec);
     add_threads(command, options->threads);

@@ -10,7 +10,7 @@ data=$(cd "${1:?usage: docs/make/accuracy.sh DATA [SECTION...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 results=${RESULTS:-$root/build/accuracy}
-sections=(e1 e1_fits e1_sizes e1_options e1_ratio e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden rivals building summary)
+sections=(e1 e1_fits e1_sizes e1_options e1_ratio e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden company company_exact company_draws rivals building summary)
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
@@ -102,15 +102,16 @@ e6_plastic() { render e6-plastic e6-plastic 24x24; }
 e7_samplers=('mis(local:1MB,brdf:64KiB)' 'product(local:1MB,brdf:64KiB)' 'mis(compensated,brdf:64KiB)'
     'mis(tiles:12x12(brdf:64KiB),brdf:64KiB)' 'ris:8(local:1MB,brdf:64KiB)' 'ris:32(local:1MB,brdf:64KiB)')
 
-# products SAMPLES SCENE...: one table, a column a scene
-products() {
-    local samples=$1 scene options=() reports=() sampler
-    shift
-    for sampler in "${e7_samplers[@]}"; do options+=(--sampler "$sampler"); done
+# scenes NAME SIZE SAMPLES SCENE...: one table of the samplers NAME_samplers, a column a scene
+scenes() {
+    local -n samplers=$1_samplers
+    local name=$1 size=$2 samples=$3 scene options=() reports=() sampler
+    shift 3
+    for sampler in "${samplers[@]}"; do options+=(--sampler "$sampler"); done
     for scene in "$@"; do
-        "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size 16x16 --samples "$samples" \
-            "${options[@]}" -o "$results/$scene-$samples" --force --quiet --json > "$results/e7-$scene-$samples.json"
-        reports+=("$results/e7-$scene-$samples.json")
+        "$acdf" render --scene "$root/tools/render/scenes/$scene.json" --data "$data" --size "$size" --samples "$samples" \
+            "${options[@]}" -o "$results/$name-$scene-$samples" --force --quiet --json > "$results/$name-$scene-$samples.json"
+        reports+=("$results/$name-$scene-$samples.json")
     done
     echo "| $samples samples a pixel | $(printf '%s | ' "$@")geometric mean | bias, standard errors |"
     echo "|---|$(printf -- '---|%.0s' "$@")---|---|"
@@ -119,10 +120,10 @@ products() {
         "| `\($s[0].sampler)` | \($s | map("\(.equal_samples_gain.value | sig) / \(.equal_time_gain.value | sig)") | join(" | ")) | \([$s[].equal_samples_gain.value] | mean | sig) / \([$s[].equal_time_gain.value] | mean | sig) | \([$s[].bias_standard_errors | fabs] | max | sig) |"' \
         "${reports[@]}"
 }
-e7_100() { products 100 e6-cook-torrance e6-nickel e6-plastic; }
-e7_16() { products 16 e6-cook-torrance e6-nickel e6-plastic; }
-e7_4() { products 4 e6-cook-torrance e6-nickel e6-plastic; }
-e7_hidden() { products 16 e7-hidden; }
+e7_100() { scenes e7 16x16 100 e6-cook-torrance e6-nickel e6-plastic; }
+e7_16() { scenes e7 16x16 16 e6-cook-torrance e6-nickel e6-plastic; }
+e7_4() { scenes e7 16x16 4 e6-cook-torrance e6-nickel e6-plastic; }
+e7_hidden() { scenes e7 16x16 16 e7-hidden; }
 
 hidden() {
     render hidden-grace hidden-grace 32x24
@@ -134,6 +135,15 @@ hidden() {
     jq -r "$jq_lib"' .nothing_hidden.samplers[] | "| `\(.sampler)` | \(told(.relative_variance)) | \(told(.equal_samples_gain)) | \(told(.equal_time_gain)) |"' \
         "$results/hidden-grace.json"
 }
+
+# ---- files for a company ----------------------------------------------------------------------------------------
+
+company_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
+    'mis(local:1MB,cosine)' 'mis(4*local:1MB,cosine)' 'mis(env:64KiB --with cosine --scene,cosine)'
+    'mis(local:1MB --with cosine,cosine)' 'mis(auto:local:1MB --with cosine,cosine)')
+company() { scenes company 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
+company_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/company_exact.py" "$data"; }
+company_draws() { ACDF=$acdf "$root/docs/make/company_tables.sh" "$data" 12x9 24; }
 
 # ---- rivals on the light itself -----------------------------------------------------------------------------------
 

@@ -6,10 +6,17 @@
 #include <acdf/layout.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
 namespace acdf::build {
+
+/// The shares of a file that may be recommended: steps of 1/32, neither none nor all.
+constexpr std::size_t recommendable_shares = 31;
+inline double recommendable_share(std::size_t k) {
+    return (double(k) + 1.0) / (double(recommendable_shares) + 1.0);
+}
 
 /// Sums over texels of one integrand f, for densities p of the file and b of its company. Of N samples a `share` is
 /// drawn from the file, the others from the company.

@@ -12,8 +12,7 @@
 namespace acdf::build {
 namespace {
 
-constexpr std::size_t kShares = 31; // shares that may be recommended
-constexpr std::size_t kGuess = 8;   // every so manieth normal guesses which it is
+constexpr std::size_t kGuess = 8; // every so manieth normal guesses which it is
 
 /// sr^-1, of each texel.
 std::vector<double> densities(const File& file, const compress::Target& target) {
@@ -47,16 +46,17 @@ public:
         return out;
     }
 
-    /// Second moments of the integrand of a normal by the balance heuristic, with `Count` shares from share(first)
-    /// on.
+    /// Second moments of the integrand of a normal by the balance heuristic, with `Count` shares from number
+    /// `first` on.
     template <std::size_t Count>
     std::array<double, Count> second_moments(const Normal& n, std::size_t first) const {
-        std::array<double, Count> out{};
+        std::array<double, Count> out{}, share{};
+        for (std::size_t k = 0; k < Count; ++k) share[k] = recommendable_share(first + k);
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
             std::array<double, Count> row{};
             for_each_lit(n, r, [&](double f, double omega, double p, double b) {
                 for (std::size_t k = 0; k < Count; ++k)
-                    row[k] += f / (share(first + k) * p + (1.0 - share(first + k)) * b) * f * omega;
+                    row[k] += f / (share[k] * p + (1.0 - share[k]) * b) * f * omega;
             });
             for (std::size_t k = 0; k < Count; ++k) out[k] += row[k];
         }
@@ -69,8 +69,6 @@ public:
             for_each_lit(n, r, [&](double f, double omega, double, double) { sum += f * omega; });
         return sum;
     }
-
-    static double share(std::size_t k) { return (double(k) + 1.0) / (double(kShares) + 1.0); }
 
 private:
     template <class Visit>
@@ -140,11 +138,11 @@ double recommended_share(const File& file, const compress::Target& target, const
                       [&](std::size_t i) { irradiance[i] = measure.irradiance(normals[i]); });
     if (std::none_of(irradiance.begin(), irradiance.end(), [](double e) { return e > 0.0; })) return 1.0;
     // The sum is convex: a share with less than both beside it has the least of all. A few normals guess which.
-    std::size_t best = least(sum_moments<kShares>(measure, normals, irradiance, kGuess, 0));
+    std::size_t best = least(sum_moments<recommendable_shares>(measure, normals, irradiance, kGuess, 0));
     for (;;) {
-        const std::size_t first = std::clamp<std::size_t>(best, 1, kShares - 2) - 1;
+        const std::size_t first = std::clamp<std::size_t>(best, 1, recommendable_shares - 2) - 1;
         const std::size_t found = first + least(sum_moments<3>(measure, normals, irradiance, 1, first));
-        if (found == best) return Measure::share(best);
+        if (found == best) return recommendable_share(best);
         best = found;
     }
 }

@@ -1,6 +1,8 @@
 #include "build/table.h"
 
+#include "build/company_text.h"
 #include "build/errors.h"
+#include "build/table_company.h"
 #include "compress/fit_tree.h"
 #include "compress/sum.h"
 
@@ -116,6 +118,8 @@ std::string option_text(const TableOptions& options) {
     else if (goal.kind == compress::Goal::Kind::variance) text += "--target-variance " + number(goal.variance);
     else text += "--cells " + std::to_string(options.cells);
     if (options.fit.max_weight > 0.0) text += " --max-weight " + number(options.fit.max_weight);
+    if (options.company) text += " " + company_text(options.company);
+    if (text.back() == ' ') text.pop_back();
     return text;
 }
 
@@ -123,22 +127,45 @@ compress::Metadata metadata(const std::string& name, const std::string& sha256, 
                             const TableAccuracy& accuracy) {
     // A fixed width: what accuracy is reached must not change the size that a budget is compared with.
     const auto fixed = [](double value) { return number(std::clamp(value, 0.0, 9.99e99), "%.8e"); };
-    return {{"tool", "acdf " ACDF_VERSION},
-            {"fit.options", option_text(options)},
-            {"source.name", name},
-            {"source.sha256", sha256},
-            {"accuracy.relative_variance", fixed(accuracy.relative_variance)},
-            {"accuracy.relative_variance_median", fixed(accuracy.median)},
-            {"accuracy.relative_variance_worst", fixed(accuracy.worst)},
-            {"accuracy.kl_divergence", fixed(accuracy.kl_divergence)},
-            {"accuracy.max_weight", fixed(accuracy.max_weight)}};
+    compress::Metadata out{{"tool", "acdf " ACDF_VERSION},
+                           {"fit.options", option_text(options)},
+                           {"source.name", name},
+                           {"source.sha256", sha256},
+                           {"accuracy.relative_variance", fixed(accuracy.relative_variance)},
+                           {"accuracy.relative_variance_median", fixed(accuracy.median)},
+                           {"accuracy.relative_variance_worst", fixed(accuracy.worst)},
+                           {"accuracy.kl_divergence", fixed(accuracy.kl_divergence)},
+                           {"accuracy.max_weight", fixed(accuracy.max_weight)}};
+    if (options.company) {
+        out.push_back({"company.name", options.other_name});
+        out.push_back({"company.sha256", options.other_sha256});
+    }
+    return out;
 }
 
-TableAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const std::vector<compress::Grid>& bins) {
+File open_made(const std::vector<std::uint8_t>& bytes) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
-    return summary(measure_bins(file, bins));
+    return file;
+}
+
+/// `shares`: those to recommend, one a bin.
+compress::Chunk company_of(const compress::Company& company, const std::vector<float>& shares) {
+    std::vector<AcdfCompanyRecord> records;
+    double sum = 0.0;
+    for (const float share : shares) {
+        records.push_back({share, 0.0f});
+        sum += static_cast<double>(share);
+    }
+    return compress::company_chunk(company, static_cast<float>(sum / double(shares.size())), records);
+}
+
+/// The bins of the company. Throws OptionError.
+std::vector<compress::Grid> other_grids(const Array& array, const TableOptions& options) {
+    if (!options.company) return {};
+    if (options.other->shape != array.shape) throw OptionError("the company of a table has another shape");
+    return table_grids(*options.other, options.indexed);
 }
 
 } // namespace
@@ -166,6 +193,7 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     description.parameterization = ACDF_PARAM_TABLE;
     description.axes = describe_axes(array.shape, options);
     const std::vector<compress::Grid> bins = table_grids(array, options.indexed);
+    const std::vector<compress::Grid> others = other_grids(array, options);
     const std::vector<double> energy = integrals(bins);
     if (!(energy.back() > 0.0)) throw NoEnergy("all its numbers are 0, so there is nothing to sample");
     Table out;
@@ -188,8 +216,14 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     options.fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };
-    const compress::EncodedTree tree = compress::fit_trees(bins, options.fit).tree;
-    out.accuracy = measure_bytes(compress::store(tree, description), bins);
+    if (options.company) description.chunks = {company_of(options.company, std::vector<float>(bins.size(), 0.5f))};
+    const TableCompany beside(bins, others, options.company);
+    const compress::EncodedTree tree = compress::fit_trees(beside.bins(), options.fit).tree;
+    const std::vector<std::uint8_t> bytes = compress::store(tree, description);
+    const File file = open_made(bytes);
+    out.accuracy = summary(options.company ? measure_bins_beside(file, bins, others) : measure_bins(file, bins));
+    out.accuracy.combined = static_cast<bool>(options.company);
+    if (options.company) description.chunks = {company_of(options.company, recommended_shares(file, bins, others))};
     description.metadata = metadata(source_name, source_sha256, options, out.accuracy);
     out.bytes = compress::store(tree, description, options.codec);
     if (progress) progress(1.0, "measuring");

@@ -140,6 +140,14 @@ BinAccuracy measure_bin(const File& file, std::uint32_t index, const Grid& grid)
     return a;
 }
 
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.size() % 2 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+} // namespace
+
 void check_shapes(const File& file, const std::vector<Grid>& bins) {
     const std::uint32_t axes = file.description().axis_count;
     if (bins.size() != file.description().bin_count) throw std::invalid_argument("another number of bins");
@@ -148,14 +156,6 @@ void check_shapes(const File& file, const std::vector<Grid>& bins) {
             if (grid.axes[axis] >= axes || file.axis(grid.axes[axis]).resolution != grid.shape[axis])
                 throw std::invalid_argument("the file was made from another resolution");
 }
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return values.size() % 2 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-} // namespace
 
 std::vector<BinAccuracy> measure_bins(const File& file, const std::vector<Grid>& bins) {
     check_shapes(file, bins);

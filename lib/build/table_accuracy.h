@@ -29,6 +29,8 @@ using TableAccuracy = builder::TableAccuracy;
 /// their values and of their measures matter. Throws std::invalid_argument where shapes differ, the file has tilted
 /// curves or nothing has energy. The same for any number of threads.
 std::vector<BinAccuracy> measure_bins(const File& file, const std::vector<compress::Grid>& bins);
+/// Throws std::invalid_argument where shapes differ.
+void check_shapes(const File& file, const std::vector<compress::Grid>& bins);
 TableAccuracy summary(const std::vector<BinAccuracy>& bins);
 
 } // namespace acdf::build

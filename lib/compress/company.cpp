@@ -75,6 +75,11 @@ double weight_fall(double a, double b, AcdfHeuristic heuristic) {
     return 2.0 * x * y * y / (squares * squares) / most;
 }
 
+Left left_to_company(double g, double threshold) {
+    const double left = threshold > 0.0 ? std::min(g * (g / threshold), 3e38) : g > 0.0 ? 3e38 : 0.0;
+    return {static_cast<float>(left), static_cast<float>(cell_cost(g, left))};
+}
+
 std::size_t falling_hull(const double* y, const double* cost, std::size_t count, HullPoint* out) {
     const auto slope = [&](const HullPoint& a, std::size_t k) { return (a.cost - cost[k]) / (y[k] - a.y); };
     std::size_t last = 0;

@@ -38,6 +38,13 @@ double weight_of_company(double a, double b, AcdfHeuristic heuristic);
 double moment_fall(double a, double b, AcdfHeuristic heuristic);
 double weight_fall(double a, double b, AcdfHeuristic heuristic);
 
+/// What light g costs, per measure, that the company covers up to a threshold: if it is left to the company (D),
+/// and at best. In range of float.
+struct Left {
+    float left, least;
+};
+Left left_to_company(double g, double threshold);
+
 /// A point of a hull, and how steeply it falls from there to the next; 0 for the last.
 struct HullPoint {
     double y, cost, slope;

@@ -17,6 +17,12 @@ std::array<double, NoiseCurve::nodes> all_nodes() {
 }
 const std::array<double, NoiseCurve::nodes> kNodes = all_nodes();
 
+double dot(const NoiseKernel::Histogram& a, const NoiseKernel::Histogram& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+}
+
 } // namespace
 
 double NoiseCurve::y(std::size_t node) { return kNodes[node]; }
@@ -68,20 +74,18 @@ NoiseKernel::NoiseKernel(const Lobes& lobes, AcdfHeuristic heuristic) {
         }
 }
 
-NoiseCurve NoiseKernel::curve(const Histogram& square, const Histogram& mean) const {
-    const auto dot = [](const Histogram& a, const Histogram& b) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i <= cosines; ++i) sum += a[i] * b[i];
-        return sum;
-    };
-    NoiseCurve out;
+void NoiseKernel::set_squares(const Histogram& weights, NoiseCurve& curve) const {
     for (std::size_t k = 0; k < NoiseCurve::nodes; ++k) {
-        out.square[k] = dot(square, square_[k]);
-        out.mean[k] = dot(mean, mean_[k]);
-        out.square_fall[k] = dot(square, square_fall_[k]);
-        out.mean_fall[k] = dot(mean, mean_fall_[k]);
+        curve.square[k] = dot(weights, square_[k]);
+        curve.square_fall[k] = dot(weights, square_fall_[k]);
     }
-    return out;
+}
+
+void NoiseKernel::set_means(const Histogram& weights, NoiseCurve& curve) const {
+    for (std::size_t k = 0; k < NoiseCurve::nodes; ++k) {
+        curve.mean[k] = dot(weights, mean_[k]);
+        curve.mean_fall[k] = dot(weights, mean_fall_[k]);
+    }
 }
 
 } // namespace acdf::compress

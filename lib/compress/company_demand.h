@@ -57,9 +57,10 @@ public:
         histogram[i + 1] += weight * (place - double(i));
     }
 
-    /// `square`: of what the noise of each normal counts; `mean`: of that times what an estimate gains by its share
-    /// of weights that goes to the company.
-    NoiseCurve curve(const Histogram& square, const Histogram& mean) const;
+    /// `weights`: how much the noise of normals counts.
+    void set_squares(const Histogram& weights, NoiseCurve& curve) const;
+    /// `weights`: that times what an estimate gains by its share of weights that goes to the company.
+    void set_means(const Histogram& weights, NoiseCurve& curve) const;
 
 private:
     std::array<Histogram, NoiseCurve::nodes> square_, mean_, square_fall_, mean_fall_;

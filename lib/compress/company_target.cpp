@@ -29,9 +29,11 @@ public:
         for (const LightPoint& p : light_points(target)) add(p);
         weigh_normals();
         start();
+        find_curves([&](std::size_t n) { return weight_[n]; }, &NoiseKernel::set_squares);
         for (int step = 0; step < kSteps; ++step) {
             compare_means();
-            find_curves();
+            find_curves([&](std::size_t n) { return 2.0 * (1.0 - share_) * weight_[n] * difference_[n]; },
+                        &NoiseKernel::set_means);
             fill();
         }
     }
@@ -107,18 +109,19 @@ private:
         });
     }
 
-    void find_curves() {
+    /// Sets, by `set`, what curves are of histograms of the weights that `weight` tells of normals.
+    template <class Weight>
+    void find_curves(const Weight& weight,
+                     void (NoiseKernel::*set)(const NoiseKernel::Histogram&, NoiseCurve&) const) {
         tbb::parallel_for(std::size_t{0}, curves_.size(), [&](std::size_t i) {
             const Direction d =
                 direction_at(grid_, double(i / grid_.columns) + 0.5, double(i % grid_.columns) + 0.5);
-            NoiseKernel::Histogram square{}, mean{};
+            NoiseKernel::Histogram histogram{};
             for (std::size_t n = 0; n < weight_.size(); ++n) {
-                const double cosine = dot(d, normals_.normals[n]);
-                if (!(cosine > 0.0) || !(weight_[n] > 0.0)) continue;
-                NoiseKernel::add(square, cosine, weight_[n]);
-                NoiseKernel::add(mean, cosine, 2.0 * (1.0 - share_) * weight_[n] * difference_[n]);
+                const double cosine = weight_[n] > 0.0 ? dot(d, normals_.normals[n]) : 0.0;
+                if (cosine > 0.0) NoiseKernel::add(histogram, cosine, weight(n));
             }
-            curves_[i] = kernel_.curve(square, mean);
+            (kernel_.*set)(histogram, curves_[i]);
         });
     }
 
@@ -193,10 +196,9 @@ void fill(Target& target, const std::vector<float>& density, double nu) {
     target.left.resize(target.values.size());
     target.least.resize(target.values.size());
     for_each_texel(target, [&](std::size_t i, std::uint32_t, std::uint32_t) {
-        const double g = target.values[i], threshold = nu * double{density[i]};
-        const double left = threshold > 0.0 ? std::min(g * (g / threshold), 3e38) : g > 0.0 ? 3e38 : 0.0;
-        target.left[i] = static_cast<float>(left);
-        target.least[i] = static_cast<float>(cell_cost(g, left));
+        const Left left = left_to_company(target.values[i], nu * double{density[i]});
+        target.left[i] = left.left;
+        target.least[i] = left.least;
     });
 }
 

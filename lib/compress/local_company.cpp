@@ -16,8 +16,8 @@ constexpr double kPieceStep = 0.02; // radians across which light in a cell has 
 
 LocalCompany::LocalCompany(const Target& target, const std::vector<LightPoint>& points, const NormalBins& bins,
                            const std::vector<double>& irradiance, const Company& company)
-    : lobes_(company.kind), filling_(std::make_shared<const Filling>(company.heuristic)), ratio_(company.light / company.other),
-      nu_(bins.normals.size(), 0.0) {
+    : lobes_(company.kind), filling_(std::make_shared<const Filling>(company.heuristic)),
+      ratio_(company.light / company.other), nu_(bins.normals.size(), 0.0) {
     tbb::parallel_for(std::size_t{0}, nu_.size(), [&](std::size_t b) {
         if (irradiance[b] > 0.0) nu_[b] = solve(points, bins.normals[b], irradiance[b]);
     });
@@ -77,10 +77,10 @@ Target LocalCompany::filled(const Target& target) const {
     tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             const std::size_t i = std::size_t{r} * target.columns + c;
-            const double g = target.values[i], at = mean_.at(double(c) / target.columns, double(r) / target.rows);
-            const double left = at > 0.0 ? std::min(g * (g / at), 3e38) : 3e38;
-            out.left[i] = static_cast<float>(left);
-            out.least[i] = static_cast<float>(cell_cost(g, left));
+            const Left left =
+                left_to_company(target.values[i], mean_.at(double(c) / target.columns, double(r) / target.rows));
+            out.left[i] = left.left;
+            out.least[i] = left.least;
         }
     });
     return out;

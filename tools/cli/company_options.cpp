@@ -51,6 +51,11 @@ void add_company(CLI::App& command, builder::Company& company, bool mean) {
                    "(lobes of several widths). Where that is enough the density is 0: never use such a file alone")
         ->option_text("NAME [none]")
         ->group(group);
+    add_weighing(command, company);
+}
+
+void add_weighing(CLI::App& command, builder::Company& company) {
+    const char* group = "Company";
     command
         .add_option_function<std::string>(
             "--shares",

@@ -17,5 +17,7 @@ bool parse_heuristic(const std::string& text, builder::Company& company);
 
 /// `mean`: whether there is --with mean.
 void add_company(CLI::App& command, builder::Company& company, bool mean);
+/// Adds --shares and --heuristic.
+void add_weighing(CLI::App& command, builder::Company& company);
 
 } // namespace acdf::tools

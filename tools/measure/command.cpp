@@ -27,7 +27,7 @@ namespace acdf::tools {
 namespace {
 
 struct MeasureArguments {
-    std::string file, source;
+    std::string file, source, other;
     input::ProbeOptions input;
     std::uint32_t normals = 256, views = build::kMeasuredViews;
     const CLI::App* command = nullptr;
@@ -106,10 +106,12 @@ void refuse_options_of_local_files(const MeasureArguments& options) {
 
 void run(const MeasureArguments& options) {
     const LoadedFile loaded = load_file(options.file);
+    if (loaded.file.kind() != ACDF_KIND_TABLE && !options.other.empty())
+        throw CLI::ValidationError("--with", "is for files of tables");
     if (loaded.file.kind() != ACDF_KIND_LOCAL) refuse_options_of_local_files(options);
     switch (loaded.file.kind()) {
     case ACDF_KIND_TABLE:
-        return measure_table(options.file, loaded.file, options.source, options.json, options.quiet);
+        return measure_table(options.file, loaded.file, options.source, options.other, options.json, options.quiet);
     case ACDF_KIND_BRDF:
         return measure_brdf(options.file, loaded.file, options.source, options.views, options.json, options.quiet);
     case ACDF_KIND_LOCAL:
@@ -149,6 +151,12 @@ void add_measure(CLI::App& program, int& exit_code) {
             "The probe, the .npy of a table or the BRDF that it stands for: usually the one it was made from")
         ->required()
         ->type_name("SOURCE")
+        ->group("Input");
+    command
+        .add_option("--with", options->other,
+                    "Of a table that was made to be combined with another one: the .npy of that one")
+        ->type_name("")
+        ->option_text("OTHER.npy")
         ->group("Input");
     add_projection(command, options->input.projection);
     add_repairs(command, options->input);

@@ -3,11 +3,13 @@
 #include "tools/cli/messages.h"
 
 #include "build/table.h"
+#include "build/table_company.h"
 #include "input/image.h"
 #include "input/npy.h"
 #include "tools/cli/noise.h"
 #include "tools/commands.h"
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cinttypes>
@@ -35,28 +37,33 @@ std::string joined(const std::vector<std::uint32_t>& numbers, const char* separa
 
 nlohmann::ordered_json report(const std::string& path, const File& file, const std::string& source,
                               const build::TableAccuracy& a) {
-    return {{"file", path},
-            {"source", source},
-            {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
-            {"noise_percent", noise_json(a.relative_variance)},
-            {"relative_variance_median", a.median},
-            {"relative_variance_worst", a.worst},
-            {"worst_bin", index_of(file, a.worst_bin)},
-            {"rms_pdf_error", a.rms_pdf_error},
-            {"kl_divergence", a.kl_divergence},
-            {"max_weight", a.max_weight},
-            {"support_violations", a.support_violations},
-            {"bytes", file.size()},
-            {"cells", a.cells},
-            {"bins", file.description().bin_count},
-            {"bins_with_energy", a.lit_bins},
-            {"total", file.description().total}};
+    nlohmann::ordered_json out{
+        {"file", path},
+        {"source", source},
+        {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
+        {"noise_percent", noise_json(a.relative_variance)},
+        {"relative_variance_median", a.median},
+        {"relative_variance_worst", a.worst},
+        {"worst_bin", index_of(file, a.worst_bin)},
+        {"rms_pdf_error", a.rms_pdf_error},
+        {"kl_divergence", a.kl_divergence},
+        {"max_weight", a.max_weight},
+        {"support_violations", a.support_violations},
+        {"bytes", file.size()},
+        {"cells", a.cells},
+        {"bins", file.description().bin_count},
+        {"bins_with_energy", a.lit_bins},
+        {"total", file.description().total}};
+    if (a.combined) out["combined"] = true; // of the file and its company
+    return out;
 }
 
 void print_text(const std::string& path, const File& file, const std::string& source,
                 const build::TableAccuracy& a) {
     std::printf("%s against %s\n", printable(path).c_str(), printable(source).c_str());
-    std::printf("  relative variance      %.6g   of one sample; n samples have this over n\n", a.relative_variance);
+    std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
+                a.combined ? "a sample, with its company: not to be used alone"
+                           : "of one sample; n samples have this over n");
     std::printf("    noise                %s   at 16, 64, 256 samples\n", noise_texts(a.relative_variance).c_str());
     if (file.description().bin_count > 1) {
         std::printf("    median over bins     %.6g\n", a.median);
@@ -64,8 +71,10 @@ void print_text(const std::string& path, const File& file, const std::string& so
                     joined(index_of(file, a.worst_bin), ",").c_str());
     }
     std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
-    std::printf("  RMS error of the pdf   %.6g   where a uniform density is 1\n", a.rms_pdf_error);
-    std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
+    if (!a.combined) {
+        std::printf("  RMS error of the pdf   %.6g   where a uniform density is 1\n", a.rms_pdf_error);
+        std::printf("  KL divergence          %.6g   nats\n", a.kl_divergence);
+    }
     std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
     std::printf("  bins                   %" PRIu32 "   of %" PRIu32 " have energy\n", a.lit_bins,
                 file.description().bin_count);
@@ -73,24 +82,42 @@ void print_text(const std::string& path, const File& file, const std::string& so
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
 }
 
-} // namespace
-
-void measure_table(const std::string& path, const File& file, const std::string& source, bool json, bool quiet) {
+/// The table at `source`, which has the shape of the file and, by the metadata `key`, was there when it was made.
+input::NpyArray read_source(const std::string& path, const File& file, const std::string& source, const char* key,
+                            bool quiet) {
     input::NpyOptions options;
     options.bad_values = input::BadValuePolicy::zero; // as the file was made, or `acdf table` had refused them
-    const input::NpyArray array = input::read_npy(source, options);
+    input::NpyArray array = input::read_npy(source, options);
     std::vector<std::uint32_t> shape;
     for (std::uint32_t axis = 0; axis < file.description().axis_count; ++axis)
         shape.push_back(file.axis(axis).resolution);
     if (shape != array.shape)
         throw Failure(source + ": its shape is " + joined(array.shape, "x") + ", but " + path + " was made from " +
                       joined(shape, "x") + "; measure against the array it was made from");
-    const Text hash = file.metadata("source.sha256");
+    const Text hash = file.metadata(key);
     if (hash.size > 0 && std::string(hash.data, hash.size) != input::file_sha256(source) && !quiet)
         say(path + ": made from another file than " + source + " (its SHA-256 differs)");
+    return array;
+}
+
+} // namespace
+
+void measure_table(const std::string& path, const File& file, const std::string& source, const std::string& other,
+                   bool json, bool quiet) {
+    if (file.company() && other.empty())
+        throw Failure(path + ": it was made to be combined with another table; tell which (--with OTHER.npy)");
+    if (!file.company() && !other.empty())
+        throw CLI::ValidationError("--with", "is for tables with a company, which " + path + " is not");
+    const input::NpyArray array = read_source(path, file, source, "source.sha256", quiet);
     const std::vector<compress::Grid> bins = build::table_grids(array, file.table().indexed_count());
     try {
-        const build::TableAccuracy accuracy = build::summary(build::measure_bins(file, bins));
+        build::TableAccuracy accuracy;
+        if (file.company()) {
+            const input::NpyArray beside = read_source(path, file, other, "company.sha256", quiet);
+            accuracy = build::summary(
+                build::measure_bins_beside(file, bins, build::table_grids(beside, file.table().indexed_count())));
+            accuracy.combined = true;
+        } else accuracy = build::summary(build::measure_bins(file, bins));
         if (json) std::fputs(json_text(report(path, file, source, accuracy)).c_str(), stdout);
         else print_text(path, file, source, accuracy);
     } catch (const std::invalid_argument& error) {

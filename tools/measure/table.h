@@ -7,7 +7,9 @@
 
 namespace acdf::tools {
 
-/// Compares a table file with the .npy file at `source` and prints what comes out: as text or JSON. Throws Failure.
-void measure_table(const std::string& path, const File& file, const std::string& source, bool json, bool quiet);
+/// Compares a table file with the .npy file at `source`, beside that at `other` if it has a company, and prints
+/// what comes out: as text or JSON. Throws Failure.
+void measure_table(const std::string& path, const File& file, const std::string& source, const std::string& other,
+                   bool json, bool quiet);
 
 } // namespace acdf::tools

@@ -53,6 +53,7 @@ struct BrdfAccuracy {
 
 /// Over the bins that have energy, each as important as any other.
 struct TableAccuracy {
+    bool combined = false;          ///< as in EnvironmentAccuracy; errors of the density are then 0
     double relative_variance = 0.0; ///< mean, of one sample of f/p; infinite with a violation
     double median = 0.0, worst = 0.0;
     std::uint32_t worst_bin = 0;

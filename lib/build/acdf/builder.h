@@ -209,7 +209,8 @@ private:
 /// company is enough: it is not to be used alone, and says so (needs_company of its view).
 struct Company {
     /// ACDF_COMPANY_COSINE: cos / pi around the normal; _BRDF: lobes as BRDFs have them; _MEAN: as if the company
-    /// were the same everywhere (Karlik et al. 2019), of environments alone.
+    /// were the same everywhere (Karlik et al. 2019), of environments alone; _TABLE: another table, of tables
+    /// alone.
     AcdfCompanyKind kind = ACDF_COMPANY_NONE;
     AcdfHeuristic heuristic = ACDF_HEURISTIC_BALANCE;
     double light = 1.0, other = 1.0; ///< samples of the file and of the company, in proportion; in [1e-3, 1e3]
@@ -371,6 +372,9 @@ struct TableOptions {
     Goal goal = Goal::of_cells(0);                 ///< cells: a bin, on average; 0: 4096 in all, at least 64 a bin
     double max_weight = 0.0;                       ///< the largest f/p over its mean, at least 1; 0: no bound
     bool bad_as_zero = false;                      ///< bad numbers count as 0, else ErrorCode::bad_source
+    Company company;                               ///< ACDF_COMPANY_TABLE, without max_weight or a goal of variance
+    Array other;                                   ///< that table, of the same shape; each bin has its own density
+    Source other_source;                           ///< name and sha256
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source; ///< name and sha256
 };

@@ -185,6 +185,13 @@ void check(const TableOptions& options) {
     check(options.codec);
     check(options.source);
     for (const std::string& name : options.names) check_text(name, 15);
+    check(options.other_source);
+    const bool alone = options.company.kind == ACDF_COMPANY_NONE;
+    require(alone || options.company.kind == ACDF_COMPANY_TABLE, "the company of a table is another table");
+    check(options.company, ACDF_COMPANY_TABLE);
+    require(alone || (options.max_weight == 0.0 && options.goal.kind != Goal::Kind::variance),
+            "a company is for a number of cells or a budget, without max_weight");
+    require(alone == (options.other.data == nullptr), "company.kind and the other table are given together");
 }
 
 } // namespace acdf::builder

@@ -163,6 +163,9 @@ build::TableOptions internal(const TableOptions& options) {
     out.cells = options.goal.cells;
     out.fit.goal = internal(options.goal);
     out.fit.max_weight = options.max_weight;
+    out.company = internal(options.company);
+    out.other_name = options.other_source.name;
+    out.other_sha256 = options.other_source.sha256;
     out.codec = options.codec;
     return out;
 }

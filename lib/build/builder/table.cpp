@@ -13,8 +13,17 @@ namespace {
 
 Table make(const build::Array& array, const BadNumbers& bad, const TableOptions& options,
            const build::Progress& progress) {
-    build::Table made =
-        build::build_table(array, options.source.name, options.source.sha256, internal(options), progress);
+    build::TableOptions asked = internal(options);
+    build::Array other;
+    if (options.company.kind != ACDF_COMPANY_NONE) {
+        check(options.other);
+        BadNumbers bad_other;
+        other = to_floats(options.other, bad_other);
+        if (bad_other.count() > 0 && !options.bad_as_zero)
+            throw std::invalid_argument("the company: " + build::text(bad_other, other.shape));
+        asked.other = &other;
+    }
+    build::Table made = build::build_table(array, options.source.name, options.source.sha256, asked, progress);
     Table out;
     out.bytes = std::move(made.bytes);
     out.accuracy = made.accuracy;
