@@ -6,18 +6,18 @@
 namespace acdf::compress {
 namespace {
 
-constexpr double kFirst = 0.004, kRatio = 1.5; // of nodes, sr^-1
-constexpr double kMost = 1.0;                  // sr^-1; where y jumps a line would be as steep
+constexpr double kFirstNode = 0.004, kNodeRatio = 1.5; // of nodes, sr^-1
+constexpr double kMostCompany = 1.0;                   // sr^-1; where y jumps a line would be as steep
 
 std::array<double, NoiseCurve::nodes> all_nodes() {
     std::array<double, NoiseCurve::nodes> out{};
-    double y = kFirst;
-    for (std::size_t k = 1; k < out.size(); ++k, y *= kRatio) out[k] = y;
+    double y = kFirstNode;
+    for (std::size_t k = 1; k < out.size(); ++k, y *= kNodeRatio) out[k] = y;
     return out;
 }
 const std::array<double, NoiseCurve::nodes> kNodes = all_nodes();
 
-double dot(const NoiseKernel::Histogram& a, const NoiseKernel::Histogram& b) {
+double sum_of_products(const NoiseKernel::Histogram& a, const NoiseKernel::Histogram& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
     return sum;
@@ -51,7 +51,7 @@ Demand::Line Demand::line(double price) const {
     while (i + 1 < count_ && points_[i].price > price) ++i;
     const Point &a = points_[i - 1], &b = points_[std::min(i, count_ - 1)];
     const double first = root(a.price), light = count_ > 1 ? (b.y - a.y) / (root(b.price) - first) : a.y / first;
-    const double company = std::clamp(light * first - a.y, 0.0, kMost);
+    const double company = std::clamp(light * first - a.y, 0.0, kMostCompany);
     if (!(price < highest())) return {company / first, company};
     return {(light * (root(price) - first) + a.y + company) / root(price), company};
 }
@@ -76,15 +76,15 @@ NoiseKernel::NoiseKernel(const Lobes& lobes, AcdfHeuristic heuristic) {
 
 void NoiseKernel::set_squares(const Histogram& weights, NoiseCurve& curve) const {
     for (std::size_t k = 0; k < NoiseCurve::nodes; ++k) {
-        curve.square[k] = dot(weights, square_[k]);
-        curve.square_fall[k] = dot(weights, square_fall_[k]);
+        curve.square[k] = sum_of_products(weights, square_[k]);
+        curve.square_fall[k] = sum_of_products(weights, square_fall_[k]);
     }
 }
 
 void NoiseKernel::set_means(const Histogram& weights, NoiseCurve& curve) const {
     for (std::size_t k = 0; k < NoiseCurve::nodes; ++k) {
-        curve.mean[k] = dot(weights, mean_[k]);
-        curve.mean_fall[k] = dot(weights, mean_fall_[k]);
+        curve.mean[k] = sum_of_products(weights, mean_[k]);
+        curve.mean_fall[k] = sum_of_products(weights, mean_fall_[k]);
     }
 }
 

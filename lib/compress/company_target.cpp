@@ -13,8 +13,8 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kColumns = 128, kRows = 64; // of directions whose noise curves are found
-constexpr int kSteps = 8; // of p and means in turns: the noise falls with each, the last ones by less than 0.1 %
+constexpr std::uint32_t kCurveColumns = 128, kCurveRows = 64; // of directions whose noise curves are found
+constexpr int kTurns = 8; // of p and means in turns: the noise falls with each, the last ones by less than 0.1 %
 
 /// Light as points, and the normals that it shines on.
 class Lighting {
@@ -22,15 +22,15 @@ public:
     Lighting(const Target& target, const NormalBins& normals, const Company& company)
         : normals_(normals), lobes_(company.kind), kernel_(lobes_, company.heuristic),
           heuristic_(company.heuristic), share_(company.share()), difference_(normals.normals.size(), 0.0),
-          curves_(std::size_t{kColumns} * kRows) {
-        grid_.columns = kColumns;
-        grid_.rows = kRows;
+          curves_(std::size_t{kCurveColumns} * kCurveRows) {
+        grid_.columns = kCurveColumns;
+        grid_.rows = kCurveRows;
         grid_.parameterization = target.parameterization;
         for (const LightPoint& p : light_points(target)) add(p);
         weigh_normals();
         start();
         find_curves([&](std::size_t n) { return weight_[n]; }, &NoiseKernel::set_squares);
-        for (int step = 0; step < kSteps; ++step) {
+        for (int step = 0; step < kTurns; ++step) {
             compare_means();
             find_curves([&](std::size_t n) { return 2.0 * (1.0 - share_) * weight_[n] * difference_[n]; },
                         &NoiseKernel::set_means);
