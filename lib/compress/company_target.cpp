@@ -22,7 +22,7 @@ public:
     Lighting(const Target& target, const NormalBins& normals, const Company& company)
         : normals_(normals), lobes_(company.kind), kernel_(lobes_, company.heuristic),
           heuristic_(company.heuristic), share_(company.share()), difference_(normals.normals.size(), 0.0),
-          curves_(std::size_t{kCurveColumns} * kCurveRows) {
+          curves_(std::size_t{kCurveColumns} * kCurveRows), used_(curves_.size(), false) {
         grid_.columns = kCurveColumns;
         grid_.rows = kCurveRows;
         grid_.parameterization = target.parameterization;
@@ -32,6 +32,7 @@ public:
         find_curves([&](std::size_t n) { return weight_[n]; }, &NoiseKernel::set_squares);
         for (int step = 0; step < kTurns; ++step) {
             compare_means();
+            if (step + 1 == kTurns) used_.assign(used_.size(), true); // texels lie where no point does
             find_curves([&](std::size_t n) { return 2.0 * (1.0 - share_) * weight_[n] * difference_[n]; },
                         &NoiseKernel::set_means);
             fill();
@@ -54,6 +55,7 @@ private:
     void add(const LightPoint& p) {
         if (!(p.measure > 0.0) || !(p.amount > 0.0)) return;
         points_.push_back({p.direction, p.amount / p.measure, p.measure, 0.0, place_of(p.direction)});
+        used_[points_.back().place] = true;
     }
     std::size_t place_of(const Direction& d) const {
         const AcdfGrid grid{grid_.columns, grid_.rows, static_cast<std::uint32_t>(grid_.parameterization)};
@@ -114,6 +116,7 @@ private:
     void find_curves(const Weight& weight,
                      void (NoiseKernel::*set)(const NoiseKernel::Histogram&, NoiseCurve&) const) {
         tbb::parallel_for(std::size_t{0}, curves_.size(), [&](std::size_t i) {
+            if (set == &NoiseKernel::set_means && !used_[i]) return;
             const Direction d =
                 direction_at(grid_, double(i / grid_.columns) + 0.5, double(i % grid_.columns) + 0.5);
             NoiseKernel::Histogram histogram{};
@@ -158,6 +161,7 @@ private:
     std::vector<Point> points_;
     std::vector<double> weight_, difference_; ///< one a normal
     std::vector<NoiseCurve> curves_;          ///< of directions of the grid
+    std::vector<bool> used_;                  ///< whether a point has that direction
 };
 
 /// Calls `visit(texel, row, column)` for all texels, rows in parallel.

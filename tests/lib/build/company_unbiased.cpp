@@ -1,5 +1,6 @@
 // Estimates of a file and its company together are unbiased: Monte Carlo against summation, for every fit and
 // company and each of 200 normals. Of real probes where they are at hand (ACDF_TEST_DATA).
+#include "tests/inputs/sanitized.h"
 #include "tests/lib/build/company.h"
 
 #include "input/probe.h"
@@ -43,6 +44,7 @@ std::vector<Probe> eight_probes() {
                            "beach_probe.hdr", "courtyard.exr", "studio.exr",        "sunset.exr"};
     for (std::size_t i = 0; i < out.size(); ++i)
         if (Probe real = real_probe(names[i]); !real.radiance.empty()) out[i] = std::move(real);
+    if (acdf_test::kSanitized) out.resize(2);
     return out;
 }
 
@@ -121,7 +123,7 @@ TEST(CompanyUnbiased, AtEachOf200NormalsForEveryProbeFitAndCompany) {
     }
     // 4 standard errors: of so many normal numbers 0.8 are beyond, more than 5 in one of 2000 runs; 5.5 in one of
     // 2000.
-    EXPECT_GT(all.count_, 12000.0);
+    EXPECT_GT(all.count_, acdf_test::kSanitized ? 3000.0 : 12000.0);
     EXPECT_LE(all.beyond_, 5);
     EXPECT_LT(all.largest_, 5.5);
     std::printf("%g comparisons: %d beyond 4 standard errors, largest %.2f, mean square %.3f\n", all.count_,
