@@ -2,6 +2,7 @@
 
 #include "build/cells.h"
 #include "build/company_accuracy.h"
+#include "build/step_means.h"
 #include "build/sums.h"
 
 #include <tbb/parallel_for.h>
@@ -17,39 +18,6 @@ namespace {
 
 using compress::Sum;
 using compress::Target;
-
-/// Means over one grid step of functions of the tilt density g, which is linear there, from g0 to g1.
-struct StepMeans {
-    double g = 1.0, square = 1.0, reciprocal = 1.0, logarithm = 0.0, smallest = 1.0;
-};
-
-StepMeans step_means(double g0, double g1) {
-    StepMeans m;
-    const double x = (g1 - g0) / g0;
-    m.g = 0.5 * (g0 + g1);
-    m.square = (g0 * g0 + g0 * g1 + g1 * g1) / 3.0;
-    m.reciprocal = (std::abs(x) < 1e-5 ? 1.0 - x * (0.5 - x / 3.0) : std::log1p(x) / x) / g0;
-    m.logarithm = std::log(g0) + (std::abs(x) < 1e-4 ? x * (0.5 - x / 6.0 * (1.0 - 0.5 * x))
-                                                     : ((1.0 + x) * std::log1p(x) - x) / x);
-    m.smallest = std::min(g0, g1);
-    return m;
-}
-
-/// StepMeans of each grid step in a cell's range on one axis.
-void range_means(const AcdfRange& range, const std::vector<double>& measure, std::vector<StepMeans>& out) {
-    out.assign(range.high - range.low, StepMeans{});
-    if (range.tilt == 0.0) return;
-    Sum length;
-    for (std::uint32_t i = range.low; i < range.high; ++i) length.add(measure[i]);
-    double g = 1.0 - range.tilt;
-    Sum t;
-    for (std::uint32_t i = range.low; i < range.high; ++i) {
-        t.add(measure[i] / length.value());
-        const double next = acdf_tilt_density(range.tilt, std::min(1.0, t.value()));
-        out[i - range.low] = step_means(g, next);
-        g = next;
-    }
-}
 
 double range_measure(const AcdfRange& range, const std::vector<double>& measure) {
     Sum sum;

@@ -2,6 +2,7 @@
 
 #include "build/cells.h"
 #include "build/combination.h"
+#include "build/step_means.h"
 #include "build/texel_cosines.h"
 #include "compress/sum.h"
 
@@ -20,10 +21,16 @@ namespace {
 using compress::Sum;
 using compress::Target;
 
-/// What does not depend on the normal: for each texel its tile and its density within the tile, sr^-1.
+/// What a tilt makes of the density of a texel, over its mean: the harmonic mean and the smallest.
+struct Slope {
+    float harmonic = 1.0f, smallest = 1.0f;
+};
+
+/// What does not depend on the normal: for each texel its tile and its mean density within the tile, sr^-1.
 struct TilePicture {
     std::vector<std::uint32_t> tile;
     std::vector<double> density;
+    std::vector<Slope> slope; ///< empty where no curve is tilted
     std::uint32_t root = 0; ///< of the tree that is one tile of everything; of no meaning for tiles that are shared
 };
 
@@ -34,7 +41,7 @@ public:
         const std::size_t texels = std::size_t{target.columns} * target.rows;
         if (local_.blend.tiles) {
             find_boxes(local_.blend.tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG, whole());
-            shared_ = {std::vector<std::uint32_t>(texels), std::vector<double>(texels), 0};
+            shared_ = {std::vector<std::uint32_t>(texels), std::vector<double>(texels), {}, 0};
             for (std::uint32_t t = 0; t < boxes_.size(); ++t)
                 paint(boxes_[t], local_.blend.roots ? local_.blend.roots[t] : ACDF_NO_ROOT, t, shared_);
         }
@@ -78,8 +85,6 @@ private:
     }
 
     void fill(const AcdfRange* range, double probability, std::uint32_t tile, TilePicture& out) const {
-        if (range[0].tilt != 0.0 || range[1].tilt != 0.0)
-            throw std::invalid_argument("a local environment with tilted curves");
         const AcdfGrid grid = acdf_environment_grid(&local_.environment);
         const double omega = acdf_grid_solid_angle(&grid, range);
         for (std::uint32_t r = range[1].low; r < range[1].high; ++r) {
@@ -89,6 +94,23 @@ private:
             std::fill(out.tile.begin() + std::ptrdiff_t(row + range[0].low),
                       out.tile.begin() + std::ptrdiff_t(row + range[0].high), tile);
         }
+        if (range[0].tilt != 0.0 || range[1].tilt != 0.0) tilt(range, out);
+    }
+
+    void tilt(const AcdfRange* range, TilePicture& out) const {
+        out.slope.resize(out.density.size());
+        std::vector<StepMeans> columns, rows;
+        range_means(range[0], target_.column_measure, columns);
+        range_means(range[1], target_.row_measure, rows);
+        for (std::uint32_t r = range[1].low; r < range[1].high; ++r)
+            for (std::uint32_t c = range[0].low; c < range[0].high; ++c) {
+                const StepMeans &x = columns[c - range[0].low], &y = rows[r - range[1].low];
+                const std::size_t i = std::size_t{r} * target_.columns + c;
+                const double mean = x.g * y.g;
+                out.density[i] *= mean;
+                out.slope[i] = {static_cast<float>(1.0 / (mean * x.reciprocal * y.reciprocal)),
+                                static_cast<float>(x.smallest * y.smallest / mean)};
+            }
     }
 
     void paint(const Ranges& box, std::uint32_t root, std::uint32_t tile, TilePicture& out) const {
@@ -99,6 +121,7 @@ private:
     void paint_tree(std::uint32_t root, TilePicture& out) const {
         out.tile.resize(std::size_t{target_.columns} * target_.rows);
         out.density.resize(out.tile.size());
+        out.slope.clear();
         out.root = root;
         paint(whole(), root, 0, out);
     }
@@ -135,7 +158,7 @@ private:
             cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
                 const double light_p =
                     tile.empty() ? 0.0 : (1.0 - share) * tile[picture.tile[row + c]] * picture.density[row + c];
-                const double p = tile.empty() ? 0.0 : light_p + share * cosine / ACDF_PI;
+                const double rest = tile.empty() ? 0.0 : share * cosine / ACDF_PI, p = light_p + rest;
                 const double omega = solid_angle(r, c), g = target_.row(r)[c];
                 row_above += light_p * omega;
                 if (!(g > 0.0)) return;
@@ -152,8 +175,10 @@ private:
                     ++out.support_violations;
                     return;
                 }
-                row_second += f / p * f * omega;
-                largest = std::max(largest, f / p);
+                // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
+                const Slope slope = picture.slope.empty() ? Slope{} : picture.slope[row + c];
+                row_second += f / (light_p * static_cast<double>(slope.harmonic) + rest) * f * omega;
+                largest = std::max(largest, f / (light_p * static_cast<double>(slope.smallest) + rest));
             });
             flux.add(row_flux);
             second.add(row_second);

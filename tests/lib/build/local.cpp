@@ -127,6 +127,50 @@ TEST(LocalFiles, TreesOfTheirOwnCoverAllNormalsOfABin) {
     }
 }
 
+// Linear densities: what is measured is what the reader tells at many places of each texel.
+TEST(LocalFiles, TiltedCurvesAreMeasured) {
+    constexpr std::uint32_t kParts = 4;
+    for (const double share : {0.0, 0.25}) {
+        build::LocalOptions options = separate(ACDF_FIT_PDF);
+        options.fit.column_segments = options.fit.row_segments = 8;
+        options.cosine_share = share;
+        const build::Local local = build(options);
+        const File file = load(local);
+        const LocalEnvironmentView view = file.local();
+        const Target& target = probe();
+        const std::vector<build::Normal> normals = build::random_normals(4);
+        const std::vector<build::NormalAccuracy> measured = build::measure_normals(file, target, normals);
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            const double n[3] = {normals[i][0], normals[i][1], normals[i][2]};
+            double irradiance = 0.0, second = 0.0, least = INFINITY;
+            for (std::uint32_t r = 0; r < target.rows; ++r)
+                for (std::uint32_t c = 0; c < target.columns; ++c) {
+                    float d[3];
+                    acdf_test::direction_of(acdf_test::centre_phi(c, target.columns),
+                                            acdf_test::centre_z(r, target.rows), d);
+                    const double f = target.row(r)[c] * std::max(0.0, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
+                    if (!(f > 0.0)) continue;
+                    const double part = target.row_measure[r] * target.column_measure[c] / (kParts * kParts);
+                    for (std::uint32_t k = 0; k < kParts * kParts; ++k) {
+                        const double top = acdf_row_z(r, target.rows), low = acdf_row_z(r + 1, target.rows);
+                        acdf_test::direction_of(
+                            ACDF_PI * (1.0 - 2.0 * (c + (k % kParts + 0.5) / kParts) / target.columns),
+                            top + (low - top) * (k / kParts + 0.5) / kParts, d);
+                        const double p = view.pdf(normals[i].data(), d);
+                        irradiance += f * part;
+                        second += f * f / p * part;
+                        least = std::min(least, p / f);
+                    }
+                }
+            const double expected = second / irradiance / irradiance;
+            EXPECT_NEAR(1.0 + measured[i].relative_variance, expected, 2e-3 * expected) << share;
+            if (share > 0.0) continue; // the cosine is the texel's, and vanishes within some
+            EXPECT_GE(measured[i].max_weight, 0.99 / least / irradiance) << share;
+            EXPECT_LE(measured[i].max_weight, 1.2 / least / irradiance) << share;
+        }
+    }
+}
+
 TEST(LocalFiles, TreesOfTheMiddleNormalAreBiased) {
     build::LocalOptions options = separate(ACDF_FIT_CDF);
     options.bin_target = BinTarget::centre;
