@@ -1,4 +1,5 @@
 // acdf env: an environment map to an .acdf file.
+#include "build/environment.h"
 #include "build/format_names.h"
 #include "input/image_header.h"
 #include "tools/cli/built.h"
@@ -31,9 +32,9 @@ namespace {
 // one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
 constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kEnvironmentMemoryOfPixel = 24;
 // A tree takes so much on top while it is looked for: of each cell asked for (four bytes of a budget, one where
-// it is for deflated ones). A variance may ask
-// for a cell a pixel.
-constexpr std::uint64_t kMemoryOfCell = 6000, kCellBytes = 4, kDeflatedCellBytes = 1, kVarianceMemoryOfPixel = 480;
+// it is for deflated ones). There are no more cells than pixels, which take less each where they are many; a
+// variance may ask for as many, but for no larger file than is searched for.
+constexpr std::uint64_t kMemoryOfCell = 6000, kCellBytes = 4, kDeflatedCellBytes = 1, kMemoryOfEachPixel = 720;
 
 class EnvConversion : public Conversion {
 public:
@@ -183,10 +184,11 @@ nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const bu
 std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
     const builder::Goal& goal = environment_.goal;
     if (environment_.fit.fit != ACDF_FIT_VARIANCE) return 0;
-    if (goal.kind == builder::Goal::Kind::variance) return pixels * kVarianceMemoryOfPixel;
+    if (goal.kind == builder::Goal::Kind::variance)
+        return std::min(pixels, build::kMostBytesForVariance / kCellBytes) * kMemoryOfEachPixel;
     const std::uint64_t bytes_of_cell = environment_.codec == ACDF_CODEC_NONE ? kCellBytes : kDeflatedCellBytes;
     const std::uint64_t cells = goal.kind == builder::Goal::Kind::budget ? goal.budget / bytes_of_cell : goal.cells;
-    return std::min(cells * kMemoryOfCell, pixels * kVarianceMemoryOfPixel);
+    return std::min(cells * kMemoryOfCell, pixels * kMemoryOfEachPixel);
 }
 
 std::uint64_t EnvConversion::memory() const {
@@ -257,9 +259,10 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->transform(one_of(orders))
         ->option_text("NAME [auto]")
         ->group("Fit");
-    add_goal(command, environment_.goal.cells, budget_, environment_.goal.variance,
-             {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
-              ": 0.01 is a tenth of the mean as standard deviation of one sample"});
+    add_goal(
+        command, environment_.goal.cells, budget_, environment_.goal.variance,
+        {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
+         ": 0.01 is a tenth of the mean as standard deviation of one sample. Files of up to 16 MiB are tried"});
     command
         .add_option("--max-weight", fit.max_weight,
                     "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "

@@ -84,6 +84,7 @@ Environment build_once(const compress::Target& target, const Source& source, con
     fit.file_size = [&](const compress::EncodedTree& tree) {
         return std::uint64_t{compress::store(tree, description, options.codec).size()};
     };
+    fit.most_bytes = kMostBytesForVariance;
     fit.size_by_length = options.codec == ACDF_CODEC_NONE;
     fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");

@@ -17,6 +17,10 @@
 
 namespace acdf::build {
 
+/// The largest file that is searched for a goal of variance, about: beyond, the search would take gigabytes, and
+/// the file come near to what it stands for. A budget may be larger.
+constexpr std::uint64_t kMostBytesForVariance = 16 << 20;
+
 /// What `acdf env` was asked for, beside the probe.
 struct EnvironmentOptions {
     compress::TargetOptions target;

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 
 namespace acdf::compress {
@@ -43,10 +44,12 @@ struct Goal {
 
 struct FitOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
-    std::optional<Order> order;         ///< empty: as the fit sees fit (a tree), else phi
-    Shape shape = Shape::tree;          ///< variance
-    Goal goal;                          ///< variance; a cascade takes cells alone
-    FileSize file_size;                 ///< needed for a budget; by default the bytes of the tree
+    std::optional<Order> order; ///< empty: as the fit sees fit (a tree), else phi
+    Shape shape = Shape::tree;  ///< variance
+    Goal goal;                  ///< variance; a cascade takes cells alone
+    FileSize file_size;         ///< needed for a budget; by default the bytes of the tree
+    /// A goal of variance is out of reach where it takes many more bytes; it bounds the memory of the search.
+    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
     bool size_by_length = false;        ///< file_size depends on nothing but the number of bytes of the tree
     double max_weight = 0.0;            ///< variance as a tree: the largest f/p over its mean; 0: no bound
     std::uint32_t column_segments = 64; ///< uniform, cdf, pdf: segments of a curve over columns (phi)

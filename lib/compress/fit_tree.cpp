@@ -231,27 +231,67 @@ private:
         return steps / 16 + (kFewParts + 2 * asked) / partitions_.size();
     }
 
+    /// Parts of the largest tree that a variance may take: cells, and as many again that are divided.
+    std::size_t too_many_parts() const {
+        const bool bounded = goal_.kind == Goal::Kind::variance && forgetful();
+        const std::uint64_t cells = options_.most_bytes / kCellBytes;
+        return bounded && cells < std::numeric_limits<std::uint64_t>::max() / kCellBytes
+                   ? std::max<std::size_t>(2 * cells / partitions_.size(), kFewParts)
+                   : std::numeric_limits<std::size_t>::max();
+    }
+
+    enum class News { none, some, too_many };
+
     /// Divides all partitions on; returns whether that is news to any.
-    bool refine(double finest) {
-        bool any = false;
+    News refine(double finest) {
+        bool any = false, full = false;
         for (auto& partition : partitions_) {
             if (!partition) continue;
             Forgetting forgetting;
-            if (forgetful()) forgetting = {finest / kLeastBytes, most_parts(*partition)};
+            if (forgetful()) forgetting = {finest / kLeastBytes, most_parts(*partition), too_many_parts()};
             any = partition->refine(finest, heaviest_, forgetting) || any;
+            full = full || partition->full();
         }
+        if (full) return News::too_many;
         look_at_partitions();
-        return any;
+        return any ? News::some : News::none;
     }
 
     Trial grow() {
         double finest = excess_ / 1024.0;
         for (bool first = true;; finest *= 0.25, first = false) {
-            const bool news = refine(finest), last = finest < kNegligible;
-            if (!news && !first && !last) continue; // nothing new at this price
+            const News news = refine(finest);
+            if (news == News::too_many) return grow_between(4.0 * finest, finest);
+            const bool last = finest < kNegligible;
+            if (news == News::none && !first && !last) continue; // nothing new at this price
             Trial trial = at(finest / kLeastBytes);
             if (last || trial.beyond) return trial;
         }
+    }
+
+    /// Grows as far as there may be parts: to somewhere between `coarse`, which the goal is beyond, and `fine`.
+    Trial grow_between(double coarse, double fine) {
+        constexpr int kSteps = 4;
+        for (int step = 0; step < kSteps; ++step) {
+            forget(coarse / kLeastBytes);
+            const double middle = std::sqrt(coarse * fine);
+            if (refine(middle) == News::too_many) {
+                fine = middle;
+                continue;
+            }
+            Trial trial = at(middle / kLeastBytes);
+            if (trial.beyond) return trial;
+            coarse = middle;
+        }
+        forget(coarse / kLeastBytes);
+        const double price = coarse / kLeastBytes;
+        char text[200];
+        std::snprintf(
+            text, sizeof text,
+            "a relative variance of %.9g takes more than about %.4g MiB, which come to %.4g; a larger file "
+            "takes a budget",
+            goal_.variance, double(options_.most_bytes) / 1048576.0, store_trees(price).variance);
+        throw std::runtime_error(text);
     }
 
     /// Halves the interval of prices, on a logarithmic scale, until the trees no longer change.

@@ -155,17 +155,19 @@ public:
         for (; !level.empty(); level.swap(next)) {
             next.clear();
             for (std::size_t begin = 0; begin < level.size(); begin += kBatch) {
+                if (full()) return;
                 batch_.assign(level.begin() + std::ptrdiff_t(begin),
                               level.begin() + std::ptrdiff_t(std::min(level.size(), begin + kBatch)));
                 if (parts_.size() > forgetting_.parts) put_small_ones_aside();
                 divide_batch(next, visit);
             }
         }
-        for (std::size_t begin = 0; begin < aside_.size(); begin += kSubtreesAtOnce)
+        for (std::size_t begin = 0; begin < aside_.size() && !full(); begin += kSubtreesAtOnce)
             grow_subtrees(begin, std::min(aside_.size(), begin + kSubtreesAtOnce), visit);
     }
 
     bool forgot() const { return !aside_.empty(); }
+    bool full() const { return parts_.size() > forgetting_.most; }
 
 private:
     std::int8_t forced(std::uint32_t part) const { return part == 0 ? first_ : Part::whole; }
@@ -250,8 +252,9 @@ bool Partition::refine(double finest, double heaviest, const Forgetting& forgett
     const Growth growth{grid_, total_, finest, heaviest};
     Levels levels(growth, first_, forgetting, parts_);
     levels.run([&](const Part& part) { any_new = any_new || !forgot_ || !(part.excess() > finest_); });
-    forgot_ = forgot_ || levels.forgot();
-    finest_ = std::min(finest_, finest);
+    full_ = levels.full();
+    forgot_ = forgot_ || levels.forgot() || full_;
+    if (!full_) finest_ = std::min(finest_, finest);
     return any_new;
 }
 

@@ -30,6 +30,7 @@ struct Part {
 struct Forgetting {
     double price = 0.0; ///< a byte: divisions that pay at no price from here on
     std::size_t parts = std::numeric_limits<std::size_t>::max(); ///< where it has more parts than these
+    std::size_t most = std::numeric_limits<std::size_t>::max();  ///< and where it gives up with still more of them
 };
 
 /// Divides a grid, normalised to an integral of 1. parts()[0] is everything; children come after their parents.
@@ -52,6 +53,8 @@ public:
     bool refine(double finest, double heaviest, const Forgetting& forgetting = {});
     /// Forgets divisions that pay at no price from `price` on.
     void forget(double price);
+    /// Whether the last refine() gave up: it divided some of what it was to divide.
+    bool full() const { return full_; }
     const std::vector<Part>& parts() const { return parts_; }
     const Grid& grid() const { return grid_; }
     /// The integral over the grid, to which it is normalised.
@@ -65,7 +68,7 @@ private:
     std::int8_t first_;
     std::vector<Part> parts_;
     double finest_ = std::numeric_limits<double>::infinity(); ///< of the last call of refine
-    bool forgot_ = false;
+    bool forgot_ = false, full_ = false;
 };
 
 } // namespace acdf::compress

@@ -224,7 +224,7 @@ struct SceneNormal {
 
 struct EnvironmentOptions {
     TargetOptions target; ///< of pixels and rows; a Target has its own
-    Goal goal;            ///< cells: in all, about 4.2 bytes each. Of the variance fit only
+    Goal goal;            ///< cells: in all, about 4.2 bytes each; variance: up to 16 MiB. Of the variance fit only
     FitOptions fit;
     Company company;                  ///< of the variance fit as a tree, without max_weight or a goal of variance
     std::vector<SceneNormal> normals; ///< that the company lights; empty: all normals

@@ -11,6 +11,8 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -102,6 +104,48 @@ TEST(PartitionGrowth, AForcedFirstSplitSurvivesForgetting) {
         }
         EXPECT_EQ(whole.parts().front().split, axis);
     }
+}
+
+TEST(PartitionGrowth, GivesUpWhereThereAreTooManyParts) {
+    const Target target = noise();
+    Partition whole = partition_of(target), bounded = partition_of(target);
+    constexpr std::size_t kMost = 6000;
+    const double fine = 1e-8, coarse = 1e-3;
+    whole.refine(coarse, kNoBound);
+    ASSERT_LT(whole.parts().size(), kMost);
+    bounded.refine(fine, kNoBound, {fine / kLeastBytes, kFew, kMost});
+    EXPECT_TRUE(bounded.full());
+    // What is divided at once: subtrees of half of the grid each, at most, of two parts a step.
+    EXPECT_LT(bounded.parts().size(), kMost + 2 * target.values.size());
+    bounded.forget(coarse / kLeastBytes);
+    bounded.refine(coarse, kNoBound, {coarse / kLeastBytes, kFew, kMost});
+    EXPECT_FALSE(bounded.full());
+    expect_equal(pruned_cascade(whole, coarse), pruned_cascade(bounded, coarse));
+}
+
+/// A goal that no file within the bound reaches ends in a message; one that does makes the same bytes as without.
+TEST(PartitionGrowth, AVarianceIsSearchedForWithinABoundOfBytes) {
+    const Target target = acdf_test::noise_target(512, 400, 5);
+    FitOptions options;
+    options.goal.kind = Goal::Kind::variance;
+    const auto bytes = [&](double variance, std::uint64_t most) {
+        options.goal.variance = variance;
+        options.most_bytes = most;
+        return fit_trees({grid_of(target)}, options).tree.bytes;
+    };
+    constexpr std::uint64_t kMost = 200000;
+    const std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+    const double least = 0.1, coarse = 0.25;
+    try {
+        bytes(least, kMost);
+        ADD_FAILURE() << "a file beyond the bound";
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("takes a budget"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(bytes(coarse, kMost), bytes(coarse, none));
+    const std::size_t near = bytes(0.22, kMost).size(); // found between the steps of the growth
+    EXPECT_GT(near, kMost / 2);
+    EXPECT_LT(near, 2 * kMost);
 }
 
 /// Bins that are pruned at one price, one of them dark.

@@ -37,10 +37,11 @@ std::uint64_t peak_of(const std::vector<std::string>& arguments, const std::stri
 class BatchMemory : public testing::Test {
 protected:
     Folder folder;
-    const std::string noise = folder / "noise.pfm", tiny = folder / "tiny.pfm";
+    const std::string noise = folder / "noise.pfm", larger = folder / "larger.pfm", tiny = folder / "tiny.pfm";
 
     void SetUp() override {
-        write_small_probe(noise, 1, 128); // the worst there is: every texel is worth a cell of its own
+        write_small_probe(noise, 1, 128);  // the worst there is: every texel is worth a cell of its own
+        write_small_probe(larger, 1, 256); // of so many that what a tree takes counts
         write_small_probe(tiny, 1, 2);
     }
 
@@ -83,7 +84,6 @@ TEST_F(BatchMemory, JobsTakeNoMoreThanIsEstimated) {
                                 "--budget 128KiB",
                                 "--budget 1MiB",
                                 "--target-variance 0.05",
-                                "--target-variance 0.005",
                                 "--target-variance 0.001",
                                 "--budget 32KiB --channel rgb",
                                 "--budget 32KiB --channel max",
@@ -97,6 +97,7 @@ TEST_F(BatchMemory, JobsTakeNoMoreThanIsEstimated) {
                                 "--fit pdf",
                                 "--fit uniform"})
         jobs.push_back({"env", noise, options});
+    jobs.push_back({"env", larger, "--target-variance 0.001"});
     for (const char* options : {"--budget 16KiB --normals 2", "--budget 32KiB --normals 2 --domain octahedral",
                                 "--no-sharing --fit cdf --normals 2", "--budget 64KiB --normals 3"})
         jobs.push_back({"local", noise, options});
