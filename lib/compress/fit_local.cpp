@@ -76,9 +76,26 @@ Curves fit_curves(const TileTree& tiles, TileCurves& curves, std::uint64_t bytes
     return best;
 }
 
+constexpr std::uint32_t kManyLights = 2 * ACDF_MAX_LIGHTS; // the brightest half of them is taken
+
+/// Tiles, and the rule by which they become lights. Where that of most probes finds many more lights than there may
+/// be, as it does in large bright areas and for normals that nearly all light is hidden from, tiles would be spent
+/// on them in vain: lights are larger then, and only the brightest.
+LightRule divide(const Target& target, const Worth& worth, std::uint32_t count, TileTree& tiles) {
+    LightRule rule;
+    tiles = divide_tiles(target, worth, count, rule);
+    if (tiles.lights <= kManyLights) return rule;
+    rule = {rule.alarm, 1.5 * rule.radius, true};
+    for (int step = 0; step < 12; ++step, rule.alarm *= 3.0) {
+        tiles = divide_tiles(target, worth, count, rule);
+        if (tiles.lights <= kManyLights) break;
+    }
+    return rule;
+}
+
 /// Tiles of light so bright that, near the horizon, mixing the rows of bins would draw many samples below it.
 std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, const TileCascade& cascade,
-                                   double total, const Worth& worth) {
+                                   double total, const Worth& worth, const LightRule& rule) {
     std::vector<std::pair<double, AcdfLight>> found;
     for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
         const Box& box = tiles.tiles[t];
@@ -86,7 +103,7 @@ std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, 
         const double alarm =
             share * total *
             worth.alarm.at(double(box.begin[1]) / target.columns, double(box.begin[0]) / target.rows);
-        if (reach > kLightRadius || alarm < kAlarm || !(static_cast<float>(share) > 0.0f)) continue;
+        if (reach > rule.radius || alarm < rule.alarm || !(static_cast<float>(share) > 0.0f)) continue;
         const Direction middle = centre(target, box);
         AcdfLight light = {};
         for (std::size_t k = 0; k < 3; ++k) light.direction[k] = static_cast<float>(middle[k]);
@@ -201,15 +218,15 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
     if (company) beside.emplace(target, points, bins, flux, company);
     report(0.1);
     LocalFit out;
-    out.tiles =
-        divide_tiles(beside ? beside->excess(target) : target, light_worth, std::min(size.tiles, ACDF_MAX_TILES));
+    const LightRule rule = divide(beside ? beside->excess(target) : target, light_worth,
+                                  std::min(size.tiles, ACDF_MAX_TILES), out.tiles);
     report(0.4);
     const Target filled = beside ? beside->filled(target) : Target{};
     const Target& fitted = beside ? filled : target;
     TileCurves tile_curves(fitted, out.tiles.tiles, worth_of_tiles(target, out.tiles.tiles, light_worth));
     Curves curves = fit_curves(out.tiles, tile_curves, size.tree_bytes);
     report(0.8);
-    out.lights = find_lights(target, out.tiles, *curves.cascade, tile_curves.total(), light_worth);
+    out.lights = find_lights(target, out.tiles, *curves.cascade, tile_curves.total(), light_worth, rule);
     out.tree = std::move(curves.tree);
     out.shared.splits = stored_splits(out.tiles, [](const TileTree::Split& split) {
         return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;

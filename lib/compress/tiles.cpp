@@ -64,8 +64,8 @@ struct Candidate {
 
 class Divider {
 public:
-    Divider(const Target& target, const Worth& worth)
-        : target_(target), worth_(worth), sphere_(sphere_of(target)) {}
+    Divider(const Target& target, const Worth& worth, const LightRule& rule)
+        : target_(target), worth_(worth), rule_(rule), sphere_(sphere_of(target)) {}
 
     TileTree run(std::uint32_t count) {
         Box all;
@@ -95,6 +95,7 @@ private:
         Candidate split;
         std::size_t first_child = 0; ///< 0: a tile
         std::uint32_t depth = 1;     ///< splits on the way to its own, itself included
+        bool light = false;          ///< if it stays a tile
     };
 
     double at(const CoarseMap& map, std::uint32_t row, std::uint32_t column) const {
@@ -145,7 +146,7 @@ private:
 
     void push(const Box& box, std::uint32_t depth) {
         const std::size_t index = nodes_.size();
-        nodes_.push_back({box, {}, 0, depth});
+        nodes_.push_back({box, {}, 0, depth, false});
         if (depth > TileTree::most_depth) return;
         project(box);
         Light all;
@@ -158,8 +159,12 @@ private:
         const double alarm = worth > 0.0 ? all.flux / worth * at(worth_.alarm, box.begin[0], box.begin[1]) : 0.0;
         // A light that crosses the horizon may draw in vain as it does between bins, over its radius instead.
         const double reach = radius(target_, box);
-        if (alarm > kAlarm && (reach > kLightRadius || alarm * reach > kAlarm * worth_.band))
-            best.gain += 1e6 * alarm; // first of all
+        if (alarm > rule_.alarm) {
+            nodes_[index].light = reach <= rule_.radius;
+            if (nodes_[index].light && rule_.few) return;
+            if (!nodes_[index].light || alarm * reach > rule_.alarm * worth_.band)
+                best.gain += 1e6 * alarm; // first of all
+        }
         queue_.push(best);
     }
 
@@ -167,6 +172,7 @@ private:
         const Node& n = nodes_[node];
         if (n.first_child == 0) {
             tree.tiles.push_back(n.box);
+            tree.lights += n.light;
             return TileTree::tile | static_cast<std::uint32_t>(tree.tiles.size() - 1);
         }
         const std::size_t index = tree.splits.size();
@@ -180,6 +186,7 @@ private:
 
     const Target& target_;
     const Worth& worth_;
+    const LightRule rule_;
     Sphere sphere_;
     std::array<std::vector<Light>, 2> lines_;
     std::vector<Light> after_;
@@ -189,8 +196,8 @@ private:
 
 } // namespace
 
-TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count) {
-    return Divider(target, worth).run(count);
+TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count, const LightRule& rule) {
+    return Divider(target, worth, rule).run(count);
 }
 
 std::array<double, 3> centre(const Target& target, const Box& box) {

@@ -1,4 +1,5 @@
 // acdf brdf and what else reads its files, as a user calls them.
+#include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
 
 #include <acdf/reader.h>
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <sstream>
 
+using namespace acdf;
 using namespace acdf::test;
 using Json = nlohmann::json;
 
@@ -76,6 +78,40 @@ TEST(BrdfCommand, measureComparesWithOtherSamplers) {
     }
     const double noise = 100.0 * std::sqrt(j.at("relative_variance").get<double>() / 64.0);
     EXPECT_NEAR(j.at("noise_percent").at("64").get<double>(), noise, 1e-3 * noise);
+}
+
+// The hemisphere seen from the normal: every pixel of the disc is the reader's density of the direction above it.
+TEST(BrdfCommand, plotsAHemisphere) {
+    const Folder folder;
+    constexpr int width = 48;
+    const Result plotted = run_acdf(
+        {"plot", small_file(), "-o", folder / "a.exr", "--view", "60,30", "--width", std::to_string(width)});
+    ASSERT_EQ(plotted.code, 0) << plotted.err;
+    const LoadedImage image = load_image(folder / "a.exr");
+    ASSERT_EQ(image.width, width);
+    ASSERT_EQ(image.height, width);
+    File file;
+    ASSERT_TRUE(File::open(small_file().c_str(), file).ok());
+    const auto radians = [](double degrees) { return degrees * ACDF_PI / 180.0; };
+    const float wo[3] = {float(std::sin(radians(60)) * std::cos(radians(30))),
+                         float(std::sin(radians(60)) * std::sin(radians(30))), float(std::cos(radians(60)))};
+    double whole = 0.0;
+    for (int y = 0; y < width; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double a = 2.0 * (x + 0.5) / width - 1.0, b = 1.0 - 2.0 * (y + 0.5) / width, r = std::hypot(a, b);
+            if (r >= 1.0) {
+                EXPECT_EQ(*image.at(x, y), 0.0f);
+                continue;
+            }
+            const double cosine = 1.0 - r * r, sine = std::sqrt(1.0 - cosine * cosine);
+            const float wi[3] = {float(sine * a / r), float(sine * b / r), float(cosine)};
+            const double p = file.brdf().pdf(wo, wi);
+            EXPECT_NEAR(*image.at(x, y), p, 1e-4 * p) << x << ' ' << y;
+            whole += p * 8.0 / (width * width);
+        }
+    EXPECT_NEAR(whole, 1.0, 0.1); // areas are as they are
+    EXPECT_EQ(run_acdf({"plot", small_file(), "-o", folder / "b.png", "-q", "--width", "96"}).code, 0);
+    EXPECT_GT(load_image(folder / "b.png").width, 96 + 2 * 20); // with its axes, and the legend
 }
 
 TEST(BrdfCommand, plotsAView) {

@@ -146,7 +146,8 @@ TEST_F(LocalCommands, WhatDoesNotFitIsRefused) {
     expect_refused({"sample", grid, "-n", "1", "--normal", "1,0,-0.1"}, 1, "no light reaches this normal");
     expect_refused({"sample", environment, "-n", "1", "--normal", "0,0,1"}, 1, "no local environment");
     expect_refused({"pdf", environment, "--normal", "0,0,1"}, 1, "no local environment");
-    expect_refused({"plot", shared, "-o", folder / "x.png"}, 1, "--normal X,Y,Z");
+    expect_refused({"plot", shared, "-o", folder / "x.exr"}, 1, "--normal X,Y,Z");
+    expect_refused({"plot", shared, "-o", folder / "x.png", "--projection", "hemisphere"}, 2, "BRDF");
     expect_refused({"plot", environment, "-o", folder / "x.png", "--normal", "0,0,1"}, 1, "no local environment");
 }
 
@@ -168,6 +169,30 @@ TEST_F(LocalCommands, PlotHoldsTheReadersDensities) {
                 EXPECT_NEAR(image.at(x, y)[0], plotted.local().pdf(n, d), 1e-5 * image.at(x, y)[0])
                     << x << ' ' << y;
             }
+    }
+}
+
+// Without a normal: those of six axes, as pictures of their own show them in the same range.
+TEST_F(LocalCommands, PlotShowsSeveralNormals) {
+    const std::string all = folder / "all.png", one = folder / "one.png";
+    const std::vector<std::string> same = {"--width", "64", "--no-legend", "--range", "1e-4:10", "-q"};
+    const auto plot = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), same.begin(), same.end());
+        const Result result = run_acdf(arguments);
+        ASSERT_EQ(result.code, 0) << result.err;
+    };
+    plot({"plot", shared, "-o", all});
+    const LoadedImage six = load_image(all);
+    constexpr int width = 64, height = 32, gap = 12, label = 24;
+    ASSERT_EQ(six.width, 3 * width + 2 * gap);
+    ASSERT_EQ(six.height, 2 * (height + label));
+    const char* normals[] = {"0,0,1", "1,0,0", "0,1,0", "0,0,-1", "-1,0,0", "0,-1,0"};
+    for (int i = 0; i < 6; ++i) {
+        plot({"plot", shared, "-f", "-o", one, "--normal", normals[i]});
+        const LoadedImage image = load_image(one);
+        const int x = i % 3 * (width + gap), y = i / 3 * (height + label) + label;
+        for (int row = 0; row < height; ++row)
+            EXPECT_TRUE(std::equal(image.at(0, row), image.at(0, row) + 3 * width, six.at(x, y + row))) << i;
     }
 }
 

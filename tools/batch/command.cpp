@@ -1,4 +1,5 @@
 // acdf batch: many sources to many files.
+#include "tools/batch/gallery.h"
 #include "tools/batch/jobs.h"
 #include "tools/batch/memory.h"
 #include "tools/batch/ninja.h"
@@ -110,6 +111,8 @@ Shard shard_of(const BatchArguments& options) {
 void check_usage(const BatchArguments& options) {
     if (options.inputs.empty())
         throw CLI::ValidationError("INPUT is missing: folders, globs, files or a manifest (*.jsonl)");
+    if (options.gallery && (options.merge || options.dry_run || !options.emit.empty()))
+        throw CLI::ValidationError("--gallery", "is for runs: not for --dry-run, --merge-reports and --emit");
     if (options.merge) return;
     if (options.output.empty()) throw CLI::ValidationError("--output is missing: the folder to write to");
     if (!options.emit.empty() && (options.dry_run || !options.shard.empty() || options.json))
@@ -205,7 +208,12 @@ int run_batch(const BatchArguments& options, const BatchJobs& all, const BatchLi
         return exit_done;
     }
     fs::create_directories(options.output);
-    return tell(options, {batch_id(all.jobs), shard, run_with_progress(options, plan, limits)});
+    const BatchReport report{batch_id(all.jobs), shard, run_with_progress(options, plan, limits)};
+    if (options.gallery) {
+        const std::string page = gallery_page(report, options.output);
+        write_output((fs::path(options.output) / "gallery.html").string(), {page.begin(), page.end()}, true);
+    }
+    return tell(options, report);
 }
 
 /// The arguments that make the same build file once more.

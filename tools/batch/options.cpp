@@ -46,6 +46,12 @@ void add_how(CLI::App& command, BatchArguments& options) {
         ->group("Output");
     command.add_flag("-n,--dry-run", options.dry_run, "Only tell what would be made or skipped, and why")
         ->group("Output");
+    command
+        .add_flag(
+            "--gallery", options.gallery,
+            "Write DIR/gallery.html too: a thumbnail of each density, its size and noise, on one page that needs "
+            "no other file")
+        ->group("Output");
     add_json(command, options.json);
     add_quiet(command, options.quiet);
     command

@@ -14,7 +14,7 @@ struct BatchArguments {
     std::vector<std::string> inputs, kinds, set;
     std::string output, memory, shard, emit;
     int threads = 0, jobs = 0;
-    bool dry_run = false, force = false, merge = false, json = false, quiet = false;
+    bool dry_run = false, force = false, merge = false, gallery = false, json = false, quiet = false;
 };
 
 void add_batch_options(CLI::App& command, BatchArguments& options);

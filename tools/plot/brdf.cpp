@@ -57,7 +57,7 @@ Density density_of(const PlottedView& view) {
     };
 }
 
-std::vector<float> knot_opacity(const PlottedView& view, const build::Map& map) {
+std::vector<float> knot_opacity(const PlottedView& view, const PlotMap& map) {
     const AcdfBrdf& brdf = view.brdf.data();
     AcdfBrdfView served;
     float wo[3];

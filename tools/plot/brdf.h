@@ -28,11 +28,11 @@ struct PlottedView {
     void direction(float wo[3]) const;
 };
 
-/// The stored density, exactly: the lower half of a lat-long picture is below the surface. The view's File must
+/// The stored density, exactly: below the surface too, where a few samples fall. The view's File must
 /// outlive the result.
 Density density_of(const PlottedView& view);
 
 /// As of environments: lines along the borders of cells, none where cells are narrower than two pixels.
-std::vector<float> knot_opacity(const PlottedView& view, const build::Map& map);
+std::vector<float> knot_opacity(const PlottedView& view, const PlotMap& map);
 
 } // namespace acdf::tools

@@ -13,10 +13,12 @@
 #include "tools/commands.h"
 #include "tools/plot/brdf.h"
 #include "tools/plot/colour.h"
+#include "tools/plot/hemisphere.h"
 #include "tools/plot/image.h"
 #include "tools/plot/knots.h"
 #include "tools/plot/legend.h"
 #include "tools/plot/local.h"
+#include "tools/plot/panels.h"
 
 #include <CLI/CLI.hpp>
 
@@ -34,11 +36,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+enum class PlotProjection { automatic, latlong, angular, hemisphere };
+
 struct PlotArguments {
     std::string file, output, range, view;
     std::vector<float> normal;
     input::ProbeOptions input;
-    build::Layout layout = build::Layout::latlong;
+    PlotProjection projection = PlotProjection::automatic;
     int width = 0; // 0: by the resolution
     bool knots = true, legend = true, quiet = false, force = false;
 };
@@ -53,6 +57,7 @@ struct Plotted {
     std::uint32_t columns = 0, rows = 0;
     std::optional<PlottedView> brdf;    // of a BRDF file
     std::optional<PlottedNormal> local; // of a local environment file
+    bool panels = false;                // of a local environment file for several normals
     std::vector<std::string> title;
 };
 
@@ -64,6 +69,15 @@ bool is_stored(const std::string& path) {
     std::vector<std::uint8_t> start(ACDF_MAGIC_SIZE);
     std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(start.data()), ACDF_MAGIC_SIZE);
     return has_magic(start);
+}
+
+bool is_exr(const std::string& path) {
+    std::string extension = fs::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != ".exr" && extension != ".png" && path != "-")
+        throw CLI::ValidationError("--output", "needs a name that ends in .png (picture) or .exr (numbers)");
+    return extension == ".exr";
 }
 
 std::string shown_name(const std::string& path) {
@@ -112,14 +126,18 @@ void add_variance(const File& file, std::vector<std::string>& title) {
 
 void load_local(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
-    source.local.emplace(PlottedNormal{file.local(), chosen_normal(options.file, options.normal)});
+    source.panels = options.normal.empty() && !is_exr(options.output);
+    const Normal chosen = source.panels ? panel_normals[0].normal : chosen_normal(options.file, options.normal);
+    source.local.emplace(PlottedNormal{file.local(), chosen});
     source.density = density_of(*source.local);
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
     const Normal& n = source.local->normal;
     char normal[64];
     std::snprintf(normal, sizeof normal, "normal %.3g, %.3g, %.3g", double{n[0]}, double{n[1]}, double{n[2]});
-    source.title = {shown_name(options.file), normal, to_readable_size(file.size())};
+    source.title = {shown_name(options.file)};
+    if (!source.panels) source.title.emplace_back(normal);
+    source.title.push_back(to_readable_size(file.size()));
     add_variance(file, source.title);
 }
 
@@ -153,17 +171,27 @@ void load_image(const PlotArguments& options, Plotted& source) {
                     std::to_string(source.columns) + " x " + std::to_string(source.rows)};
 }
 
-build::Map picture_map(const PlotArguments& options, const Plotted& source) {
-    if (options.width > 0) return plot_map(options.layout, options.width);
+PlotMap picture_map(const PlotArguments& options, const Plotted& source) {
+    const bool automatic = options.projection == PlotProjection::automatic;
+    if (options.projection == PlotProjection::hemisphere || (automatic && source.brdf))
+        return hemisphere_map(options.width > 0 ? options.width : 640);
+    const build::Layout layout =
+        options.projection == PlotProjection::angular ? build::Layout::angular : build::Layout::latlong;
+    if (options.width > 0) return plot_map(layout, options.width);
     // A pixel a grid step where that is neither tiny nor huge.
-    const bool latlong = options.layout == build::Layout::latlong;
+    const bool latlong = layout == build::Layout::latlong;
     const int steps = static_cast<int>(std::min<std::uint32_t>(latlong ? source.columns : source.rows, 1u << 20));
-    return plot_map(options.layout, latlong ? std::clamp(steps, 512, 2048) : std::clamp(steps, 512, 1024));
+    if (source.panels) return plot_map(layout, latlong ? 512 : 384);
+    return plot_map(layout, latlong ? std::clamp(steps, 512, 2048) : std::clamp(steps, 512, 1024));
 }
 
-DensityRange chosen_range(const PlotArguments& options, const DensityImage& image) {
+DensityRange chosen_range(const PlotArguments& options, const std::vector<DensityImage>& images) {
     if (!options.range.empty()) return *parse_range(options.range);
-    const DensityRange range = automatic_range(image);
+    DensityRange range = automatic_range(images.front());
+    for (const DensityImage& image : images) { // one for all of them
+        const DensityRange other = automatic_range(image);
+        range = {std::min(range.low, other.low), std::max(range.high, other.high)};
+    }
     if (!options.quiet)
         say(options.output + ": colours span " + to_string(range) +
             " sr^-1; --range sets them, for pictures to compare");
@@ -208,16 +236,58 @@ std::string checked_font(const PlotArguments& options) {
     return font;
 }
 
-std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& source) {
-    const Drawing drawing = draw(options, source, options.knots && !source.stored.file.empty());
-    const std::vector<float>& density = drawing.image.density;
-    const DensityRange range = chosen_range(options, drawing.image);
+images::Picture coloured(const Drawing& drawing, const DensityRange& range) {
     images::Picture picture = false_colour(drawing.image, range);
     if (!drawing.knots.empty()) draw_knots(picture, drawing.knots);
     if (!drawing.horizon.empty()) draw_horizon(picture, drawing.horizon);
+    return picture;
+}
+
+/// One drawing, or one for each of panel_normals.
+std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& source) {
+    const bool with_knots = options.knots && !source.stored.file.empty();
+    std::vector<Drawing> out;
+    if (!source.panels) {
+        out.push_back(draw(options, source, with_knots));
+        return out;
+    }
+    for (const NamedNormal& named : panel_normals) {
+        Plotted panel;
+        panel.local.emplace(PlottedNormal{source.local->local, named.normal});
+        panel.density = density_of(*panel.local);
+        panel.columns = source.columns;
+        panel.rows = source.rows;
+        panel.panels = true;
+        out.push_back(draw(options, panel, with_knots));
+    }
+    return out;
+}
+
+std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& source) {
+    const std::vector<Drawing> drawings = draw_all(options, source);
+    const std::string font = options.legend ? checked_font(options) : "";
+    std::vector<DensityImage> densities;
+    for (const Drawing& drawing : drawings) densities.push_back(drawing.image);
+    const DensityRange range = chosen_range(options, densities);
+    images::Picture picture;
+    if (source.panels) {
+        std::vector<Panel> panels;
+        for (std::size_t i = 0; i < drawings.size(); ++i)
+            panels.push_back({panel_normals[i].name, coloured(drawings[i], range)});
+        picture = arranged(panels, 3, font);
+    } else {
+        picture = coloured(drawings.front(), range);
+    }
     if (options.legend) {
-        const bool zero = std::find(density.begin(), density.end(), 0.0f) != density.end();
-        picture = add_legend(picture, {source.title, range, zero}, checked_font(options));
+        if (source.brdf && densities.front().map.hemisphere) {
+            float wo[3];
+            source.brdf->direction(wo);
+            picture = label_hemisphere(picture, wo, font);
+        }
+        const bool zero = std::any_of(densities.begin(), densities.end(), [](const DensityImage& image) {
+            return std::find(image.density.begin(), image.density.end(), 0.0f) != image.density.end();
+        });
+        picture = add_legend(picture, {source.title, range, zero}, font);
     }
     return encode_png(picture, {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + "; colours span " +
                                                           to_string(range) + " sr^-1, logarithmic"});
@@ -226,15 +296,6 @@ std::vector<std::uint8_t> make_png(const PlotArguments& options, const Plotted& 
 std::vector<std::uint8_t> make_exr(const PlotArguments& options, const Plotted& source) {
     return encode_exr(draw(options, source, false).image,
                       {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + ", sr^-1"});
-}
-
-bool is_exr(const std::string& path) {
-    std::string extension = fs::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != ".exr" && extension != ".png" && path != "-")
-        throw CLI::ValidationError("--output", "needs a name that ends in .png (picture) or .exr (numbers)");
-    return extension == ".exr";
 }
 
 void run(const PlotArguments& options) {
@@ -246,22 +307,26 @@ void run(const PlotArguments& options) {
     Plotted source;
     if (is_stored(options.file)) load_stored(options, source);
     else load_image(options, source);
+    if (options.projection == PlotProjection::hemisphere && !source.brdf)
+        throw CLI::ValidationError("--projection", "hemisphere is for BRDF files");
     const std::vector<std::uint8_t> bytes = exr ? make_exr(options, source) : make_png(options, source);
     output.write(bytes.data(), bytes.size());
     output.commit();
 }
 
 void add_picture_options(CLI::App& command, PlotArguments& options) {
-    const std::map<std::string, build::Layout> layouts{{"latlong", build::Layout::latlong},
-                                                       {"angular", build::Layout::angular}};
+    const std::map<std::string, PlotProjection> layouts{{"latlong", PlotProjection::latlong},
+                                                        {"angular", PlotProjection::angular},
+                                                        {"hemisphere", PlotProjection::hemisphere}};
     command
         .add_option(
-            "--projection", options.layout,
-            "How the picture lays out directions: latlong (a 2:1 map: all cells at a glance) or angular (the "
+            "--projection", options.projection,
+            "How the picture lays out directions: latlong (a 2:1 map: all cells at a glance), angular (the "
             "unit disc of Debevec's light probes and of Lawrence et al. 2005, Fig. 5: less distorted around "
-            "the middle, which is +x as in the lat-long map; sides as in a probe of that projection)")
+            "the middle, which is +x as in the lat-long map; sides as in a probe of that projection) or, for "
+            "BRDFs, hemisphere (seen from the normal, x to the right; a cross marks the mirror direction)")
         ->transform(one_of(layouts))
-        ->option_text("NAME [latlong]")
+        ->option_text("NAME [latlong; BRDFs: hemisphere]")
         ->group("Picture");
     command
         .add_option(
@@ -311,7 +376,8 @@ void add_plot(CLI::App& program, int& exit_code) {
             "For a BRDF file, the direction of view in degrees: theta from the normal, phi from the tangent")
         ->option_text("THETA[,PHI] [45]")
         ->group("Input");
-    add_normal(command, options->normal, "Input", "; the white line is its horizon");
+    add_normal(command, options->normal, "Input",
+               "; the white line is its horizon. Without it the six axes are shown");
     add_picture_options(command, *options);
     add_output(command, options->output, options->force,
                "The picture to write: .png, or .exr for the densities themselves as floats, for other programs")
@@ -323,7 +389,9 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "0, where no sample ever falls. Each pixel shows the density of the direction at its centre.",
                     "acdf plot sky.acdf -o sky.png\n"
                     "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
+                    "acdf plot local.acdf -o six.png\n"
                     "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
+                    "acdf plot nickel.acdf -o lobe.png --view 60\n"
                     "acdf plot sky.acdf -o sky.exr --width 4096"));
     command.callback([options, &exit_code] {
         run(*options);

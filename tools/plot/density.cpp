@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 namespace acdf::tools {
 
@@ -24,11 +25,26 @@ Density density_of(const compress::Target& target) {
     };
 }
 
-build::Map plot_map(build::Layout layout, int width) {
+PlotMap plot_map(build::Layout layout, int width) {
     return {layout, width, layout == build::Layout::latlong ? std::max(width / 2, 1) : width};
 }
 
-bool pixel_direction(const build::Map& map, double x, double y, float direction[3]) {
+PlotMap hemisphere_map(int width) {
+    PlotMap map(build::Layout::angular, width, width);
+    map.hemisphere = true;
+    return map;
+}
+
+bool pixel_direction(const PlotMap& map, double x, double y, float direction[3]) {
+    if (map.hemisphere) {
+        const double a = 2.0 * x / map.width - 1.0, b = 1.0 - 2.0 * y / map.height, square = a * a + b * b;
+        if (!(square < 1.0)) return false;
+        const double scale = std::sqrt(2.0 - square); // sin theta over sqrt(1 - cos theta)
+        direction[0] = static_cast<float>(scale * a);
+        direction[1] = static_cast<float>(scale * b);
+        direction[2] = static_cast<float>(1.0 - square);
+        return true;
+    }
     build::Direction d;
     if (!build::to_direction(map, x / map.width, y / map.height, d)) return false;
     direction[0] = static_cast<float>(d.x);
@@ -37,7 +53,14 @@ bool pixel_direction(const build::Map& map, double x, double y, float direction[
     return true;
 }
 
-DensityImage draw_density(const build::Map& map, const Density& density, const build::Progress& progress) {
+double pixel_solid_angle(const PlotMap& map, int x, int y) {
+    if (!map.hemisphere) return build::texel_solid_angle(map, x, y);
+    float direction[3];
+    if (!pixel_direction(map, x + 0.5, y + 0.5, direction)) return 0.0;
+    return 8.0 / (double(map.width) * map.height); // of 2 pi on a disc of pi, in a square of 4
+}
+
+DensityImage draw_density(const PlotMap& map, const Density& density, const build::Progress& progress) {
     DensityImage image{map, {}};
     const auto width = static_cast<std::size_t>(map.width);
     image.density.assign(width * static_cast<std::size_t>(map.height), shows_nothing);

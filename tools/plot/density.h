@@ -25,9 +25,18 @@ Density density_of(const compress::Target& target);
 /// What pixels outside of the disc of an angular map hold.
 constexpr float shows_nothing = -1.0f;
 
+/// How a picture lays out directions: as a probe does, or the hemisphere around +z on a disc.
+struct PlotMap : build::Map {
+    bool hemisphere = false;
+
+    PlotMap() = default;
+    PlotMap(const build::Map& map) : build::Map(map) {}
+    PlotMap(build::Layout layout, int width, int height) : build::Map{layout, width, height} {}
+};
+
 /// A density at the centres of the pixels of `map`.
 struct DensityImage {
-    build::Map map;
+    PlotMap map;
     std::vector<float> density; ///< height x width, sr^-1, or shows_nothing
 
     float at(int x, int y) const {
@@ -37,11 +46,18 @@ struct DensityImage {
 };
 
 /// A map as wide as told: lat-long (half as high) or angular (square).
-build::Map plot_map(build::Layout layout, int width);
+PlotMap plot_map(build::Layout layout, int width);
+
+/// The hemisphere above a surface on a disc, seen from its normal: x to the right, y up, areas as they are
+/// (Lambert's azimuthal projection: the distance from the middle is sqrt(1 - cos theta)).
+PlotMap hemisphere_map(int width);
 
 /// The direction at image position (x, y) in pixels; pixel centres are at halves. False outside of the disc.
-bool pixel_direction(const build::Map& map, double x, double y, float direction[3]);
+bool pixel_direction(const PlotMap& map, double x, double y, float direction[3]);
 
-DensityImage draw_density(const build::Map& map, const Density& density, const build::Progress& progress = {});
+/// Solid angle in sr of a pixel; 0 where its centre shows nothing.
+double pixel_solid_angle(const PlotMap& map, int x, int y);
+
+DensityImage draw_density(const PlotMap& map, const Density& density, const build::Progress& progress = {});
 
 } // namespace acdf::tools

@@ -30,7 +30,7 @@ struct GridPoint {
 
 class Tracer {
 public:
-    Tracer(const FindCell& find, const AcdfGrid& grid, const build::Map& map)
+    Tracer(const FindCell& find, const AcdfGrid& grid, const PlotMap& map)
         : find_(find), columns_(grid.columns), rows_(grid.rows),
           map_(map), grid_{acdf_grid_is_octahedral(&grid) ? build::Layout::octahedral : build::Layout::latlong, 1,
                            1} {} // of any size: it is scaled below
@@ -53,7 +53,8 @@ public:
 private:
     const FindCell& find_;
     std::uint32_t columns_, rows_;
-    build::Map map_, grid_;
+    PlotMap map_;
+    build::Map grid_;
 
     std::uint32_t resolution(std::size_t axis) const { return axis == ACDF_AXIS_PHI ? columns_ : rows_; }
 
@@ -112,7 +113,7 @@ private:
     }
 };
 
-float opacity_at(const std::vector<Extents>& extents, const build::Map& map, int x, int y) {
+float opacity_at(const std::vector<Extents>& extents, const PlotMap& map, int x, int y) {
     const auto at = [&](int i, int j) -> const Extents& {
         return extents[static_cast<std::size_t>(std::clamp(j, 0, map.height - 1)) *
                            static_cast<std::size_t>(map.width) +
@@ -133,8 +134,7 @@ float opacity_at(const std::vector<Extents>& extents, const build::Map& map, int
 
 } // namespace
 
-std::vector<float> knot_opacity(const EnvironmentView& view, const build::Map& map,
-                                const build::Progress& progress) {
+std::vector<float> knot_opacity(const EnvironmentView& view, const PlotMap& map, const build::Progress& progress) {
     const AcdfEnvironment& env = view.data();
     const FindCell find = [&env](const float direction[3], AcdfRange range[2]) {
         double t[2];
@@ -143,7 +143,7 @@ std::vector<float> knot_opacity(const EnvironmentView& view, const build::Map& m
     return knot_opacity(find, acdf_environment_grid(&env), map, progress);
 }
 
-std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, const build::Map& map,
+std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, const PlotMap& map,
                                 const build::Progress& progress) {
     const Tracer tracer(find, grid, map);
     const auto width = static_cast<std::size_t>(map.width);

@@ -14,8 +14,7 @@ Density density_of(const PlottedNormal& plotted) {
     return [view = plotted.local, point](const float direction[3]) { return view.pdf(point, direction); };
 }
 
-std::vector<float> knot_opacity(const PlottedNormal& plotted, const build::Map& map,
-                                const build::Progress& progress) {
+std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map, const build::Progress& progress) {
     const AcdfLocal local = plotted.local.data();
     const AcdfLocalPoint point = plotted.local.at(plotted.normal.data());
     const AcdfEnvironment& env = local.environment;
@@ -31,7 +30,7 @@ std::vector<float> knot_opacity(const PlottedNormal& plotted, const build::Map& 
     return knot_opacity(find, grid, map, progress);
 }
 
-std::vector<float> horizon_opacity(const Normal& normal, const build::Map& map) {
+std::vector<float> horizon_opacity(const Normal& normal, const PlotMap& map) {
     const double length = std::hypot(double{normal[0]}, double{normal[1]}, double{normal[2]});
     const auto cosine = [&](double x, double y, double& out) {
         float d[3];

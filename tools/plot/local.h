@@ -20,11 +20,11 @@ struct PlottedNormal {
 Density density_of(const PlottedNormal& plotted);
 
 /// The borders of cells, as of environments.
-std::vector<float> knot_opacity(const PlottedNormal& plotted, const build::Map& map,
+std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map,
                                 const build::Progress& progress = {});
 
 /// How opaque the horizon is at each pixel of `map`, in [0, 1]: a line about two pixels wide.
-std::vector<float> horizon_opacity(const Normal& normal, const build::Map& map);
+std::vector<float> horizon_opacity(const Normal& normal, const PlotMap& map);
 
 /// Blends it into `picture` (RGB floats as displayed, as large as `map`), white.
 void draw_horizon(images::Picture& picture, const std::vector<float>& opacity);

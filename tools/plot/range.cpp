@@ -35,7 +35,7 @@ Histogram histogram_of(const DensityImage& image) {
         for (int x = 0; x < image.map.width; ++x) {
             const float density = image.at(x, y);
             if (!(density > 0.0f)) continue;
-            const double solid_angle = build::texel_solid_angle(image.map, latlong ? 0 : x, y);
+            const double solid_angle = pixel_solid_angle(image.map, latlong ? 0 : x, y);
             const auto bin = static_cast<std::size_t>(bin_of(density));
             h.solid_angle[bin] += solid_angle;
             h.probability[bin] += solid_angle * static_cast<double>(density);

@@ -1,5 +1,6 @@
 #include "tools/sweep/page.h"
 
+#include "tools/cli/html.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 #include "tools/sweep/advice.h"
@@ -12,23 +13,6 @@
 
 namespace acdf::tools {
 namespace {
-
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-    constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t word = 0;
-        for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < left ? bytes[i + k] : 0u);
-        for (std::size_t k = 0; k < 4; ++k) out += k <= left ? digits[word >> (18 - 6 * k) & 63] : '=';
-    }
-    return out;
-}
-
-std::string image(const std::vector<std::uint8_t>& png, int width, int height, const std::string& alternative) {
-    return "<img width=\"" + std::to_string(width) + "\" height=\"" + std::to_string(height) + "\" alt=\"" +
-           escaped(alternative) + "\" src=\"data:image/png;base64," + base64(png) + "\">";
-}
 
 std::string element(const std::string& open, const std::string& text) {
     return "<" + open + ">" + escaped(text) + "</" + open.substr(0, open.find(' ')) + ">";
@@ -168,10 +152,10 @@ std::string pictures_html(const Sweep& sweep) {
         "<div class=\"grid pictures\">\n";
     for (const SweepPicture& picture : sweep.pictures)
         out += "<figure>" + element("h3", picture.title) +
-               image(picture.png, picture.width, picture.height, picture.title + ". " + picture.description) +
+               html_image(picture.png, picture.width, picture.height, picture.title + ". " + picture.description) +
                "</figure>\n";
     out += "</div>\n<p class=\"scale\"><span>" + escaped(short_number(sweep.range.low)) + "</span>" +
-           image(sweep.colour_bar, 256, 1, "Colours from violet over green to red") + "<span>" +
+           html_image(sweep.colour_bar, 256, 1, "Colours from violet over green to red") + "<span>" +
            escaped(short_number(sweep.range.high)) + " per steradian</span></p>\n";
     return out + "</section>\n";
 }

@@ -1,5 +1,6 @@
 #include "tools/sweep/page_chart.h"
 
+#include "tools/cli/html.h"
 #include "tools/cli/sizes.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/text.h"
@@ -237,21 +238,6 @@ std::string path_svg(const ReportSeries& series, const std::vector<std::pair<dou
 } // namespace
 
 std::string ReportSeries::letter() const { return std::string(1, static_cast<char>('A' + index % 26)); }
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '&') out += "&amp;";
-        else if (c == '<') out += "&lt;";
-        else if (c == '>') out += "&gt;";
-        else if (c == '"') out += "&quot;";
-        else if (c == '\'') out += "&#39;";
-        else if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f) out += "\xEF\xBF\xBD"; // U+FFFD
-        else out += c;
-    }
-    return out;
-}
 
 std::vector<ReportSeries> series_of(const Sweep& sweep) {
     std::vector<ReportSeries> out;

@@ -38,7 +38,4 @@ std::string chart_svg(const Sweep& sweep, const Chart& chart, std::size_t recomm
 /// What a series looks like in a plot, for the legend.
 std::string series_mark(const ReportSeries& series);
 
-/// Text in HTML and XML, in elements and in quoted attributes.
-std::string escaped(const std::string& text);
-
 } // namespace acdf::tools

@@ -205,11 +205,29 @@ TEST(LocalFit, LightsAreSmallAndTold) {
     ASSERT_GT(local.light_count, 0u);
     double share = 0.0;
     for (std::uint32_t k = 0; k < local.light_count; ++k) {
-        EXPECT_LE(local.lights[k].radius, static_cast<float>(kLightRadius) + 1e-3f);
+        EXPECT_LE(local.lights[k].radius, static_cast<float>(LightRule{}.radius) + 1e-3f);
         share += static_cast<double>(local.lights[k].share);
     }
     EXPECT_GT(share, 0.5); // most of the flux is that of the suns
     EXPECT_LT(share, 1.05);
+}
+
+/// A sky that ends at the horizon: normals below see so little of it that all of it would alarm, and tiles are not
+/// spent on more lights than there may be.
+TEST(LocalFit, TilesAreNotSpentOnLightsInVain) {
+    const Target sky = sphere_target(256, 128, [](double, double z) { return z > -0.02 ? 1.0 + z : 0.0; });
+    const NormalBins bins = octahedral_bins(12);
+    const Worth worths = worth(sky, bins, irradiance(light_points(sky), bins));
+    constexpr std::uint32_t count = 1000;
+    ASSERT_GT(divide_tiles(sky, worths, count).lights, 2 * ACDF_MAX_LIGHTS); // by the rule for most probes
+    const LocalFit fit = fit_local(sky, bins, {count, 16384});
+    EXPECT_LE(fit.tiles.lights, 2 * ACDF_MAX_LIGHTS);
+    double largest = 0.0; // of those that hold light
+    for (const Box& tile : fit.tiles.tiles)
+        if (tile.begin[0] < sky.rows / 2 && tile.length(1) < sky.columns)
+            largest =
+                std::max(largest, double(tile.length(1)) * std::sin(ACDF_PI * (tile.begin[0] + 0.5) / sky.rows));
+    EXPECT_LT(largest, sky.columns / 8.0);
 }
 
 /// The mean over ten million samples, spread over a hundred normals.

@@ -1,0 +1,46 @@
+// The page of thumbnails that a batch writes.
+#include "tests/tools/batch/files.h"
+#include "tests/tools/run.h"
+
+#include <gtest/gtest.h>
+
+namespace acdf::test {
+namespace {
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t out = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++out;
+    return out;
+}
+
+TEST(BatchGallery, ShowsEveryFileAndWhatFailed) {
+    const Folder folder;
+    write_small_probe(folder / "a.pfm", 1);
+    write_text(folder / "jobs.jsonl",
+               "{\"source\": \"a.pfm\", \"output\": \"a<b>&.acdf\", \"options\": {\"cells\": 20}}\n"
+               "{\"source\": \"a.pfm\", \"kind\": \"local\", \"output\": \"l.acdf\", "
+               "\"options\": {\"budget\": \"12KiB\", \"normals\": \"2\"}}\n"
+               "{\"source\": \"lambert\", \"kind\": \"brdf\", \"output\": \"m.acdf\", "
+               "\"options\": {\"cells\": 20, \"views\": \"4\"}}\n"
+               "{\"source\": \"a.pfm\", \"output\": \"f.acdf\", "
+               "\"options\": {\"target-variance\": 1e-12, \"channel\": \"rgb\"}}\n");
+    const Result made =
+        run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "--kind", "env", "-q"});
+    EXPECT_EQ(made.code, 1); // the last one fails
+    const std::string page = read_text(folder / "out/gallery.html");
+    EXPECT_EQ(count(page, "<img "), 3u) << made.err;
+    EXPECT_EQ(count(page, "<figure>"), 4u);
+    EXPECT_EQ(count(page, "data:image/png;base64,iVBORw0KGgo"), 3u);
+    EXPECT_EQ(count(page, "src=\"http"), 0u);
+    EXPECT_EQ(count(page, "a<b>"), 0u); // names are text
+    EXPECT_NE(page.find("<h2>a&lt;b&gt;&amp;.acdf</h2>"), std::string::npos);
+    EXPECT_NE(page.find("3 files, 1 failed"), std::string::npos);
+    EXPECT_NE(page.find("out of reach"), std::string::npos);
+    // Once more, all up to date but the last.
+    EXPECT_EQ(run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "-q"}).code, 1);
+    EXPECT_EQ(count(read_text(folder / "out/gallery.html"), "<img "), 3u);
+    EXPECT_EQ(run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "--dry-run"}).code, 2);
+}
+
+} // namespace
+} // namespace acdf::test
