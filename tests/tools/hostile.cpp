@@ -120,6 +120,37 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
         expect_failure({kind, probe, "--scene-up", "y", "-o", folder / "l.acdf"}, 2, "--scene-up");
 }
 
+// A file is measured against any source, which is told; where it has no density for the light, that is an error.
+TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
+    const auto write = [&](const std::string& path, int bright) { // the only one
+        std::ofstream out(path, std::ios::binary);
+        out << "PF\n16 8\n-1.0\n";
+        for (int i = 0; i < 16 * 8 * 3; ++i) {
+            const float value = i / 3 == bright ? 9.0f : 0.0f;
+            out.write(reinterpret_cast<const char*>(&value), sizeof value);
+        }
+    };
+    const std::string here = folder / "here.pfm", there = folder / "there.pfm", even = folder / "even.pfm";
+    write(here, 40);
+    write(there, 90);
+    write_probe(even, 16, 8);
+    for (const char* kind : {"env", "local"}) {
+        std::vector<std::string> command = {kind, here, "-o", file, "-q", "-f"};
+        if (std::string(kind) == "local") command.insert(command.end(), {"--budget", "16KiB"});
+        ASSERT_EQ(run_acdf(command).code, 0) << kind;
+        EXPECT_EQ(run_acdf({"measure", file, "--against", here}).code, 0) << kind;
+        const Result result = run_acdf({"measure", file, "--against", there, "-q", "--json"});
+        EXPECT_EQ(result.code, 1) << kind;
+        EXPECT_GT(json::parse(result.out).at("support_violations").get<int>(), 0); // figures are told all the same
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find("does not stand for " + there), std::string::npos) << result.err;
+    }
+    ASSERT_EQ(run_acdf({"env", even, "-o", file, "-q", "-f"}).code, 0);
+    const Result covered = run_acdf({"measure", file, "--against", there});
+    EXPECT_EQ(covered.code, 0); // it has a density there: noise, no bias
+    EXPECT_NE(covered.err.find("made from another file"), std::string::npos) << covered.err;
+}
+
 TEST_F(Hostile, ABoundOnWeightsThatIsOutOfReachNamesWhatItTakes) {
     const Result result =
         run_acdf({"env", probe, "-q", "--filter", "bilinear", "--cells", "2", "--max-weight", "1.5", "-o", file});

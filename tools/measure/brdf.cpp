@@ -1,6 +1,8 @@
 #include "tools/measure/brdf.h"
+
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
+#include "tools/measure/support.h"
 
 #include "build/brdf.h"
 #include "build/brdf_accuracy.h"
@@ -127,6 +129,7 @@ void measure_brdf(const std::string& path, const File& file, const std::string& 
         const Rivals r = rivals(reflected, *brdf, views);
         if (json) std::fputs(json_text(report(path, file, source, accuracy, r)).c_str(), stdout);
         else print_text(path, file, source, accuracy, r);
+        require_support(path, file, source, brdf->sha256, accuracy.support_violations);
     } catch (const std::invalid_argument& error) {
         throw Failure(source + ": " + error.what());
     }

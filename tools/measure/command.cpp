@@ -13,6 +13,7 @@
 #include "tools/commands.h"
 #include "tools/measure/brdf.h"
 #include "tools/measure/local.h"
+#include "tools/measure/support.h"
 #include "tools/measure/table.h"
 
 #include <CLI/CLI.hpp>
@@ -132,6 +133,8 @@ void run(const MeasureArguments& options) {
     if (!warning.empty() && !options.quiet) say(options.file + ": " + warning);
     if (options.json) std::fputs(json_text(report(options, loaded.file, measured)).c_str(), stdout);
     else print_text(options, loaded.file, measured);
+    require_support(options.file, loaded.file, options.source, source.probe.source_sha256,
+                    measured.accuracy.support_violations);
 }
 
 } // namespace
@@ -177,9 +180,12 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->group("Output");
     add_json(command, options->json);
     add_quiet(command, options->quiet);
-    command.footer(help_footer("No samples are drawn, so the figures carry no noise of their own.",
-                               "acdf measure probe.acdf --against probe.exr\n"
-                               "acdf measure probe.acdf --against probe.exr --json | jq .relative_variance"));
+    command.footer(
+        help_footer("No samples are drawn, so the figures carry no noise of their own. Against another source than "
+                    "the file's own "
+                    "a line on stderr says so; it is an error where that has light and the density is 0.",
+                    "acdf measure probe.acdf --against probe.exr\n"
+                    "acdf measure probe.acdf --against probe.exr --json | jq .relative_variance"));
     command.callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

@@ -1,6 +1,8 @@
 #include "tools/measure/local.h"
+
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
+#include "tools/measure/support.h"
 
 #include "build/cells.h"
 #include "build/local_accuracy.h"
@@ -138,6 +140,7 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
                        : std::vector<Rival>{};
     if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals)).c_str(), stdout);
     else print_text(file, options, accuracy, rivals);
+    require_support(options.file, file, options.source, source.probe.source_sha256, accuracy.support_violations);
 }
 
 } // namespace acdf::tools

@@ -1,6 +1,7 @@
 #include "tools/measure/table.h"
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
+#include "tools/measure/support.h"
 
 #include "build/table.h"
 #include "build/table_company.h"
@@ -120,6 +121,7 @@ void measure_table(const std::string& path, const File& file, const std::string&
         } else accuracy = build::summary(build::measure_bins(file, bins));
         if (json) std::fputs(json_text(report(path, file, source, accuracy)).c_str(), stdout);
         else print_text(path, file, source, accuracy);
+        require_support(path, file, source, input::file_sha256(source), accuracy.support_violations);
     } catch (const std::invalid_argument& error) {
         throw Failure(source + ": " + error.what());
     }
