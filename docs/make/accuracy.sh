@@ -138,10 +138,6 @@ hidden() {
 
 # ---- files for a company ----------------------------------------------------------------------------------------
 
-company_samplers=('full-cdf' 'mis(full-cdf,cosine)' 'mis-compensated' 'tiles:32x16' 'ris:32' 'env:64KiB' 'local:1MB'
-    'mis(local:1MB,cosine)' 'mis(4*local:1MB,cosine)' 'mis(env:64KiB --with cosine --scene,cosine)'
-    'mis(local:1MB --with cosine,cosine)' 'mis(auto:local:1MB --with cosine,cosine)')
-company() { scenes company 24x18 20 e4-grace e4-stpeters e4-beach hidden-grace; }
 company_exact() { ACDF=$acdf "${PYTHON:-/usr/bin/python3}" "$root/docs/make/company_exact.py" "$data"; }
 company_draws() { ACDF=$acdf "$root/docs/make/company_tables.sh" "$data" 12x9 24; }
 
