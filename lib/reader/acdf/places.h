@@ -5,7 +5,7 @@
  * mixture as a whole and, at each split of tiles that counts, of its two parts reaches it. Those *visibilities*
  * multiply what rows of normals give to the two parts; the products are made to add up to 1 again at each split, so
  * that the density is exact whatever the bytes are. Near the border of two cells their visibilities are mixed,
- * linearly: nothing jumps. */
+ * linearly, so that nothing jumps where at most four cells meet. */
 #ifndef ACDF_PLACES_H
 #define ACDF_PLACES_H
 
