@@ -392,8 +392,7 @@ Status table(const Array& array, const TableOptions& options, Table& result, con
 
 // ---- what makes a file ----
 
-/// What a file will tell as `fit.options`: equal texts, sources and versions of this library mean equal bytes. For
-/// caches. Empty where memory is short.
+/// What a file's `fit.options` will tell: with source and version it tells the bytes. Empty where memory is short.
 std::string option_text(const EnvironmentOptions& options) noexcept;
 std::string option_text(const LocalOptions& options) noexcept;
 std::string option_text(const BrdfOptions& options) noexcept;
