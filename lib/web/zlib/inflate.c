@@ -227,15 +227,18 @@ static int inflate_stream(Input* in, Room* out) {
 }
 
 int inflate(z_stream* stream, int flush) {
-    Input in = {stream->next_in, stream->next_in + stream->avail_in, 0, 0, 0};
-    Room out = {stream->next_out, stream->next_out, stream->next_out + stream->avail_out};
+    Bytef nothing = 0; /* stands for places that are null, of which C knows no sums */
+    Bytef* from = stream->next_in ? stream->next_in : &nothing;
+    Bytef* to = stream->next_out ? stream->next_out : &nothing;
+    Input in = {from, from + stream->avail_in, 0, 0, 0};
+    Room out = {to, to, to + stream->avail_out};
     const int result = inflate_stream(&in, &out);
     (void)flush;
     in.at -= in.count / 8; /* whole bytes that were read ahead */
     stream->avail_in = (uInt)(in.end - in.at);
-    stream->next_in = stream->next_in + (in.at - stream->next_in);
+    if (stream->next_in) stream->next_in = from + (in.at - from);
     stream->avail_out = (uInt)(out.end - out.at);
-    stream->next_out = out.at;
+    if (stream->next_out) stream->next_out = out.at;
     return result;
 }
 
