@@ -1,5 +1,6 @@
 #include "tools/cli/probe_source.h"
 #include "tools/cli/messages.h"
+#include "tools/cli/source_check.h"
 
 #include "build/errors.h"
 #include "tools/commands.h"
@@ -119,9 +120,7 @@ ProbeTarget source_target(const std::string& path, const File& file, const std::
                              file.axis(0).resolution, file.axis(1).resolution};
     ProbeTarget out =
         load(source, options, builder::TargetRows(stored_options(file), {}, grid), notes_of(source, quiet));
-    const Text hash = file.metadata("source.sha256");
-    if (hash.size > 0 && std::string(hash.data, hash.size) != out.probe.source_sha256 && !quiet)
-        say(path + ": made from another file than " + source + " (its SHA-256 differs)");
+    if (!quiet) tell_of_another(path, file, source, out.probe.source_sha256);
     return out;
 }
 

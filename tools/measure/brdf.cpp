@@ -2,7 +2,7 @@
 
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
-#include "tools/measure/support.h"
+#include "tools/cli/source_check.h"
 
 #include "build/brdf.h"
 #include "build/brdf_accuracy.h"
@@ -115,9 +115,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
 void measure_brdf(const std::string& path, const File& file, const std::string& source, std::uint32_t view_count,
                   bool json, bool quiet) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
-    const Text hash = file.metadata("source.sha256");
-    if (hash.size > 0 && std::string(hash.data, hash.size) != brdf->sha256 && !quiet)
-        say(path + ": made from another file than " + source + " (its SHA-256 differs)");
+    if (!quiet) tell_of_another(path, file, source, brdf->sha256);
     const AcdfDescription& d = file.description();
     const compress::Reflected reflected =
         build::reflected_light(*brdf, static_cast<AcdfChannels>(d.channels),

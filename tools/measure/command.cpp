@@ -10,10 +10,10 @@
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
+#include "tools/cli/source_check.h"
 #include "tools/commands.h"
 #include "tools/measure/brdf.h"
 #include "tools/measure/local.h"
-#include "tools/measure/support.h"
 #include "tools/measure/table.h"
 
 #include <CLI/CLI.hpp>

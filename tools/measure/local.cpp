@@ -2,7 +2,7 @@
 
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
-#include "tools/measure/support.h"
+#include "tools/cli/source_check.h"
 
 #include "build/cells.h"
 #include "build/local_accuracy.h"

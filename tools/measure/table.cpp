@@ -1,7 +1,7 @@
 #include "tools/measure/table.h"
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
-#include "tools/measure/support.h"
+#include "tools/cli/source_check.h"
 
 #include "build/table.h"
 #include "build/table_company.h"
@@ -83,9 +83,8 @@ void print_text(const std::string& path, const File& file, const std::string& so
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
 }
 
-/// The table at `source`, which has the shape of the file and, by the metadata `key`, was there when it was made.
-input::NpyArray read_source(const std::string& path, const File& file, const std::string& source, const char* key,
-                            bool quiet) {
+/// The table at `source`, which has the shape of the file.
+input::NpyArray read_source(const std::string& path, const File& file, const std::string& source) {
     input::NpyOptions options;
     options.bad_values = input::BadValuePolicy::zero; // as the file was made, or `acdf table` had refused them
     input::NpyArray array = input::read_npy(source, options);
@@ -95,9 +94,6 @@ input::NpyArray read_source(const std::string& path, const File& file, const std
     if (shape != array.shape)
         throw Failure(source + ": its shape is " + joined(array.shape, "x") + ", but " + path + " was made from " +
                       joined(shape, "x") + "; measure against the array it was made from");
-    const Text hash = file.metadata(key);
-    if (hash.size > 0 && std::string(hash.data, hash.size) != input::file_sha256(source) && !quiet)
-        say(path + ": made from another file than " + source + " (its SHA-256 differs)");
     return array;
 }
 
@@ -109,19 +105,22 @@ void measure_table(const std::string& path, const File& file, const std::string&
         throw Failure(path + ": it was made to be combined with another table; tell which (--with OTHER.npy)");
     if (!file.company() && !other.empty())
         throw CLI::ValidationError("--with", "is for tables with a company, which " + path + " is not");
-    const input::NpyArray array = read_source(path, file, source, "source.sha256", quiet);
+    const input::NpyArray array = read_source(path, file, source);
+    const std::string sha256 = input::file_sha256(source);
+    if (!quiet) tell_of_another(path, file, source, sha256);
     const std::vector<compress::Grid> bins = build::table_grids(array, file.table().indexed_count());
     try {
         build::TableAccuracy accuracy;
         if (file.company()) {
-            const input::NpyArray beside = read_source(path, file, other, "company.sha256", quiet);
+            const input::NpyArray beside = read_source(path, file, other);
+            if (!quiet) tell_of_another(path, file, other, input::file_sha256(other), "company.sha256");
             accuracy = build::summary(
                 build::measure_bins_beside(file, bins, build::table_grids(beside, file.table().indexed_count())));
             accuracy.combined = true;
         } else accuracy = build::summary(build::measure_bins(file, bins));
         if (json) std::fputs(json_text(report(path, file, source, accuracy)).c_str(), stdout);
         else print_text(path, file, source, accuracy);
-        require_support(path, file, source, input::file_sha256(source), accuracy.support_violations);
+        require_support(path, file, source, sha256, accuracy.support_violations);
     } catch (const std::invalid_argument& error) {
         throw Failure(source + ": " + error.what());
     }
