@@ -76,6 +76,10 @@ if(TARGET acdf_python)
         "The module acdf draws from .acdf files and evaluates their densities for\narrays of NumPy, and makes files from them."
         python)
     set(CPACK_DEBIAN_SCRIPTING_PACKAGE_SECTION python)
+    # What Python compiled beside the module would keep its folder.
+    set(CPACK_DEBIAN_SCRIPTING_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/prerm)
+    file(WRITE ${PROJECT_BINARY_DIR}/debian/prerm
+        "#!/bin/sh\nset -e\nif command -v py3clean >/dev/null; then py3clean -p python3-acdf; fi\n")
 endif()
 
 set(CPACK_GENERATOR DEB)
