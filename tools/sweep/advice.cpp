@@ -38,8 +38,10 @@ std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     const SweepRow& best = sweep.rows[recommended.row];
     const Visibility& v = sweep.visibility;
     const std::string size = to_readable_size(best.bytes);
-    const std::string has = "a relative variance of " + short_number(best.relative_variance) + ", " +
-                            noise_text(best.relative_variance, v.spp) + " noise at " + spp_text(v);
+    const double variance = variance_in(best, open_alone, sweep.numbers);
+    std::string has = "a relative variance of " + short_number(variance) + ", " + noise_text(variance, v.spp) +
+                      " noise at " + spp_text(v);
+    if (sweep.numbers == measure::Numbers::sobol) has += " of a scrambled Sobol' sequence";
     if (!recommended.reached)
         return "No size tried gets below " + percent(v.threshold) + " noise at " + spp_text(v) + ": the best, " +
                size + ", has " + has + ". Larger --budgets, or more samples, would.";
@@ -75,12 +77,16 @@ std::string picture_rule(const Sweep& sweep) {
     return text;
 }
 
-std::string rule_of(const Visibility& v) {
+std::string rule_of(const Sweep& sweep) {
+    const Visibility& v = sweep.visibility;
     std::string text =
         "Rule: the smallest file tried whose noise, the standard deviation sqrt(relative variance / " +
         std::to_string(v.spp) + ") of a pixel, is at most " + percent(v.threshold) + " of its value";
     if (v.threshold == 0.01) text += ": about half a step of 8-bit sRGB at middle grey";
-    return text + ". In numbers: a relative variance of at most " + short_number(v.largest_variance()) + ".";
+    text += ". In numbers: a relative variance of at most " + short_number(v.largest_variance()) + ".";
+    if (sweep.numbers == measure::Numbers::sobol)
+        text += " Samples are of a scrambled Sobol' sequence: it is variance times samples.";
+    return text;
 }
 
 RivalComparison compare(const Sweep& sweep, std::size_t index, const SweepRow& best) {
@@ -218,7 +224,7 @@ Advice advise(const Sweep& sweep) {
     out.situations = situations_of(sweep, best);
     const bool pictures = !out.situations.empty();
     out.sentence = pictures ? picture_sentence(sweep, out.recommended) : sentence_of(sweep, out.recommended);
-    out.rule = pictures ? picture_rule(sweep) : rule_of(sweep.visibility);
+    out.rule = pictures ? picture_rule(sweep) : rule_of(sweep);
     out.command = sweep.command + " " + best.options + " -o " + shell_word(sweep.output);
     for (std::size_t i = 0; i < sweep.rows.size(); ++i)
         if (!sweep.rows[i].ours()) out.comparisons.push_back(compare(sweep, i, best));

@@ -12,6 +12,7 @@
 #include "tools/plot/knots.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/build.h"
+#include "tools/sweep/pixel_draws.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +79,7 @@ void take(SweepRow& row, const builder::BrdfAccuracy& a) {
     row.cells = a.cells;
     row.relative_variance = a.support_violations > 0 ? HUGE_VAL : a.relative_variance;
     row.worst = a.support_violations > 0 ? HUGE_VAL : a.worst;
+    row.median = a.median;
     row.max_weight = a.support_violations > 0 ? HUGE_VAL : a.max_weight;
     row.rms = a.rms_pdf_error;
 }
@@ -93,7 +95,16 @@ Candidate make_file(const input::Brdf& brdf, const SweepOptions& sweep, const St
     return out;
 }
 
-std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count) {
+measure::ShadingPoint point_of(const compress::View& view) {
+    double wo[3];
+    view.direction(wo);
+    return {
+        {0.0f, 0.0f, 1.0f}, {static_cast<float>(wo[0]), static_cast<float>(wo[1]), static_cast<float>(wo[2])}, {}};
+}
+
+/// `points`: the views over which rivals are measured.
+std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count,
+                              std::vector<DrawnPoint>& points) {
     const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label,
@@ -102,6 +113,8 @@ std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected
         out.push_back(rival_candidate(system, label, std::move(sampler)));
         // The same sums as of files.
         auto measured = build::measure_views(density, reflected, views);
+        if (points.empty())
+            for (const build::ViewAccuracy& each : measured) points.push_back({point_of(each.view), each.albedo});
         if (loses_samples) measured = build::with_lost_samples(std::move(measured));
         take(out.back().row, build::summary(measured));
         out.back().row.cells = 0;
@@ -159,6 +172,20 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     }
 }
 
+/// Files and rivals with a renderer's points.
+void add_sobol(const compress::Reflected& reflected, const std::vector<DrawnPoint>& points,
+               const SweepOptions& options, std::vector<Candidate>& candidates) {
+    const DrawnIntegrand integrand = [&](std::size_t i, const float wi[3]) {
+        const float* o = points[i].shading.wo;
+        const double wo[3] = {o[0], o[1], o[2]}, light[3] = {wi[0], wi[1], wi[2]};
+        return light[2] > 0.0 ? reflected(wo, light) : 0.0;
+    };
+    for (Candidate& each : candidates)
+        if (std::isfinite(each.row.relative_variance))
+            each.row.sobol =
+                sobol_variance(*each.sampler, points, integrand, options.visibility.spp, options.seeds);
+}
+
 } // namespace
 
 Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress) {
@@ -175,15 +202,13 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
         [&](const Step& step) { return make_file(brdf, options, step); }, part(0.0, 0.7));
     part(0.7, 0.0)(0.0, "measuring rivals");
     sweep.baseline = candidates.size();
-    for (Candidate& rival : rivals(brdf, reflected, options.views)) candidates.push_back(std::move(rival));
+    std::vector<DrawnPoint> drawn;
+    for (Candidate& rival : rivals(brdf, reflected, options.views, drawn)) candidates.push_back(std::move(rival));
+    part(0.8, 0.0)(0.0, "drawing");
+    add_sobol(reflected, drawn, options, candidates);
     if (options.pictures) add_pictures(sweep, reflected, candidates);
     std::vector<ShadingPoint> points;
-    for (const compress::View& view : build::random_views(4096, false)) {
-        double wo[3];
-        view.direction(wo);
-        points.push_back({{0.0f, 0.0f, 1.0f},
-                          {static_cast<float>(wo[0]), static_cast<float>(wo[1]), static_cast<float>(wo[2])}});
-    }
+    for (const compress::View& view : build::random_views(4096, false)) points.push_back(point_of(view));
     std::shuffle(points.begin(), points.end(), std::mt19937_64(1)); // views are ordered, and blocks see a few
     finish_rows(sweep, std::move(candidates), points, options, part(0.9, 0.1));
     return sweep;

@@ -241,7 +241,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         .add_option_function<std::string>(
             "--sequence",
             [&options, sequences](const std::string& name) { options.sweep.numbers = sequences.at(name); },
-            "Random numbers of your renderer, by which the advice on environment files goes: independent ones, or "
+            "Random numbers of your renderer, by which the advice goes: independent ones, or "
             "sobol, a scrambled Sobol' sequence in each pixel; both are reported")
         ->check(CLI::IsMember({"independent", "sobol"}))
         ->type_name("")

@@ -8,6 +8,7 @@
 #include "tools/sweep/build.h"
 #include "tools/sweep/rivals.h"
 #include "tools/sweep/surface.h"
+#include "tools/sweep/surface_draws.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +59,7 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
     out.row.cells = 0;
     out.row.relative_variance = accuracy.support_violations > 0 ? HUGE_VAL : accuracy.relative_variance;
     out.row.worst = accuracy.support_violations > 0 ? HUGE_VAL : accuracy.worst;
+    out.row.median = accuracy.median;
     out.row.max_weight = accuracy.max_weight;
     return out;
 }
@@ -100,6 +102,20 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
     }
 }
 
+/// Files and rivals with a renderer's points; not where those draw numbers of their own.
+void add_sobol(const compress::Target& target, const std::vector<build::Normal>& normals,
+               const SweepOptions& options, std::vector<Candidate>& candidates) {
+    const std::vector<SurfacePoint> points = in_the_open(normals);
+    const std::vector<float> anything(target.values.size(), 1.0f);
+    std::vector<double> irradiances;
+    for (const PointVariance& point : point_variances(target, anything, points))
+        irradiances.push_back(point.irradiance);
+    for (Candidate& each : candidates)
+        if (each.has_pdf && std::isfinite(each.row.relative_variance))
+            each.row.sobol =
+                sobol_variance(target, *each.sampler, points, irradiances, options.visibility.spp, options.seeds);
+}
+
 } // namespace
 
 Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, const SweepOptions& options,
@@ -118,6 +134,8 @@ Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, 
     part(0.8, 0.0)(0.0, "measuring rivals");
     sweep.baseline = candidates.size();
     for (Candidate& rival : local_rivals(target, normals)) candidates.push_back(std::move(rival));
+    part(0.85, 0.0)(0.0, "drawing");
+    add_sobol(target, normals, options, candidates);
     if (options.pictures) add_pictures(sweep, target, candidates);
     finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));
     return sweep;

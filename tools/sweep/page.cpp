@@ -56,9 +56,13 @@ std::string facts_html(const Sweep& sweep, const Advice& advice) {
     out += fact("Noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel",
                 noise_text(best.shaded(), sweep.visibility.spp),
                 "relative variance of a sample " + short_number(best.shaded()) + where);
-    out +=
-        fact("Noise at 16, 64, 256 samples", noise_texts(best.shaded()),
-             pictures ? "median over normals " + noise_texts(best.lit[open_alone].median) : "mean over conditions");
+    out += fact("Noise at 16, 64, 256 samples", noise_texts(best.shaded()),
+                "median over " + std::string(sweep.kind == SweepKind::brdf ? "views " : "normals ") +
+                    noise_texts(pictures ? best.lit[open_alone].median : best.median));
+    const double sobol = pictures ? best.lit[open_alone].sobol : best.sobol;
+    if (sobol == sobol)
+        out += fact("With a scrambled Sobol' sequence", noise_text(sobol, sweep.visibility.spp),
+                    "noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel" + where);
     if (std::isfinite(base.shaded() / best.shaded()))
         out += fact("Sample for sample", noise_ratio_text(base.shaded() / best.shaded()), "the " + base.label);
     if (const Interval time = ratio_interval(best.times.sample, base.times.sample); time.known())
@@ -263,7 +267,9 @@ std::string method_html(const Sweep& sweep) {
     else
         lines.push_back(std::string("Means are over ") + conditions + " random " +
                         (sweep.kind == SweepKind::local ? "normals" : "views") +
-                        ", none chosen for what a file stores.");
+                        ", none chosen for what a file stores. With Sobol' points: variance times samples with a "
+                        "scrambled Sobol' sequence, at " +
+                        std::to_string(sweep.visibility.spp) + " samples, by drawing them.");
     if (sweep.timed)
         lines.push_back(
             "Times: one thread, all samplers in turn within each of many rounds, so that what slows the "

@@ -72,8 +72,9 @@ Recommended for_pictures(const std::vector<SweepRow>& rows, const Visibility& vi
 
 double variance_in(const SweepRow& row, Situation situation, measure::Numbers numbers) {
     const Lit& lit = row.lit[situation];
-    if (!known(lit.mean)) return row.relative_variance;
-    return numbers == measure::Numbers::sobol && known(lit.sobol) ? lit.sobol : lit.mean;
+    const bool sobol = numbers == measure::Numbers::sobol;
+    if (!known(lit.mean)) return sobol && known(row.sobol) ? row.sobol : row.relative_variance;
+    return sobol && known(lit.sobol) ? lit.sobol : lit.mean;
 }
 
 Interval cost_ratio(const SweepRow& a, const SweepRow& b, Situation situation, const SampleCosts& costs) {
@@ -87,12 +88,13 @@ Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility&
     Recommended out;
     bool found = false;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!rows[i].ours() || !known(rows[i].relative_variance)) continue;
-        const bool reached = rows[i].relative_variance <= visibility.largest_variance();
+        const double variance = variance_in(rows[i], open_alone, numbers);
+        if (!rows[i].ours() || !known(variance)) continue;
+        const bool reached = variance <= visibility.largest_variance();
         const SweepRow& best = rows[out.row];
         const bool better = !found || (reached != out.reached ? reached
                                        : reached              ? rows[i].bytes < best.bytes
-                                                              : rows[i].relative_variance < best.relative_variance);
+                                                              : variance < variance_in(best, open_alone, numbers));
         if (better) out = {i, reached};
         found = true;
     }

@@ -29,7 +29,7 @@ constexpr double kSameSize = 1.25;
 
 /// Environment: the smallest file whose noise on a diffuse surface is in no situation more than kSameNoise times
 /// the least of all files after the same time, or too small to see, but for kSameSize; where there is none the one
-/// that misses by least. Otherwise the smallest file whose relative variance is at most
+/// that misses by least. Otherwise the smallest file whose variance_in() is at most
 /// visibility.largest_variance(), or the least noisy. There must be a file of known variance.
 Recommended recommended_row(const std::vector<SweepRow>& rows, const Visibility& visibility,
                             const SampleCosts& costs = {},

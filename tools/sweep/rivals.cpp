@@ -140,6 +140,7 @@ std::vector<Candidate> local_rivals(const Target& target, const std::vector<buil
         out.push_back(rival_candidate(system, label, std::move(sampler)));
         out.back().row.relative_variance = variance.mean;
         out.back().row.worst = variance.worst;
+        out.back().row.median = variance.median;
     };
     const auto each = [&](const auto& sampler) {
         return over_normals(normals, [&sampler](const float n[3]) { return sampler.relative_variance(n); });

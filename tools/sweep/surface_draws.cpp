@@ -3,6 +3,7 @@
 #include "measure/local_rivals.h"
 #include "measure/probe_grid.h"
 #include "measure/random.h"
+#include "tools/sweep/pixel_draws.h"
 
 #include <tbb/parallel_for.h>
 
@@ -13,25 +14,34 @@ namespace {
 
 using measure::CosineHemisphere;
 
+/// Light times cosine in the texel of wi, 0 where that is hidden.
+double lit_texel(const compress::Target& target, const measure::ProbeGrid& grid, const SurfacePoint& point,
+                 const float wi[3]) {
+    const build::Normal& n = point.n;
+    const double cosine = double{n[0]} * wi[0] + double{n[1]} * wi[1] + double{n[2]} * wi[2];
+    std::uint32_t texel[2];
+    if (!(cosine > 0.0) || !grid.find(wi, texel)) return 0.0;
+    const std::size_t at = std::size_t{texel[1]} * target.columns + texel[0];
+    return point.hidden.empty() || !point.hidden[at] ? target.values[at] * cosine : 0.0;
+}
+
+measure::ShadingPoint shading_of(const SurfacePoint& point) {
+    measure::ShadingPoint out;
+    std::copy_n(point.n.begin(), 3, out.n);
+    return out;
+}
+
 /// Estimates of the irradiance of one point.
 class Draws {
 public:
     Draws(const compress::Target& target, const measure::ProbeGrid& grid, measure::PointSampler& sampler,
           const SurfacePoint& point)
         : target_(target), grid_(grid), sampler_(sampler), point_(point) {
-        measure::ShadingPoint shading;
-        std::copy_n(point.n.begin(), 3, shading.n);
-        sampler_.move_to(shading);
+        sampler_.move_to(shading_of(point));
     }
 
-    double alone(measure::Random& random, std::uint32_t samples) {
-        random.begin_set();
-        double sum = 0.0;
-        for (std::uint32_t i = 0; i < samples; ++i) {
-            const AcdfDirectionSample s = drawn(random);
-            if (s.pdf > 0.0f) sum += integrand(s.direction) / double{s.pdf};
-        }
-        return sum / samples;
+    double alone(measure::Random& random, std::uint32_t samples) const {
+        return drawn_mean(sampler_, random, samples, [this](const float wi[3]) { return integrand(wi); });
     }
     double company(measure::Random& random, std::uint32_t samples) {
         double sum = 0.0;
@@ -56,29 +66,13 @@ private:
         const std::array<double, 2> u = random.pair();
         return sampler_.sample(u[0], u[1]);
     }
-    double integrand(const float wi[3]) const {
-        const build::Normal& n = point_.n;
-        const double cosine = double{n[0]} * wi[0] + double{n[1]} * wi[1] + double{n[2]} * wi[2];
-        std::uint32_t texel[2];
-        if (!(cosine > 0.0) || !grid_.find(wi, texel)) return 0.0;
-        const std::size_t at = std::size_t{texel[1]} * target_.columns + texel[0];
-        return point_.hidden.empty() || !point_.hidden[at] ? target_.values[at] * cosine : 0.0;
-    }
+    double integrand(const float wi[3]) const { return lit_texel(target_, grid_, point_, wi); }
 
     const compress::Target& target_;
     const measure::ProbeGrid& grid_;
     measure::PointSampler& sampler_;
     const SurfacePoint& point_;
 };
-
-/// Without bias, of at least two numbers.
-double variance_of(const std::vector<double>& values) {
-    const double n = static_cast<double>(values.size());
-    double mean = 0.0, square = 0.0;
-    for (const double v : values) mean += v / n;
-    for (const double v : values) square += (v - mean) * (v - mean);
-    return square / (n - 1.0);
-}
 
 } // namespace
 
@@ -97,10 +91,21 @@ DrawnVariances sobol_variances(const compress::Target& target, const measure::Li
             alone.push_back(draws.alone(random, samples));
             company.push_back(draws.company(random, samples));
         }
-        drawn[i] = {exact[i].irradiance, variance_of(alone) * samples, variance_of(company) * samples};
+        drawn[i] = {exact[i].irradiance, unbiased_variance(alone) * samples, unbiased_variance(company) * samples};
     });
     const SurfaceVariances out = summary(drawn, scale);
     return {out.alone.mean, out.company.mean};
+}
+
+double sobol_variance(const compress::Target& target, const measure::LightSampler& sampler,
+                      const std::vector<SurfacePoint>& points, const std::vector<double>& irradiances,
+                      std::uint32_t samples, std::uint32_t seeds) {
+    const measure::ProbeGrid grid(target);
+    std::vector<DrawnPoint> drawn;
+    for (std::size_t i = 0; i < points.size(); ++i) drawn.push_back({shading_of(points[i]), irradiances[i]});
+    return sobol_variance(
+        sampler, drawn, [&](std::size_t i, const float wi[3]) { return lit_texel(target, grid, points[i], wi); },
+        samples, seeds);
 }
 
 } // namespace acdf::tools

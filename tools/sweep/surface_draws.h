@@ -20,4 +20,10 @@ DrawnVariances sobol_variances(const compress::Target& target, const measure::Li
                                const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
                                Scale scale, std::uint32_t samples, std::uint32_t seeds);
 
+/// Of the samples alone: variance times samples over each point's own E^2, mean over points. `irradiances` are
+/// those of the points, by summation.
+double sobol_variance(const compress::Target& target, const measure::LightSampler& sampler,
+                      const std::vector<SurfacePoint>& points, const std::vector<double>& irradiances,
+                      std::uint32_t samples, std::uint32_t seeds);
+
 } // namespace acdf::tools

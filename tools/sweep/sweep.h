@@ -60,6 +60,8 @@ struct SweepRow {
     /// light itself; local and BRDF: of what a surface reflects, mean over normals or views.
     double relative_variance = kUnknown;
     double worst = kUnknown;          ///< the same for the worst normal or view
+    double median = kUnknown;         ///< local and BRDF: over normals or views
+    double sobol = kUnknown;          ///< local and BRDF: of scrambled Sobol' points, as in Lit
     std::array<Lit, kSituations> lit; ///< environment: of a diffuse surface
     double max_weight = kUnknown;     ///< largest f/p over its mean
     double rms = kUnknown;            ///< of the density's error, sr^-1
@@ -124,7 +126,7 @@ struct SweepOptions {
     std::uint32_t normals = 64; ///< environment and local
     std::uint32_t views = 64;   ///< BRDF: of rivals; files are measured over the builder's own
     std::uint32_t points = 48;  ///< environment: of the demo scene, where light is hidden; about
-    std::uint32_t seeds = 16;   ///< environment: pictures with Sobol' points
+    std::uint32_t seeds = 16;   ///< estimates with Sobol' points at each normal, view or point
     std::uint32_t rounds = 31;  ///< of timing
     double shadow_ray_ns = 500.0;
     measure::Numbers numbers = measure::Numbers::independent;

@@ -41,6 +41,8 @@ constexpr SweepColumn columns[] = {
     {"noise_64", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 64); }},
     {"noise_256", nullptr, false, [](S, R r) -> SweepValue { return noise_of(r.shaded(), 256); }},
     {"worst", "worst", false, [](S, R r) -> SweepValue { return r.worst; }},
+    {"median", "median", false, [](S, R r) -> SweepValue { return r.median; }},
+    {"sobol", "with Sobol' points", false, [](S, R r) -> SweepValue { return r.sobol; }},
     {"irradiance_variance", "on a diffuse surface", false,
      [](S, R r) -> SweepValue { return r.lit[open_alone].mean; }},
     {"irradiance_median", nullptr, false, [](S, R r) -> SweepValue { return r.lit[open_alone].median; }},

@@ -1,0 +1,77 @@
+// Rows of sweeps of local and BRDF files.
+#include "build/builder/sources.h"
+#include "input/brdf.h"
+#include "tests/inputs/synthetic.h"
+#include "tools/sweep/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+namespace acdf::tools {
+namespace {
+
+SweepOptions small_sweep() {
+    SweepOptions options;
+    options.budgets = {16384};
+    options.fits = {"variance"};
+    options.timing = false;
+    options.pictures = false;
+    options.normals = 4;
+    options.views = 2;
+    options.seeds = 4;
+    return options;
+}
+
+TEST(SweepRows, LocalFilesBesideTheirRivals) {
+    const compress::Target target = acdf_test::noise_target(64, 32, 7);
+    SweepOptions options = small_sweep();
+    const Sweep sweep = sweep_local(builder::target_of(target, {}), {}, options);
+    std::map<std::string, const SweepRow*> by;
+    for (const SweepRow& r : sweep.rows) by[r.system] = &r;
+    ASSERT_EQ(by.size(), 8u);
+    EXPECT_LT(by["acdf"]->relative_variance, 0.2 * by["full_cdf"]->relative_variance);
+    EXPECT_NEAR(by["resampling_32"]->relative_variance, by["full_cdf"]->relative_variance / 32.0, 1e-12);
+    EXPECT_LT(by["cdf_cosine"]->relative_variance, by["full_cdf"]->relative_variance);
+    for (const SweepRow& r : sweep.rows) {
+        EXPECT_LE(r.relative_variance, r.worst) << r.label;
+        EXPECT_LE(r.median, r.worst) << r.label;
+        const bool own_numbers = r.system == "resampling_32";
+        EXPECT_EQ(r.sobol == r.sobol, !own_numbers) << r.label;
+        if (!own_numbers && r.system != "acdf") EXPECT_LT(r.sobol, 0.8 * r.relative_variance) << r.label;
+    }
+}
+
+// A set of a single point is uniform: then drawn variances are those that sums tell.
+TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
+    SweepOptions options = small_sweep();
+    options.visibility.spp = 1;
+    options.seeds = 2000;
+    const compress::Target target = acdf_test::noise_target(64, 32, 7);
+    for (const SweepRow& r : sweep_local(builder::target_of(target, {}), {}, options).rows)
+        if (r.relative_variance > 0.1 && r.system != "resampling_32")
+            EXPECT_NEAR(r.sobol, r.relative_variance, 0.1 * r.relative_variance) << r.label;
+    for (const SweepRow& r : sweep_brdf(*input::open_brdf("ggx:alpha=0.3"), options).rows)
+        if (!r.ours()) EXPECT_NEAR(r.sobol, r.relative_variance, 0.2 * r.relative_variance) << r.label;
+}
+
+TEST(SweepRows, OfABrdf) {
+    const auto brdf = input::open_brdf("ggx:alpha=0.3");
+    SweepOptions options = small_sweep();
+    const Sweep sweep = sweep_brdf(*brdf, options);
+    std::map<std::string, const SweepRow*> by;
+    for (const SweepRow& r : sweep.rows) by[r.system] = &r;
+    EXPECT_EQ(sweep.rows[sweep.baseline].system, "full_table");
+    EXPECT_LT(by["acdf"]->relative_variance, by["cosine"]->relative_variance);
+    EXPECT_LT(by["full_table"]->relative_variance, by["cosine"]->relative_variance);
+    EXPECT_GT(by["full_table"]->bytes, 60000000u);
+    for (const SweepRow& r : sweep.rows) {
+        EXPECT_LE(r.median, r.worst) << r.label;
+        EXPECT_GT(r.sobol, 0.0) << r.label;
+        EXPECT_LT(r.sobol, r.relative_variance) << r.label;
+    }
+}
+
+} // namespace
+} // namespace acdf::tools
