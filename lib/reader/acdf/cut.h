@@ -79,58 +79,110 @@ ACDF_FN int acdf_cut_divisible(const AcdfCut* cut, int part) {
     return !(cut->part[part].node & ACDF_TILE_FLAG) && cut->count < ACDF_CUT_MAX_PARTS;
 }
 
-/* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
-ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int part) {
-    const int count = cut->count - 1;
-    AcdfCutPart *lower = &cut->part[part], *upper = &cut->part[cut->count];
-    const AcdfSplit* split = &local->blend.splits[lower->node];
-    const uint32_t axis = split->place & 7u, position = split->place >> 3, child = split->child[1];
-    double low = 0.0, high = 0.0;
+/* What each row gives to the halves of a part, `upper` and the part itself; *high becomes the sum of the upper one.
+ * Returns that of the lower one. */
+ACDF_INLINE double acdf_cut_share_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
+                                       AcdfCutPart* part, AcdfCutPart* upper, double* high) {
+    double low = 0.0;
     int i;
-    cut->split[count].place = split->place;
-    cut->split[count].child[0] = (int16_t)~part;
-    cut->split[count].child[1] = (int16_t)~cut->count;
-    if (count > 0) cut->split[lower->owner >> 1].child[lower->owner & 1u] = (int16_t)count;
-    ++cut->count;
-    *upper = *lower;
-    lower->owner = (uint16_t)(2 * count);
-    upper->owner = (uint16_t)(2 * count + 1);
-    for (i = 0; i < point->mix.count; ++i) {
-        const double code = (double)local->blend.tiles->codebook[point->mix.row[i][lower->node]];
-        low += lower->weight[i] *= code * (1.0 / 65535.0);
-        high += upper->weight[i] -= lower->weight[i];
+    *high = 0.0;
+    for (i = 0; i < rows; ++i) {
+        const double weight = part->weight[i];
+        const double code = (double)blend->tiles->codebook[mix->row[i][part->node]];
+        const double lower = weight * (code * (1.0 / 65535.0));
+        low += part->weight[i] = lower;
+        *high += upper->weight[i] = weight - lower;
     }
+    return low;
+}
+ACDF_FN double acdf_cut_share(const AcdfBlend* blend, const AcdfMixture* mix, AcdfCutPart* part, AcdfCutPart* upper,
+                              double* high) {
+    switch (mix->count) {
+    case 1:
+        return acdf_cut_share_rows(blend, mix, 1, part, upper, high);
+    case 2:
+        return acdf_cut_share_rows(blend, mix, 2, part, upper, high);
+    case 3:
+        return acdf_cut_share_rows(blend, mix, 3, part, upper, high);
+    default:
+        return acdf_cut_share_rows(blend, mix, mix->count, part, upper, high);
+    }
+}
+
+/* The lights of the halves of a part, whose numbers `upper` has, too. */
+ACDF_FN void acdf_cut_share_lights(const AcdfLocal* local, const AcdfCut* cut, AcdfCutPart* part,
+                                   AcdfCutPart* upper) {
+    uint32_t first = part->first_light;
+    const uint32_t end = part->end_light;
+    part->lights = upper->lights = 0.0;
+    upper->end_light = part->end_light;
+    for (; first < end && local->lights[first].tile < upper->tile; ++first) part->lights += cut->light[first];
+    part->end_light = upper->first_light = (uint16_t)first;
+    for (; first < end; ++first) upper->lights += cut->light[first];
+}
+
+/* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
+ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
+    const int count = cut->count - 1;
+    AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
+    const AcdfSplit* split = &local->blend.splits[part->node];
+    const uint32_t axis = split->place & 7u, position = split->place >> 3, child = split->child[1];
+    double low, high;
+    cut->split[count].place = split->place;
+    cut->split[count].child[0] = (int16_t)~number;
+    cut->split[count].child[1] = (int16_t)~cut->count;
+    if (count > 0) cut->split[part->owner >> 1].child[part->owner & 1u] = (int16_t)count;
+    ++cut->count;
+    part->owner = (uint16_t)(2 * count);
+    upper->owner = (uint16_t)(2 * count + 1);
     /* Splits are numbered as the walk meets them, and so are tiles: as many as the splits of the lower half, and
      * one. */
-    upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : lower->tile + child - lower->node;
-    while (upper->first_light < upper->end_light && local->lights[upper->first_light].tile < upper->tile)
-        ++upper->first_light;
-    lower->end_light = upper->first_light;
-    lower->lights = acdf_cut_lights(cut, lower->first_light, lower->end_light);
-    upper->lights = acdf_cut_lights(cut, upper->first_light, upper->end_light);
-    lower->sum = low + lower->lights;
+    upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
+    low = acdf_cut_share(&local->blend, &point->mix, part, upper, &high);
+    acdf_cut_share_lights(local, cut, part, upper);
+    part->sum = low + part->lights;
     upper->sum = high + upper->lights;
-    lower->high[axis] = upper->low[axis] = position;
-    lower->node = split->child[0];
+    memcpy(upper->low, part->low, sizeof upper->low);
+    memcpy(upper->high, part->high, sizeof upper->high);
+    part->high[axis] = upper->low[axis] = position;
+    part->node = split->child[0];
     upper->node = child;
 }
 
-/* The direction (about unit) of the middle of a box. */
+/* sin(pi x) and cos(pi x) for x in [-1, 1], to 1e-6. */
+ACDF_FN void acdf_sincospi_float(float x, float* sine, float* cosine) {
+    const int quadrant = (int)(2.0f * x + 4.5f) - 4;
+    const float y = (x - 0.5f * (float)quadrant) * (float)ACDF_PI;
+    const float s = acdf_sine_float(y), c = acdf_cosine_float(y);
+    *sine = (quadrant & 1) ? c : s;
+    *cosine = (quadrant & 1) ? s : c;
+    if (quadrant & 2) *sine = -*sine;
+    if ((quadrant + 1) & 2) *cosine = -*cosine;
+}
+
+/* The direction (unit to 1e-6) of the middle of a box. Floats do: where a lobe is looked at is free. */
 ACDF_FN void acdf_cut_middle(const AcdfLocal* local, const uint32_t box[2][2], float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
-    const double u = 0.5 * ((double)box[0][0] + (double)box[0][1]) / (double)grid.columns;
-    const double v = 0.5 * ((double)box[1][0] + (double)box[1][1]) / (double)grid.rows;
-    double d[3], sine, cosine;
-    int i;
-    if (acdf_grid_is_octahedral(&grid)) {
-        acdf_octahedral_direction(u, v, d);
+    const float u = (float)((int64_t)box[0][0] + box[0][1]) / (float)grid.columns - 1.0f; /* from -1 to 1 */
+    const float v = (float)((int64_t)box[1][0] + box[1][1]) / (float)grid.rows - 1.0f;
+    float sine, cosine;
+    if (acdf_grid_is_octahedral(&grid)) { /* as acdf_octahedral_direction */
+        const float a = fabsf(u), b = fabsf(v), beyond = a + b - 1.0f, r = 1.0f - fabsf(beyond);
+        const float radius = r * sqrtf(1.0f - 0.5f * r * r);
+        const float turn = r > 0.0f ? (b - a) / r * (float)(0.25 * ACDF_PI) : 0.0f;
+        sine = acdf_sine_float(turn);
+        cosine = acdf_cosine_float(turn);
+        direction[0] = u > 0.0f ? -radius * (cosine - sine) : radius * (cosine - sine);
+        direction[1] = v < 0.0f ? -radius * (cosine + sine) : radius * (cosine + sine);
+        direction[2] = -beyond * (1.0f + r);
     } else {
-        acdf_sincospi(v, &sine, &d[2]);
-        acdf_sincospi(1.0 - 2.0 * u, &d[1], &cosine);
-        d[0] = sine * cosine;
-        d[1] *= sine;
+        float height, radius;
+        acdf_sincospi_float(0.5f * v + 0.5f, &radius, &height);
+        acdf_sincospi_float(-u, &sine, &cosine);
+        direction[0] = radius * cosine;
+        direction[1] = radius * sine;
+        direction[2] = height;
     }
-    for (i = 0; i < 3; ++i) direction[i] = (float)d[i];
 }
 
 /* A direction from which a part is lit much: of its brightest light, where lights give it more than all else; else

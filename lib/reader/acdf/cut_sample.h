@@ -54,21 +54,27 @@ ACDF_FN uint32_t acdf_cut_root(const AcdfLocal* local, uint32_t tile) {
     return local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
 }
 
-/* Draws a part: u becomes what is left of the random numbers. */
+/* Draws a part: u becomes what is left of the random numbers. They are kept as what they are of the probability of
+ * the box so far, as in acdf_blend_sample_rows: nothing is divided on the way. */
 ACDF_FN const AcdfCutPart* acdf_cut_draw(const AcdfCut* cut, double u[2]) {
-    int child = cut->count > 1 ? 0 : ~0;
+    int child = cut->count > 1 ? 0 : ~0, i;
+    double chosen = 1.0;
     while (child >= 0) {
         const AcdfCutSplit* split = &cut->split[child];
         const uint32_t axis = split->place & 7u;
-        const double lower = split->lower;
-        if (u[axis] < lower || !(lower < 1.0)) {
-            u[axis] = acdf_unit_interval(u[axis] / lower);
+        const double lower = split->lower, low = chosen * lower;
+        if (u[axis] < low || !(lower < 1.0)) {
+            u[axis ^ 1u] *= lower;
+            chosen = low;
             child = split->child[0];
         } else {
-            u[axis] = acdf_unit_interval((u[axis] - lower) / (1.0 - lower));
+            u[axis] -= low;
+            u[axis ^ 1u] *= 1.0 - lower;
+            chosen -= low;
             child = split->child[1];
         }
     }
+    for (i = 0; i < 2; ++i) u[i] = u[i] < chosen ? u[i] / chosen : 1.0;
     return &cut->part[~child];
 }
 

@@ -12,11 +12,13 @@
 // looking at the BRDF once a division, where the new part is lit most, and at a few samples of the BRDF's own
 // sampler. Within a part directions follow light and cosine. What is left, lobes that are narrower than a part, is
 // for the BRDF's own sampler: it gets a share of the samples, which grows with the differences between neighbouring
-// parts, and the parts get what it does not give already. The density is that of the mixture.
+// parts and falls with those of the light within the lobe, and the parts get what it does not give already. The
+// density is that of the mixture.
 #pragma once
 
 #include <acdf/cut_sample.h>
 #include <acdf/lobe.h>
+#include <acdf/part_queue.h>
 
 namespace acdf {
 
@@ -35,42 +37,6 @@ struct ProductPoint {
     AcdfCut cut;          ///< empty where the light's own density is used as it is, or not at all
     LobePoint lobe;
     double share; ///< of the samples that the BRDF's own sampler draws; below 0: nothing is drawn
-};
-
-/// Parts in order of what is to be gained by dividing them, to half an octave.
-class PartQueue {
-public:
-    /// Priorities are told apart from 2^-29 `scale` to 8 `scale`.
-    ACDF_METHOD explicit PartQueue(double scale) noexcept : top_(key(8.0 * scale)), filled_(0) {}
-
-    ACDF_METHOD void push(int part, double priority) noexcept {
-        const int below = top_ - key(priority), bucket = below < 0 ? 0 : below > 63 ? 63 : below;
-        next_[part] = filled_ >> bucket & 1u ? head_[bucket] : -1;
-        head_[bucket] = static_cast<std::int8_t>(part);
-        filled_ |= std::uint64_t{1} << bucket;
-    }
-    /// -1 where there is none.
-    ACDF_METHOD int pop() noexcept {
-        if (filled_ == 0) return -1;
-        const auto low = static_cast<std::uint32_t>(filled_);
-        const std::uint32_t bucket =
-            low ? acdf_lowest_bit(low) : 32 + acdf_lowest_bit(static_cast<std::uint32_t>(filled_ >> 32));
-        const int part = head_[bucket];
-        head_[bucket] = next_[part];
-        if (head_[bucket] < 0) filled_ &= ~(std::uint64_t{1} << bucket);
-        return part;
-    }
-
-private:
-    ACDF_METHOD static int key(double x) noexcept { // twice the binary logarithm, rounded down
-        std::uint64_t bits;
-        memcpy(&bits, &x, sizeof bits);
-        return static_cast<int>(bits >> 51);
-    }
-
-    int top_;
-    std::uint64_t filled_;
-    std::int8_t head_[64], next_[ACDF_CUT_MAX_PARTS];
 };
 
 /// Made of the light, of a local environment file or of an environment file, and a lobe. Draws from lights that
@@ -111,30 +77,39 @@ public:
 private:
     /// What is known of a part while the cut is made.
     struct Rating {
-        std::uint32_t tile; ///< of the part's heart
-        double value, pdf;  ///< of the lobe there
-        double solid_angle;
-        double mean;   ///< of the lobe's value over the part
-        double mass;   ///< of the lobe's own sampler in it
-        double around; ///< of what value it may be, as its parents and siblings tell
-        double spread; ///< relative square of how much the value changes across it
+        std::uint32_t tile;   ///< of the part's heart
+        std::uint32_t guides; ///< which of them lie in the part, a bit each
+        float value, pdf;     ///< of the lobe at the heart
+        float solid_angle;
+        float mean;   ///< of the lobe's value over the part
+        float mass;   ///< of the lobe's own sampler in it
+        float around; ///< of what value it may be, as its parents and siblings tell
+        float spread; ///< relative square of how much the value changes across it
     };
     /// A sample of the lobe's own sampler, where the light's positions are counted.
     struct Guide {
         std::uint32_t square[2];
-        double value, pdf;
+        float value, pdf;
     };
     struct Guides {
         Guide guide[8];
         int drawn, count; ///< how many were asked for, and are above the horizon
-        double brightest;
+        float brightest;
+        double weights, squares; ///< sums of the weights that they have as samples of light times BRDF, and squared
     };
+    /// Beyond this the lobe's value and density are not told apart: no sum of products overflows.
+    static constexpr float most_value = 1e18f;
 
+    ACDF_METHOD static float bounded(float x) noexcept;
     ACDF_METHOD Guides guides(const Point& point) const noexcept;
     ACDF_METHOD void look(const Point& point, int part, Rating& rating) const noexcept;
-    ACDF_METHOD void rate(const Point& point, const Guides& guides, int part, Rating& rating) const noexcept;
+    ACDF_METHOD static void rate(const Guides& guides, Rating& rating) noexcept;
+    ACDF_METHOD void share_guides(const AcdfCutSplit& split, const Guides& guides, Rating* half[2]) const noexcept;
+    ACDF_METHOD void share_angle(const AcdfCutPart& lower, const AcdfCutSplit& split, const AcdfCutPart& upper,
+                                 Rating* half[2]) const noexcept;
     ACDF_METHOD void divide(Point& point, const Guides& guides, Rating* ratings) const noexcept;
-    ACDF_METHOD static double weigh(AcdfCut& cut, const Rating* ratings) noexcept;
+    ACDF_METHOD static double lobe_variance(const Guides& guides, double expected) noexcept;
+    ACDF_METHOD static double weigh(AcdfCut& cut, const Guides& guides, const Rating* ratings) noexcept;
     ACDF_METHOD float light_pdf(const Point& point, const float direction[3]) const noexcept;
     ACDF_METHOD float density(const Point& point, const float direction[3], float light) const noexcept;
 
@@ -145,12 +120,18 @@ private:
 };
 
 template <class AnyLobe>
+ACDF_METHOD float ProductSampler<AnyLobe>::bounded(float x) noexcept {
+    return x < most_value ? x > 0.0f ? x : 0.0f : most_value;
+}
+
+template <class AnyLobe>
 ACDF_METHOD auto ProductSampler<AnyLobe>::guides(const Point& point) const noexcept -> Guides {
     const AcdfGrid grid = acdf_environment_grid(&light_.environment);
     Guides out;
     out.drawn = parts_ < 32 ? 4 : 8;
     out.count = 0;
-    out.brightest = 0.0;
+    out.brightest = 0.0f;
+    out.weights = out.squares = 0.0;
     for (int i = 0; i < out.drawn; ++i) {
         const int reversed = (i & 1) << 2 | (i & 2) | i >> 2; // the points of Hammersley, moved off the borders
         const ProductSample s = lobe_.sample(point.lobe, (i + 0.5) / out.drawn, (reversed + 0.5) / 8.0);
@@ -160,9 +141,13 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::guides(const Point& point) const noexc
         Guide& guide = out.guide[out.count];
         point.frame.to_world(s.direction, world);
         if (!acdf_grid_square(&grid, world, guide.square, position)) continue;
-        guide.value = double{lobe_.value(point.lobe, s.direction, s.pdf)};
-        guide.pdf = double{s.pdf};
-        if (!(guide.value > 0.0 && guide.pdf > 0.0)) continue;
+        guide.value = bounded(lobe_.value(point.lobe, s.direction, s.pdf));
+        guide.pdf = bounded(s.pdf);
+        if (!(guide.value > 0.0f && guide.pdf > 0.0f)) continue;
+        const double light = double{acdf_local_light_pdf(&light_, &point.light, world)};
+        const double weight = light * double{guide.value} / double{guide.pdf};
+        out.weights += weight;
+        out.squares += weight * weight;
         if (guide.value > out.brightest) out.brightest = guide.value;
         ++out.count;
     }
@@ -175,38 +160,56 @@ ACDF_METHOD void ProductSampler<AnyLobe>::look(const Point& point, int part, Rat
     float world[3], wi[3];
     rating.tile = acdf_cut_heart(&light_, &point.light, &point.cut, part, world);
     point.frame.to_local(world, wi);
-    rating.value = rating.pdf = 0.0;
+    rating.value = rating.pdf = 0.0f;
     if (!(wi[2] > 0.0f)) return;
-    const float pdf = lobe_.pdf(point.lobe, wi), value = lobe_.value(point.lobe, wi, pdf);
-    rating.value = value > 0.0f ? double{value} : 0.0;
-    rating.pdf = pdf > 0.0f ? double{pdf} : 0.0;
+    const float pdf = lobe_.pdf(point.lobe, wi);
+    rating.value = bounded(lobe_.value(point.lobe, wi, pdf));
+    rating.pdf = bounded(pdf);
 }
 
 /// Mean and mass, from the heart, which stands for the whole part, and the guides in it: weighed as two samplers'
 /// samples are by the balance heuristic.
 template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::rate(const Point& point, const Guides& guides, int part,
-                                               Rating& rating) const noexcept {
-    const AcdfCutPart& box = point.cut.part[part];
-    const double solid_angle = rating.solid_angle > 1e-15 ? rating.solid_angle : 1e-15;
-    const double even = 1.0 / solid_angle, own = 1.0 / (even + guides.drawn * rating.pdf);
-    double value = own * rating.value, mass = own * rating.pdf;
-    for (int i = 0; i < guides.count; ++i) {
-        const Guide& guide = guides.guide[i];
-        if (guide.square[0] - box.low[0] >= box.high[0] - box.low[0] ||
-            guide.square[1] - box.low[1] >= box.high[1] - box.low[1])
-            continue;
-        const double weight = 1.0 / (even + guides.drawn * guide.pdf);
-        value += weight * guide.value;
-        mass += weight * guide.pdf;
+ACDF_METHOD void ProductSampler<AnyLobe>::rate(const Guides& guides, Rating& rating) noexcept {
+    const float expected = rating.solid_angle * static_cast<float>(guides.drawn); // over the density: guides in it
+    const float own = 1.0f / (1.0f + expected * rating.pdf);
+    rating.mean = own * rating.value;
+    rating.mass = own * rating.pdf;
+    for (std::uint32_t mask = rating.guides; mask; mask &= mask - 1) {
+        const Guide& guide = guides.guide[acdf_lowest_bit(mask)];
+        const float weight = 1.0f / (1.0f + expected * guide.pdf);
+        rating.mean += weight * guide.value;
+        rating.mass += weight * guide.pdf;
     }
-    rating.mean = value * even;
-    rating.mass = mass;
+    rating.mass *= rating.solid_angle;
 }
 
-ACDF_METHOD inline double relative_difference(double a, double b) noexcept {
-    const double larger = a > b ? a : b;
-    return larger > 0.0 ? fabs(a - b) / larger : 0.0;
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::share_guides(const AcdfCutSplit& split, const Guides& guides,
+                                                       Rating* half[2]) const noexcept {
+    const std::uint32_t axis = split.place & 7u, position = split.place >> 3, all = half[0]->guides;
+    std::uint32_t upper = 0;
+    for (std::uint32_t mask = all; mask; mask &= mask - 1) {
+        const std::uint32_t k = acdf_lowest_bit(mask);
+        upper |= static_cast<std::uint32_t>(guides.guide[k].square[axis] >= position) << k;
+    }
+    half[0]->guides = all ^ upper;
+    half[1]->guides = upper;
+}
+
+/// Solid angles of the halves of a part, of which half[0] has the whole.
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::share_angle(const AcdfCutPart& lower, const AcdfCutSplit& split,
+                                                      const AcdfCutPart& upper, Rating* half[2]) const noexcept {
+    const std::uint32_t axis = split.place & 7u;
+    const float whole = half[0]->solid_angle;
+    float part;
+    if (axis == 0 || light_.environment.parameterization == ACDF_PARAM_OCTAHEDRAL)
+        part = whole * static_cast<float>(lower.high[axis] - lower.low[axis]) /
+               static_cast<float>(upper.high[axis] - lower.low[axis]);
+    else part = static_cast<float>(acdf_cut_solid_angle(&light_, &lower));
+    half[0]->solid_angle = part;
+    half[1]->solid_angle = part < whole ? whole - part : 0.0f;
 }
 
 /// Divides where light times BRDF is large, and the part is.
@@ -215,57 +218,79 @@ ACDF_METHOD void ProductSampler<AnyLobe>::divide(Point& point, const Guides& gui
                                                  Rating* ratings) const noexcept {
     AcdfCut& cut = point.cut;
     look(point, 0, ratings[0]);
-    ratings[0].solid_angle = 4.0 * ACDF_PI;
-    rate(point, guides, 0, ratings[0]);
+    ratings[0].guides = (1u << guides.count) - 1u;
+    ratings[0].solid_angle = static_cast<float>(4.0 * ACDF_PI);
+    rate(guides, ratings[0]);
     ratings[0].around = ratings[0].mean;
-    ratings[0].spread = 1.0;
-    const double brightest = guides.brightest > 0.0 ? guides.brightest : ratings[0].value;
-    PartQueue queue(cut.part[0].sum * brightest * sqrt(4.0 * ACDF_PI));
+    ratings[0].spread = 1.0f;
+    const double most_light =
+        cut.part[0].sum * double{guides.brightest > 0.0f ? guides.brightest : ratings[0].value};
+    PartQueue queue(most_light * most_light * (4.0 * ACDF_PI));
     const int most = parts_ < ACDF_CUT_MAX_PARTS ? parts_ : ACDF_CUT_MAX_PARTS;
-    for (int part = 0; part >= 0 && cut.count < most; part = queue.pop()) {
-        if (!acdf_cut_divisible(&cut, part)) continue;
-        const Rating parent = ratings[part];
+    for (int part = acdf_cut_divisible(&cut, 0) ? 0 : -1; part >= 0 && cut.count < most; part = queue.pop()) {
         acdf_cut_divide(&light_, &point.light, &cut, part);
-        const int half[2] = {part, cut.count - 1}, known = parent.tile >= cut.part[cut.count - 1].tile ? 1 : 0;
-        ratings[half[known]] = parent;
-        look(point, half[1 - known], ratings[half[1 - known]]);
-        ratings[part].solid_angle = acdf_cut_solid_angle(&light_, &cut.part[part]);
-        ratings[half[1]].solid_angle = parent.solid_angle - ratings[part].solid_angle;
-        for (int k = 0; k < 2; ++k) rate(point, guides, half[k], ratings[half[k]]);
-        const double m[2] = {ratings[half[0]].mean, ratings[half[1]].mean}, larger = m[0] > m[1] ? m[0] : m[1];
+        const int last = cut.count - 1, number[2] = {part, last};
+        Rating* half[2] = {&ratings[part], &ratings[last]};
+        const float mean = half[0]->mean, around = half[0]->around;
+        const int known = half[0]->tile >= cut.part[last].tile ? 1 : 0; // which of them has the heart
+        *half[1] = *half[0];
+        look(point, number[1 - known], *half[1 - known]);
+        share_guides(cut.split[last - 1], guides, half);
+        share_angle(cut.part[part], cut.split[last - 1], cut.part[last], half);
+        for (Rating* rating : half) rate(guides, *rating);
+        const float larger = half[0]->mean > half[1]->mean ? half[0]->mean : half[1]->mean;
+        const float smaller = half[0]->mean > half[1]->mean ? half[1]->mean : half[0]->mean;
+        const float most_seen = larger > mean ? larger : mean, least_seen = smaller < mean ? smaller : mean;
+        const float change = most_seen > 0.0f ? 1.0f - least_seen / most_seen : 0.0f;
+        const float hoped = 0.5f * most_seen + 0.25f * around;
         for (int k = 0; k < 2; ++k) {
-            Rating& rating = ratings[half[k]];
-            const double across = relative_difference(m[0], m[1]), along = relative_difference(parent.mean, m[k]);
-            rating.spread = across > along ? across * across : along * along;
-            rating.around = 0.5 * (larger > parent.mean ? larger : parent.mean) + 0.25 * parent.around;
-            const double priority = cut.part[half[k]].sum * (m[k] + 0.3 * rating.around) * sqrt(rating.solid_angle);
-            if (priority > 0.0 && !(cut.part[half[k]].node & ACDF_TILE_FLAG)) queue.push(half[k], priority);
+            Rating& rating = *half[k];
+            rating.spread = change * change;
+            rating.around = hoped;
+            if (cut.part[number[k]].node & ACDF_TILE_FLAG) continue;
+            const double light = cut.part[number[k]].sum * double{rating.mean + 0.3f * hoped};
+            const double square = light * light * double{rating.solid_angle};
+            if (square > 0.0) queue.push(number[k], square);
         }
     }
 }
 
-/// Gives all parts their probabilities. Returns the share of samples that is left to the lobe's own sampler.
+/// Relative variance of one sample of the lobe's own sampler, as the guides tell, and what they have missed where
+/// the parts expect a larger mean: small lights in a lobe make it large.
 template <class AnyLobe>
-ACDF_METHOD double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Rating* ratings) noexcept {
+ACDF_METHOD double ProductSampler<AnyLobe>::lobe_variance(const Guides& guides, double expected) noexcept {
+    constexpr double of_missed = 2.0, unknown = 100.0;
+    if (!(guides.weights > 0.0)) return unknown;
+    const double mean = guides.weights / guides.drawn, missed = expected / mean - 1.0;
+    const double seen = guides.squares / (guides.drawn * mean * mean) - 1.0;
+    return seen + (missed > 0.0 ? of_missed * missed : 0.0);
+}
+
+/// Gives all parts their probabilities. Returns the share of samples that is left to the lobe's own sampler: the
+/// more the lobe changes within parts, and the less the light within the lobe.
+template <class AnyLobe>
+ACDF_METHOD double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Guides& guides,
+                                                  const Rating* ratings) noexcept {
     // What the value may be elsewhere in a part, beside what was seen: a little of what is around it and of the
     // mean.
     constexpr double around = 0.1, anywhere = 0.02;
-    constexpr double least_share = 0.03, most_share = 0.6;
+    constexpr double least_share = 0.03, most_share = 0.8;
     // How much of what the lobe's own sampler gives is left out of the parts, and what they keep at least.
     constexpr double left_out = 0.8, kept = 0.1;
     double light = 0.0, reflected = 0.0, spread = 0.0, whole = 0.0;
     for (int i = 0; i < cut.count; ++i) {
-        const double both = cut.part[i].sum * ratings[i].mean;
+        const double both = cut.part[i].sum * double{ratings[i].mean};
         light += cut.part[i].sum;
         reflected += both;
-        spread += both * ratings[i].spread;
+        spread += both * double{ratings[i].spread};
     }
     if (!(light > 0.0 && reflected > 0.0)) return 1.0;
-    const double share = acdf_clamp(spread / reflected, least_share, most_share);
+    const double variance = lobe_variance(guides, reflected / light);
+    const double share = acdf_clamp(4.0 * (spread / reflected) / (1.0 + 2.0 * variance), least_share, most_share);
+    const double least = anywhere * (reflected / light);
     for (int i = 0; i < cut.count; ++i) {
         AcdfCutPart& part = cut.part[i];
-        part.probability =
-            part.sum * (ratings[i].mean + around * ratings[i].around + anywhere * (reflected / light));
+        part.probability = part.sum * (double{ratings[i].mean} + around * double{ratings[i].around} + least);
         whole += part.probability;
     }
     for (int i = 0; i < cut.count; ++i) cut.part[i].probability /= whole;
@@ -274,7 +299,7 @@ ACDF_METHOD double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Rating* ra
     for (int pass = 0; pass < 3; ++pass) {
         double sum = 0.0, free = 0.05;
         for (int i = 0; i < cut.count; ++i) {
-            const double p = scale * cut.part[i].probability, rest = p - left_out * share * ratings[i].mass;
+            const double p = scale * cut.part[i].probability, rest = p - left_out * share * double{ratings[i].mass};
             const double least = kept * (1.0 - share) * p;
             sum += rest > least ? rest : least;
             if (rest > least) free += cut.part[i].probability;
@@ -284,7 +309,7 @@ ACDF_METHOD double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Rating* ra
     }
     for (int i = 0; i < cut.count; ++i) {
         double& probability = cut.part[i].probability;
-        const double p = scale * probability, rest = p - left_out * share * ratings[i].mass;
+        const double p = scale * probability, rest = p - left_out * share * double{ratings[i].mass};
         const double least = kept * (1.0 - share) * p;
         probability = rest > least ? rest : least;
     }
@@ -312,8 +337,9 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const SurfaceFrame& frame, const fl
     acdf_cut_begin(&light_, &point.light, &point.cut);
     if (parts_ > 1) {
         Rating ratings[ACDF_CUT_MAX_PARTS];
-        divide(point, guides(point), ratings);
-        point.share = weigh(point.cut, ratings);
+        const Guides drawn = guides(point);
+        divide(point, drawn, ratings);
+        point.share = weigh(point.cut, drawn, ratings);
     }
     acdf_cut_finish(&point.cut);
     if (point.cut.count == 0) point.share = 1.0;
