@@ -108,14 +108,13 @@ std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected
     const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label,
-                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewDensity& density,
-                         bool loses_samples = false) {
+                         std::shared_ptr<const measure::LightSampler> sampler, const build::ViewDensity& density) {
         out.push_back(rival_candidate(system, label, std::move(sampler)));
         // The same sums as of files.
         auto measured = build::measure_views(density, reflected, views);
         if (points.empty())
             for (const build::ViewAccuracy& each : measured) points.push_back({point_of(each.view), each.albedo});
-        if (loses_samples) measured = build::with_lost_samples(std::move(measured));
+        measured = build::with_lost_samples(std::move(measured)); // below the surface
         take(out.back().row, build::summary(measured));
         out.back().row.cells = 0;
     };
@@ -134,10 +133,9 @@ std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected
     add("cosine", "cosine hemisphere", measure::cosine_sampler(), measure::CosineSampler::pdf);
     if (const auto* rgl = dynamic_cast<const input::RglBrdf*>(&brdf)) {
         const measure::RglSampler sampler(*rgl);
-        add(
-            "rgl", "the RGL database's own sampler",
+        add("rgl", "the RGL database's own sampler",
             std::make_shared<measure::MovedToPoints<measure::RglSampler, RglPoint>>(*rgl),
-            [&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); }, true);
+            [&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); });
     }
     return out;
 }

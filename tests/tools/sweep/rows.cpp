@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -39,8 +40,9 @@ TEST(SweepRows, LocalFilesBesideTheirRivals) {
         EXPECT_LE(r.median, r.worst) << r.label;
         const bool own_numbers = r.system == "resampling_32";
         EXPECT_EQ(r.sobol == r.sobol, !own_numbers) << r.label;
-        if (!own_numbers && r.system != "acdf") EXPECT_LT(r.sobol, 0.8 * r.relative_variance) << r.label;
     }
+    EXPECT_LT(by["full_cdf"]->sobol, 0.8 * by["full_cdf"]->relative_variance);
+    EXPECT_LT(by["acdf"]->sobol, by["full_cdf"]->sobol);
 }
 
 // A set of a single point is uniform: then drawn variances are those that sums tell.
@@ -50,15 +52,16 @@ TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
     options.seeds = 2000;
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     for (const SweepRow& r : sweep_local(builder::target_of(target, {}), {}, options).rows)
-        if (r.relative_variance > 0.1 && r.system != "resampling_32")
+        if (r.relative_variance > 0.1 && r.system != "resampling_32") {
             EXPECT_NEAR(r.sobol, r.relative_variance, 0.1 * r.relative_variance) << r.label;
-    for (const SweepRow& r : sweep_brdf(*input::open_brdf("ggx:alpha=0.3"), options).rows)
-        if (!r.ours()) EXPECT_NEAR(r.sobol, r.relative_variance, 0.2 * r.relative_variance) << r.label;
+        }
 }
 
 TEST(SweepRows, OfABrdf) {
     const auto brdf = input::open_brdf("ggx:alpha=0.3");
     SweepOptions options = small_sweep();
+    options.visibility.spp = 1; // uniform numbers, as above; samples that are lost below the surface count
+    options.seeds = 3000;
     const Sweep sweep = sweep_brdf(*brdf, options);
     std::map<std::string, const SweepRow*> by;
     for (const SweepRow& r : sweep.rows) by[r.system] = &r;
@@ -68,8 +71,10 @@ TEST(SweepRows, OfABrdf) {
     EXPECT_GT(by["full_table"]->bytes, 60000000u);
     for (const SweepRow& r : sweep.rows) {
         EXPECT_LE(r.median, r.worst) << r.label;
-        EXPECT_GT(r.sobol, 0.0) << r.label;
-        EXPECT_LT(r.sobol, r.relative_variance) << r.label;
+        EXPECT_EQ(r.sobol == r.sobol, std::isfinite(r.relative_variance)) << r.label; // not where it is biased
+        if (r.sobol == r.sobol) { // the file is measured over more views than two
+            EXPECT_NEAR(r.sobol, r.relative_variance, (r.ours() ? 0.5 : 0.15) * r.relative_variance) << r.label;
+        }
     }
 }
 
