@@ -50,7 +50,11 @@ std::unique_ptr<LightSampler> made(const File& light, const AnyLobe& lobe, int p
 
 } // namespace
 
-int product_parts(std::uint32_t samples) { return static_cast<int>(std::clamp<std::uint32_t>(4 * samples, 8, 64)); }
+int product_parts(std::uint32_t samples) {
+    const std::uint32_t many = std::min<std::uint32_t>(samples, ACDF_CUT_MAX_PARTS);
+    return static_cast<int>(
+        std::clamp<std::uint32_t>(std::max(std::min(12 * many, 64u), many), 8, ACDF_CUT_MAX_PARTS));
+}
 
 std::unique_ptr<LightSampler> product_sampler(const File& light, const File& brdf, int parts) {
     if (brdf.kind() != ACDF_KIND_BRDF)

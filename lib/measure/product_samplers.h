@@ -10,7 +10,8 @@
 
 namespace acdf::measure {
 
-/// Into how many parts a point is divided that gets `samples`: four times as many, from 8 to 64.
+/// Into how many parts a point is divided that gets `samples`: twelve times as many up to 64, then as many as
+/// samples up to 96; at least 8. Where more parts no longer paid at equal time (docs/product.md).
 int product_parts(std::uint32_t samples);
 
 /// `light`: a file of an environment or a local environment. `parts` as in ProductOptions. `bytes` is that of the
