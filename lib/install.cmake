@@ -15,6 +15,10 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/allocator.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_half.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_pair.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_tables.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_view.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/company.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h

@@ -12,7 +12,7 @@ strict=false
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 work=$PWD/build/portability
 mkdir -p "$work"
-reader=$(ls lib/reader/*.cpp | grep -v wavefront_avx)
+reader=$(ls lib/reader/*.cpp | grep -v _avx)
 flags="-O1 -std=c++17 -fno-exceptions -fno-rtti -ffp-contract=off -Wall -Wextra -Werror -Iformat -Ilib/reader"
 left_out=0
 

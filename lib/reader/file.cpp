@@ -1,6 +1,7 @@
 // `File`: ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check.h"
 #include "input_file.h"
+#include "make_brdf_tables.h"
 #include "make_cells.h"
 #include "make_local_tables.h"
 #include "memory.h"
@@ -145,6 +146,7 @@ File& File::operator=(File&& other) noexcept {
     metadata_count_ = std::exchange(other.metadata_count_, 0);
     cells_ = std::exchange(other.cells_, nullptr);
     local_tables_ = std::exchange(other.local_tables_, nullptr);
+    brdf_tables_ = std::exchange(other.brdf_tables_, nullptr);
     allocator_ = other.allocator_;
     for (int i = 0; i < 3; ++i) owned_[i] = std::exchange(other.owned_[i], AcdfBlock{});
     return *this;
@@ -204,6 +206,8 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
 // They are only for speed: where there is no memory for them, the file is as good without.
 void File::make_tables() noexcept {
     const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
+    if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
+        brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
     // On the octahedral square a walk needs no trigonometry; its cells are not pieces of azimuth and height.
     if (description_->parameterization != ACDF_PARAM_LATLONG) return;
     if (kind() == ACDF_KIND_ENVIRONMENT)
@@ -266,8 +270,8 @@ LocalEnvironmentView File::local() const noexcept {
 }
 
 BrdfView File::brdf() const noexcept {
-    return BrdfView(
-        {blend_, tree_, bins_, views_, nodes_, axes_[0].resolution, axes_[1].resolution, description_->total});
+    return BrdfView({blend_, tree_, bins_, views_, nodes_, axes_[0].resolution, axes_[1].resolution,
+                     description_->total, brdf_tables_});
 }
 
 TableView File::table() const noexcept {

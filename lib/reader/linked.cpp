@@ -1,4 +1,4 @@
-// Draws and densities as symbols: loops over the inline functions.
+// Draws and densities as symbols: loops over the inline functions, and waves.
 #include "c_file.h"
 #include "memory.h"
 
@@ -15,6 +15,7 @@ namespace {
 using acdf::DirectionSample;
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr size_t kWave = 256; // directions and views of so many stay in the first cache
 
 // A direction that was drawn, if any.
 float keep(const DirectionSample& sample, float direction[3]) {
@@ -60,16 +61,20 @@ float acdf_density_environment(const AcdfFile* file, const float direction[3]) {
 int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
                                 float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    const AcdfEnvironment environment = file->environment;
-    for (size_t i = 0; i < count; ++i)
-        put(acdf_environment_sample(&environment, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
+    const acdf::EnvironmentWavefront wavefront(file->file.environment());
+    DirectionSample drawn[kWave];
+    for (size_t first = 0; first < count; first += kWave) {
+        const size_t n = count - first < kWave ? count - first : kWave;
+        wavefront.sample(reinterpret_cast<const double(*)[2]>(u + 2 * first), n, drawn);
+        for (size_t i = 0; i < n; ++i) put(drawn[i], first + i, directions, pdfs);
+    }
     return 1;
 }
 
 int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    const AcdfEnvironment environment = file->environment;
-    for (size_t i = 0; i < count; ++i) pdfs[i] = acdf_environment_pdf(&environment, directions + 3 * i);
+    acdf::EnvironmentWavefront(file->file.environment())
+        .pdf(reinterpret_cast<const float(*)[3]>(directions), count, pdfs);
     return 1;
 }
 
@@ -167,8 +172,6 @@ struct AcdfBrdfWaves {
 };
 
 namespace {
-
-constexpr size_t kWave = 256; // directions and views of so many stay in the first cache
 
 // The views of items first to first + n - 1.
 const float (*views_of(const float* wo, size_t each, size_t first, size_t n, float (&room)[kWave][3]))[3] {

@@ -44,7 +44,7 @@ ACDF_LANE View view_of(const WavefrontTable& t, const Directions& wo) {
     const Integer valid = of_unit_length(length2) & (wo.z > 0.0);
     const Vector z = select(valid, wo.z, all(1.0));
     const Vector x = select(z < 1.0, root(1.0 - z), all(0.0));
-    Integer low = gathered<2>(t.guide, truncated(x * (double)acdf::kGuideSteps)) & 0xFFFF;
+    Integer low = gathered<2>(t.guide, truncated(x * (double)ACDF_VIEW_STEPS)) & 0xFFFF;
     Vector node[4]; // coordinate and share of the lower view, and of the upper one
     gather_transposed(t.nodes, low, node);
     for (;;) {
@@ -262,10 +262,9 @@ ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const W
                               AcdfDirectionSample* out) {
     const Integer valid = view.weight[0] + view.weight[1] > 0.0;
     const Cell cell = cell_of(t, s);
-    const Integer number = s.node & 0x7FFF, row = s.base + number;
+    const Integer number = s.node & 0x7FFF, at = multiplied(number, t.stride) + view.lower;
     const Vector area = (Vector)gathered<8>(t.areas, number);
-    const Vector part[2] = {(Vector)gathered<8>(t.probabilities, row),
-                            (Vector)gathered<8>(t.probabilities + t.entries, row)};
+    const Vector part[2] = {(Vector)gathered<8>(t.parts, at), (Vector)gathered<8>(t.parts + 1, at)};
     Vector position[2];
     for (int axis = 0; axis < 2; ++axis) {
         const Vector u = select(s.x[axis] < s.chosen, s.x[axis] / s.chosen, all(1.0));
@@ -298,16 +297,17 @@ ACDF_LANE int borders_below(const acdf::WavefrontBorders& borders, long long ste
     for (;;) {
         const __m256i some = _mm256_loadu_si256((const __m256i*)(borders.position + below));
         const int above = _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(some, squares)));
-        const int more = __builtin_ctz((unsigned)above | 1u << acdf::kBordersAtOnce);
+        const int more = __builtin_ctz((unsigned)above | 1u << ACDF_BORDERS_AT_ONCE);
         below += more;
-        if (more < acdf::kBordersAtOnce) return below;
+        if (more < ACDF_BORDERS_AT_ONCE) return below;
     }
 }
 
 /* The step of the guide and the square. */
 ACDF_LANE void find_square(Vector position, double resolution, long long* step, long long* square) {
     const Vector bounded = select(position < resolution, position, all(resolution - 1.0));
-    const Integer binades = (Integer)((Unsigned)bounded >> (52 - acdf::kStepBits)) - (0x3FFLL << acdf::kStepBits);
+    const Integer binades =
+        (Integer)((Unsigned)bounded >> (52 - ACDF_BORDER_STEP_BITS)) - (0x3FFLL << ACDF_BORDER_STEP_BITS);
     *(Integer*)step = most(binades, Integer{});
     *(Integer*)square = truncated(bounded);
 }
@@ -323,7 +323,7 @@ struct Densities {
 };
 
 ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const float (*wi)[3], Densities* d) {
-    alignas(64) long long step[2][kBlock], square[2][kBlock], row[kBlock];
+    alignas(64) long long step[2][kBlock], square[2][kBlock], lower[kBlock];
     for (int g = 0; g < kGroups; ++g) {
         const int lane = g * kWidth;
         d->view[g] = view_of(t, load(&wo[lane]));
@@ -331,15 +331,14 @@ ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const float 
         for (int axis = 0; axis < 2; ++axis)
             find_square(select(d->valid[g], d->place[g].position[axis], all(0.0)), axis ? t.rows : t.columns,
                         &step[axis][lane], &square[axis][lane]);
-        *(Integer*)&row[lane] = d->view[g].lower * t.entries;
+        *(Integer*)&lower[lane] = d->view[g].lower;
     }
     for (std::size_t i = 0; i < kBlock; ++i) {
         const int column = borders_below(t.borders[0], step[0][i], square[0][i]);
         const int line = borders_below(t.borders[1], step[1][i], square[1][i]);
-        d->cell[i] = t.cells[line * t.columns_between + column];
-        d->part[i] = t.probabilities + row[i] + d->cell[i];
+        d->cell[i] = t.grid[line * t.columns_between + column];
+        d->part[i] = t.parts + d->cell[i] * t.stride + lower[i];
         __builtin_prefetch(d->part[i]);
-        __builtin_prefetch(d->part[i] + t.entries);
         __builtin_prefetch(t.areas + d->cell[i]);
     }
 }
@@ -348,7 +347,7 @@ ACDF_LANE void end(const WavefrontTable& t, const Densities& d, float* out) {
     alignas(64) double parts[2][kBlock], areas[kBlock];
     for (std::size_t i = 0; i < kBlock; ++i) {
         parts[0][i] = d.part[i][0];
-        parts[1][i] = d.part[i][t.entries];
+        parts[1][i] = d.part[i][1];
         areas[i] = t.areas[d.cell[i]];
     }
     for (int g = 0; g < kGroups; ++g) {

@@ -125,6 +125,14 @@ ACDF_LANE Integer least(Integer a, Integer b) { return a < b ? a : b; }
 ACDF_LANE Integer most(Integer a, Integer b) { return a > b ? a : b; }
 #endif
 
+/* Of numbers in [0, 2^32). */
+ACDF_LANE Integer multiplied(Integer a, long long b) {
+#if ACDF_WIDTH == 8
+    return (Integer)_mm512_mul_epu32((__m512i)a, _mm512_set1_epi64(b));
+#else
+    return (Integer)_mm256_mul_epu32((__m256i)a, _mm256_set1_epi64x(b));
+#endif
+}
 ACDF_LANE bool any(Integer mask) { return bits(mask) != 0; }
 ACDF_LANE Vector select(Integer mask, Vector yes, Vector no) { return mask ? yes : no; }
 ACDF_LANE Integer select(Integer mask, Integer yes, Integer no) { return mask ? yes : no; }

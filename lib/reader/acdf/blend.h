@@ -31,10 +31,14 @@ typedef struct AcdfMixture {
     int count;
 } AcdfMixture;
 
+ACDF_FN const uint8_t* acdf_blend_row(const AcdfBlend* blend, uint32_t index) {
+    return blend->rows + (size_t)index * (blend->tiles->tile_count - 1);
+}
+
 /* Adds row `index` unless its weight is 0. */
 ACDF_FN void acdf_mixture_add(AcdfMixture* mix, const AcdfBlend* blend, uint32_t index, double weight) {
     if (!(weight > 0.0)) return;
-    mix->row[mix->count] = blend->rows + (size_t)index * (blend->tiles->tile_count - 1);
+    mix->row[mix->count] = acdf_blend_row(blend, index);
     mix->weight[mix->count] = weight;
     ++mix->count;
 }

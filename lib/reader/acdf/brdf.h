@@ -11,165 +11,17 @@
 #ifndef ACDF_BRDF_H
 #define ACDF_BRDF_H
 
-#include <acdf/blend.h>
+#include <acdf/brdf_pair.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-typedef struct AcdfBrdf {
-    AcdfBlend blend;        /* blend.tiles is null where each bin has a tree of its own */
-    const uint8_t* tree;    /* chunk TREE */
-    const AcdfBin* bins;    /* theta_count x phi_count */
-    const AcdfViews* views; /* chunk VIEW */
-    const float* nodes;     /* theta_count, behind it */
-    uint32_t columns;       /* axis 0, phi_h */
-    uint32_t rows;          /* axis 1, cos_theta_h */
-    double total;           /* sum of the bins' albedos */
-} AcdfBrdf;
-
-/* What serves a view: which rows or which tree, and the turn that brings wo into the plane of x and z. */
-typedef struct AcdfBrdfView {
-    double wo[3];
-    double turn[2]; /* x and y of a vector to which that turn brings x: wo's own where the file is isotropic */
-    uint32_t root;  /* of the tree, where there are no rows */
-    AcdfMixture mix;
-    double albedo;
-} AcdfBrdfView;
-
-/* A direction as a place in the table. */
-typedef struct AcdfBrdfPlace {
-    double position[2];
-    double dot, length; /* |wo . (wo + wi)| and |wo + wi|: the cosine |wo . wh| is dot / length */
-} AcdfBrdfPlace;
-
-ACDF_FN int acdf_brdf_mirrored(const AcdfBrdf* brdf) { return (brdf->views->flags & ACDF_VIEWS_MIRRORED) != 0; }
-
-/* sqrt(1 - cos(theta)): nearly proportional to the angle at normal incidence, and dense enough at grazing. */
-ACDF_FN double acdf_view_coordinate(double cos_theta) { return cos_theta < 1.0 ? sqrt(1.0 - cos_theta) : 0.0; }
-
-/* The nodes on both sides of x and how far x is from the lower to the upper one. */
-ACDF_FN double acdf_view_nodes(const float* nodes, uint32_t count, double x, uint32_t node[2]) {
-    const uint32_t last = count > 1 ? count - 2 : 0; /* that can be the lower one */
-    uint32_t low = 0, high, i, more = 0;
-    double t;
-    /* How many of nodes 1 to `last` are <= x: every eighth, then those between. No load waits for a comparison but
-     * once, and no branch depends on them. */
-    for (i = 8; i <= last; i += 8) low += 8u & (0u - (uint32_t)((double)nodes[i] <= x));
-    for (i = 1; i < 8; ++i) {
-        const uint32_t at = low + i < last ? low + i : last;
-        more += (uint32_t)((double)nodes[at] <= x) & (uint32_t)(low + i <= last);
-    }
-    low += more;
-    high = count > 1 ? low + 1 : low;
-    node[0] = low;
-    node[1] = high;
-    if (low == high) return 0.0;
-    t = (x - (double)nodes[low]) / ((double)nodes[high] - (double)nodes[low]);
-    return t > 0.0 ? (t < 1.0 ? t : 1.0) : 0.0;
-}
-
-ACDF_FN void acdf_brdf_add(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t index, double weight,
-                           double* largest) {
-    const AcdfBin* bin = &brdf->bins[index];
-    view->albedo += weight * (double)bin->share * brdf->total;
-    if (brdf->blend.tiles) {
-        acdf_mixture_add(&view->mix, &brdf->blend, bin->root, weight * (double)bin->share);
-    } else if (weight > *largest) {
-        *largest = weight;
-        view->root = bin->root;
-    }
-}
-
-/* Looks up the stored views around wo. Returns 0 for those that are not unit vectors above the surface. */
-ACDF_FN int acdf_brdf_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view) {
-    const double x = wo[0], y = wo[1], z = wo[2], sin2 = x * x + y * y, length2 = sin2 + z * z;
-    const uint32_t columns = brdf->views->phi_count;
-    uint32_t node[2], column[2];
-    double t, s = 0.0, largest = 0.0;
-    if (!acdf_are_finite(wo) || !(length2 > 0.999 && length2 < 1.001 && z > 0.0)) return 0;
-    view->wo[0] = x;
-    view->wo[1] = y;
-    view->wo[2] = z;
-    view->turn[0] = 1.0;
-    view->turn[1] = 0.0;
-    view->mix.count = 0;
-    view->albedo = 0.0;
-    view->root = 0;
-    t = acdf_view_nodes(brdf->nodes, brdf->views->theta_count, acdf_view_coordinate(z), node);
-    if (columns == 1) {
-        if (sin2 > 0.0) {
-            view->turn[0] = x;
-            view->turn[1] = y;
-        }
-        acdf_brdf_add(brdf, view, node[0], 1.0 - t, &largest);
-        acdf_brdf_add(brdf, view, node[1], t, &largest);
-        return 1;
-    }
-    s = (double)columns * (0.5 + 0.5 * acdf_atan2pi(y, x)); /* column 0 is phi = -pi, which is +pi */
-    column[0] = (uint32_t)s;
-    s -= (double)column[0];
-    column[0] %= columns;
-    column[1] = column[0] + 1 < columns ? column[0] + 1 : 0;
-    acdf_brdf_add(brdf, view, node[0] * columns + column[0], (1.0 - t) * (1.0 - s), &largest);
-    acdf_brdf_add(brdf, view, node[0] * columns + column[1], (1.0 - t) * s, &largest);
-    acdf_brdf_add(brdf, view, node[1] * columns + column[0], t * (1.0 - s), &largest);
-    acdf_brdf_add(brdf, view, node[1] * columns + column[1], t * s, &largest);
-    return 1;
-}
 
 ACDF_FN void acdf_brdf_whole(const AcdfBrdf* brdf, AcdfRange range[2]) {
     range[0].low = range[1].low = 0;
     range[0].high = brdf->columns;
     range[1].high = brdf->rows;
     range[0].tilt = range[1].tilt = 0.0;
-}
-
-/* wo + wi and its length. Returns 0 where wi is not of unit length or opposite to wo. */
-ACDF_FN int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double half[3], AcdfBrdfPlace* place) {
-    const double x = wi[0], y = wi[1], z = wi[2], length2 = x * x + y * y + z * z;
-    half[0] = view->wo[0] + x;
-    half[1] = view->wo[1] + y;
-    half[2] = view->wo[2] + z;
-    place->length = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
-    place->dot = fabs(view->wo[0] * half[0] + view->wo[1] * half[1] + view->wo[2] * half[2]);
-    return acdf_are_finite(wi) && length2 > 0.999 && length2 < 1.001 && place->length > 0.0;
-}
-
-/* atan2(y, x) / pi for y >= 0 as acdf_atan2pi has it, but for rounding and without branches: the octant of a
- * half-vector cannot be guessed. */
-ACDF_FN double acdf_brdf_azimuth(double y, double x) {
-    const double ax = fabs(x), high = ax > y ? ax : y, low = ax > y ? y : ax;
-    const double wide = (double)(low > 0.41421356237309503 * high), steep = (double)(y > ax),
-                 left = (double)(x < 0.0);
-    const double w = high > 0.0 ? (low - wide * high) / (high + wide * low) : 0.0;
-    const double q = w * w, q4 = (q * q) * (q * q);
-    const double series =
-        acdf_polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
-                         0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
-        q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
-    return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + w * series));
-}
-
-/* Place of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is not
- * of unit length or opposite to wo. */
-ACDF_FN int acdf_brdf_place(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3], AcdfBrdfPlace* place,
-                            double* sign) {
-    double half[3], hx, hy, phi, below;
-    if (!acdf_brdf_half(view, wi, half, place)) return 0;
-    below = 1.0 - 2.0 * (double)(half[2] < 0.0); /* a half-vector below the surface reflects as its opposite does */
-    hx = below * (view->turn[0] * half[0] + view->turn[1] * half[1]);
-    hy = below * (view->turn[0] * half[1] - view->turn[1] * half[0]);
-    phi = acdf_brdf_azimuth(fabs(hy), hx);
-    *sign = 1.0 - 2.0 * (double)(hy < 0.0);
-    place->position[0] = (double)brdf->columns * (acdf_brdf_mirrored(brdf) ? phi : 0.5 + 0.5 * *sign * phi);
-    place->position[1] = (double)brdf->rows * ((half[0] * half[0] + half[1] * half[1]) /
-                                               (place->length * (place->length + fabs(half[2]))));
-    return 1; /* 1 - cos(theta_h) without cancellation */
-}
-
-ACDF_FN uint32_t acdf_brdf_step(double position, uint32_t resolution) {
-    return position < (double)resolution ? (uint32_t)position : resolution - 1;
 }
 
 /* Finds the cell of a place; `strata` may be null. Returns its probability, 0 where no sample can fall. */
@@ -196,21 +48,21 @@ ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange 
     int axis;
     if (p > 0.0) {
         const double area = (double)(range[0].high - range[0].low) * (double)(range[1].high - range[1].low);
-        pdf = p * (double)brdf->columns * (double)brdf->rows * place->length / (8.0 * ACDF_PI * place->dot * area);
+        pdf = acdf_brdf_mean_density(brdf, p, area, place);
         for (axis = 0; axis < 2; ++axis)
             if (range[axis].tilt != 0.0)
                 pdf *= acdf_tilt_density(range[axis].tilt, acdf_brdf_fraction(&range[axis], place->position[axis]));
     }
     if (floor > 0.0) pdf = (1.0 - floor) * pdf + (wi[2] > 0.0f ? floor / ACDF_PI * (double)wi[2] : 0.0);
     else if (!(p > 0.0)) return 0.0f;
-    if (pdf >= 3.402823466e38) return 3.402823466e38f;
-    return pdf > 1.17549435e-38 ? (float)pdf : p > 0.0 ? 1.17549435e-38f : 0.0f;
+    return p > 0.0 || pdf > 1.17549435e-38 ? acdf_brdf_positive(pdf) : 0.0f;
 }
 
 ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3]) {
     AcdfBrdfPlace place;
     AcdfRange range[2];
     double sign, p;
+    if (brdf->tables && brdf->tables->grid) return acdf_brdf_pair_pdf(brdf, view, wi);
     if (!acdf_brdf_place(brdf, view, wi, &place, &sign)) return 0.0f;
     p = acdf_brdf_find(brdf, view, &place, range, 0);
     return acdf_brdf_density(brdf, p, range, &place, wi);
@@ -220,6 +72,8 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
  * and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float wi[3]) {
     AcdfBrdfView view;
+    if (brdf->tables && brdf->tables->grid)
+        return acdf_brdf_pair_view(brdf, wo, &view) ? acdf_brdf_pair_pdf(brdf, &view, wi) : 0.0f;
     if (!acdf_brdf_view(brdf, wo, &view)) return 0.0f;
     return acdf_brdf_view_pdf(brdf, &view, wi);
 }
@@ -228,34 +82,6 @@ ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float
 ACDF_FN double acdf_brdf_albedo(const AcdfBrdf* brdf, const float wo[3]) {
     AcdfBrdfView view;
     return acdf_brdf_view(brdf, wo, &view) ? acdf_clamp(view.albedo, 0.0, 0x1.fffffffffffffp1023) : 0.0;
-}
-
-/* Reflects wo at the half-vector of a position. `reach`: rounding wi to float moves its position by less. A float
- * below 1 is off by 2^-25 at most, so wi by 0.87 * 2^-24 and the half-vector, since wo + wi is 2 |wo . wh| long, by
- * half of that over the cosine; here twice as much. Not finite or NaN at the pole. */
-ACDF_FN void acdf_brdf_reflect(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double position[2],
-                               double sign, float wi[3], double reach[2]) {
-    const double cap = position[1] / (double)brdf->rows; /* 1 - cos(theta_h) */
-    const double hz = 1.0 - cap, radius = sqrt(cap * (2.0 - cap)), x = position[0] / (double)brdf->columns;
-    const double scale = radius / sqrt(view->turn[0] * view->turn[0] + view->turn[1] * view->turn[1]);
-    double sine, cosine, hx, hy, dot, turn, angle;
-    acdf_sincospi(acdf_brdf_mirrored(brdf) ? sign * x : 2.0 * x - 1.0, &sine, &cosine);
-    hx = scale * (view->turn[0] * cosine - view->turn[1] * sine);
-    hy = scale * (view->turn[1] * cosine + view->turn[0] * sine);
-    dot = 2.0 * (view->wo[0] * hx + view->wo[1] * hy + view->wo[2] * hz);
-    wi[0] = (float)(dot * hx - view->wo[0]);
-    wi[1] = (float)(dot * hy - view->wo[1]);
-    wi[2] = (float)(dot * hz - view->wo[2]);
-    turn = 0x1p-23 / (fabs(dot) * radius); /* of its azimuth: 0x1p-24 over the cosine and the radius */
-    angle = turn * radius;
-    reach[0] = (double)brdf->columns * turn; /* of a half or a whole turn: pi or more to spare */
-    reach[1] = (double)brdf->rows * (angle * (radius + angle));
-}
-
-/* Whether a position is in a cell and farther than `reach` from its border. */
-ACDF_FN int acdf_brdf_inside(const AcdfRange range[2], const double position[2], const double reach[2]) {
-    return position[0] >= (double)range[0].low + reach[0] && position[0] < (double)range[0].high - reach[0] &&
-           position[1] >= (double)range[1].low + reach[1] && position[1] < (double)range[1].high - reach[1];
 }
 
 /* Prepares the random numbers for the walk: u, and on which side of the mirror wi will lie. Returns 0 where there
@@ -280,11 +106,7 @@ ACDF_FN int acdf_brdf_begin(const AcdfBrdf* brdf, const AcdfBrdfView* view, doub
         }
         u[1] = (u[1] - floor) / (1.0 - floor);
     }
-    if (acdf_brdf_mirrored(brdf)) { /* both halves of u0 run through the same table: strata stay strata */
-        const double v = 2.0 * u[0] - 1.0;
-        *sign = v < 0.0 ? -1.0 : 1.0;
-        u[0] = fabs(v);
-    }
+    if (acdf_brdf_mirrored(brdf)) *sign = acdf_brdf_mirror(&u[0]);
     return !brdf->blend.tiles || view->mix.count > 0;
 }
 
@@ -331,9 +153,9 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
     return out;
 }
 
-/* acdf_brdf_sample for a view that was looked up. */
-ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
-                                                  double u1) {
+/* acdf_brdf_view_sample by a walk. */
+ACDF_FN AcdfDirectionSample acdf_brdf_view_walk(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
+                                                double u1) {
     AcdfDirectionSample out;
     AcdfRange range[2];
     double u[2], sign, p;
@@ -344,12 +166,34 @@ ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const Ac
     return acdf_brdf_end(brdf, view, range, u, sign, p);
 }
 
+/* acdf_brdf_sample for a view that was looked up. */
+ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
+                                                  double u1) {
+#ifdef ACDF_BRDF_GUESSES
+    AcdfDirectionSample out;
+    if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_sample(brdf, view, u0, u1, &out)) return out;
+#endif
+    return acdf_brdf_view_walk(brdf, view, u0, u1);
+}
+
+/* acdf_brdf_sample by a walk. */
+ACDF_OUTLINE AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
+    const AcdfDirectionSample nothing = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    AcdfBrdfView view;
+    return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_walk(brdf, &view, u0, u1) : nothing;
+}
+
 /* Draws wi for wo; u0 (phi_h) and u1 (theta_h) in [0, 1]; values outside are clamped, NaN counts as 0. Monotone in
  * each of them within a cell. pdf 0 (and no direction) for wo that are not unit vectors above the surface. */
 ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
-    const AcdfDirectionSample nothing = {{0.0f, 0.0f, 0.0f}, 0.0f};
+#ifdef ACDF_BRDF_GUESSES
+    AcdfDirectionSample out;
     AcdfBrdfView view;
-    return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_sample(brdf, &view, u0, u1) : nothing;
+    if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_view(brdf, wo, &view) &&
+        acdf_brdf_pair_sample(brdf, &view, u0, u1, &out))
+        return out;
+#endif
+    return acdf_brdf_walk(brdf, wo, u0, u1);
 }
 
 /* The random numbers u[2] for which acdf_brdf_sample returns wi for wo, through the half-vector. Returns 1, or 0

@@ -27,6 +27,7 @@ typedef struct AcdfError AcdfError;
 float acdf_draw_environment(const AcdfFile* file, double u0, double u1, float direction[3]);
 /* Density of a direction; 0 where none falls, for NaN and for directions that are not of unit length. */
 float acdf_density_environment(const AcdfFile* file, const float direction[3]);
+/* Arrays are served by the processor's vector instructions where it has them (acdf/wavefront.h). */
 int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
                                 float* pdfs);
 int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs);
@@ -62,8 +63,8 @@ int acdf_invert_brdf_array(const AcdfFile* file, const float* wo, size_t each, c
 int acdf_albedo_brdf_array(const AcdfFile* file, const float* wo, size_t count, double* albedos);
 
 /* The same draws and densities by the processor's vector instructions (acdf/wavefront.h), where it has them: a
- * fraction of the time, bit for bit, by tables of about twelve times the file. Null where memory fails or the file
- * is of another kind. `error` may be null. Ends with acdf_brdf_waves_close, before its file does. */
+ * fraction of the time, bit for bit, by tables of some four times the file beside its own. Null where memory fails
+ * or the file is of another kind. `error` may be null. Ends with acdf_brdf_waves_close, before its file does. */
 typedef struct AcdfBrdfWaves AcdfBrdfWaves;
 AcdfBrdfWaves* acdf_brdf_waves(const AcdfFile* file, AcdfError* error);
 void acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,

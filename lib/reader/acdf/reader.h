@@ -103,7 +103,10 @@ public:
     const AcdfCompany* company() const noexcept { return company_; }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept {
-        return 4 * std::uint64_t{cells_ ? cells_->words : local_tables_ ? local_tables_->words : 0};
+        return 4 * std::uint64_t{cells_          ? cells_->words
+                                 : local_tables_ ? local_tables_->words
+                                 : brdf_tables_  ? brdf_tables_->words
+                                                 : 0};
     }
 
     /// Metadata pairs; `count` is 0 where the file carries none.
@@ -140,6 +143,7 @@ private:
     std::uint32_t metadata_count_ = 0;
     AcdfCells* cells_ = nullptr;
     AcdfLocalTables* local_tables_ = nullptr;
+    AcdfBrdfTables* brdf_tables_ = nullptr;
     AcdfAllocator allocator_ = {};
     AcdfBlock owned_[3] = {}; // the file's bytes; inflated chunks; runtime tables
 

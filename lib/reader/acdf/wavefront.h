@@ -1,5 +1,8 @@
-// Draws from a BRDF for many views at once with the vector instructions of the processor: for renderers that work
-// in waves.
+// Draws from an environment or a BRDF many times at once with the vector instructions of the processor: for
+// renderers that work in waves.
+//
+//   acdf::EnvironmentWavefront sky(file.environment());
+//   sky.sample(u, count, out);
 //
 //   acdf::BrdfWavefront wavefront;
 //   if (acdf::Status status = acdf::BrdfWavefront::prepare(file.brdf(), wavefront); !status.ok()) { ... }
@@ -18,6 +21,28 @@ struct WavefrontTable;
 /// What instructions serve; with `none` it is the loop over BrdfView.
 enum class Instructions : int { none = 0, avx2 = 1, avx512 = 2 };
 
+/// The directions and densities of an EnvironmentView, bit for bit, in a fraction of the time. A few words by
+/// value, no memory of its own; valid while the File lives. All functions are const, thread-safe, allocate and
+/// throw nothing.
+class EnvironmentWavefront {
+public:
+    EnvironmentWavefront() noexcept = default;
+    /// Uses the best instructions that the processor has, up to `most`. Served by the loop over the view are those
+    /// without runtime tables.
+    explicit EnvironmentWavefront(const EnvironmentView& view, Instructions most = Instructions::avx512) noexcept;
+
+    /// EnvironmentView::sample of u[i] into out[i], i < count.
+    void sample(const double (*u)[2], std::size_t count, DirectionSample* out) const noexcept;
+    /// EnvironmentView::pdf of directions[i] into out[i], i < count.
+    void pdf(const float (*directions)[3], std::size_t count, float* out) const noexcept;
+
+    Instructions instructions() const noexcept { return instructions_; }
+
+private:
+    AcdfEnvironment environment_ = {};
+    Instructions instructions_ = Instructions::none;
+};
+
 /// The directions and densities of a BrdfView, bit for bit, in a fraction of the time. Valid while its File lives.
 /// `prepare` allocates; all else is const, thread-safe, allocates and throws nothing.
 class BrdfWavefront {
@@ -27,11 +52,11 @@ public:
     BrdfWavefront& operator=(BrdfWavefront&& other) noexcept;
     ~BrdfWavefront();
 
-    /// Makes the tables: 12 bytes a cell and view, and some more a cell, which is about twelve times the file. Uses
-    /// the best instructions that the processor has, up to `most`. Served by the loop, without tables, are files
-    /// that are not isotropic, have a diffuse floor or trees of their own for each bin, or whose views share so few
-    /// rows that tables would be out of proportion to the file. Fails where memory does; `out` then stays what it
-    /// was.
+    /// Makes tables: 4 bytes a cell and view, and some more a cell, which is about four times the file; twelve
+    /// times where the file was opened without runtime tables, or has none. Uses the best instructions that the
+    /// processor has, up to `most`. Served by the loop, without tables, are files that are not isotropic, have a
+    /// diffuse floor or trees of their own for each bin, or whose views share so few rows that tables would be out
+    /// of proportion to the file. Fails where memory does; `out` then stays what it was.
     static Status prepare(const BrdfView& view, BrdfWavefront& out,
                           Instructions most = Instructions::avx512) noexcept;
 
@@ -40,14 +65,14 @@ public:
     /// BrdfView::pdf of wo[i] and wi[i] into out[i], i < count.
     void pdf(const float (*wo)[3], const float (*wi)[3], std::size_t count, float* out) const noexcept;
 
-    /// Bytes of the tables; 0 where there are none.
-    std::size_t bytes() const noexcept { return bytes_; }
+    /// Bytes of tables of its own; 0 where there are none.
+    std::size_t bytes() const noexcept;
     Instructions instructions() const noexcept { return instructions_; }
 
 private:
     AcdfBrdf brdf_ = {};
     WavefrontTable* table_ = nullptr;
-    std::size_t bytes_ = 0;
+    AcdfBlock own_[2] = {}; // its arrays; runtime tables, where the file has none
     Instructions instructions_ = Instructions::none;
 };
 

@@ -1,0 +1,111 @@
+/* Half-vectors of a BRDF file: where in the table they lie, and what they reflect (SPEC.md §6.8). */
+#ifndef ACDF_BRDF_HALF_H
+#define ACDF_BRDF_HALF_H
+
+#include <acdf/brdf_view.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A direction as a place in the table. */
+typedef struct AcdfBrdfPlace {
+    double position[2];
+    double dot, length; /* |wo . (wo + wi)| and |wo + wi|: the cosine |wo . wh| is dot / length */
+} AcdfBrdfPlace;
+
+/* wo + wi and its length. Returns 0 where wi is not of unit length or opposite to wo. */
+ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], double half[3], AcdfBrdfPlace* place) {
+    const double x = wi[0], y = wi[1], z = wi[2], length2 = x * x + y * y + z * z;
+    half[0] = view->wo[0] + x;
+    half[1] = view->wo[1] + y;
+    half[2] = view->wo[2] + z;
+    place->length = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+    place->dot = fabs(view->wo[0] * half[0] + view->wo[1] * half[1] + view->wo[2] * half[2]);
+    return acdf_are_finite(wi) && length2 > 0.999 && length2 < 1.001 && place->length > 0.0;
+}
+
+/* atan2(y, x) / pi for y >= 0 as acdf_atan2pi has it, but for rounding and without branches: the octant of a
+ * half-vector cannot be guessed. */
+ACDF_INLINE double acdf_brdf_azimuth(double y, double x) {
+    const double ax = fabs(x), high = ax > y ? ax : y, low = ax > y ? y : ax;
+    const double wide = (double)(low > 0.41421356237309503 * high), steep = (double)(y > ax),
+                 left = (double)(x < 0.0);
+    const double w = high > 0.0 ? (low - wide * high) / (high + wide * low) : 0.0;
+    const double q = w * w, q4 = (q * q) * (q * q);
+    const double series =
+        acdf_polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
+                         0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
+        q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
+    return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + w * series));
+}
+
+/* Place of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is not
+ * of unit length or opposite to wo. */
+ACDF_INLINE int acdf_brdf_place(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
+                                AcdfBrdfPlace* place, double* sign) {
+    double half[3], hx, hy, phi, below;
+    if (!acdf_brdf_half(view, wi, half, place)) return 0;
+    below = 1.0 - 2.0 * (double)(half[2] < 0.0); /* a half-vector below the surface reflects as its opposite does */
+    hx = below * (view->turn[0] * half[0] + view->turn[1] * half[1]);
+    hy = below * (view->turn[0] * half[1] - view->turn[1] * half[0]);
+    phi = acdf_brdf_azimuth(fabs(hy), hx);
+    *sign = 1.0 - 2.0 * (double)(hy < 0.0);
+    place->position[0] = (double)brdf->columns * (acdf_brdf_mirrored(brdf) ? phi : 0.5 + 0.5 * *sign * phi);
+    place->position[1] = (double)brdf->rows * ((half[0] * half[0] + half[1] * half[1]) /
+                                               (place->length * (place->length + fabs(half[2]))));
+    return 1; /* 1 - cos(theta_h) without cancellation */
+}
+
+ACDF_INLINE uint32_t acdf_brdf_step(double position, uint32_t resolution) {
+    return position < (double)resolution ? (uint32_t)position : resolution - 1;
+}
+
+/* Reflects wo at the half-vector of a position. `reach`: rounding wi to float moves its position by less. A float
+ * below 1 is off by 2^-25 at most, so wi by 0.87 * 2^-24 and the half-vector, since wo + wi is 2 |wo . wh| long, by
+ * half of that over the cosine; here twice as much. Not finite or NaN at the pole. */
+ACDF_INLINE void acdf_brdf_reflect(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double position[2],
+                                   double sign, float wi[3], double reach[2]) {
+    const double cap = position[1] / (double)brdf->rows; /* 1 - cos(theta_h) */
+    const double hz = 1.0 - cap, radius = sqrt(cap * (2.0 - cap)), x = position[0] / (double)brdf->columns;
+    const double scale = radius / sqrt(view->turn[0] * view->turn[0] + view->turn[1] * view->turn[1]);
+    double sine, cosine, hx, hy, dot, turn, angle;
+    acdf_sincospi(acdf_brdf_mirrored(brdf) ? sign * x : 2.0 * x - 1.0, &sine, &cosine);
+    hx = scale * (view->turn[0] * cosine - view->turn[1] * sine);
+    hy = scale * (view->turn[1] * cosine + view->turn[0] * sine);
+    dot = 2.0 * (view->wo[0] * hx + view->wo[1] * hy + view->wo[2] * hz);
+    wi[0] = (float)(dot * hx - view->wo[0]);
+    wi[1] = (float)(dot * hy - view->wo[1]);
+    wi[2] = (float)(dot * hz - view->wo[2]);
+    turn = 0x1p-23 / (fabs(dot) * radius); /* of its azimuth: 0x1p-24 over the cosine and the radius */
+    angle = turn * radius;
+    reach[0] = (double)brdf->columns * turn; /* of a half or a whole turn: pi or more to spare */
+    reach[1] = (double)brdf->rows * (angle * (radius + angle));
+}
+
+/* Whether a position is in a cell and farther than `reach` from its border. */
+ACDF_INLINE int acdf_brdf_inside(const AcdfRange range[2], const double position[2], const double reach[2]) {
+    return position[0] >= (double)range[0].low + reach[0] && position[0] < (double)range[0].high - reach[0] &&
+           position[1] >= (double)range[1].low + reach[1] && position[1] < (double)range[1].high - reach[1];
+}
+
+/* Both halves of u0 run through the same table: strata stay strata. Returns on which side of the mirror wi lies. */
+ACDF_INLINE double acdf_brdf_mirror(double* u0) {
+    const double v = 2.0 * *u0 - 1.0;
+    *u0 = fabs(v);
+    return v < 0.0 ? -1.0 : 1.0;
+}
+
+/* Density of wi where a cell of probability p covers `area` grid squares. */
+ACDF_INLINE double acdf_brdf_mean_density(const AcdfBrdf* brdf, double p, double area, const AcdfBrdfPlace* place) {
+    return p * (double)brdf->columns * (double)brdf->rows * place->length / (8.0 * ACDF_PI * place->dot * area);
+}
+ACDF_INLINE float acdf_brdf_positive(double pdf) {
+    if (pdf >= 3.402823466e38) return 3.402823466e38f;
+    return pdf > 1.17549435e-38 ? (float)pdf : 1.17549435e-38f;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,13 @@
+#if ACDF_WAVEFRONT_X86
+#define ACDF_WIDTH 4
+#include "environment_kernel.h"
+
+void acdf::environment_sample_avx2(const AcdfEnvironment& environment, const double (*u)[2], std::size_t count,
+                                   AcdfDirectionSample* out) {
+    sample_all(environment, u, count, out);
+}
+void acdf::environment_pdf_avx2(const AcdfEnvironment& environment, const float (*directions)[3], std::size_t count,
+                                float* out) {
+    pdf_all(environment, directions, count, out);
+}
+#endif
