@@ -1,9 +1,13 @@
-// Time of a sample and of a pdf of measured BRDFs: files of ours beside the sampler that the authors of the RGL
-// database publish, the full table, a GGX lobe and the cosine. Each call has another view, another direction and
-// other random numbers. The time of the RGL sampler is taken in turns with that of what is timed, a millisecond or
-// two each: `of_rgl` is the ratio of the two.
-#include "build/brdf.h"
+// Time of a sample and of a pdf of measured BRDFs: files of ours, one call at a time and in waves, beside the
+// sampler that the authors of the RGL database publish, the full table, a GGX lobe and the cosine. Each call has
+// another view, another direction and other random numbers.
+//
+//   bench_brdf [KIB...]                            tables in Markdown; 64 and 128 by default
+//   bench_brdf --write FILE KIB                    a file of the first BRDF
+//   bench_brdf --count sample|pdf FILE N [walk]    N calls and nothing else, for callgrind
+#include "tests/bench/turns.h"
 
+#include "build/brdf.h"
 #include "input/rgl_brdf.h"
 #include "measure/brdf_samplers.h"
 #include "measure/brdf_table.h"
@@ -11,14 +15,12 @@
 
 #include <acdf/wavefront.h>
 
-#include <benchmark/benchmark.h>
-
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
-#include <map>
+#include <fstream>
 #include <memory>
 #include <random>
 #include <vector>
@@ -26,12 +28,11 @@
 namespace {
 
 using namespace acdf;
+using acdf_bench::Candidate;
+using acdf_bench::keep;
 
 // So many before views and random numbers repeat. With a few thousand the processor learns the branches of each.
 constexpr std::size_t kQueries = 1 << 16;
-constexpr std::size_t kTurn = 4096; // calls before the other sampler has its turn: a millisecond or two
-// Wavefronts take all queries in a turn, which is about as long: both samplers find the cache as the other one left
-// it equally often.
 constexpr std::size_t kWave = 4096;
 constexpr double kPi = 3.14159265358979323846;
 
@@ -91,91 +92,51 @@ const std::vector<Query>& queries() {
     return made;
 }
 
-/// Queries that are timed in one go.
-struct Turn {
-    std::size_t first, count;
-};
-
-template <class Call>
-double timed(const Turn& turn, const Call& call) {
-    const auto start = std::chrono::steady_clock::now();
-    for (std::size_t i = turn.first; i < turn.first + turn.count; ++i) call(queries()[i]);
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+std::unique_ptr<input::Brdf> open_source(const std::string& name) {
+    const std::string path = path_of(name);
+    return input::open_brdf(std::filesystem::exists(path) ? path : name);
 }
 
-/// A call's, of the middle one of the turns: other programs interrupt some of them.
-double median_ns(std::vector<double> seconds, std::size_t calls) {
-    const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
-    std::nth_element(seconds.begin(), middle, seconds.end());
-    return 1e9 * *middle / static_cast<double>(calls);
-}
+/// A file in memory, with tables and without.
+struct Built {
+    std::vector<std::uint8_t> bytes;
+    File tables, plain;
 
-/// Runs `time(turn)`, which returns seconds, on turns of `calls`, and `rgl` on turns of kTurn in between.
-template <class Time, class Rgl>
-void run_turns(benchmark::State& state, std::size_t calls, const Time& time, const Rgl& rgl) {
-    std::vector<double> ours, theirs; // seconds of each turn
-    Turn turn{0, calls}, rgl_turn{0, kTurn};
-    for (auto _ : state) {
-        ours.push_back(time(turn));
-        state.SetIterationTime(ours.back());
-        if (rgl_sampler()) theirs.push_back(timed(rgl_turn, rgl));
-        for (Turn* t : {&turn, &rgl_turn}) t->first = (t->first + t->count) % kQueries;
-    }
-    state.SetItemsProcessed(static_cast<std::int64_t>(ours.size() * calls));
-    state.counters["ns"] = median_ns(ours, calls);
-    if (!rgl_sampler()) return;
-    state.counters["rgl_ns"] = median_ns(theirs, kTurn);
-    state.counters["of_rgl"] = median_ns(ours, calls) / median_ns(theirs, kTurn);
-}
-
-const auto rgl_sample = [](const Query& q) { benchmark::DoNotOptimize(rgl_sampler()->sample(Pair(q).wo, q.u)); };
-const auto rgl_pdf = [](const Query& q) {
-    const Pair d(q);
-    benchmark::DoNotOptimize(rgl_sampler()->pdf(d.wo, d.wi));
-};
-
-template <class Call>
-void run_sample(benchmark::State& state, const Call& call) {
-    run_turns(
-        state, kTurn, [&](const Turn& turn) { return timed(turn, call); }, rgl_sample);
-}
-template <class Call>
-void run_pdf(benchmark::State& state, const Call& call) {
-    run_turns(
-        state, kTurn, [&](const Turn& turn) { return timed(turn, call); }, rgl_pdf);
-}
-
-/// A source (a file of the test data, or a model) at a size.
-struct Case {
-    std::string source;
-    std::uint64_t bytes;
-    std::string label() const { return source + "/" + std::to_string(bytes >> 10) + "KiB"; }
-};
-
-const File& file_of(const Case& given) {
-    static std::map<std::string, std::unique_ptr<File>> open;
-    static std::map<std::string, build::BrdfFile> made;
-    const auto [found, missing] = open.try_emplace(given.label());
-    if (missing) {
-        const std::string path = path_of(given.source);
-        const auto brdf = input::open_brdf(std::filesystem::exists(path) ? path : given.source);
+    Built(const input::Brdf& brdf, std::uint64_t budget) {
         build::BrdfFileOptions options;
         options.fit.goal.kind = compress::Goal::Kind::budget;
-        options.fit.goal.budget = given.bytes;
-        const auto& bytes = (made[given.label()] = build::build_brdf(*brdf, options)).bytes;
-        found->second = std::make_unique<File>();
-        File::from_memory(bytes.data(), bytes.size(), *found->second);
+        options.fit.goal.budget = budget;
+        bytes = build::build_brdf(brdf, options).bytes;
+        LoadOptions walk;
+        walk.tables = false;
+        File::from_memory(bytes.data(), bytes.size(), tables);
+        File::from_memory(bytes.data(), bytes.size(), plain, walk);
     }
-    return *found->second;
-}
+};
 
-void sample(benchmark::State& state, const Case& given) {
-    const BrdfView view = file_of(given).brdf();
-    run_sample(state, [&](const Query& q) { benchmark::DoNotOptimize(view.sample(q.wo, q.u[0], q.u[1])); });
+/// What takes floats, or doubles, one call at a time.
+template <class Call>
+std::function<void(std::size_t, std::size_t)> each(const Call& call) {
+    return [call](std::size_t first, std::size_t count) {
+        for (std::size_t i = first; i < first + count; ++i) keep(call(queries()[i]));
+    };
 }
-void pdf(benchmark::State& state, const Case& given) {
-    const BrdfView view = file_of(given).brdf();
-    run_pdf(state, [&](const Query& q) { benchmark::DoNotOptimize(view.pdf(q.wo, q.wi)); });
+/// A sample and a pdf of one sampler.
+struct Sampler {
+    std::string name;
+    std::function<void(std::size_t, std::size_t)> sample, pdf;
+};
+template <class S>
+Sampler in_doubles(const char* name, const S& sampler) {
+    return {name, each([&sampler](const Query& q) { return sampler.sample(Pair(q).wo, q.u); }),
+            each([&sampler](const Query& q) {
+                const Pair d(q);
+                return sampler.pdf(d.wo, d.wi);
+            })};
+}
+Sampler of_view(const std::string& name, const BrdfView& view) {
+    return {name, each([view](const Query& q) { return view.sample(q.wo, q.u[0], q.u[1]); }),
+            each([view](const Query& q) { return view.pdf(q.wo, q.wi); })};
 }
 
 /// All queries, in arrays as BrdfWavefront takes them.
@@ -189,14 +150,11 @@ struct Wave {
             u.insert(u.end(), q.u, q.u + 2);
         }
     }
-    const float (*wo_of(const Turn& turn) const)[3] {
-        return reinterpret_cast<const float(*)[3]>(&wo[3 * turn.first]);
+    static const float (*vectors(const std::vector<float>& all, std::size_t first))[3] {
+        return reinterpret_cast<const float(*)[3]>(&all[3 * first]);
     }
-    const float (*wi_of(const Turn& turn) const)[3] {
-        return reinterpret_cast<const float(*)[3]>(&wi[3 * turn.first]);
-    }
-    const double (*u_of(const Turn& turn) const)[2] {
-        return reinterpret_cast<const double(*)[2]>(&u[2 * turn.first]);
+    const double (*numbers(std::size_t first) const)[2] {
+        return reinterpret_cast<const double(*)[2]>(&u[2 * first]);
     }
 };
 const Wave& wave() {
@@ -204,118 +162,111 @@ const Wave& wave() {
     return made;
 }
 
-const std::pair<const char*, Instructions> kInstructions[] = {{"avx2", Instructions::avx2},
-                                                              {"avx512", Instructions::avx512}};
-BrdfWavefront wavefront_of(const Case& given, Instructions most) {
-    BrdfWavefront out;
-    BrdfWavefront::prepare(file_of(given).brdf(), out, most);
+Sampler of_waves(const std::string& name, const BrdfWavefront& wavefront) {
+    static std::vector<DirectionSample> samples(kWave);
+    static std::vector<float> pdfs(kWave);
+    return {name,
+            [&wavefront](std::size_t first, std::size_t count) {
+                wavefront.sample(Wave::vectors(wave().wo, first), wave().numbers(first), count, samples.data());
+                keep(samples[0]);
+            },
+            [&wavefront](std::size_t first, std::size_t count) {
+                wavefront.pdf(Wave::vectors(wave().wo, first), Wave::vectors(wave().wi, first), count, pdfs.data());
+                keep(pdfs[0]);
+            }};
+}
+
+std::vector<double> times(const std::vector<Sampler>& samplers, bool of_pdfs, bool evict) {
+    std::vector<Candidate> candidates;
+    for (const Sampler& s : samplers) candidates.push_back({s.name, of_pdfs ? s.pdf : s.sample});
+    acdf_bench::Turns turns;
+    turns.calls = evict ? 1024 : kWave;
+    turns.period = kQueries;
+    turns.rounds = evict ? 40 : 200;
+    turns.evict = evict;
+    acdf_bench::take_turns(candidates, turns);
+    std::vector<double> out;
+    for (const Candidate& c : candidates) out.push_back(c.least);
     return out;
 }
 
-/// `call` writes the results of a wave.
-template <class Out, class Call, class Rgl>
-void run_wavefront(benchmark::State& state, const Call& call, const Rgl& rgl) {
-    std::vector<Out> out(kWave);
-    const auto time = [&](const Turn& turn) {
-        const auto start = std::chrono::steady_clock::now();
-        for (std::size_t i = 0; i < turn.count; i += kWave) {
-            call(Turn{turn.first + i, kWave}, out.data());
-            benchmark::DoNotOptimize(out.data());
-            benchmark::ClobberMemory();
+/// A row a sampler: ns and the ratio to the first one.
+void report(const std::vector<Sampler>& samplers) {
+    std::printf("| | ns a sample | of %s | ns a pdf | of it | a sample, caches evicted | of it |\n"
+                "|---|---|---|---|---|---|---|\n",
+                samplers[0].name.c_str());
+    const std::vector<double> sample = times(samplers, false, false), pdf = times(samplers, true, false),
+                              cold = times(samplers, false, true);
+    for (std::size_t i = 0; i < samplers.size(); ++i)
+        std::printf("| %s | %.0f | %.2f | %.0f | %.2f | %.0f | %.2f |\n", samplers[i].name.c_str(), sample[i],
+                    sample[i] / sample[0], pdf[i], pdf[i] / pdf[0], cold[i], cold[i] / cold[0]);
+    std::fflush(stdout);
+}
+
+void run(const std::string& source, const std::vector<std::uint64_t>& sizes) {
+    const auto brdf = open_source(source);
+    const build::BrdfFileOptions options;
+    const measure::TabulatedBrdf table(build::reflected_light(*brdf, options.channels, options.weights), true,
+                                       measure::BrdfTableKind::centre);
+    const measure::GgxSampler ggx(0.3);
+    std::vector<Sampler> samplers;
+    if (rgl_sampler()) samplers.push_back(in_doubles("RGL sampler", *rgl_sampler()));
+    samplers.push_back(in_doubles("full table", table));
+    samplers.push_back(in_doubles("GGX lobe", ggx));
+    std::vector<std::unique_ptr<Built>> built;
+    std::vector<std::unique_ptr<BrdfWavefront>> wavefronts;
+    for (const std::uint64_t kib : sizes) {
+        built.push_back(std::make_unique<Built>(*brdf, kib << 10));
+        const std::string size = std::to_string(kib) + " KiB";
+        samplers.push_back(of_view(size, built.back()->tables.brdf()));
+        samplers.push_back(of_view(size + ", no tables", built.back()->plain.brdf()));
+        for (const Instructions most : {Instructions::avx2, Instructions::avx512}) {
+            wavefronts.push_back(std::make_unique<BrdfWavefront>());
+            BrdfWavefront::prepare(built.back()->tables.brdf(), *wavefronts.back(), most);
+            if (wavefronts.back()->instructions() == most)
+                samplers.push_back(
+                    of_waves(size + (most == Instructions::avx2 ? ", AVX2" : ", AVX-512"), *wavefronts.back()));
         }
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    run_turns(state, kQueries, time, rgl);
-}
-void wavefront_sample(benchmark::State& state, const Case& given, Instructions most) {
-    const BrdfWavefront wavefront = wavefront_of(given, most);
-    const auto call = [&](const Turn& turn, DirectionSample* out) {
-        wavefront.sample(wave().wo_of(turn), wave().u_of(turn), turn.count, out);
-    };
-    run_wavefront<DirectionSample>(state, call, rgl_sample);
-}
-void wavefront_pdf(benchmark::State& state, const Case& given, Instructions most) {
-    const BrdfWavefront wavefront = wavefront_of(given, most);
-    const auto call = [&](const Turn& turn, float* out) {
-        wavefront.pdf(wave().wo_of(turn), wave().wi_of(turn), turn.count, out);
-    };
-    run_wavefront<float>(state, call, rgl_pdf);
-}
-void register_wavefronts(const Case& file) {
-    for (const auto& [name, most] : kInstructions) {
-        const std::string label = file.label() + "/" + name;
-        benchmark::RegisterBenchmark(("sample/" + label).c_str(), wavefront_sample, file, most)->UseManualTime();
-        benchmark::RegisterBenchmark(("pdf/" + label).c_str(), wavefront_pdf, file, most)->UseManualTime();
+        std::printf("\n%s, %s: tables of %llu bytes\n", source.c_str(), size.c_str(),
+                    static_cast<unsigned long long>(built.back()->tables.table_bytes()));
     }
+    std::printf("\n");
+    report(samplers);
 }
 
-/// The full table of the first case's source.
-const measure::TabulatedBrdf& table(const Case& given) {
-    static std::unique_ptr<input::Brdf> brdf;
-    static std::unique_ptr<measure::TabulatedBrdf> made;
-    if (!made) {
-        const std::string path = path_of(given.source);
-        brdf = input::open_brdf(std::filesystem::exists(path) ? path : given.source);
-        const build::BrdfFileOptions options;
-        made = std::make_unique<measure::TabulatedBrdf>(
-            build::reflected_light(*brdf, options.channels, options.weights), true, measure::BrdfTableKind::centre);
-    }
-    return *made;
+std::vector<std::string> sources() {
+    std::vector<std::string> out;
+    for (const char* name : {kRglFile, "nickel.binary"})
+        if (std::filesystem::exists(path_of(name))) out.push_back(name);
+    if (out.empty()) out.push_back("ggx:alpha=0.2"); // and there is no sampler of the RGL database to compare with
+    return out;
 }
 
-void register_rivals(const Case& first) {
-    using benchmark::DoNotOptimize;
-    using benchmark::RegisterBenchmark;
-    using State = benchmark::State;
-    std::vector<benchmark::internal::Benchmark*> all;
-    all.push_back(RegisterBenchmark("sample/ggx", [](State& state) {
-        const measure::GgxSampler ggx(0.3);
-        run_sample(state, [&](const Query& q) { DoNotOptimize(ggx.sample(Pair(q).wo, q.u)); });
-    }));
-    all.push_back(RegisterBenchmark("pdf/ggx", [](State& state) {
-        const measure::GgxSampler ggx(0.3);
-        run_pdf(state, [&](const Query& q) {
-            const Pair d(q);
-            DoNotOptimize(ggx.pdf(d.wo, d.wi));
-        });
-    }));
-    all.push_back(RegisterBenchmark("sample/cosine", [](State& state) {
-        run_sample(state, [](const Query& q) { DoNotOptimize(measure::CosineSampler::sample(Pair(q).wo, q.u)); });
-    }));
-    all.push_back(RegisterBenchmark("sample/full_table", [first](State& state) {
-        const auto& full = table(first);
-        run_sample(state, [&](const Query& q) { DoNotOptimize(full.sample(Pair(q).wo, q.u)); });
-    }));
-    all.push_back(RegisterBenchmark("pdf/full_table", [first](State& state) {
-        const auto& full = table(first);
-        run_pdf(state, [&](const Query& q) {
-            const Pair d(q);
-            DoNotOptimize(full.pdf(d.wo, d.wi));
-        });
-    }));
-    for (auto* benchmark : all) benchmark->UseManualTime();
+int count(const char* what, const char* path, std::size_t calls, bool walk) {
+    LoadOptions options;
+    options.tables = !walk;
+    File file;
+    if (!File::open(path, file, options).ok() || file.kind() != ACDF_KIND_BRDF) return 1;
+    const Sampler sampler = of_view("", file.brdf());
+    queries();
+    (std::strcmp(what, "sample") == 0 ? sampler.sample : sampler.pdf)(0, calls);
+    return 0;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    benchmark::Initialize(&argc, argv);
-    std::vector<Case> cases;
-    for (const std::uint64_t bytes : {std::uint64_t{64} << 10, std::uint64_t{128} << 10, std::uint64_t{200} << 10})
-        for (const char* name :
-             {kRglFile, "satin_rosaline_rgb.bsdf", "nickel.binary", "blue-metallic-paint.binary"})
-            if (std::filesystem::exists(path_of(name))) cases.push_back({name, bytes});
-            else std::printf("%s is not there\n", path_of(name).c_str());
-    if (cases.empty()) {
-        std::printf("a model takes their place, and there is no sampler of the RGL database to compare with\n");
-        cases.push_back({"ggx:alpha=0.2", 64 << 10});
+    if (argc == 4 && std::strcmp(argv[1], "--write") == 0) {
+        const Built built(*open_source(sources()[0]), std::strtoull(argv[3], nullptr, 10) << 10);
+        std::ofstream(argv[2], std::ios::binary)
+            .write(reinterpret_cast<const char*>(built.bytes.data()),
+                   static_cast<std::streamsize>(built.bytes.size()));
+        return 0;
     }
-    for (const Case& c : cases) {
-        benchmark::RegisterBenchmark(("sample/" + c.label()).c_str(), sample, c)->UseManualTime();
-        benchmark::RegisterBenchmark(("pdf/" + c.label()).c_str(), pdf, c)->UseManualTime();
-        register_wavefronts(c);
-    }
-    register_rivals(cases.front());
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
+    if (argc >= 5 && std::strcmp(argv[1], "--count") == 0)
+        return count(argv[2], argv[3], std::strtoul(argv[4], nullptr, 10), argc > 5);
+    std::vector<std::uint64_t> sizes;
+    for (int i = 1; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
+    if (sizes.empty()) sizes = {64, 128};
+    for (const std::string& source : sources()) run(source, sizes);
 }

@@ -11,7 +11,7 @@
 #include "measure/full_cdf.h"
 #include "measure/hierarchical_warp.h"
 
-#include <acdf/reader.h>
+#include <acdf/wavefront.h>
 
 #include <array>
 #include <cmath>
@@ -139,6 +139,36 @@ Candidate densities(const char* name, const Sampler& sampler, const Directions& 
             }};
 }
 
+/// The same in waves of 4096.
+constexpr std::size_t kWave = 4096;
+struct Waves {
+    EnvironmentWavefront wavefront;
+    std::vector<double> u;
+    mutable std::vector<DirectionSample> samples{kWave};
+    mutable std::vector<float> pdfs = std::vector<float>(kWave);
+
+    Waves(const EnvironmentView& view, const std::vector<float>& numbers, Instructions most)
+        : wavefront(view, most), u(numbers.begin(), numbers.end()) {}
+    Candidate draws(const char* name) const {
+        return {name, [this](std::size_t first, std::size_t count) {
+                    for (std::size_t done = 0; done < count; done += kWave) {
+                        wavefront.sample(reinterpret_cast<const double(*)[2]>(&u[2 * (first + done)]),
+                                         std::min(kWave, count - done), samples.data());
+                        keep(samples[0]);
+                    }
+                }};
+    }
+    Candidate densities(const char* name, const Directions& w) const {
+        return {name, [this, &w](std::size_t first, std::size_t count) {
+                    for (std::size_t done = 0; done < count; done += kWave) {
+                        wavefront.pdf(reinterpret_cast<const float(*)[3]>(w[first + done].data()),
+                                      std::min(kWave, count - done), pdfs.data());
+                        keep(pdfs[0]);
+                    }
+                }};
+    }
+};
+
 /// A row of the table: ns of each, and the ratio to the first one.
 void report(const std::string& what, std::vector<Candidate> candidates, bool evict) {
     acdf_bench::Turns turns;
@@ -171,18 +201,23 @@ void run(std::uint32_t columns) {
         static_cast<unsigned long long>(full.cdf.bytes()));
     std::printf("| ns a call (of the full table's) | full table | alias table | hierarchical warp | 64 KiB | 4 KiB "
                 "| 64 KiB, "
-                "no tables |\n|---|---|---|---|---|---|---|\n");
+                "no tables | 64 KiB, AVX2 | 64 KiB, AVX-512 |\n|---|---|---|---|---|---|---|---|---|\n");
     const std::vector<float> u = numbers(false), coherent = numbers(true);
     const Directions drawn = drawn_directions(walk, u), uniform = uniform_directions();
+    const Waves waves[2][2] = {{{fast, u, Instructions::avx2}, {fast, u, Instructions::avx512}},
+                               {{fast, coherent, Instructions::avx2}, {fast, coherent, Instructions::avx512}}};
     const auto all_draws = [&](const std::vector<float>& given) {
+        const Waves* const wave = waves[&given == &coherent];
         return std::vector<Candidate>{draws("full", full, given),    draws("alias", alias, given),
                                       draws("warp", warp, given),    draws("64", fast, given),
-                                      draws("4", fast_small, given), draws("walk", walk, given)};
+                                      draws("4", fast_small, given), draws("walk", walk, given),
+                                      wave[0].draws("avx2"),         wave[1].draws("avx512")};
     };
     const auto all_densities = [&](const Directions& given) {
-        return std::vector<Candidate>{densities("full", full, given),    densities("alias", alias, given),
-                                      densities("warp", warp, given),    densities("64", fast, given),
-                                      densities("4", fast_small, given), densities("walk", walk, given)};
+        return std::vector<Candidate>{densities("full", full, given),       densities("alias", alias, given),
+                                      densities("warp", warp, given),       densities("64", fast, given),
+                                      densities("4", fast_small, given),    densities("walk", walk, given),
+                                      waves[0][0].densities("avx2", given), waves[0][1].densities("avx512", given)};
     };
     report("draw", all_draws(u), false);
     report("draw, coherent numbers", all_draws(coherent), false);
