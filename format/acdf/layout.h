@@ -227,13 +227,14 @@ typedef struct AcdfCompanyRecord {
 } AcdfCompanyRecord;
 
 /* Chunk PLAC, of local environments: what of the light reaches a place (SPEC.md §5.9). This, then `split_count`
- * splits, then a uint16 for each split of TILE, its column in a row or ACDF_NO_COLUMN, then `row_count` rows of
+ * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
+ * ACDF_NO_COLUMN, then, where there are further sets, a uint16 for each row, its set, then `row_count` rows of
  * 1 + lights + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
 typedef struct AcdfPlaces {
     uint32_t split_count;
     uint32_t row_count;
-    uint32_t column_count;
-    uint32_t reserved;     /* 0 */
+    uint32_t column_count; /* of each set */
+    uint32_t further_sets; /* less than 65536 */
     float low[3];          /* the box of all cells */
     float high[3];         /* above `low` */
     float transform[3][4]; /* from positions in the scene to those of cells: x' = t[0] x + t[1] y + t[2] z + t[3] */

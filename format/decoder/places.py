@@ -16,14 +16,20 @@ class Split:
         self.axis, self.part = lower & 7, (lower >> 3, upper)
 
 
+class Row:
+    def __init__(self, codes, columns):
+        self.codes, self.columns = codes, columns
+
+
 class Places:
     def __init__(self, data, tiles, light_count):
         require(tiles is not None and len(data) >= 88, 7009)
-        split_count, row_count, column_count, reserved = struct.unpack_from("<4I", data)
+        split_count, row_count, column_count, further = struct.unpack_from("<4I", data)
         of_tiles, width = tiles.count - 1, 1 + light_count + column_count
-        require(1 <= row_count < ROW and split_count < ROW and column_count <= of_tiles and reserved == 0, 7009)
+        require(1 <= row_count < ROW and split_count < ROW and column_count <= of_tiles and further < 65536, 7009)
         at = 88 + 16 * split_count
-        require(len(data) == at + 2 * of_tiles + row_count * width, 7009)
+        sets = 2 * row_count if further else 0
+        require(len(data) == at + 2 * (1 + further) * of_tiles + sets + row_count * width, 7009)
         numbers = struct.unpack_from("<18f", data, 16)
         self.low, self.high, self.transform = numbers[:3], numbers[3:6], numbers[6:]
         require(all(math.isfinite(x) for x in numbers), 7010)
@@ -32,12 +38,16 @@ class Places:
         self.check_walk(row_count)
         for split in self.splits:
             require(split.axis < 6 and math.isfinite(split.position) and 0 <= split.blend < math.inf, 7012)
-        self.columns = struct.unpack_from(f"<{of_tiles}H", data, at)
-        require([c for c in self.columns if c != NO_COLUMN] == list(range(column_count)), 7013)
-        at += 2 * of_tiles
-        self.rows = [data[at + width * r:at + width * (r + 1)] for r in range(row_count)]
+        columns = [struct.unpack_from(f"<{of_tiles}H", data, at + 2 * of_tiles * s) for s in range(1 + further)]
+        require(all([c for c in s if c != NO_COLUMN] == list(range(column_count)) for s in columns), 7013)
+        at += 2 * (1 + further) * of_tiles
+        set_of_row = struct.unpack_from(f"<{row_count}H", data, at) if further else [0] * row_count
+        require(max(set_of_row) <= further, 7015)
+        at += sets
+        rows = [data[at + width * r:at + width * (r + 1)] for r in range(row_count)]
         self.odds_at, self.tiles = 1 + light_count, tiles
-        require(all(0 < code < 255 for row in self.rows for code in row[self.odds_at:]), 7014)
+        require(all(0 < code < 255 for row in rows for code in row[self.odds_at:]), 7014)
+        self.rows = [Row(row, columns[s]) for row, s in zip(rows, set_of_row)]
 
     def first(self):
         return 0 if self.splits else ROW
@@ -80,7 +90,16 @@ class Places:
 
     @staticmethod
     def visibility(cells, index):
-        return sum_of([weight * ((16 + row[index] % 16) * 2.0**(row[index] // 16 - 20)) for row, weight in cells])
+        return sum_of([w * ((16 + row.codes[index] % 16) * 2.0**(row.codes[index] // 16 - 20)) for row, w in cells])
+
+    def odds(self, cells, node):
+        """None where no cell has a column."""
+        columns = [row.columns[node] for row, _ in cells]
+        if all(column == NO_COLUMN for column in columns):
+            return None
+        book, at = self.tiles.codebook, self.odds_at
+        return sum_of([weight * (book[row.codes[at + column]] if column != NO_COLUMN else 32767.5)
+                       for column, (row, weight) in zip(columns, cells)])
 
     def parts(self, mixture, cells, node, v):
         """What falls into the two parts of a split, of each row and, as the place sees it, together."""
@@ -88,9 +107,8 @@ class Places:
         lower = [vk * (tiles.codebook[tiles.rows[row, node]] * (1 / 65535)) for vk, (row, _) in zip(v, mixture)]
         upper = [vk - lk for vk, lk in zip(v, lower)]
         low, high = sum_of(lower), sum_of(upper)
-        if self.columns[node] != NO_COLUMN:
-            at = self.odds_at + self.columns[node]
-            odds = sum_of([weight * tiles.codebook[row[at]] for row, weight in cells])
+        odds = self.odds(cells, node)
+        if odds is not None:
             low, high = low * odds, high * (65535 - odds)
         return (lower, upper), (low, high)
 

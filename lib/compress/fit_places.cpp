@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -17,6 +18,8 @@ namespace {
 
 /// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/places.md).
 constexpr std::uint32_t kColumns = 127;
+/// Cells that have the same columns, in the mean.
+constexpr std::uint64_t kCellsOfRegion = 200;
 /// How far cells are mixed, of the smaller one at their border.
 constexpr double kBlend = 0.4;
 /// Points of a cell, in the mean; rounds in which they are found; and candidates for each.
@@ -135,6 +138,51 @@ private:
     std::uint64_t next_ = 0;
 };
 
+/// Cells and regions that fill a chunk.
+struct Counts {
+    std::uint32_t cells = 1, regions = 1;
+};
+Counts counts_for(std::uint64_t bytes, std::uint64_t width, std::uint64_t tile_splits) {
+    const std::uint64_t set = tile_splits * sizeof(std::uint16_t), cell = width + sizeof(AcdfPlaceSplit);
+    const std::uint64_t room = bytes > sizeof(AcdfPlaces) + set ? bytes - sizeof(AcdfPlaces) - set : 0;
+    const auto clamped = [](std::uint64_t cells) {
+        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(cells, 1, ACDF_PLACE_ROW - 1));
+    };
+    const std::uint64_t regions = std::min<std::uint64_t>(
+        room * kCellsOfRegion / (kCellsOfRegion * (cell + sizeof(std::uint16_t)) + set) / kCellsOfRegion, 0x10000);
+    if (regions < 2) return {clamped(room / cell), 1};
+    return {clamped((room - (regions - 1) * set) / (cell + sizeof(std::uint16_t))),
+            static_cast<std::uint32_t>(regions)};
+}
+
+/// Points of a scene and cells for them, found together in rounds.
+struct Division {
+    AcdfPlaces header{};
+    std::vector<PlacePoint> points;
+    std::vector<AcdfPlaceSplit> splits;
+    PlaceLight light;
+    std::unique_ptr<PlaceCells> tree; ///< refers to points and light
+};
+
+void divide(Division& out, const PlaceParts& parts, const PlaceScene& scene, std::uint32_t cells,
+            const std::function<void(double)>& report) {
+    const AcdfPlaces& h = out.header;
+    const PlaceCells::Box low{h.low[0], h.low[1], h.low[2], -1.0f, -1.0f, -1.0f},
+        high{h.high[0], h.high[1], h.high[2], 1.0f, 1.0f, 1.0f};
+    const std::size_t wanted = kPointsOfCell * std::size_t{cells};
+    PointsByCell points(scene.points);
+    for (std::uint32_t round = 0; round < kRounds; ++round) {
+        const std::uint32_t shift = 2 * (kRounds - 1 - round); // a quarter of points and cells before, and so on
+        points.add(h, out.splits, out.tree ? out.tree->cell_count() : 1,
+                   std::max<std::size_t>(wanted >> shift, 1024), kCandidates * (wanted >> shift) + (1u << 20));
+        out.points = points.points();
+        out.light = trace_places(parts, out.points, scene.occluded, -1.0,
+                                 [&](double share) { report((round + 0.8 * share) / kRounds); });
+        out.tree = std::make_unique<PlaceCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
+        out.splits = out.tree->splits(round + 1 == kRounds ? kBlend : 0.0);
+    }
+}
+
 } // namespace
 
 Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& scene, const PlacesFrame& frame,
@@ -144,44 +192,46 @@ Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& s
         if (progress) progress(share);
     };
     const std::uint32_t splits_of_tiles = local.blend.tiles->tile_count - 1;
-    const PlaceParts parts(local, bins, size.columns > 0 ? size.columns : kColumns);
-    const std::uint64_t width = 1 + local.light_count + parts.column_count();
-    const std::uint64_t fixed = sizeof(AcdfPlaces) + 2 * std::uint64_t{splits_of_tiles};
-    const std::uint64_t most = size.bytes > fixed ? (size.bytes - fixed) / (width + sizeof(AcdfPlaceSplit)) : 1;
-    const auto cells = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, ACDF_PLACE_ROW - 1));
-    const auto points_wanted = kPointsOfCell * std::size_t{cells};
+    const PlaceParts coarse(local, bins, size.columns > 0 ? size.columns : kColumns);
+    const std::uint64_t width = 1 + local.light_count + coarse.column_count();
+    const Counts counts = counts_for(size.bytes, width, splits_of_tiles);
 
-    AcdfPlaces header = header_of(scene.points, frame);
-    const PlaceCells::Box low{header.low[0], header.low[1], header.low[2], -1.0f, -1.0f, -1.0f},
-        high{header.high[0], header.high[1], header.high[2], 1.0f, 1.0f, 1.0f};
-    PointsByCell points(scene.points);
-    std::vector<AcdfPlaceSplit> splits;
-    std::unique_ptr<PlaceCells> tree;
-    PlaceLight light;
-    for (std::uint32_t round = 0; round < kRounds; ++round) {
-        const std::uint32_t shift = 2 * (kRounds - 1 - round); // a quarter of points and cells before, and so on
-        points.add(header, splits, tree ? tree->cell_count() : 1,
-                   std::max<std::size_t>(points_wanted >> shift, 1024),
-                   kCandidates * (points_wanted >> shift) + (1u << 20));
-        light = trace_places(parts, points.points(), scene.occluded,
-                             [&](double share) { report((round + 0.8 * share) / kRounds); });
-        tree = std::make_unique<PlaceCells>(light, points.points(), low, high, std::max(cells >> shift, 1u));
-        splits = tree->splits(round + 1 == kRounds ? kBlend : 0.0);
-    }
-    const PlaceRows told =
-        place_rows(*tree, CellNumbers(header, splits, tree->cell_count()), light, points.points());
-    header.split_count = static_cast<std::uint32_t>(splits.size());
-    header.row_count = tree->cell_count();
-    header.column_count = parts.column_count();
-    std::vector<std::uint8_t> rows(header.row_count * width);
-    tbb::parallel_for(std::size_t{0}, std::size_t{header.row_count}, [&](std::size_t cell) {
-        const std::size_t first = cell * parts.count();
-        encode(parts, &told.all[first], &told.factors[first], &rows[cell * width]);
+    Division division;
+    division.header = header_of(scene.points, frame);
+    divide(division, coarse, scene, counts.cells, [&](double share) { report(0.6 * share); });
+    const PlaceCells& tree = *division.tree;
+    const std::vector<PlaceCells::Range> regions = tree.regions(counts.regions);
+    const std::vector<PlaceShare> shares =
+        shares_of(CellNumbers(division.header, division.splits, tree.cell_count()), division.points);
+
+    std::vector<std::uint16_t> columns(regions.size() * splits_of_tiles), set_of_row(tree.cell_count());
+    std::vector<std::uint8_t> rows(tree.cell_count() * width);
+    std::atomic<std::size_t> done{0};
+    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
+        const PlaceParts parts(coarse, tree.loss(regions[r]));
+        const PlaceRows told =
+            place_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);
+        std::copy(parts.columns().begin(), parts.columns().end(),
+                  columns.begin() + std::ptrdiff_t(r * splits_of_tiles));
+        for (std::uint32_t cell = regions[r].begin; cell < regions[r].end; ++cell) {
+            const std::size_t first = (cell - regions[r].begin) * parts.count();
+            encode(parts, &told.all[first], &told.factors[first], &rows[cell * width]);
+            set_of_row[cell] = static_cast<std::uint16_t>(r);
+        }
+        report(0.6 + 0.4 * double(++done) / double(regions.size()));
     });
+
+    AcdfPlaces& header = division.header;
+    header.split_count = static_cast<std::uint32_t>(division.splits.size());
+    header.row_count = tree.cell_count();
+    header.column_count = coarse.column_count();
+    header.further_sets = static_cast<std::uint32_t>(regions.size() - 1);
+    if (header.further_sets == 0) set_of_row.clear();
     Chunk chunk{ACDF_CHUNK_PLACES, {}};
     append(chunk.bytes, &header, 1);
-    append(chunk.bytes, splits.data(), splits.size());
-    append(chunk.bytes, parts.columns().data(), parts.columns().size());
+    append(chunk.bytes, division.splits.data(), division.splits.size());
+    append(chunk.bytes, columns.data(), columns.size());
+    append(chunk.bytes, set_of_row.data(), set_of_row.size());
     append(chunk.bytes, rows.data(), rows.size());
     report(1.0);
     return chunk;

@@ -9,40 +9,43 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kSteps = 16;      ///< places on an axis where a cell may be divided
-constexpr std::uint32_t kLeastPoints = 8; ///< of a cell
+constexpr std::uint32_t kSteps = 16;   ///< places on an axis where a cell may be divided
+constexpr float kLeastPoints = 8.0f;   ///< of a cell
+constexpr std::uint32_t kAsked = 1024; ///< points of a cell that tell where it is divided, about
 
 /// The root of the second moment of the points that are summed, with the best rows for them.
-double cost_of(const PlaceSums& sums, const std::vector<float>& prior) {
+double cost_of(const PlaceSums& sums, const std::vector<float>& prior, std::vector<float>& work) {
+    const std::size_t count = prior.size();
+    const float *const all = sums.all.data(), *const seen = sums.seen.data(), *const before = prior.data();
+    work.resize(2 * count);
+    float *const arrives = work.data(), *const drawn = arrives + count;
+    const float points = sums.points;
+    for (std::size_t p = 0; p < count; ++p) {
+        const float factor = place_factor(all[p], seen[p], points, before[p], {});
+        arrives[p] = seen[p] / factor;
+        drawn[p] = all[p] * factor;
+    }
     double moment = 0.0, weight = 0.0;
-    for (std::size_t p = 0; p < prior.size(); ++p) {
-        const double all = std::max(sums.all[p], 0.0), seen = std::max(sums.seen[p], 0.0);
-        const double factor = place_factor(all, seen, sums.points, double{prior[p]}, {});
-        moment += seen / factor;
-        weight += all * factor;
+    for (std::size_t p = 0; p < count; ++p) {
+        moment += double{arrives[p]};
+        weight += double{drawn[p]};
     }
     return std::sqrt(moment * weight);
 }
 
-/// Moves what `step` holds from the upper to the lower side.
-void move_down(const PlaceSums& step, PlaceSums& lower, PlaceSums& upper) {
-    lower.points += step.points;
-    upper.points -= step.points;
-    for (std::size_t p = 0; p < step.all.size(); ++p) {
-        lower.all[p] += step.all[p];
-        lower.seen[p] += step.seen[p];
-        upper.all[p] -= step.all[p];
-        upper.seen[p] -= step.seen[p];
+/// Sums of all steps up to each, from below or from above.
+void accumulate(std::vector<PlaceSums>& steps, bool from_below) {
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+        const std::size_t k = from_below ? i : steps.size() - 1 - i;
+        const PlaceSums& before = steps[from_below ? k - 1 : k + 1];
+        PlaceSums& now = steps[k];
+        now.points += before.points;
+        for (std::size_t p = 0; p < now.all.size(); ++p) now.all[p] += before.all[p];
+        for (std::size_t p = 0; p < now.seen.size(); ++p) now.seen[p] += before.seen[p];
     }
 }
 
 } // namespace
-
-double place_factor(double all, double seen, double points, double prior, const PlaceCaution& caution) {
-    const double before = prior * prior, unit = points > 0.0 ? caution.prior * all / points : 0.0;
-    const double share = all > 0.0 ? std::min((seen + unit * before) / (all + unit), 1.0) : before;
-    return caution.floor + (1.0 - caution.floor) * std::sqrt(share);
-}
 
 PlaceCells::PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& points, const Box& low,
                        const Box& high, std::uint32_t cells)
@@ -80,16 +83,16 @@ PlaceCells::PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& p
 
 /// Factors of a node, and where it is divided best.
 void PlaceCells::consider(Node& node) const {
+    const std::uint32_t count = node.end - node.begin, stride = std::max(count / kAsked, 1u);
     PlaceSums sums(light_.parts);
-    for (std::uint32_t i = node.begin; i < node.end; ++i) sums.add(light_, order_[i], 1.0);
+    for (std::uint32_t i = node.begin; i < node.end; i += stride) sums.add(light_.of(order_[i]), 1.0f);
     for (std::size_t p = 0; p < light_.parts; ++p)
-        node.factors[p] =
-            static_cast<float>(place_factor(sums.all[p], sums.seen[p], sums.points, double{node.factors[p]}, {}));
+        node.factors[p] = place_factor(sums.all[p], sums.seen[p], sums.points, node.factors[p], {});
     node.gain = 0.0;
-    if (node.depth + 1 >= ACDF_MAX_PLACE_SPLITS_DEEP || node.end - node.begin < 2 * kLeastPoints) return;
+    if (node.depth + 1 >= ACDF_MAX_PLACE_SPLITS_DEEP || float(count) < 2.0f * kLeastPoints) return;
     std::array<Division, axes> best;
     tbb::parallel_for(std::size_t{0}, axes, [&](std::size_t axis) {
-        best[axis] = consider_axis(node, sums, static_cast<std::uint32_t>(axis));
+        best[axis] = consider_axis(node, sums, stride, static_cast<std::uint32_t>(axis));
     });
     for (const Division& candidate : best)
         if (candidate.gain > node.gain) {
@@ -99,31 +102,35 @@ void PlaceCells::consider(Node& node) const {
         }
 }
 
-PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums& sums, std::uint32_t axis) const {
+PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums& sums, std::uint32_t stride,
+                                               std::uint32_t axis) const {
     Division best;
     float low = points_[order_[node.begin]].coordinate(axis), high = low;
-    for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    for (std::uint32_t i = node.begin; i < node.end; i += stride) {
         low = std::min(low, points_[order_[i]].coordinate(axis));
         high = std::max(high, points_[order_[i]].coordinate(axis));
     }
     const float step = (high - low) / kSteps;
     if (!(low + step > low && high - step < high)) return best;
-    std::vector<PlaceSums> steps(kSteps, PlaceSums(light_.parts));
+    std::vector<PlaceSums> lower(kSteps, PlaceSums(light_.parts));
     const auto border = [&](std::uint32_t k) { return low + step * static_cast<float>(k); };
-    for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    for (std::uint32_t i = node.begin; i < node.end; i += stride) {
         const float x = points_[order_[i]].coordinate(axis);
         auto k = static_cast<std::uint32_t>(std::clamp((x - low) / step, 0.0f, float(kSteps - 1)));
         while (k > 0 && x < border(k)) --k;
         while (k + 1 < kSteps && !(x < border(k + 1))) ++k;
-        steps[k].add(light_, order_[i], 1.0);
+        lower[k].add(light_.of(order_[i]), 1.0f);
     }
-    PlaceSums lower(light_.parts), upper = sums;
-    const double whole = cost_of(sums, node.factors);
+    std::vector<PlaceSums> upper = lower;
+    accumulate(lower, true);
+    accumulate(upper, false);
+    std::vector<float> work;
+    const double whole = cost_of(sums, node.factors, work);
     for (std::uint32_t k = 1; k < kSteps; ++k) {
-        move_down(steps[k - 1], lower, upper);
-        if (lower.points < kLeastPoints || upper.points < kLeastPoints) continue;
-        const double gain = whole - cost_of(lower, node.factors) - cost_of(upper, node.factors);
-        if (gain > best.gain) best = {gain, axis, border(k)};
+        if (lower[k - 1].points < kLeastPoints || upper[k].points < kLeastPoints) continue;
+        const double gain =
+            whole - cost_of(lower[k - 1], node.factors, work) - cost_of(upper[k], node.factors, work);
+        if (gain * stride > best.gain) best = {gain * stride, axis, border(k)};
     }
     return best;
 }
@@ -144,14 +151,47 @@ void PlaceCells::divide(std::uint32_t index) {
 }
 
 void PlaceCells::number(std::uint32_t node) {
+    nodes_[node].cells.begin = cell_count_;
     if (nodes_[node].first_child == 0) {
         number_[node] = cell_count_++;
         node_of_cell_.push_back(node);
-        return;
+    } else {
+        number_[node] = static_cast<std::uint32_t>(walk_.size());
+        walk_.push_back(node);
+        for (std::uint32_t k = 0; k < 2; ++k) number(nodes_[node].first_child + k);
     }
-    number_[node] = static_cast<std::uint32_t>(walk_.size());
-    walk_.push_back(node);
-    for (std::uint32_t k = 0; k < 2; ++k) number(nodes_[node].first_child + k);
+    nodes_[node].cells.end = cell_count_;
+}
+
+std::vector<PlaceCells::Range> PlaceCells::regions(std::uint32_t count) const {
+    using Entry = std::pair<std::uint32_t, std::uint32_t>; // cells, and number from the back
+    std::priority_queue<Entry> queue;
+    const auto push = [&](std::uint32_t node) {
+        queue.push({nodes_[node].cells.end - nodes_[node].cells.begin, ~node});
+    };
+    push(0);
+    while (queue.size() < count && queue.top().first > 1) {
+        const std::uint32_t child = nodes_[~queue.top().second].first_child;
+        queue.pop();
+        push(child);
+        push(child + 1);
+    }
+    std::vector<Range> out;
+    for (; !queue.empty(); queue.pop()) out.push_back(nodes_[~queue.top().second].cells);
+    std::sort(out.begin(), out.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
+    return out;
+}
+
+std::vector<double> PlaceCells::loss(const Range& range) const {
+    std::vector<double> out(light_.parts, 0.0);
+    for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
+        const Node& node = nodes_[node_of_cell_[cell]];
+        PlaceSums sums(light_.parts);
+        for (std::uint32_t i = node.begin; i < node.end; ++i) sums.add(light_.of(order_[i]), 1.0f);
+        for (std::size_t p = 0; p < out.size(); ++p)
+            out[p] += std::sqrt(double{sums.seen[p]} * double{sums.all[p]}) - double{sums.seen[p]};
+    }
+    return out;
 }
 
 /// The smallest extent of the cells below a node that touch its low (or high) side on an axis.

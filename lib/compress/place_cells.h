@@ -13,29 +13,33 @@ namespace acdf::compress {
 
 /// What is known of the parts in a cell: sums over its points.
 struct PlaceSums {
-    std::vector<double> all, seen; ///< one a part
-    double points = 0.0;
+    std::vector<float> all, seen; ///< one a part
+    float points = 0.0f;
 
-    explicit PlaceSums(std::size_t parts = 0) : all(parts, 0.0), seen(parts, 0.0) {}
-    void add(const PlaceLight& light, std::size_t point, double weight) {
+    explicit PlaceSums(std::size_t parts = 0) : all(parts, 0.0f), seen(parts, 0.0f) {}
+    /// One point's light, as PlaceLight::given has it.
+    void add(const float* given, float weight) {
+        const std::size_t count = all.size();
+        float *const a = all.data(), *const s = seen.data();
         points += weight;
-        for (std::size_t p = 0; p < all.size(); ++p) {
-            const float g = light.given[point * all.size() + p];
-            all[p] += weight * std::fabs(double{g});
-            seen[p] += g > 0.0f ? weight * double{g} : 0.0;
-        }
+        for (std::size_t p = 0; p < count; ++p) a[p] += weight * std::fabs(given[p]);
+        for (std::size_t p = 0; p < count; ++p) s[p] += weight * (given[p] > 0.0f ? given[p] : 0.0f);
     }
 };
 
 /// How much is believed of what few points tell.
 struct PlaceCaution {
-    double floor = 0.02; ///< the least factor: such a share of the samples goes where the normal alone sends them
-    double prior = 1.0;  ///< points that the factors of the cell around count as
+    float floor = 0.02f; ///< the least factor: such a share of the samples goes where the normal alone sends them
+    float prior = 1.0f;  ///< points that the factors of the cell around count as
 };
 
 /// What rows are to multiply the light of a part with: the root of the share that arrives, which is best where
 /// parts are seen by some of a cell's points and not by others. `prior`: such a factor, of the cell around it.
-double place_factor(double all, double seen, double points, double prior, const PlaceCaution& caution);
+inline float place_factor(float all, float seen, float points, float prior, const PlaceCaution& caution) {
+    constexpr float least = 1e-30f; // where nothing is known
+    const float unit = caution.prior * all / points + least, share = (seen + unit * prior * prior) / (all + unit);
+    return caution.floor + (1.0f - caution.floor) * std::sqrt(share < 1.0f ? share : 1.0f);
+}
 
 /// Cells, best first: each division is the one that lowers most, summed over points, the root of the second moment.
 class PlaceCells {
@@ -52,16 +56,24 @@ public:
     /// In preorder, cells numbered in the order of the walk. On both sides of a split as far as `blend` times the
     /// smallest cell that touches it is mixed.
     std::vector<AcdfPlaceSplit> splits(double blend) const;
-    /// Of each cell: what is known of the cell that it came from, as place_factor.
-    const std::vector<float>& prior(std::uint32_t cell) const {
-        return nodes_[nodes_[node_of_cell_[cell]].parent].factors;
-    }
+    /// Cells that follow each other.
+    struct Range {
+        std::uint32_t begin = 0, end = 0;
+    };
+    /// At most `count` ranges of all cells, each below a node of the tree; the largest are divided first.
+    std::vector<Range> regions(std::uint32_t count) const;
+    /// The cells below the one that a cell was divided from.
+    Range around(std::uint32_t cell) const { return nodes_[nodes_[node_of_cell_[cell]].parent].cells; }
+    /// Of each part, summed over the cells of a range: by how much its root of the second moment is larger than it
+    /// were if all rays of a cell either arrived or did not.
+    std::vector<double> loss(const Range& range) const;
 
 private:
     struct Node {
         Box low{}, high{};
         std::uint32_t begin = 0, end = 0; ///< its points
         std::uint32_t first_child = 0, depth = 0, axis = 0, parent = 0;
+        Range cells;
         float position = 0.0f;
         double gain = 0.0;
         std::vector<float> factors;
@@ -73,7 +85,7 @@ private:
         float position = 0.0f;
     };
     void consider(Node& node) const;
-    Division consider_axis(const Node& node, const PlaceSums& sums, std::uint32_t axis) const;
+    Division consider_axis(const Node& node, const PlaceSums& sums, std::uint32_t stride, std::uint32_t axis) const;
     void divide(std::uint32_t index);
     void number(std::uint32_t node);
     double thinnest(std::uint32_t node, std::uint32_t axis, bool at_low) const;

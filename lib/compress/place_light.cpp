@@ -48,7 +48,7 @@ double trace_point(const PlaceParts& parts, const PlacePoint& point, std::size_t
 } // namespace
 
 PlaceLight trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
-                        const std::function<void(double)>& progress) {
+                        double dark, const std::function<void(double)>& progress) {
     PlaceLight out;
     out.parts = parts.count();
     out.given.resize(points.size() * out.parts);
@@ -61,7 +61,7 @@ PlaceLight trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& 
     });
     double mean = 0.0;
     for (const double l : light) mean += l / double(points.size());
-    out.dark = kDarkest * mean;
+    out.dark = dark < 0.0 ? kDarkest * mean : dark;
     out.scale.assign(points.size(), 1.0);
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { out.rescale(i, light[i]); });
     return out;

@@ -36,6 +36,7 @@ struct PlaceLight {
     std::vector<double> scale; ///< one a point: what its light is multiplied with
     double dark = 0.0;         ///< what is added to the light of each point
 
+    const float* of(std::size_t point) const { return &given[point * parts]; }
     double all(std::size_t point, std::size_t part) const { return std::fabs(double{given[point * parts + part]}); }
     double seen(std::size_t point, std::size_t part) const {
         const float g = given[point * parts + part];
@@ -55,8 +56,9 @@ struct PlaceScene {
     explicit operator bool() const { return points && occluded; }
 };
 
-/// Shoots a ray for each point and part that is above its horizon. The same for any number of threads.
+/// Shoots a ray for each point and part that is above its horizon. `dark`: of other points of the scene; below 0:
+/// as it is found of these. The same for any number of threads.
 PlaceLight trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
-                        const std::function<void(double)>& progress = {});
+                        double dark = -1.0, const std::function<void(double)>& progress = {});
 
 } // namespace acdf::compress

@@ -38,14 +38,34 @@ double reversed(std::uint32_t k) {
 
 } // namespace
 
-PlaceParts::PlaceParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns) : local_(local) {
-    const std::vector<double> tiles = mean_tiles(bins);
-    const std::vector<AcdfRange> boxes = boxes_of(local);
-    choose(tiles, boxes, columns);
-    std::vector<std::vector<std::uint32_t>> tiles_of_part;
-    number(split_count(local) > 0 ? 0 : ACDF_TILE_FLAG, tiles_of_part);
-    box_count_ = tiles_of_part.size();
-    aim(tiles, boxes, tiles_of_part);
+PlaceParts::PlaceParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns)
+    : local_(local), light_(mean_tiles(bins)), boxes_(boxes_of(local)) {
+    cut(light_, columns);
+}
+
+PlaceParts::PlaceParts(const PlaceParts& coarse, const std::vector<double>& loss)
+    : local_(coarse.local_), light_(coarse.light_), boxes_(coarse.boxes_) {
+    constexpr double kElsewhere = 0.02; // of all: where no ray has found an edge there may be one
+    double sum = 0.0;
+    for (std::size_t p = 0; p < coarse.boxes(); ++p) sum += loss[p];
+    double all = 0.0;
+    for (const double light : light_) all += light;
+    std::vector<double> worth(light_.size(), 0.0);
+    for (std::size_t p = 0; p < coarse.boxes(); ++p) {
+        double own = 0.0;
+        for (const std::uint32_t tile : coarse.tiles_of_part_[p]) own += light_[tile];
+        for (const std::uint32_t tile : coarse.tiles_of_part_[p])
+            worth[tile] = (sum > 0.0 && own > 0.0 ? loss[p] / sum * light_[tile] / own : 0.0) +
+                          kElsewhere * light_[tile] / all;
+    }
+    cut(worth, coarse.column_count());
+}
+
+void PlaceParts::cut(const std::vector<double>& worth, std::uint32_t columns) {
+    choose(worth, columns);
+    number(split_count(local_) > 0 ? 0 : ACDF_TILE_FLAG);
+    box_count_ = tiles_of_part_.size();
+    aim();
 }
 
 /// What the bins give to each tile, in the mean.
@@ -79,15 +99,14 @@ std::vector<double> PlaceParts::mass_below(const std::vector<double>& tiles) con
 }
 
 /// Marks the splits that are columns, in columns_ with any number but ACDF_NO_COLUMN.
-void PlaceParts::choose(const std::vector<double>& tiles, const std::vector<AcdfRange>& boxes,
-                        std::uint32_t columns) {
-    const std::vector<double> mass = mass_below(tiles);
+void PlaceParts::choose(const std::vector<double>& worth, std::uint32_t columns) {
+    const std::vector<double> mass = mass_below(worth);
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     std::vector<double> angle(mass.size(), 0.0);
     for (std::size_t s = mass.size(); s-- > 0;)
         for (const std::uint32_t child : local_.blend.splits[s].child)
             angle[s] += child & ACDF_TILE_FLAG
-                            ? acdf_grid_solid_angle(&grid, &boxes[2 * std::size_t{child & ~ACDF_TILE_FLAG}])
+                            ? acdf_grid_solid_angle(&grid, &boxes_[2 * std::size_t{child & ~ACDF_TILE_FLAG}])
                             : angle[child];
     columns_.assign(mass.size(), ACDF_NO_COLUMN);
     using Entry = std::pair<double, std::uint32_t>; // worth, and number from the back: of equal ones the first
@@ -105,13 +124,13 @@ void PlaceParts::choose(const std::vector<double>& tiles, const std::vector<Acdf
 }
 
 /// Numbers cuts and parts from a node on; returns what it is as a child.
-std::uint32_t PlaceParts::number(std::uint32_t node, std::vector<std::vector<std::uint32_t>>& tiles_of_part) {
+std::uint32_t PlaceParts::number(std::uint32_t node) {
     if (!(node & ACDF_TILE_FLAG) && columns_[node] != ACDF_NO_COLUMN) {
         const auto cut = static_cast<std::uint32_t>(cuts_.size());
         columns_[node] = static_cast<std::uint16_t>(cut);
         cuts_.push_back({node, {}});
         for (std::size_t k = 0; k < 2; ++k) {
-            const std::uint32_t child = number(local_.blend.splits[node].child[k], tiles_of_part);
+            const std::uint32_t child = number(local_.blend.splits[node].child[k]);
             cuts_[cut].child[k] = child;
         }
         return cut;
@@ -123,13 +142,12 @@ std::uint32_t PlaceParts::number(std::uint32_t node, std::vector<std::vector<std
         if (now & ACDF_TILE_FLAG) tiles.push_back(now & ~ACDF_TILE_FLAG);
         else open.insert(open.end(), {local_.blend.splits[now].child[1], local_.blend.splits[now].child[0]});
     }
-    tiles_of_part.push_back(std::move(tiles));
-    return part | static_cast<std::uint32_t>(tiles_of_part.size() - 1);
+    tiles_of_part_.push_back(std::move(tiles));
+    return part | static_cast<std::uint32_t>(tiles_of_part_.size() - 1);
 }
 
-std::array<float, 3> PlaceParts::place(std::uint32_t tile, const std::vector<AcdfRange>& boxes, double u0,
-                                       double u1) const {
-    AcdfRange range[2] = {boxes[2 * std::size_t{tile}], boxes[2 * std::size_t{tile} + 1]};
+std::array<float, 3> PlaceParts::place(std::uint32_t tile, double u0, double u1) const {
+    AcdfRange range[2] = {boxes_[2 * std::size_t{tile}], boxes_[2 * std::size_t{tile} + 1]};
     double u[2] = {u0, u1};
     const AcdfBlend& blend = local_.blend;
     if (blend.roots && blend.roots[tile] != ACDF_NO_ROOT) acdf_tree_sample(blend.tree, blend.roots[tile], u, range);
@@ -139,13 +157,12 @@ std::array<float, 3> PlaceParts::place(std::uint32_t tile, const std::vector<Acd
 }
 
 /// Directions of each part, as its light is spread.
-void PlaceParts::aim(const std::vector<double>& tiles, const std::vector<AcdfRange>& boxes,
-                     const std::vector<std::vector<std::uint32_t>>& tiles_of_part) {
-    for (const std::vector<std::uint32_t>& own : tiles_of_part) {
+void PlaceParts::aim() {
+    for (const std::vector<std::uint32_t>& own : tiles_of_part_) {
         double sum = 0.0;
-        for (const std::uint32_t tile : own) sum += tiles[tile];
+        for (const std::uint32_t tile : own) sum += light_[tile];
         const auto weight = [&](std::uint32_t tile) {
-            return sum > 0.0 ? tiles[tile] / sum : 1.0 / double(own.size());
+            return sum > 0.0 ? light_[tile] / sum : 1.0 / double(own.size());
         };
         std::size_t at = 0;
         double before = 0.0;
@@ -153,14 +170,13 @@ void PlaceParts::aim(const std::vector<double>& tiles, const std::vector<AcdfRan
             const double u = (i + 0.5) / directions;
             while (at + 1 < own.size() && u >= before + weight(own[at])) before += weight(own[at++]);
             const double inside = weight(own[at]) > 0.0 ? (u - before) / weight(own[at]) : 0.5;
-            directions_.push_back(
-                place(own[at], boxes, acdf_clamp(inside, 0.0, 1.0), reversed(i) + 0.5 / directions));
+            directions_.push_back(place(own[at], acdf_clamp(inside, 0.0, 1.0), reversed(i) + 0.5 / directions));
         }
     }
     for (std::uint32_t k = 0; k < local_.light_count; ++k)
         for (std::uint32_t i = 0; i < directions; ++i)
             directions_.push_back(
-                place(local_.lights[k].tile, boxes, (i + 0.5) / directions, reversed(i) + 0.5 / directions));
+                place(local_.lights[k].tile, (i + 0.5) / directions, reversed(i) + 0.5 / directions));
 }
 
 void PlaceParts::weigh(const AcdfLocalPoint& point, float* out) const {

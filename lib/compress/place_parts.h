@@ -18,6 +18,8 @@ public:
     /// Cuts at `columns` splits at most: those above the boxes of most light, and of most room for an edge.
     /// `local` must outlive this.
     PlaceParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns);
+    /// Cuts as often where most of `loss` lies, of which a part of `coarse` has so much. `coarse` may go.
+    PlaceParts(const PlaceParts& coarse, const std::vector<double>& loss);
 
     const AcdfLocal& local() const { return local_; }
     std::size_t boxes() const { return box_count_; }
@@ -41,16 +43,18 @@ private:
         std::uint32_t split = 0;
         std::uint32_t child[2] = {};
     };
-    struct TileBox;
     std::vector<double> mean_tiles(std::uint32_t bins) const;
     std::vector<double> mass_below(const std::vector<double>& tiles) const;
-    void choose(const std::vector<double>& tiles, const std::vector<AcdfRange>& boxes, std::uint32_t columns);
-    std::uint32_t number(std::uint32_t node, std::vector<std::vector<std::uint32_t>>& tiles_of_part);
-    void aim(const std::vector<double>& tiles, const std::vector<AcdfRange>& boxes,
-             const std::vector<std::vector<std::uint32_t>>& tiles_of_part);
-    std::array<float, 3> place(std::uint32_t tile, const std::vector<AcdfRange>& boxes, double u0, double u1) const;
+    void cut(const std::vector<double>& worth, std::uint32_t columns);
+    void choose(const std::vector<double>& worth, std::uint32_t columns);
+    std::uint32_t number(std::uint32_t node);
+    void aim();
+    std::array<float, 3> place(std::uint32_t tile, double u0, double u1) const;
 
     const AcdfLocal& local_;
+    std::vector<double> light_;    ///< of the tiles
+    std::vector<AcdfRange> boxes_; ///< two a tile
+    std::vector<std::vector<std::uint32_t>> tiles_of_part_;
     std::size_t box_count_ = 0;
     std::vector<std::uint16_t> columns_;
     std::vector<Cut> cuts_; ///< in preorder

@@ -21,7 +21,7 @@ public:
     template <class Visit>
     void for_each(const PlacePoint& point, const Visit& visit) const {
         AcdfPlaceMixture mix;
-        acdf_place_at(&table_, point.position.data(), point.normal.data(), &mix);
+        acdf_place_at(&table_, 1, point.position.data(), point.normal.data(), &mix);
         for (int k = 0; k < mix.count; ++k)
             visit(static_cast<std::uint32_t>(mix.row[k] - rows_.data()), mix.weight[k]);
     }
@@ -34,15 +34,26 @@ private:
     AcdfPlaceTable table_{};
 };
 
-/// What rows are made of, cells x parts each.
+/// A point and a cell that it counts for.
+struct PlaceShare {
+    std::uint32_t point = 0, cell = 0;
+    float weight = 0.0f;
+};
+
+/// Points near a border count for the cells on both sides of it, as readers mix them. Those of a cell come
+/// together.
+std::vector<PlaceShare> shares_of(const CellNumbers& numbers, const std::vector<PlacePoint>& points);
+
+/// What the rows of a range of cells are made of, cells x parts each.
 struct PlaceRows {
     std::vector<float> all;     ///< what parts would give to the points of the cell
     std::vector<float> factors; ///< place_factor
 };
 
-/// Factors with the caution that serves best points that rows have not seen: each by what the others tell. `light`
-/// is divided anew by what cells know of it.
-PlaceRows place_rows(const PlaceCells& tree, const CellNumbers& numbers, PlaceLight& light,
-                     const std::vector<PlacePoint>& points);
+/// Shoots rays to `parts` from all points that count for the cells of `range`. Factors have the caution that serves
+/// best points that rows have not seen: each by what the others tell. `dark`: as of trace_places.
+PlaceRows place_rows(const PlaceParts& parts, const PlaceCells& tree, const PlaceCells::Range& range,
+                     const std::vector<PlaceShare>& shares, const std::vector<PlacePoint>& points,
+                     const Occluded& occluded, double dark);
 
 } // namespace acdf::compress

@@ -12,10 +12,16 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-// Rows begin where columns end: they need no alignment.
+u64 columns_at(const AcdfPlaces& header) {
+    return sizeof header + u64{header.split_count} * sizeof(AcdfPlaceSplit);
+}
+u64 sets_at(const AcdfPlaces& header, u32 tile_splits) {
+    return columns_at(header) + (1 + u64{header.further_sets}) * tile_splits * sizeof(std::uint16_t);
+}
+// Rows begin where columns and their sets end: they need no alignment.
 u64 rows_at(const AcdfPlaces& header, u32 tile_splits) {
-    return sizeof header + u64{header.split_count} * sizeof(AcdfPlaceSplit) +
-           u64{tile_splits} * sizeof(std::uint16_t);
+    return sets_at(header, tile_splits) +
+           (header.further_sets > 0 ? u64{header.row_count} * sizeof(std::uint16_t) : 0);
 }
 
 bool check_size(const Payload& payload, u32 lights, u32 tile_splits, Report& report) {
@@ -25,9 +31,9 @@ bool check_size(const Payload& payload, u32 lights, u32 tile_splits, Report& rep
     }
     const AcdfPlaces& h = *reinterpret_cast<const AcdfPlaces*>(payload.data);
     if (h.row_count < 1 || h.row_count >= ACDF_PLACE_ROW || h.split_count >= ACDF_PLACE_ROW ||
-        h.column_count > tile_splits || h.reserved != 0) {
-        report.add(7009, payload.at(0), "%u splits, %u rows, %u columns, `reserved` %u", h.split_count, h.row_count,
-                   h.column_count, h.reserved);
+        h.column_count > tile_splits || h.further_sets > 0xFFFF) {
+        report.add(7009, payload.at(0), "%u splits, %u rows, %u columns, %u further sets of them", h.split_count,
+                   h.row_count, h.column_count, h.further_sets);
         return false;
     }
     const u64 size = rows_at(h, tile_splits) + u64{h.row_count} * (1 + lights + h.column_count);
@@ -80,13 +86,27 @@ bool check_splits(const Payload& payload, const AcdfPlaces& h, const AcdfPlaceSp
 
 void check_columns(const Payload& payload, const AcdfPlaces& h, const std::uint16_t* columns, u32 tile_splits,
                    Report& report) {
-    u32 next = 0, wrong = tile_splits;
-    for (u32 i = 0; i < tile_splits; ++i) {
-        if (columns[i] == ACDF_NO_COLUMN) continue;
-        if (columns[i] != next++ && wrong == tile_splits) wrong = i;
+    for (u32 set = 0; set <= h.further_sets; ++set, columns += tile_splits) {
+        u32 next = 0, wrong = tile_splits;
+        for (u32 i = 0; i < tile_splits; ++i) {
+            if (columns[i] == ACDF_NO_COLUMN) continue;
+            if (columns[i] != next++ && wrong == tile_splits) wrong = i;
+        }
+        if (wrong == tile_splits && next == h.column_count) continue;
+        report.add(7013, payload.at(columns_at(h)), "%u columns are there in set %u, %u are told", next, set,
+                   h.column_count);
+        return;
     }
-    if (wrong < tile_splits || next != h.column_count)
-        report.add(7013, payload.at(rows_at(h, 0)), "%u columns are there, %u are told", next, h.column_count);
+}
+
+bool check_sets(const Payload& payload, const AcdfPlaces& h, const std::uint16_t* set_of_row, u32 tile_splits,
+                Report& report) {
+    for (u32 row = 0; set_of_row && row < h.row_count; ++row) {
+        if (set_of_row[row] <= h.further_sets) continue;
+        report.add(7015, payload.at(sets_at(h, tile_splits) + u64{row} * sizeof *set_of_row), "row %u", row);
+        return false;
+    }
+    return true;
 }
 
 void check_odds(const Payload& payload, const AcdfPlaceTable& table, u32 tile_splits, Report& report) {
@@ -114,10 +134,16 @@ void check_places(const Payload& payload, Report& report, Parts& parts) noexcept
     const auto* header = reinterpret_cast<const AcdfPlaces*>(payload.data);
     const auto* splits = reinterpret_cast<const AcdfPlaceSplit*>(header + 1);
     const auto* columns = reinterpret_cast<const std::uint16_t*>(splits + header->split_count);
-    const AcdfPlaceTable table{header, splits, columns, payload.data + rows_at(*header, tile_splits),
+    const auto* sets = reinterpret_cast<const std::uint16_t*>(payload.data + sets_at(*header, tile_splits));
+    const AcdfPlaceTable table{header,
+                               splits,
+                               columns,
+                               header->further_sets > 0 ? sets : nullptr,
+                               payload.data + rows_at(*header, tile_splits),
                                parts.local->light_count};
     check_bounds(payload, *header, report);
-    const bool right = check_splits(payload, *header, splits, report);
+    const bool split = check_splits(payload, *header, splits, report);
+    const bool right = check_sets(payload, *header, table.set_of_row, tile_splits, report) && split;
     check_columns(payload, *header, columns, tile_splits, report);
     check_odds(payload, table, tile_splits, report);
     if (right) parts.places = table;

@@ -142,7 +142,7 @@ const Rule rules[] = {
      "In the row of a bin of positive share a light's tile has probability 0."},
     {7008, error, malformed, "environment-share", "The share of an environment's bin is 1."},
     {7009, error, malformed, "places",
-     "PLAC comes with TILE and is as long as its counts tell, with at least one row; `reserved` is zero."},
+     "PLAC comes with TILE and is as long as its counts tell, with at least one row."},
     {7010, error, malformed, "place-bounds",
      "The bounds of places are finite and rise, and the transform is finite."},
     {7011, error, malformed, "place-splits",
@@ -150,9 +150,10 @@ const Rule rules[] = {
     {7012, error, malformed, "place-split",
      "A split of places is on one of axes 0 to 5, its position finite, its blend finite and not negative."},
     {7013, error, malformed, "place-columns",
-     "The columns of splits of tiles are numbered from 0 in their order, all of them; FFFF where a split has "
-     "none."},
+     "The columns of splits of tiles are numbered from 0 in their order, all of them in each set; FFFF where a "
+     "split has none."},
     {7014, error, malformed, "place-odds", "No odds of a place are 0 or 255: no part of the light has none."},
+    {7015, error, malformed, "place-sets", "The set of columns that a row of places names is there."},
 
     {8001, error, malformed, "brdf-axes",
      "A BRDF has the axes of §6.8, cos_theta_h of at most 268435456 steps and the others of at most 65536."},

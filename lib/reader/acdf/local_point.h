@@ -102,6 +102,7 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
     }
     for (i = 0; i < ACDF_MAX_PLACES_MIXED; ++i) {
         out->place.row[i] = 0;
+        out->place.columns[i] = 0;
         out->place.weight[i] = 0.0;
     }
     if (!acdf_local_bins(local, normal, &bins)) return;
@@ -137,7 +138,7 @@ ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3]
     int i;
     acdf_local_at(local, normal, out);
     if (out->what != ACDF_LOCAL_BLEND) return;
-    acdf_place_at(&local->places, position, normal, &out->place);
+    acdf_place_at(&local->places, local->blend.tiles->tile_count, position, normal, &out->place);
     if (out->place.count == 0) return;
     visible = acdf_place_visibility(&out->place, 0);
     for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;

@@ -2,10 +2,10 @@
  * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.9).
  *
  * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the lights, of the
- * mixture as a whole and, at each split of tiles that counts, of its two parts reaches it. Those *visibilities*
- * multiply what rows of normals give to the two parts; the products are made to add up to 1 again at each split, so
- * that the density is exact whatever the bytes are. Near the border of two cells their visibilities are mixed,
- * linearly, so that nothing jumps where at most four cells meet. */
+ * mixture as a whole and, at each split of tiles that counts in its region (a *column*), of its two parts reaches
+ * it. Those *visibilities* multiply what rows of normals give to the two parts; the products are made to add up to
+ * 1 again at each split, so that the density is exact whatever the bytes are. Near the border of two cells their
+ * visibilities are mixed, linearly, so that nothing jumps where at most four cells meet. */
 #ifndef ACDF_PLACES_H
 #define ACDF_PLACES_H
 
@@ -20,7 +20,8 @@ enum { ACDF_MAX_PLACES_MIXED = 4 };
 typedef struct AcdfPlaceTable {
     const AcdfPlaces* header;     /* chunk PLAC; null where there is none */
     const AcdfPlaceSplit* splits; /* behind it */
-    const uint16_t* columns;      /* one a split of tiles */
+    const uint16_t* columns;      /* sets of one a split of tiles */
+    const uint16_t* set_of_row;   /* null where there is but one set */
     const uint8_t* rows;
     uint32_t light_count;
 } AcdfPlaceTable;
@@ -28,6 +29,7 @@ typedef struct AcdfPlaceTable {
 /* The rows of cells around a position, and their weights, whose sum is 1. None: places are not told apart. */
 typedef struct AcdfPlaceMixture {
     const uint8_t* row[ACDF_MAX_PLACES_MIXED];
+    const uint16_t* columns[ACDF_MAX_PLACES_MIXED]; /* of the row */
     double weight[ACDF_MAX_PLACES_MIXED];
     int count;
 } AcdfPlaceMixture;
@@ -65,8 +67,8 @@ ACDF_FN int acdf_place_coordinates(const AcdfPlaceTable* table, const float posi
 /* Finds the cells around a position and a normal (of any length but 0); `out` becomes empty outside of all of them.
  * Where it is within reach of so many borders that more than four cells would be mixed, the lighter side of a
  * border is left out. */
-ACDF_FN void acdf_place_at(const AcdfPlaceTable* table, const float position[3], const float normal[3],
-                           AcdfPlaceMixture* out) {
+ACDF_FN void acdf_place_at(const AcdfPlaceTable* table, uint32_t tile_count, const float position[3],
+                           const float normal[3], AcdfPlaceMixture* out) {
     uint32_t node[ACDF_MAX_PLACES_MIXED];
     double x[6];
     int i;
@@ -91,9 +93,33 @@ ACDF_FN void acdf_place_at(const AcdfPlaceTable* table, const float position[3],
             }
         }
     }
-    for (i = 0; i < out->count; ++i)
-        out->row[i] = table->rows +
-                      (size_t)(node[i] & ~ACDF_PLACE_ROW) * (1 + table->light_count + table->header->column_count);
+    for (i = 0; i < out->count; ++i) {
+        const uint32_t row = node[i] & ~ACDF_PLACE_ROW;
+        out->row[i] = table->rows + (size_t)row * (1 + table->light_count + table->header->column_count);
+        out->columns[i] =
+            table->columns + (table->set_of_row ? (size_t)table->set_of_row[row] * (tile_count - 1) : 0);
+    }
+}
+
+/* The odds of a split, out of 65535; below 0 where none of the cells has a column for it. */
+ACDF_INLINE double acdf_place_odds(const AcdfPlaceTable* table, const uint16_t* codebook,
+                                   const AcdfPlaceMixture* place, const int places, uint32_t node) {
+    const uint32_t first = 1 + table->light_count;
+    double odds = 0.0;
+    int i, known = 0;
+    if (!table->set_of_row) {
+        const uint32_t column = place->columns[0][node];
+        if (column == ACDF_NO_COLUMN) return -1.0;
+        for (i = 0; i < places; ++i) odds += place->weight[i] * (double)codebook[place->row[i][first + column]];
+        return odds;
+    }
+    for (i = 0; i < places; ++i) {
+        const uint32_t column = place->columns[i][node];
+        known |= column != ACDF_NO_COLUMN;
+        odds += place->weight[i] *
+                (column != ACDF_NO_COLUMN ? (double)codebook[place->row[i][first + column]] : 32767.5);
+    }
+    return known ? odds : -1.0;
 }
 
 /* What of the weights of rows falls into the two parts of a split, times their visibility; `lower` is what of each
@@ -102,17 +128,14 @@ ACDF_INLINE void acdf_place_split(const AcdfPlaceTable* table, const AcdfBlend* 
                                   const int rows, const AcdfPlaceMixture* place, const int places, uint32_t node,
                                   const double* weight, double* lower, double part[2]) {
     const uint16_t* codebook = blend->tiles->codebook;
-    const uint32_t column = table->columns[node];
+    const double odds = acdf_place_odds(table, codebook, place, places, node);
     int i;
     part[0] = part[1] = 0.0;
     for (i = 0; i < rows; ++i) {
         part[0] += lower[i] = weight[i] * ((double)codebook[mix->row[i][node]] * (1.0 / 65535.0));
         part[1] += weight[i] - lower[i];
     }
-    if (column != ACDF_NO_COLUMN) {
-        const uint32_t at = 1 + table->light_count + column;
-        double odds = 0.0;
-        for (i = 0; i < places; ++i) odds += place->weight[i] * (double)codebook[place->row[i][at]];
+    if (odds >= 0.0) {
         part[0] *= odds;
         part[1] *= 65535.0 - odds;
     }

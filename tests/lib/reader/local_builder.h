@@ -33,14 +33,16 @@ struct PlacesSpec {
     float low[3] = {-1.0f, -2.0f, 0.0f}, high[3] = {3.0f, 2.0f, 4.0f};
     float transform[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     std::vector<PlaceSplitSpec> splits;
-    std::vector<std::uint16_t> columns; ///< one a split of tiles
+    std::uint32_t further_sets = 0;
+    std::vector<std::uint16_t> columns;    ///< of each set one a split of tiles
+    std::vector<std::uint16_t> set_of_row; ///< empty, or one a row
     std::vector<Bytes> rows;
 
     Bytes encode() const {
         Bytes out;
         std::uint32_t count = 0;
-        for (std::uint16_t column : columns) count += column != 0xFFFF;
-        for (std::size_t v : {splits.size(), rows.size(), std::size_t{count}, std::size_t{0}})
+        for (std::size_t i = 0; i < columns.size() / (1 + further_sets); ++i) count += columns[i] != 0xFFFF;
+        for (std::size_t v : {splits.size(), rows.size(), std::size_t{count}, std::size_t{further_sets}})
             put32(out, static_cast<std::uint32_t>(v));
         for (float x : low) put_float(out, x);
         for (float x : high) put_float(out, x);
@@ -52,6 +54,7 @@ struct PlacesSpec {
             put32(out, split.part[1]);
         }
         for (std::uint16_t column : columns) put16(out, column);
+        for (std::uint16_t set : set_of_row) put16(out, set);
         for (const Bytes& row : rows) out.insert(out.end(), row.begin(), row.end());
         return out;
     }
@@ -192,6 +195,16 @@ inline LocalSpec placed_local() {
                            {0.1f, 0.2f, 5, {place_row | 2, place_row | 3}}};
     spec.places->columns = {0, 1};
     spec.places->rows = {{240, 30, 200, 60}, {200, 255, 1, 254}, {0, 100, 128, 9}, {90, 17, 30, 250}};
+    return spec;
+}
+
+/// placed_local with one column alone, of the first split in some cells and of the second in others.
+inline LocalSpec regional_local() {
+    LocalSpec spec = placed_local();
+    spec.places->further_sets = 1;
+    spec.places->columns = {0, 0xFFFF, 0xFFFF, 0};
+    spec.places->set_of_row = {0, 1, 1, 0};
+    for (Bytes& row : spec.places->rows) row.resize(3);
     return spec;
 }
 

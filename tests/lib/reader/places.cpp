@@ -43,9 +43,10 @@ void for_each_direction(const Visit& visit) {
 }
 
 TEST(Places, DensitiesIntegrateToOne) {
-    for (float share : {0.0f, 0.25f}) {
-        LocalSpec spec = placed_local();
+    float share = 0.0f;
+    for (LocalSpec spec : {placed_local(), regional_local(), regional_local()}) {
         spec.cosine_share = share;
+        share = 0.25f;
         const LoadedPlaces loaded(spec);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
@@ -60,45 +61,52 @@ TEST(Places, DensitiesIntegrateToOne) {
 }
 
 TEST(Places, SamplesHaveTheDensityThatIsFoundForThem) {
-    const LoadedPlaces loaded(placed_local());
-    std::mt19937_64 random(5);
-    for (const auto& n : kNormals)
-        for (const auto& x : kPositions) {
-            const AcdfLocalPoint point = loaded.view().at(x, n);
-            for (int i = 0; i < 300; ++i) {
-                const double u0 = double(random() >> 11) * 0x1p-53, u1 = double(random() >> 11) * 0x1p-53;
-                const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
-                EXPECT_GT(s.pdf, 0.0f);
-                EXPECT_NEAR(loaded.view().pdf(point, s.direction), s.pdf, 1e-3f * s.pdf);
+    for (const LocalSpec& spec : {placed_local(), regional_local()}) {
+        const LoadedPlaces loaded(spec);
+        std::mt19937_64 random(5);
+        for (const auto& n : kNormals)
+            for (const auto& x : kPositions) {
+                const AcdfLocalPoint point = loaded.view().at(x, n);
+                for (int i = 0; i < 300; ++i) {
+                    const double u0 = double(random() >> 11) * 0x1p-53, u1 = double(random() >> 11) * 0x1p-53;
+                    const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
+                    EXPECT_GT(s.pdf, 0.0f);
+                    EXPECT_NEAR(loaded.view().pdf(point, s.direction), s.pdf, 1e-3f * s.pdf);
+                }
             }
-        }
+    }
 }
 
 /// The frequency of directions in octants against the integral of the density there.
 TEST(Places, DirectionsFallWhereTheDensitySays) {
-    const LoadedPlaces loaded(placed_local());
-    const AcdfLocalPoint point = loaded.view().at(kPositions[3], kNormals[1]);
-    const auto octant = [](const float* d) { return (d[0] > 0) + 2 * (d[1] > 0) + 4 * (d[2] > 0); };
-    double expected[8] = {}, found[8] = {};
-    for_each_direction(
-        [&](const float* d, double angle) { expected[octant(d)] += double{loaded.view().pdf(point, d)} * angle; });
-    constexpr int side = 256;
-    for (int i = 0; i < side; ++i)
-        for (int k = 0; k < side; ++k)
-            found[octant(loaded.view().sample(point, (i + 0.5) / side, (k + 0.5) / side).direction)] +=
-                1.0 / (side * side);
-    for (int i = 0; i < 8; ++i) EXPECT_NEAR(found[i], expected[i], 0.01) << i;
+    for (const LocalSpec& spec : {placed_local(), regional_local()}) {
+        const LoadedPlaces loaded(spec);
+        const AcdfLocalPoint point = loaded.view().at(kPositions[3], kNormals[1]);
+        const auto octant = [](const float* d) { return (d[0] > 0) + 2 * (d[1] > 0) + 4 * (d[2] > 0); };
+        double expected[8] = {}, found[8] = {};
+        for_each_direction([&](const float* d, double angle) {
+            expected[octant(d)] += double{loaded.view().pdf(point, d)} * angle;
+        });
+        constexpr int side = 256;
+        for (int i = 0; i < side; ++i)
+            for (int k = 0; k < side; ++k)
+                found[octant(loaded.view().sample(point, (i + 0.5) / side, (k + 0.5) / side).direction)] +=
+                    1.0 / (side * side);
+        for (int i = 0; i < 8; ++i) EXPECT_NEAR(found[i], expected[i], 0.01) << i;
+    }
 }
 
 TEST(Places, NothingThatANormalSeesIsLost) {
-    const LoadedPlaces loaded(placed_local());
-    for (const auto& n : kNormals)
-        for (const auto& x : kPositions) {
-            const AcdfLocalPoint here = loaded.view().at(x, n), anywhere = loaded.view().at(n);
-            for_each_direction([&](const float* d, double) {
-                EXPECT_EQ(loaded.view().pdf(here, d) > 0.0f, loaded.view().pdf(anywhere, d) > 0.0f);
-            });
-        }
+    for (const LocalSpec& spec : {placed_local(), regional_local()}) {
+        const LoadedPlaces loaded(spec);
+        for (const auto& n : kNormals)
+            for (const auto& x : kPositions) {
+                const AcdfLocalPoint here = loaded.view().at(x, n), anywhere = loaded.view().at(n);
+                for_each_direction([&](const float* d, double) {
+                    EXPECT_EQ(loaded.view().pdf(here, d) > 0.0f, loaded.view().pdf(anywhere, d) > 0.0f);
+                });
+            }
+    }
 }
 
 TEST(Places, OutsideTheNormalAloneCounts) {

@@ -16,13 +16,15 @@ using Make = std::function<Bytes()>;
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-Make placed(std::function<void(PlacesSpec&)> change) {
+Make changed(LocalSpec (*make)(), std::function<void(PlacesSpec&)> change) {
     return [=] {
-        LocalSpec spec = placed_local();
+        LocalSpec spec = make();
         change(*spec.places);
         return spec.encode();
     };
 }
+Make placed(std::function<void(PlacesSpec&)> change) { return changed(placed_local, std::move(change)); }
+Make regional(std::function<void(PlacesSpec&)> change) { return changed(regional_local, std::move(change)); }
 
 // Changes the payload of PLAC.
 Make payload(std::function<void(Bytes&)> change) {
@@ -75,7 +77,8 @@ std::vector<Case> place_cases() {
         {7009, "most_rows", field(4, 0xFFFFFFFF)},
         {7009, "most_splits", field(0, 0xFFFFFFFF)},
         {7009, "most_columns", field(8, 3)},
-        {7009, "reserved", field(12, 1)},
+        {7009, "a_set_too_many", field(12, 1)},
+        {7009, "most_sets", field(12, 0xFFFFFFFF)},
         {7010, "low_is_high", placed([](PlacesSpec& p) { p.low[1] = p.high[1]; })},
         {7010, "infinite_high", placed([](PlacesSpec& p) { p.high[2] = infinite; })},
         {7010, "low_is_no_number", placed([](PlacesSpec& p) { p.low[0] = infinite - infinite; })},
@@ -104,8 +107,11 @@ std::vector<Case> place_cases() {
         {7013, "column_left_out", placed([](PlacesSpec& p) {
              p.columns = {0, 2};
          })},
+        {7013, "no_columns_of_a_set", regional([](PlacesSpec& p) { p.columns[3] = 0xFFFF; })},
+        {7013, "columns_of_a_set", regional([](PlacesSpec& p) { p.columns[3] = 1; })},
         {7014, "nothing_below", placed([](PlacesSpec& p) { p.rows[0][2] = 0; })},
         {7014, "nothing_above", placed([](PlacesSpec& p) { p.rows[2][3] = 255; })},
+        {7015, "no_such_set", regional([](PlacesSpec& p) { p.set_of_row[2] = 2; })},
     };
 }
 
@@ -114,6 +120,7 @@ namespace {
 TEST(PlaceRules, whatIsAtTheirLimitsIsRight) {
     expect_valid(placed_local().encode());
     expect_valid(chain_of_places(64)());
+    expect_valid(regional_local().encode());
     expect_valid(placed([](PlacesSpec& p) { // one cell
         p.splits.clear();
         p.rows.resize(1);
