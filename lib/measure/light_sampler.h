@@ -13,7 +13,7 @@ namespace acdf::measure {
 struct ShadingPoint {
     float n[3] = {0.0f, 0.0f, 1.0f};  ///< normal
     float wo[3] = {0.0f, 0.0f, 1.0f}; ///< towards the viewer
-    float position[3] = {};           ///< in the scene
+    float position[3] = {};           ///< in the coordinates of the scene's meshes
 };
 
 /// A sampler in the hands of one thread: at one shading point at a time.

@@ -75,6 +75,8 @@ struct Camera {
 /// Objects do not light each other: light comes from outside, and reaches what no object hides.
 struct Geometry {
     std::vector<Object> objects;
+    /// Its meshes were turned from y up: files are asked for positions in their coordinates, (y, z, x) of these.
+    bool turned = false;
 
     /// What the camera sees along a ray.
     std::optional<Hit> trace(const Ray& ray) const;

@@ -46,7 +46,8 @@ ScenePoint::ScenePoint(const Scene& scene, const Ray& ray, const Hit& hit)
     wo_[2] = dot(wo, n_);
     to_float(n_, shading_.n);
     to_float(wo, shading_.wo);
-    to_float(position_, shading_.position);
+    const bool turned = scene.geometry.turned;
+    to_float(turned ? Vec3{position_[1], position_[2], position_[0]} : position_, shading_.position);
     lonely_ = true;
     for (std::uint32_t i = 0; i < scene.geometry.objects.size(); ++i) {
         const Object& object = scene.geometry.objects[i];

@@ -24,10 +24,7 @@ builder::Places places_on(std::shared_ptr<const input::MeshSurface> surface, inp
                                          double{point.position[2]}};
         return surface->tree().any(from, {double{direction[0]}, double{direction[1]}, double{direction[2]}}, 0.0);
     };
-    if (up == input::UpAxis::y) { // as meshes are turned
-        constexpr float turned[3][4] = {{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}};
-        for (int k = 0; k < 3; ++k) std::copy_n(turned[k], 4, out.transform[k]);
-    }
+    if (up == input::UpAxis::y) turn_from_y_up(out);
     return out;
 }
 

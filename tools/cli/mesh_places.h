@@ -6,9 +6,16 @@
 
 #include <acdf/builder.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace acdf::tools {
+
+/// Positions are told with y up, as meshes are turned.
+inline void turn_from_y_up(builder::Places& places) {
+    constexpr float turned[3][4] = {{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}};
+    for (int k = 0; k < 3; ++k) std::copy_n(turned[k], 4, places.transform[k]);
+}
 
 /// Points on both sides of a mesh, told by their number, and what the mesh hides from them. `up`: how it was turned
 /// when it was read; positions are those of its file.

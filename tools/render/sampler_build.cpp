@@ -9,6 +9,7 @@
 #include "measure/surface_points.h"
 #include "tools/cli/built.h"
 #include "tools/cli/file_input.h"
+#include "tools/cli/mesh_places.h"
 #include "tools/commands.h"
 
 #include <algorithm>
@@ -65,6 +66,7 @@ Table places_table(const builder::Target& target, const measure::Geometry& geome
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(bytes);
     const compress::PlaceScene scene = measure::place_scene(geometry);
+    if (geometry.turned) turn_from_y_up(options.places);
     options.places.point = [&](std::uint64_t index, builder::PlacePoint& out) {
         compress::PlacePoint point;
         if (!scene.points(index, point)) return false;

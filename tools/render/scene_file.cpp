@@ -159,6 +159,9 @@ SceneFile parse_scene(const std::string& text) {
     read_light(object.at("light"), scene);
     const JsonValue objects = object.at("objects");
     objects.each(kMostObjects, [&](const JsonValue& value) { read_object(value, scene); });
+    scene.geometry.turned =
+        !scene.meshes.empty() && std::all_of(scene.meshes.begin(), scene.meshes.end(),
+                                             [](const SceneMesh& mesh) { return mesh.up == input::UpAxis::y; });
     if (scene.materials.empty()) objects.fail("has nothing that is seen");
     scene.samples = object.at("samples").count(kMostSamples);
     object.at("samplers").each(kMostSamplers, [&](const JsonValue& value) {

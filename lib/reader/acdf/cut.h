@@ -56,7 +56,7 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     uint32_t i;
     int k;
     cut->count = 1;
-    for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_light_weight(&local->lights[i], point);
+    for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_local_light_weight(local, point, i);
     whole->node = acdf_blend_root(&local->blend);
     whole->tile = 0;
     whole->first_light = 0;
@@ -109,6 +109,23 @@ ACDF_FN double acdf_cut_share(const AcdfBlend* blend, const AcdfMixture* mix, Ac
     }
 }
 
+/* What a place sees of the halves, made to add up to what the part had. Returns the sum of the lower one. */
+ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCutPart* part,
+                            AcdfCutPart* upper, double low, double* high) {
+    const double odds = acdf_place_odds(&local->places, local->blend.tiles->codebook, &point->place,
+                                        point->place.count, part->node);
+    double scale;
+    int i;
+    if (!(odds >= 0.0)) return low;
+    scale = (low + *high) / (low * odds + *high * (65535.0 - odds));
+    for (i = 0; i < point->mix.count; ++i) {
+        part->weight[i] *= scale * odds;
+        upper->weight[i] *= scale * (65535.0 - odds);
+    }
+    *high *= scale * (65535.0 - odds);
+    return low * (scale * odds);
+}
+
 /* The lights of the halves of a part, whose numbers `upper` has, too. */
 ACDF_FN void acdf_cut_share_lights(const AcdfLocal* local, const AcdfCut* cut, AcdfCutPart* part,
                                    AcdfCutPart* upper) {
@@ -139,6 +156,7 @@ ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point
      * one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
     low = acdf_cut_share(&local->blend, &point->mix, part, upper, &high);
+    if (point->place.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
     acdf_cut_share_lights(local, cut, part, upper);
     part->sum = low + part->lights;
     upper->sum = high + upper->lights;

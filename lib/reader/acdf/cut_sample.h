@@ -104,7 +104,9 @@ ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint
         const AcdfMixture mix = acdf_cut_mixture(point, part);
         double inside;
         u[0] = acdf_unit_interval((x - part->lights) / (part->sum - part->lights));
-        tile = acdf_blend_sample_below(&local->blend, &mix, part->node, u, range, &inside);
+        tile = point->place.count > 0 ? acdf_place_sample_below(&local->places, &local->blend, &mix, &point->place,
+                                                                part->node, u, range, &inside)
+                                      : acdf_blend_sample_below(&local->blend, &mix, part->node, u, range, &inside);
         probability = acdf_positive(probability * (acdf_mixture_sum(&mix) / part->sum * inside));
     }
     root = acdf_cut_root(local, tile);
@@ -118,7 +120,11 @@ ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* 
     const AcdfMixture mix = acdf_cut_mixture(point, part);
     double probability, inside;
     uint32_t light = part->first_light, root;
-    const uint32_t tile = acdf_blend_find_below(&local->blend, &mix, part->node, square, range, 0, &probability);
+    const uint32_t tile =
+        point->place.count > 0
+            ? acdf_place_find_below(&local->places, &local->blend, &mix, &point->place, part->node, square, range,
+                                    &probability)
+            : acdf_blend_find_below(&local->blend, &mix, part->node, square, range, 0, &probability);
     if (probability > 0.0) {
         probability = acdf_positive(part->probability * (acdf_mixture_sum(&mix) / part->sum * probability));
     } else { /* no row gives a light any probability */

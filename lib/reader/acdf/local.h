@@ -18,15 +18,15 @@ extern "C" {
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                         AcdfRange* range, double* probability) {
     if (point->place.count > 0)
-        return acdf_place_sample_tile(&local->places, &local->blend, &point->mix, &point->place, u, range,
-                                      probability);
+        return acdf_place_sample_below(&local->places, &local->blend, &point->mix, &point->place,
+                                       acdf_blend_root(&local->blend), u, range, probability);
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }
 ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
                                       AcdfRange* range, double* probability) {
     if (point->place.count > 0)
-        return acdf_place_find_tile(&local->places, &local->blend, &point->mix, &point->place, square, range,
-                                    probability);
+        return acdf_place_find_below(&local->places, &local->blend, &point->mix, &point->place,
+                                     acdf_blend_root(&local->blend), square, range, probability);
     return acdf_blend_find_tile(&local->blend, &point->mix, square, range, 0, probability);
 }
 

@@ -85,10 +85,9 @@ ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], Ac
     out->length = scale * length;
 }
 
-/* Finds what serves a normal. */
-ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+/* Finds what serves a normal, without the weights of lights. Returns 0 where lights and mixture do not. */
+ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
-    uint32_t k;
     int i;
     out->what = ACDF_LOCAL_NOTHING;
     out->root = 0;
@@ -105,46 +104,60 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
         out->place.columns[i] = 0;
         out->place.weight[i] = 0.0;
     }
-    if (!acdf_local_bins(local, normal, &bins)) return;
+    if (!acdf_local_bins(local, normal, &bins)) return 0;
     if (!local->blend.tiles) {
         const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
         out->root = bin->root != ACDF_NO_ROOT ? bin->root : local->environment.root;
         if (bin->root == ACDF_NO_ROOT || bin->share > 0.0f) out->what = ACDF_LOCAL_TREE;
-        return;
+        return 0;
     }
     for (i = 0; i < bins.count; ++i) {
         const AcdfBin* bin = &local->bins[bins.bin[i]];
         if (bin->root == ACDF_NO_ROOT) {
             out->what = ACDF_LOCAL_TREE;
             out->root = local->environment.root;
-            return;
+            return 0;
         }
         if (local->tables) /* where the row goes, if it has a weight */
             out->parts[out->mix.count] = acdf_local_parts(local->tables, bin->root, local->blend.tiles->tile_count);
         acdf_mixture_add(&out->mix, &local->blend, bin->root, bins.weight[i] * (double)bin->share);
     }
     acdf_local_normal(local, normal, out);
-    for (k = 0; k < local->light_count; ++k) out->lights += acdf_light_weight(&local->lights[k], out);
+    return 1;
+}
+
+/* Weighs lights and mixture together; `visible`: what of each light arrives, null: all. */
+ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
+    uint32_t k;
+    for (k = 0; k < local->light_count; ++k) {
+        const double weight = acdf_light_weight(&local->lights[k], out);
+        out->lights += visible ? weight * visible[k] : weight;
+    }
     out->sum = out->lights + acdf_mixture_sum(&out->mix);
     if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
+}
+
+/* Finds what serves a normal. */
+ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
 }
 
 /* Finds what serves a normal at a position of the scene. Outside of all cells, and where places are not told apart,
  * that is what serves the normal. */
 ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
-    double visible;
-    uint32_t k;
+    double visible[1 + ACDF_MAX_LIGHTS];
     int i;
-    acdf_local_at(local, normal, out);
-    if (out->what != ACDF_LOCAL_BLEND) return;
+    if (!acdf_local_begin(local, normal, out)) return;
     acdf_place_at(&local->places, local->blend.tiles->tile_count, position, normal, &out->place);
-    if (out->place.count == 0) return;
-    visible = acdf_place_visibility(&out->place, 0);
-    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
-    out->lights = 0.0;
-    for (k = 0; k < local->light_count; ++k) out->lights += acdf_local_light_weight(local, out, k);
-    out->sum = out->lights + acdf_mixture_sum(&out->mix);
+    if (out->place.count == 0) {
+        acdf_local_sum(local, 0, out);
+        return;
+    }
+    acdf_place_visibilities(&out->place, 1 + local->light_count, visible);
+    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible[0];
+    acdf_local_sum(local, visible + 1, out);
+    if (!(out->sum > 0.0)) out->place.count = 0;
 }
 
 /* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left

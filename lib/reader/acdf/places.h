@@ -34,9 +34,13 @@ typedef struct AcdfPlaceMixture {
     int count;
 } AcdfPlaceMixture;
 
-/* The visibility that a byte stands for: 31/32 to 2^-16, in steps of 1/16 to 1/31. */
+/* The visibility that a byte stands for: 31/32 to 2^-16, in steps of 1/16 to 1/31. Its upper half is the exponent,
+ * the lower one begins the mantissa. */
 ACDF_FN double acdf_visibility(uint8_t code) {
-    return (double)((16u + (code & 15u)) << (code >> 4)) * (1.0 / 1048576.0);
+    const uint64_t bits = (uint64_t)(code + (1007u << 4)) << 48;
+    double out;
+    memcpy(&out, &bits, sizeof out);
+    return out;
 }
 
 /* Number `index` of a row: 0 is the mixture, 1 + k light k. */
@@ -45,6 +49,18 @@ ACDF_FN double acdf_place_visibility(const AcdfPlaceMixture* place, uint32_t ind
     int i;
     for (i = 0; i < place->count; ++i) sum += place->weight[i] * acdf_visibility(place->row[i][index]);
     return sum;
+}
+
+/* The first `count` of a row. */
+ACDF_FN void acdf_place_visibilities(const AcdfPlaceMixture* place, uint32_t count, double* out) {
+    uint32_t k;
+    int i;
+    for (k = 0; k < count; ++k) out[k] = 0.0;
+    for (i = 0; i < place->count; ++i) {
+        const uint8_t* row = place->row[i];
+        const double weight = place->weight[i];
+        for (k = 0; k < count; ++k) out[k] += weight * acdf_visibility(row[k]);
+    }
 }
 
 /* A position of the scene and a normal among the cells; 0 where it lies outside. */
@@ -143,9 +159,9 @@ ACDF_INLINE void acdf_place_split(const AcdfPlaceTable* table, const AcdfBlend* 
 
 ACDF_INLINE uint32_t acdf_place_sample_rows(const AcdfPlaceTable* table, const AcdfBlend* blend,
                                             const AcdfMixture* mix, const int rows, const AcdfPlaceMixture* place,
-                                            const int places, double* u, AcdfRange* range, double* probability) {
+                                            const int places, uint32_t node, double* u, AcdfRange* range,
+                                            double* probability) {
     double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
-    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
     int i;
     for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
     while (!(node & ACDF_TILE_FLAG)) {
@@ -175,10 +191,9 @@ ACDF_INLINE uint32_t acdf_place_sample_rows(const AcdfPlaceTable* table, const A
 
 ACDF_INLINE uint32_t acdf_place_find_rows(const AcdfPlaceTable* table, const AcdfBlend* blend,
                                           const AcdfMixture* mix, const int rows, const AcdfPlaceMixture* place,
-                                          const int places, const uint32_t* square, AcdfRange* range,
+                                          const int places, uint32_t node, const uint32_t* square, AcdfRange* range,
                                           double* probability) {
     double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
-    uint32_t node = blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;
     int i, lit = rows > 0;
     for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
     while (!(node & ACDF_TILE_FLAG)) {
@@ -211,22 +226,22 @@ ACDF_INLINE uint32_t acdf_place_find_rows(const AcdfPlaceTable* table, const Acd
     ACDF_PLACE_WALK(1, 1);                                                                                         \
     return ACDF_PLACE_CALL(mix->count, place->count)
 
-/* Draws a tile, as acdf_blend_sample_tile does, of a mixture as a place sees it (which has a row at least). */
-ACDF_FN uint32_t acdf_place_sample_tile(const AcdfPlaceTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
-                                        const AcdfPlaceMixture* place, double* u, AcdfRange* range,
-                                        double* probability) {
+/* Draws a tile, as acdf_blend_sample_below does, of a mixture as a place sees it (which has a row at least). */
+ACDF_FN uint32_t acdf_place_sample_below(const AcdfPlaceTable* table, const AcdfBlend* blend,
+                                         const AcdfMixture* mix, const AcdfPlaceMixture* place, uint32_t node,
+                                         double* u, AcdfRange* range, double* probability) {
 #define ACDF_PLACE_CALL(rows, places)                                                                              \
-    acdf_place_sample_rows(table, blend, mix, rows, place, places, u, range, probability)
+    acdf_place_sample_rows(table, blend, mix, rows, place, places, node, u, range, probability)
     ACDF_PLACE_WALKS;
 #undef ACDF_PLACE_CALL
 }
 
-/* Finds the tile of a grid square, as acdf_blend_find_tile does. */
-ACDF_FN uint32_t acdf_place_find_tile(const AcdfPlaceTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
-                                      const AcdfPlaceMixture* place, const uint32_t* square, AcdfRange* range,
-                                      double* probability) {
+/* Finds the tile of a grid square, as acdf_blend_find_below does. */
+ACDF_FN uint32_t acdf_place_find_below(const AcdfPlaceTable* table, const AcdfBlend* blend, const AcdfMixture* mix,
+                                       const AcdfPlaceMixture* place, uint32_t node, const uint32_t* square,
+                                       AcdfRange* range, double* probability) {
 #define ACDF_PLACE_CALL(rows, places)                                                                              \
-    acdf_place_find_rows(table, blend, mix, rows, place, places, square, range, probability)
+    acdf_place_find_rows(table, blend, mix, rows, place, places, node, square, range, probability)
     ACDF_PLACE_WALKS;
 #undef ACDF_PLACE_CALL
 }

@@ -59,7 +59,11 @@ public:
 
     /// Prepares a shading point, for any number of samples. `wo`: towards the viewer, a unit vector in the frame of
     /// directions.
-    ACDF_METHOD Point at(const SurfaceFrame& frame, const float wo[3]) const noexcept;
+    ACDF_METHOD Point at(const SurfaceFrame& frame, const float wo[3]) const noexcept {
+        return at(nullptr, frame, wo);
+    }
+    /// The same where the light's file tells places apart: at a `position` of its scene; null: anywhere.
+    ACDF_METHOD Point at(const float position[3], const SurfaceFrame& frame, const float wo[3]) const noexcept;
     /// The same with a frame of its own around the unit `normal`: for BRDFs that are the same all around it.
     ACDF_METHOD Point at(const float normal[3], const float wo[3]) const noexcept {
         return at(surface_frame(normal), wo);
@@ -317,7 +321,8 @@ ACDF_METHOD double ProductSampler<AnyLobe>::weigh(AcdfCut& cut, const Guides& gu
 }
 
 template <class AnyLobe>
-ACDF_METHOD auto ProductSampler<AnyLobe>::at(const SurfaceFrame& frame, const float wo[3]) const noexcept -> Point {
+ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const SurfaceFrame& frame,
+                                             const float wo[3]) const noexcept -> Point {
     Point point;
     float local_wo[3];
     point.frame = frame;
@@ -327,7 +332,8 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const SurfaceFrame& frame, const fl
     point.light.what = ACDF_LOCAL_NOTHING;
     if (!lobe_.at(local_wo, point.lobe)) return point;
     if (local_) {
-        acdf_local_at(&light_, frame.normal, &point.light);
+        if (position) acdf_local_at_place(&light_, position, frame.normal, &point.light);
+        else acdf_local_at(&light_, frame.normal, &point.light);
     } else {
         point.light.what = ACDF_LOCAL_TREE;
         point.light.root = light_.environment.root;

@@ -28,10 +28,10 @@ std::string room(bool y_up = false) {
                   "f 15 16 17 18\nf 11 12 16 15\nf 12 13 17 16\nf 13 14 18 17\nf 14 11 15 18\n";
 }
 
-std::string mesh_scene(const std::string& file) {
+std::string mesh_scene(const std::string& file, const std::string& more = "") {
     return R"({"camera": {"from": [-1.7, 1.7, 1.7], "to": [0.6, -0.6, 0.3], "fov": 60}, "image": {"width": 12, "height": 9},
  "light": {"probe": "probe.exr", "projection": "latlong"}, "objects": [{"mesh": {"file": ")" +
-           file + R"("}, "brdf": "lambert:albedo=0.5"}], "samples": 8, "samplers": ["local:64KiB"]})";
+           file + "\"" + more + R"(}, "brdf": "lambert:albedo=0.5"}], "samples": 8, "samplers": ["local:64KiB"]})";
 }
 
 struct MeshFolder : SceneFolder {
@@ -110,6 +110,25 @@ TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
         const DirectionSample s = z.local().sample(a, i / 200.0, 0.3), t = y.local().sample(b, i / 200.0, 0.3);
         EXPECT_EQ(s.pdf, t.pdf);
         for (int k = 0; k < 3; ++k) EXPECT_EQ(s.direction[k], t.direction[k]);
+    }
+}
+
+/// A file of the mesh itself and one that is made for the picture serve it as well as those of a mesh with z up.
+TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
+    MeshFolder folder;
+    write_text(folder / "y.obj", room(true));
+    write_text(folder / "y.json", mesh_scene("y.obj", R"(, "up": "y")"));
+    ASSERT_EQ(folder.local("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--places"}).code, 0);
+    const Result result =
+        folder.render("y.json", "out",
+                      {"--sampler", "local:64KiB", "--sampler", "file:y.acdf", "--sampler", "places:64KiB",
+                       "--sampler", "product(places:64KiB,ggx:0.9)", "--sequence", "independent"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json samplers = Json::parse(result.out).at("samplers");
+    for (const Json& one : samplers) {
+        EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
+        if (one.at("sampler") == "local:64KiB") continue;
+        EXPECT_GT(one.at("equal_samples_gain").at("value"), 2.0) << one;
     }
 }
 
