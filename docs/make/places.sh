@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # places.sh DATA [SCENE...]: writes the table of docs/places.md. DATA holds probes/; scenes: hidden-grace and those of
-# docs/make/place_scenes.py. ACDF names the program (default:
-# build/release/tools/acdf); scenes and pictures are left in RESULTS (default: build/places).
+# docs/make/place_scenes.py. BENCH names the program (default: build/release/tests/bench/bench_places, of a build with
+# -DACDF_BUILD_BENCHMARKS=ON); POINTS is how many of those that the camera sees are asked (default: 1000). Files are left in
+# RESULTS (default: build/places), and used where they are there. A file takes minutes, and so do 1000 points.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 data=$(cd "${1:?usage: docs/make/places.sh DATA [SCENE...]}" && pwd)
 shift
 scenes=${*:-hidden-grace room courtyard car trees}
-acdf=${ACDF:-$root/build/release/tools/acdf}
+bench=${BENCH:-$root/build/release/tests/bench/bench_places}
 results=${RESULTS:-$root/build/places}
 page=$root/docs/places.md
 mkdir -p "$results"
@@ -16,18 +17,17 @@ cp "$root/tools/render/scenes/hidden-grace.json" "$results"
 
 table=$results/table.md
 {
-    echo "| scene | sampler | bytes | less variance than local:1MB | bias, standard errors |"
-    echo "|---|---|---|---|---|"
+    echo "| scene | file | bytes | relative variance | less than local | all points, standard errors | each point | beyond 4 | lost |"
+    echo "|---|---|---|---|---|---|---|---|---|"
 } > "$table"
 for scene in $scenes; do
-    "$acdf" render --scene "$results/$scene.json" --data "$data" --size 48x36 --samples 16 --seeds 60 --no-timing --force --quiet \
-        --sampler local:1MB --sampler places:4MB --sampler cosine --sampler "mis(local:1MB,cosine)" \
-        -o "$results/$scene" > /dev/null
-    jq -r --arg scene "$scene" '
-        def sig: if . == null then "–" else (. * 100 | round / 100 | tostring) end;
-        def gain: if . == null then "–" elif .value == null then "–" else "\(.value | sig) (\(.low | sig)–\(.high | sig))" end;
-        .samplers[] | "| \($scene) | `\(.sampler)` | \(.bytes) | \(.equal_samples_gain | gain) | \(.bias_standard_errors | sig) |"' \
-        "$results/$scene/render.json" >> "$table"
+    for kind in "local 1000000" "places 4000000"; do
+        read -r name bytes <<< "$kind"
+        file=$results/$scene-$name.acdf
+        [ -e "$file" ] || "$bench" make "$results/$scene.json" "$data" "$name" "$bytes" "$file"
+    done
+    "$bench" measure "$results/$scene.json" "$data" "${POINTS:-1000}" "$results/$scene-local.acdf" "$results/$scene-places.acdf" |
+        sed "s/^/| $scene /" >> "$table"
 done
 awk -v table="$table" '
     /<!-- table -->/ { print; while ((getline line < table) > 0) print line; skip = 1 }

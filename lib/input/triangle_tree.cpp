@@ -87,7 +87,7 @@ struct TriangleTree::Work {
     std::uint32_t depth = 0;
 };
 
-TriangleTree::TriangleTree(const Triangles& triangles) : triangles_(triangles) {
+TriangleTree::TriangleTree(const Triangles& triangles) {
     Work work;
     Bounds all;
     for (std::size_t t = 0; t < triangles.count(); ++t) {
@@ -102,6 +102,13 @@ TriangleTree::TriangleTree(const Triangles& triangles) : triangles_(triangles) {
     if (order_.empty()) return;
     for (std::size_t k = 0; k < 3; ++k) size_ = std::max(size_, double{all.high[k]} - double{all.low[k]});
     build(work, 0, static_cast<std::uint32_t>(order_.size()));
+    for (const std::uint32_t triangle : order_) {
+        const Triangles::Corner* c = &triangles.corners[3 * std::size_t{triangle}];
+        const std::array<float, 3>& p = c[0].position;
+        edges_.push_back({{double{p[0]}, double{p[1]}, double{p[2]}},
+                          difference(c[1].position, p),
+                          difference(c[2].position, p)});
+    }
 }
 
 std::uint32_t TriangleTree::build(Work& work, std::uint32_t begin, std::uint32_t end) {
@@ -211,14 +218,11 @@ std::optional<TriangleTree::Hit> TriangleTree::search(const Vec3& origin, const 
             }
         } else {
             for (std::uint32_t i = node.begin; i < node.begin + node.count; ++i) { // Moeller and Trumbore 1997
-                const Triangles::Corner* c = &triangles_.corners[3 * std::size_t{order_[i]}];
-                const Vec3 e1 = difference(c[1].position, c[0].position),
-                           e2 = difference(c[2].position, c[0].position);
+                const Vec3 &corner = edges_[i].corner, &e1 = edges_[i].to_second, &e2 = edges_[i].to_third;
                 const Vec3 p = cross(direction, e2);
                 const double determinant = dot(e1, p);
                 if (determinant == 0.0) continue;
-                const Vec3 s{origin[0] - double{c[0].position[0]}, origin[1] - double{c[0].position[1]},
-                             origin[2] - double{c[0].position[2]}};
+                const Vec3 s{origin[0] - corner[0], origin[1] - corner[1], origin[2] - corner[2]};
                 const double b1 = dot(s, p) / determinant;
                 if (!(b1 >= 0.0 && b1 <= 1.0)) continue;
                 const Vec3 q = cross(s, e1);

@@ -30,8 +30,7 @@ struct Triangles {
 /// Reads a mesh (.obj, .ply), polygons as fans of triangles; `up` as for normals. Throws Error.
 Triangles read_triangles(const std::string& path, UpAxis up);
 
-/// A hierarchy of boxes over triangles, which are referred to and must outlive it. Results are the same on every
-/// machine and for any number of threads.
+/// A hierarchy of boxes over triangles. Results are the same on every machine and for any number of threads.
 class TriangleTree {
 public:
     struct Hit {
@@ -56,15 +55,19 @@ private:
         std::uint32_t begin = 0; ///< of its triangles in order_; or its second child, the first one follows at once
         std::uint32_t count = 0; ///< of triangles; 0: it has children
     };
+    /// A corner and the two edges from it.
+    struct Edges {
+        std::array<double, 3> corner, to_second, to_third;
+    };
     struct Work;
     std::uint32_t build(Work& work, std::uint32_t begin, std::uint32_t end);
     template <bool any_hit>
     std::optional<Hit> search(const std::array<double, 3>& origin, const std::array<double, 3>& direction,
                               double least) const;
 
-    const Triangles& triangles_;
     double size_ = 1e-30;
     std::vector<std::uint32_t> order_;
+    std::vector<Edges> edges_; ///< of the triangles in that order
     std::vector<Node> nodes_;
 };
 

@@ -1,184 +1,237 @@
-// How well files of places serve the points that a camera sees, without noise: variances by summation over all texels.
-#include "measure/light_samplers.h"
+// Files of places at the points that a camera sees, without the noise of pictures (docs/places.md):
+//
+//   bench_places make SCENE DATA local|places BYTES OUT    a file as `acdf render` makes it for the scene
+//   bench_places measure SCENE DATA POINTS FILE...         rows of a table, the first file is what others are
+//   compared with
+//
+// Variances are summed over all texels, with a shadow ray to the middle of each. The same sums are what samples are
+// held to: the mean of those of all points, and each point's own, in standard errors.
+#include "build/builder/sources.h"
 #include "measure/surface_points.h"
 #include "tools/render/run.h"
-#include "tools/render/sampler_build.h"
-
-#include "build/builder/sources.h"
 
 #include <acdf/builder.h>
-#include <acdf/local.h>
 #include <acdf/reader.h>
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <map>
-#include <sstream>
-
-using namespace acdf;
+#include <random>
+#include <stdexcept>
 
 namespace {
 
-std::string text_of(const char* path) {
+using namespace acdf;
+using measure::ScenePoint;
+using measure::Vec3;
+
+constexpr int kSamples = 256; ///< at each point
+
+std::string contents(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error(path + ": cannot be read");
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
+std::unique_ptr<tools::LoadedScene> scene_of(const std::string& path, const std::string& data) {
+    tools::SceneFile file = tools::parse_scene(contents(path));
+    file.width = 96;
+    file.height = 72;
+    return tools::load_scene(file, data);
+}
+
+builder::Places places_of(const compress::PlaceScene& scene) {
+    builder::Places out;
+    out.point = [scene](std::uint64_t index, builder::PlacePoint& told) {
+        compress::PlacePoint point;
+        if (!scene.points(index, point)) return false;
+        std::copy_n(point.position.begin(), 3, told.position);
+        std::copy_n(point.normal.begin(), 3, told.normal);
+        return true;
+    };
+    out.occluded = [scene](const builder::PlacePoint& from, const float direction[3]) {
+        compress::PlacePoint point;
+        std::copy_n(from.position, 3, point.position.begin());
+        std::copy_n(from.normal, 3, point.normal.begin());
+        return scene.occluded(point, {direction[0], direction[1], direction[2]});
+    };
+    return out;
+}
+
+int make(const tools::LoadedScene& scene, bool places, const char* bytes, const char* path) {
+    builder::TargetRows rows(builder::TargetOptions{});
+    rows.begin(scene.probe.width, scene.probe.height);
+    rows.take(0, scene.probe.height, scene.probe.rgb.data());
+    builder::LocalOptions options;
+    options.goal = builder::Goal::of_budget(std::strtoull(bytes, nullptr, 10));
+    if (places) options.places = places_of(measure::place_scene(scene.scene.geometry));
+    builder::Local made;
+    if (const builder::Status status = builder::local(rows.finish(), options, made); !status.ok())
+        throw std::runtime_error(status.message);
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(made.bytes.data()), static_cast<std::streamsize>(made.bytes.size()));
+    return 0;
+}
+
+AcdfLocalPoint at(const File& file, const float position[3], const float normal[3]) {
+    const LocalEnvironmentView view = file.local();
+    return view.has_places() ? view.at(position, normal) : view.at(normal);
+}
+
+struct Texel {
+    Vec3 direction;
+    float rounded[3];
+    double solid_angle;
+};
+Texel texel(const measure::ProbeLight& light, std::uint32_t column, std::uint32_t row) {
+    const double above = acdf_row_z(row, light.rows), below = acdf_row_z(row + 1, light.rows);
+    const double z = 0.5 * (above + below), radius = std::sqrt((1.0 - z) * (1.0 + z));
+    double sine, cosine;
+    acdf_sincospi(1.0 - 2.0 * (column + 0.5) / light.columns, &sine, &cosine);
+    Texel out{{radius * cosine, radius * sine, z}, {}, (above - below) * 2.0 * ACDF_PI / light.columns};
+    for (std::size_t k = 0; k < 3; ++k) out.rounded[k] = static_cast<float>(out.direction[k]);
+    return out;
+}
+
+/// What is integrated, told for the middle of a texel.
+double value(const ScenePoint& point, const measure::ProbeLight& light, std::uint32_t column, std::uint32_t row,
+             const Texel& t) {
+    measure::Rgb out = point.reflected(t.direction);
+    const measure::Rgb radiance = light.texel(column, row);
+    for (std::size_t k = 0; k < 3; ++k) out[k] *= radiance[k];
+    const double f = measure::luminance(out);
+    return f > 0.0 && !point.hidden(t.direction) ? f : 0.0;
+}
+
+/// Of one point.
 struct Sums {
-    double a = 0, b = 0; // sum v f^2/p, sum p
+    double mean = 0.0;
+    std::vector<double> square, deviation; ///< one a file; deviation: of the mean of samples
+    std::vector<int> lost;                 ///< texels with light that are never drawn
 };
 
-// part of a texel by splits that are columns; tile number
-struct Where { std::uint32_t part, tile; };
-
-Where where(const AcdfLocal& l, std::uint32_t c, std::uint32_t r) {
-    std::uint32_t node = 0, part = 0xFFFFFFFFu;
-    const std::uint32_t sq[2] = {c, r};
-    while (!(node & ACDF_TILE_FLAG)) {
-        if (part == 0xFFFFFFFFu && l.places.header && l.places.columns[node] == ACDF_NO_COLUMN) part = node;
-        const AcdfSplit& s = l.blend.splits[node];
-        node = s.child[sq[s.place & 7u] >= s.place >> 3];
+Sums sums_at(const ScenePoint& point, const measure::ProbeLight& light, const std::vector<File>& files,
+             std::uint64_t seed) {
+    Sums out;
+    out.square.assign(files.size(), 0.0);
+    out.deviation.assign(files.size(), 0.0);
+    out.lost.assign(files.size(), 0);
+    std::vector<AcdfLocalPoint> prepared;
+    for (const File& file : files) prepared.push_back(at(file, point.shading().position, point.shading().n));
+    for (std::uint32_t row = 0; row < light.rows; ++row)
+        for (std::uint32_t column = 0; column < light.columns; ++column) {
+            const Texel t = texel(light, column, row);
+            const double f = value(point, light, column, row, t);
+            if (!(f > 0.0)) continue;
+            out.mean += f * t.solid_angle;
+            for (std::size_t k = 0; k < files.size(); ++k) {
+                const double p = double{files[k].local().pdf(prepared[k], t.rounded)};
+                out.lost[k] += !(p > 0.0);
+                if (p > 0.0) out.square[k] += f * f / p * t.solid_angle;
+            }
+        }
+    std::mt19937_64 random(seed);
+    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        for (int i = 0; i < kSamples; ++i) {
+            const double u = uniform(), v = uniform();
+            const DirectionSample s = files[k].local().sample(prepared[k], u, v);
+            std::uint32_t square[2];
+            double position;
+            if (!(s.pdf > 0.0f) || !acdf_sphere_square(light.columns, light.rows, s.direction, square, &position))
+                continue;
+            out.deviation[k] +=
+                value(point, light, square[0], square[1], texel(light, square[0], square[1])) / double{s.pdf};
+        }
+        out.deviation[k] = out.deviation[k] / kSamples - out.mean;
     }
-    if (part == 0xFFFFFFFFu) part = node;
-    return {part, node & ~ACDF_TILE_FLAG};
+    return out;
+}
+
+/// Directions with light that a file never draws, of 10^5 of a point of the scene, a normal and a direction each.
+int support_violations(const tools::LoadedScene& scene, const File& file) {
+    const compress::PlaceScene places = measure::place_scene(scene.scene.geometry);
+    std::mt19937_64 random(11);
+    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    const auto direction = [&] {
+        const double z = 2.0 * uniform() - 1.0, r = std::sqrt((1.0 - z) * (1.0 + z));
+        double sine, cosine;
+        acdf_sincospi(2.0 * uniform() - 1.0, &sine, &cosine);
+        return std::array<float, 3>{float(r * cosine), float(r * sine), float(z)};
+    };
+    int violations = 0, count = 0;
+    for (std::uint64_t i = 0; count < 100000 && i < 10000000; ++i) {
+        compress::PlacePoint point;
+        if (!places.points(random() >> 40, point)) continue;
+        const std::array<float, 3> n = i % 2 ? point.normal : direction(), d = direction();
+        const double cosine =
+            double{n[0]} * double{d[0]} + double{n[1]} * double{d[1]} + double{n[2]} * double{d[2]};
+        const bool lit = cosine > 1e-3 && measure::luminance(scene.scene.light.radiance(d.data())) > 0.0;
+        if (!lit) continue;
+        ++count;
+        const AcdfLocalPoint prepared = at(file, point.position.data(), n.data());
+        violations += !(file.local().pdf(prepared, d.data()) > 0.0f);
+    }
+    return violations;
+}
+
+int measure_files(const tools::LoadedScene& scene, std::size_t count, int files_given, char** paths) {
+    std::vector<std::string> bytes;
+    std::vector<File> files(static_cast<std::size_t>(files_given));
+    for (int i = 0; i < files_given; ++i) bytes.push_back(contents(paths[i]));
+    for (std::size_t k = 0; k < files.size(); ++k)
+        if (const Status status = File::from_memory(bytes[k].data(), bytes[k].size(), files[k]); !status.ok())
+            throw std::runtime_error(status.message);
+    const std::vector<ScenePoint>& seen = scene.points.points;
+    count = std::min(count, seen.size());
+    std::vector<Sums> sums(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        sums[i] = sums_at(seen[i * seen.size() / count], scene.scene.light, files, i);
+    });
+    double mean = 0.0, baseline = 0.0;
+    for (const Sums& point : sums) mean += point.mean / double(count);
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        double noise = 0.0, error = 0.0, variance = 0.0, z_square = 0.0;
+        int lost = 0, far = 0;
+        for (const Sums& point : sums) {
+            const double own = std::max(point.square[k] - point.mean * point.mean, 0.0) / kSamples;
+            noise += own * kSamples / (point.mean * point.mean + 0.01 * mean * mean) / double(count);
+            error += point.deviation[k];
+            variance += own;
+            lost += point.lost[k];
+            if (!(own > 0.0)) continue;
+            z_square += point.deviation[k] * point.deviation[k] / own / double(count);
+            far += std::fabs(point.deviation[k]) > 4.0 * std::sqrt(own);
+        }
+        if (k == 0) baseline = noise;
+        std::printf("| `%s` | %zu | %.3g | %.3g | %.2f | %.2f | %d | %d |\n",
+                    files[k].local().has_places() ? "places" : "local", bytes[k].size(), noise, baseline / noise,
+                    error / std::sqrt(variance), std::sqrt(z_square), far,
+                    lost + support_violations(scene, files[k]));
+    }
+    return 0;
 }
 
 } // namespace
 
-int make(char** argv) {
-    tools::SceneFile sf = tools::parse_scene(text_of(argv[2]));
-    auto scene = tools::load_scene(sf, argv[3]);
-    builder::TargetRows rows(builder::TargetOptions{});
-    rows.begin(scene->probe.width, scene->probe.height);
-    rows.take(0, scene->probe.height, scene->probe.rgb.data());
-    const builder::Target target = rows.finish();
-    builder::LocalOptions options;
-    options.goal = builder::Goal::of_budget(std::strtoull(argv[4], nullptr, 10));
-    const compress::PlaceScene ps = measure::place_scene(scene->scene.geometry);
-    if (std::strcmp(argv[5], "places") == 0) {
-        options.places.point = [&](std::uint64_t index, builder::PlacePoint& out) {
-            compress::PlacePoint point;
-            if (!ps.points(index, point)) return false;
-            std::copy_n(point.position.begin(), 3, out.position);
-            std::copy_n(point.normal.begin(), 3, out.normal);
-            return true;
-        };
-        options.places.occluded = [&](const builder::PlacePoint& from, const float direction[3]) {
-            compress::PlacePoint point;
-            std::copy_n(from.position, 3, point.position.begin());
-            std::copy_n(from.normal, 3, point.normal.begin());
-            return ps.occluded(point, {direction[0], direction[1], direction[2]});
-        };
-    }
-    builder::Local made;
-    const builder::Status status = builder::local(target, options, made);
-    if (!status.ok()) return std::puts(status.message), 1;
-    std::ofstream(argv[6], std::ios::binary).write(reinterpret_cast<const char*>(made.bytes.data()), std::streamsize(made.bytes.size()));
-    return 0;
-}
-
 int main(int argc, char** argv) {
-    if (argc > 6 && std::strcmp(argv[1], "make") == 0) return make(argv);
-    if (argc < 6) return 2;
-    std::string dir = argv[2];
-    tools::SceneFile sf = tools::parse_scene(text_of(argv[1]));
-    unsigned w, h;
-    std::sscanf(argv[3], "%ux%u", &w, &h);
-    sf.width = w;
-    sf.height = h;
-    auto scene = tools::load_scene(sf, dir);
-    const unsigned each = unsigned(std::atoi(argv[4]));
-    std::vector<std::string> data;
-    std::vector<File> files(std::size_t(argc - 5));
-    for (int i = 5; i < argc; ++i) data.push_back(text_of(argv[i]));
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        if (!File::from_memory(data[i].data(), data[i].size(), files[i]).ok()) return 1;
+    try {
+        const std::string what = argc > 1 ? argv[1] : "";
+        if (what == "make" && argc == 7)
+            return make(*scene_of(argv[2], argv[3]), argv[4] == std::string("places"), argv[5], argv[6]);
+        if (what == "measure" && argc > 5)
+            return measure_files(*scene_of(argv[2], argv[3]), std::strtoull(argv[4], nullptr, 10), argc - 5,
+                                 argv + 5);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
     }
-    const measure::ProbeLight& light = scene->scene.light;
-    std::vector<const measure::ScenePoint*> points;
-    for (std::size_t i = 0; i < scene->points.points.size(); i += each) points.push_back(&scene->points.points[i]);
-    const std::size_t n = points.size(), m = files.size();
-    std::vector<double> I(n), var(n * m), oracle_parts(n), oracle_tiles(n), oracle_none(n), vis(n);
-    const AcdfLocal last = files.back().local().data();
-    std::vector<Where> ws(std::size_t{light.columns} * light.rows);
-    for (std::uint32_t r = 0; r < light.rows; ++r)
-        for (std::uint32_t c = 0; c < light.columns; ++c) ws[std::size_t{r} * light.columns + c] = where(last, c, r);
-    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
-        const measure::ScenePoint& p = *points[i];
-        std::vector<double> square(m, 0.0);
-        std::vector<AcdfLocalPoint> at(m);
-        for (std::size_t k = 0; k < m; ++k)
-            at[k] = files[k].local().has_places() ? files[k].local().at(p.shading().position, p.shading().n)
-                                                  : files[k].local().at(p.shading().n);
-        const AcdfLocalPoint bare = files.back().local().at(p.shading().n);
-        std::map<std::uint32_t, Sums> parts;
-        std::vector<Sums> tiles(last.blend.tiles->tile_count);
-        double sum = 0, all = 0, seen_all = 0;
-        for (std::uint32_t r = 0; r < light.rows; ++r) {
-            const double above = acdf_row_z(r, light.rows), below = acdf_row_z(r + 1, light.rows);
-            const double z = 0.5 * (above + below), rad = std::sqrt((1 - z) * (1 + z));
-            const double omega = (above - below) * 2.0 * ACDF_PI / light.columns;
-            for (std::uint32_t c = 0; c < light.columns; ++c) {
-                double s, co;
-                acdf_sincospi(1.0 - 2.0 * (c + 0.5) / light.columns, &s, &co);
-                const measure::Vec3 wi{rad * co, rad * s, z};
-                const float wf[3] = {float(wi[0]), float(wi[1]), float(wi[2])};
-                const double pb = double{files.back().local().pdf(bare, wf)};
-                measure::Rgb rho = p.reflected(wi);
-                const measure::Rgb L = light.texel(c, r);
-                for (int k = 0; k < 3; ++k) rho[std::size_t(k)] *= L[std::size_t(k)];
-                const double f = measure::luminance(rho);
-                const Where& x = ws[std::size_t{r} * light.columns + c];
-                Sums& sp = parts[x.part];
-                Sums& st = tiles[x.tile];
-                sp.b += pb * omega;
-                st.b += pb * omega;
-                if (!(f > 0.0)) continue;
-                all += f * omega;
-                if (p.hidden(wi)) continue;
-                sum += f * omega;
-                for (std::size_t k = 0; k < m; ++k)
-                    square[k] += f * f / double{files[k].local().pdf(at[k], wf)} * omega;
-                sp.a += f * f / pb * omega;
-                st.a += f * f / pb * omega;
-                seen_all += f * f / pb * omega;
-            }
-        }
-        I[i] = sum;
-        vis[i] = all > 0 ? sum / all : 0;
-        for (std::size_t k = 0; k < m; ++k) var[i * m + k] = square[k] - sum * sum;
-        double op = 0, ot = 0;
-        for (auto& [key, v] : parts) op += std::sqrt(v.a * v.b);
-        for (auto& v : tiles) ot += std::sqrt(v.a * v.b);
-        oracle_parts[i] = op * op - sum * sum;
-        oracle_tiles[i] = ot * ot - sum * sum;
-        oracle_none[i] = seen_all - sum * sum;
-    });
-    double mean = 0;
-    for (double x : I) mean += x / double(n);
-    std::vector<double> rel(m + 3, 0.0);
-    FILE* out = std::getenv("POINTS") ? std::fopen(std::getenv("POINTS"), "w") : nullptr;
-    for (std::size_t i = 0; i < n; ++i) {
-        const double scale = I[i] * I[i] + 0.01 * mean * mean;
-        for (std::size_t k = 0; k < m; ++k) rel[k] += var[i * m + k] / scale / double(n);
-        rel[m] += oracle_parts[i] / scale / double(n);
-        rel[m + 1] += oracle_tiles[i] / scale / double(n);
-        rel[m + 2] += oracle_none[i] / scale / double(n);
-        if (out) {
-            const float* x = points[i]->shading().position;
-            const float* nn = points[i]->shading().n;
-            std::fprintf(out, "%zu %g %g %g  %g %g %g  I %g vis %g", i * each, double(x[0]), double(x[1]), double(x[2]), double(nn[0]), double(nn[1]), double(nn[2]), I[i] / mean, vis[i]);
-            for (std::size_t k = 0; k < m; ++k) std::fprintf(out, " %g", var[i * m + k] / scale);
-            std::fprintf(out, " | %g %g %g\n", oracle_parts[i] / scale, oracle_tiles[i] / scale, oracle_none[i] / scale);
-        }
-    }
-    if (out) std::fclose(out);
-    for (std::size_t k = 0; k < m; ++k) std::printf("%s: %.4g, gain %.3g\n", argv[5 + k], rel[k], rel[0] / rel[k]);
-    std::printf("oracle parts %.4g gain %.3g; tiles %.4g gain %.3g (%u tiles); none %.4g\n", rel[m], rel[0] / rel[m], rel[m + 1], rel[0] / rel[m + 1], last.blend.tiles->tile_count, rel[m + 2]);
-    return 0;
+    std::fprintf(stderr, "usage: bench_places make SCENE DATA local|places BYTES OUT\n"
+                         "       bench_places measure SCENE DATA POINTS FILE...\n");
+    return 2;
 }

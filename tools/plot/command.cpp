@@ -111,7 +111,7 @@ std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& sourc
     }
     for (const NamedNormal& named : panel_normals) {
         Plotted panel;
-        panel.local.emplace(PlottedNormal{source.local->local, named.normal});
+        panel.local.emplace(PlottedNormal{source.local->local, named.normal, source.local->place});
         panel.density = density_of(*panel.local);
         panel.columns = source.columns;
         panel.rows = source.rows;
@@ -234,6 +234,16 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_normal(command, options->normal, "Input",
                "; the white line is its horizon. Without it the six axes are shown");
+    command
+        .add_option(
+            "--place", options->place,
+            "For a file that tells places apart (acdf local --places), the position in its scene; without it "
+            "what is drawn where a position is not known")
+        ->expected(3)
+        ->delimiter(',')
+        ->type_name("")
+        ->option_text("X,Y,Z")
+        ->group("Input");
     add_picture_options(command, *options);
     add_output(command, options->output, options->force,
                "The picture to write: .png, or .exr for the densities themselves as floats, for other programs")
@@ -247,6 +257,7 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
                     "acdf plot local.acdf -o six.png\n"
                     "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
+                    "acdf plot room.acdf -o floor.png --place 0.5,1,0 --normal 0,0,1\n"
                     "acdf plot nickel.acdf -o lobe.png --view 60\n"
                     "acdf plot sky.acdf -o sky.exr --width 4096"));
     command.callback([options, &exit_code] {

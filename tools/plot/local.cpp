@@ -9,14 +9,23 @@
 
 namespace acdf::tools {
 
+namespace {
+
+AcdfLocalPoint point_of(const PlottedNormal& plotted) {
+    if (plotted.place) return plotted.local.at(plotted.place->data(), plotted.normal.data());
+    return plotted.local.at(plotted.normal.data());
+}
+
+} // namespace
+
 Density density_of(const PlottedNormal& plotted) {
-    const AcdfLocalPoint point = plotted.local.at(plotted.normal.data());
+    const AcdfLocalPoint point = point_of(plotted);
     return [view = plotted.local, point](const float direction[3]) { return view.pdf(point, direction); };
 }
 
 std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map, const build::Progress& progress) {
     const AcdfLocal local = plotted.local.data();
-    const AcdfLocalPoint point = plotted.local.at(plotted.normal.data());
+    const AcdfLocalPoint point = point_of(plotted);
     const AcdfEnvironment& env = local.environment;
     const AcdfGrid grid = acdf_environment_grid(&env);
     const FindCell find = [&](const float direction[3], AcdfRange range[2]) {

@@ -1,4 +1,4 @@
-// The density of a local environment for one normal, and its horizon.
+// The density of a local environment for one normal, at a place or anywhere, and its horizon.
 #pragma once
 
 #include "images/picture.h"
@@ -7,6 +7,8 @@
 
 #include <acdf/reader.h>
 
+#include <array>
+#include <optional>
 #include <vector>
 
 namespace acdf::tools {
@@ -14,6 +16,7 @@ namespace acdf::tools {
 struct PlottedNormal {
     LocalEnvironmentView local;
     Normal normal;
+    std::optional<std::array<float, 3>> place; ///< a position of the file's scene
 };
 
 /// The stored density, exactly. The view's File must outlive the result.

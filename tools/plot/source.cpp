@@ -74,11 +74,21 @@ void add_variance(const File& file, std::vector<std::string>& title) {
     }
 }
 
+std::optional<std::array<float, 3>> chosen_place(const PlotArguments& options, const LocalEnvironmentView& view) {
+    const std::vector<float>& x = options.place;
+    if (x.empty()) return std::nullopt;
+    if (!view.has_places()) throw Failure(options.file + ": tells no places apart; leave out --place");
+    const float up[3] = {0.0f, 0.0f, 1.0f};
+    if (view.at(x.data(), up).place.count == 0)
+        throw Failure(options.file + ": the place of --place lies outside of its scene; see acdf info");
+    return std::array<float, 3>{x[0], x[1], x[2]};
+}
+
 void load_local(const PlotArguments& options, Plotted& source) {
     const File& file = source.stored.file;
     source.panels = options.normal.empty() && !is_exr(options.output);
     const Normal chosen = source.panels ? panel_normals[0].normal : chosen_normal(options.file, options.normal);
-    source.local.emplace(PlottedNormal{file.local(), chosen});
+    source.local.emplace(PlottedNormal{file.local(), chosen, chosen_place(options, file.local())});
     source.density = density_of(*source.local);
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
@@ -87,6 +97,12 @@ void load_local(const PlotArguments& options, Plotted& source) {
     std::snprintf(normal, sizeof normal, "normal %.3g, %.3g, %.3g", double{n[0]}, double{n[1]}, double{n[2]});
     source.title = {shown_name(options.file)};
     if (!source.panels) source.title.emplace_back(normal);
+    if (const auto& x = source.local->place) {
+        char place[96];
+        std::snprintf(place, sizeof place, "place %.4g, %.4g, %.4g", double{(*x)[0]}, double{(*x)[1]},
+                      double{(*x)[2]});
+        source.title.emplace_back(place);
+    }
     source.title.push_back(to_readable_size(file.size()));
     add_variance(file, source.title);
 }
@@ -96,6 +112,7 @@ void load_stored(const PlotArguments& options, Plotted& source) {
     if (source.stored.file.kind() == ACDF_KIND_BRDF) return load_brdf(options, source);
     if (!options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
     if (source.stored.file.kind() == ACDF_KIND_LOCAL) return load_local(options, source);
+    if (!options.place.empty()) throw CLI::ValidationError("--place", "is for local environments with places");
     refuse_normal(options.file, options.normal);
     if (source.stored.file.kind() != ACDF_KIND_ENVIRONMENT)
         fail_kind(options.file, source.stored.file, "plot",
@@ -134,8 +151,12 @@ bool is_exr(const std::string& path) {
 
 Plotted load_plotted(const PlotArguments& options) {
     Plotted source;
-    if (is_stored(options.file)) load_stored(options, source);
-    else load_image(options, source);
+    if (is_stored(options.file)) {
+        load_stored(options, source);
+        return source;
+    }
+    if (!options.place.empty()) throw CLI::ValidationError("--place", "is for local environments with places");
+    load_image(options, source);
     return source;
 }
 

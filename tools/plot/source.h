@@ -20,7 +20,7 @@ enum class PlotProjection { automatic, latlong, angular, hemisphere };
 
 struct PlotArguments {
     std::string file, output, range, view;
-    std::vector<float> normal;
+    std::vector<float> normal, place;
     input::ProbeOptions input;
     PlotProjection projection = PlotProjection::automatic;
     int width = 0; // 0: by the resolution

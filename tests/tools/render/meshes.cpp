@@ -113,6 +113,27 @@ TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
     }
 }
 
+/// Under the roof the sky above the open half is drawn, and what the roof hides is not.
+TEST(MeshPlaces, ArePlotted) {
+    MeshFolder folder;
+    ASSERT_EQ(folder.local("room.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    ASSERT_EQ(folder.local("plain.acdf", {}).code, 0);
+    const auto plot = [&](const std::string& file, const std::string& output, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"plot", folder / file, "-o", folder / output, "--width", "64"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_acdf(arguments);
+    };
+    ASSERT_EQ(plot("room.acdf", "here.exr", {"--normal", "0,0,1", "--place", "0,-1,0"}).code, 0);
+    ASSERT_EQ(plot("room.acdf", "anywhere.exr", {"--normal", "0,0,1"}).code, 0);
+    ASSERT_EQ(plot("room.acdf", "six.png", {"--place", "0,-1,0.1"}).code, 0);
+    EXPECT_NE(read_text(folder / "here.exr"), read_text(folder / "anywhere.exr"));
+    for (const auto& [file, place] : {std::pair{"plain.acdf", "0,0,0"}, {"room.acdf", "0,0,9"}}) {
+        const Result refused = plot(file, "no.png", {"--place", place});
+        EXPECT_EQ(refused.code, 1);
+        EXPECT_EQ(lines_in(refused.err), 1u) << refused.err;
+    }
+}
+
 /// A file of the mesh itself and one that is made for the picture serve it as well as those of a mesh with z up.
 TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
     MeshFolder folder;
