@@ -146,7 +146,7 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
  * that is what serves the normal. */
 ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
-    double visible[1 + ACDF_MAX_LIGHTS];
+    double visible, of_light[ACDF_MAX_LIGHTS];
     int i;
     if (!acdf_local_begin(local, normal, out)) return;
     acdf_place_at(&local->places, local->blend.tiles->tile_count, position, normal, &out->place);
@@ -154,9 +154,10 @@ ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3]
         acdf_local_sum(local, 0, out);
         return;
     }
-    acdf_place_visibilities(&out->place, 1 + local->light_count, visible);
-    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible[0];
-    acdf_local_sum(local, visible + 1, out);
+    visible = acdf_place_visibility(&out->place, 0);
+    for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
+    acdf_place_see_lights(&out->place, local->light_count, of_light);
+    acdf_local_sum(local, of_light, out);
     if (!(out->sum > 0.0)) out->place.count = 0;
 }
 

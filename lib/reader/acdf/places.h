@@ -51,13 +51,13 @@ ACDF_FN double acdf_place_visibility(const AcdfPlaceMixture* place, uint32_t ind
     return sum;
 }
 
-/* The first `count` of a row. */
-ACDF_FN void acdf_place_visibilities(const AcdfPlaceMixture* place, uint32_t count, double* out) {
+/* Those of all lights. */
+ACDF_FN void acdf_place_see_lights(const AcdfPlaceMixture* place, uint32_t count, double* out) {
     uint32_t k;
     int i;
     for (k = 0; k < count; ++k) out[k] = 0.0;
     for (i = 0; i < place->count; ++i) {
-        const uint8_t* row = place->row[i];
+        const uint8_t* row = place->row[i] + 1;
         const double weight = place->weight[i];
         for (k = 0; k < count; ++k) out[k] += weight * acdf_visibility(row[k]);
     }
