@@ -42,10 +42,11 @@ struct MeshFolder : SceneFolder {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     }
-    Result render(const std::string& scene, const std::string& output, std::vector<std::string> more = {}) {
+    Result render(const std::string& scene, const std::string& output, std::vector<std::string> more = {},
+                  const std::string& seeds = "150") {
         std::vector<std::string> arguments{"render", "--scene",     *this / scene,  "--data",
                                            data(),   "-o",          *this / output, "--seeds",
-                                           "150",    "--no-timing", "--json",       "--no-reference"};
+                                           seeds,    "--no-timing", "--json",       "--no-reference"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     }
@@ -143,7 +144,8 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
     const Result result =
         folder.render("y.json", "out",
                       {"--sampler", "local:64KiB", "--sampler", "file:y.acdf", "--sampler", "places:64KiB",
-                       "--sampler", "product(places:64KiB,ggx:0.9)", "--sequence", "independent"});
+                       "--sampler", "product(places:64KiB,ggx:0.9)", "--sequence", "independent"},
+                      "40");
     ASSERT_EQ(result.code, 0) << result.err;
     const Json samplers = Json::parse(result.out).at("samplers");
     for (const Json& one : samplers) {
