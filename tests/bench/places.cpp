@@ -16,9 +16,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <random>
@@ -180,13 +182,55 @@ int support_violations(const tools::LoadedScene& scene, const File& file) {
     return violations;
 }
 
-int measure_files(const tools::LoadedScene& scene, std::size_t count, int files_given, char** paths) {
+struct Files {
+    Files(int count, char** paths) : files(static_cast<std::size_t>(count)) {
+        for (int i = 0; i < count; ++i) bytes.push_back(contents(paths[i]));
+        for (std::size_t k = 0; k < files.size(); ++k)
+            if (const Status status = File::from_memory(bytes[k].data(), bytes[k].size(), files[k]); !status.ok())
+                throw std::runtime_error(status.message);
+    }
     std::vector<std::string> bytes;
-    std::vector<File> files(static_cast<std::size_t>(files_given));
-    for (int i = 0; i < files_given; ++i) bytes.push_back(contents(paths[i]));
-    for (std::size_t k = 0; k < files.size(); ++k)
-        if (const Status status = File::from_memory(bytes[k].data(), bytes[k].size(), files[k]); !status.ok())
-            throw std::runtime_error(status.message);
+    std::vector<File> files;
+};
+
+volatile float sink;
+
+/// Nanoseconds of one call at each point in turn.
+double time_calls(const File& file, const std::vector<ScenePoint>& seen, std::size_t count, bool drawn) {
+    constexpr std::size_t calls = 20000;
+    std::mt19937_64 random(1);
+    timespec time[2]{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time[0]);
+    for (std::size_t i = 0; i < calls; ++i) {
+        const measure::ShadingPoint& p = seen[i * 7919 % count * seen.size() / count].shading();
+        const AcdfLocalPoint prepared = at(file, p.position, p.n);
+        const double u = static_cast<double>(random() >> 11) * 0x1p-53,
+                     v = static_cast<double>(random() >> 11) * 0x1p-53;
+        sink = drawn ? file.local().sample(prepared, u, v).pdf : static_cast<float>(prepared.sum + u + v);
+    }
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time[1]);
+    return (1e9 * static_cast<double>(time[1].tv_sec - time[0].tv_sec) +
+            static_cast<double>(time[1].tv_nsec - time[0].tv_nsec)) /
+           double(calls);
+}
+
+int time_files(const tools::LoadedScene& scene, std::size_t count, const Files& given) {
+    const std::vector<ScenePoint>& seen = scene.points.points;
+    count = std::min(count, seen.size());
+    std::vector<std::array<double, 2>> best(given.files.size(), {1e30, 1e30});
+    for (int turn = 0; turn < 15; ++turn)
+        for (std::size_t k = 0; k < best.size(); ++k)
+            for (std::size_t drawn = 0; drawn < 2; ++drawn)
+                best[k][drawn] = std::min(best[k][drawn], time_calls(given.files[k], seen, count, drawn == 1));
+    for (const auto& [prepared, drawn] : best)
+        std::printf("at and a draw: %.0f ns, %.2f of the first file's; at: %.0f ns\n", drawn, drawn / best[0][1],
+                    prepared);
+    return 0;
+}
+
+int measure_files(const tools::LoadedScene& scene, std::size_t count, const Files& given) {
+    const std::vector<std::string>& bytes = given.bytes;
+    const std::vector<File>& files = given.files;
     const std::vector<ScenePoint>& seen = scene.points.points;
     count = std::min(count, seen.size());
     std::vector<Sums> sums(count);
@@ -224,14 +268,14 @@ int main(int argc, char** argv) {
         const std::string what = argc > 1 ? argv[1] : "";
         if (what == "make" && argc == 7)
             return make(*scene_of(argv[2], argv[3]), argv[4] == std::string("places"), argv[5], argv[6]);
-        if (what == "measure" && argc > 5)
-            return measure_files(*scene_of(argv[2], argv[3]), std::strtoull(argv[4], nullptr, 10), argc - 5,
-                                 argv + 5);
+        if ((what == "measure" || what == "cost") && argc > 5)
+            return (what == "cost" ? time_files : measure_files)(
+                *scene_of(argv[2], argv[3]), std::strtoull(argv[4], nullptr, 10), Files(argc - 5, argv + 5));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;
     }
     std::fprintf(stderr, "usage: bench_places make SCENE DATA local|places BYTES OUT\n"
-                         "       bench_places measure SCENE DATA POINTS FILE...\n");
+                         "       bench_places measure|cost SCENE DATA POINTS FILE...\n");
     return 2;
 }
