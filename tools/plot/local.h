@@ -16,7 +16,7 @@ namespace acdf::tools {
 struct PlottedNormal {
     LocalEnvironmentView local;
     Normal normal;
-    std::optional<std::array<float, 3>> place; ///< a position of the file's scene
+    std::optional<std::array<float, 3>> place = {}; ///< a position of the file's scene
 };
 
 /// The stored density, exactly. The view's File must outlive the result.
