@@ -62,9 +62,11 @@ bool parse_views(const std::string& text, std::uint32_t& theta, std::uint32_t& p
 
 void BrdfConversion::check_fit() const {
     const bool variance = brdf_.fit == ACDF_FIT_VARIANCE;
-    for (const char* option : {"--cells", "--budget", "--target-variance", "--no-sharing"})
+    for (const char* option : {"--cells", "--budget", "--target-variance", "--max-weight", "--no-sharing"})
         if (!variance && given(option))
             throw CLI::ValidationError(option, "is for --fit variance; use --knots or --eps with the other fits");
+    if (separate_ && given("--max-weight"))
+        throw CLI::ValidationError("--max-weight", "is for files whose views share cells");
     for (const char* option : {"--knots", "--eps"})
         if (variance && given(option))
             throw CLI::ValidationError(option, "is for --fit uniform, cdf and pdf; use --budget or --cells");
@@ -168,6 +170,10 @@ void BrdfConversion::add_size_options(CLI::App& command) {
     add_goal(command, brdf_.goal.cells, budget_, brdf_.goal.variance,
              {"Cells that all views share; without sharing: of each, on average", "N", "SIZE [64KiB]",
               ", about, as mean over views", 1, ACDF_MAX_TILES});
+    add_max_weight(
+        command, brdf_.max_weight,
+        ". It is measured over the views whose variance is printed; without it, weights are held to about "
+        "20 where that costs next to nothing");
     command
         .add_option("--knots", knots_, "Segments of curves over phi_h and theta_h, for --fit uniform, cdf and pdf")
         ->option_text("AxB [10x30]")

@@ -263,13 +263,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         command, environment_.goal.cells, budget_, environment_.goal.variance,
         {"Cells in all: about 4 bytes each", "N [4096]", "SIZE",
          ": 0.01 is a tenth of the mean as standard deviation of one sample. Files of up to 16 MiB are tried"});
-    command
-        .add_option("--max-weight", fit.max_weight,
-                    "No sample weighs more than W times the mean (largest f/p): no fireflies, at the price of some "
-                    "cells. It holds for whatever size is asked for, and fails where that is too small")
-        ->check(number_range(1.01, 1e9))
-        ->option_text("W")
-        ->group("Size and accuracy");
+    add_max_weight(command, fit.max_weight);
     command
         .add_option(
             "--knots", knots_,

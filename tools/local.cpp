@@ -91,7 +91,8 @@ void LocalConversion::set_separate() {
             if (given(option)) throw CLI::ValidationError(option, "is for --no-sharing");
         return;
     }
-    if (given("--tiles")) throw CLI::ValidationError("--tiles", "is for files whose bins share tiles");
+    for (const char* option : {"--tiles", "--max-weight"})
+        if (given(option)) throw CLI::ValidationError(option, "is for files whose bins share tiles");
     if (given("--target-variance"))
         throw CLI::ValidationError("--target-variance",
                                    "is for files whose bins share tiles; use --budget or --cells");
@@ -118,11 +119,11 @@ void LocalConversion::check() {
     const bool alone = local_.company.kind == ACDF_COMPANY_NONE;
     for (const char* option : {"--shares", "--heuristic"})
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
-    for (const char* option : {"--no-sharing", "--cosine-share", "--places"})
+    for (const char* option : {"--no-sharing", "--cosine-share", "--places", "--max-weight"})
         if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
     if (!places_) return;
     if (scene_.path.empty()) throw CLI::ValidationError("--places", "needs --scene MESH");
-    for (const char* option : {"--no-sharing", "--cells", "--target-variance"})
+    for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})
         if (given(option)) throw CLI::ValidationError("--places", std::string("goes without ") + option);
     if (!given("--budget")) local_.goal = builder::Goal::of_budget(kPlacesBytes);
 }
@@ -184,6 +185,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"relative_variance", a.relative_variance},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},
         {"gain", gain(result)},
+        {"max_weight", a.max_weight},
         {"share_above_horizon", a.share_above_horizon},
         {"least_share_above_horizon", a.least_share_above_horizon},
         {"support_violations", a.support_violations}};
@@ -270,6 +272,7 @@ void LocalConversion::add_size(CLI::App& command) {
     add_goal(command, local.goal.cells, budget_, local.goal.variance,
              {"Cells of the curves that bins share, about; with --no-sharing: of a bin, in the mean", "N",
               "SIZE [1MiB]", ", in the mean over normals", 16});
+    add_max_weight(command, local.max_weight, ". It is measured over the normals whose variance is printed");
     command
         .add_option(
             "--tiles", local.tiles,

@@ -204,12 +204,7 @@ void add_size_options(CLI::App& command, TableArguments& options) {
     add_goal(command, options.table.goal.cells, options.budget, options.table.goal.variance,
              {"Cells a bin, on average: a bin that is harder gets more of them",
               "N [4096 in all, at least 64 a bin]", "SIZE", ", as mean over the bins"});
-    command
-        .add_option("--max-weight", options.table.max_weight,
-                    "Bound on f/p over its mean, in every bin: no sample counts for more (no fireflies)")
-        ->check(number_range(1.0, 1e30).description(""))
-        ->option_text("W")
-        ->group("Size and accuracy");
+    add_max_weight(command, options.table.max_weight, ". In every bin");
 }
 
 void add_company_options(CLI::App& command, TableArguments& options) {

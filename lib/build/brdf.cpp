@@ -2,6 +2,7 @@
 
 #include "build/compressed_budget.h"
 #include "build/option_text.h"
+#include "build/weight_bound.h"
 
 #include <acdf/reader.h>
 
@@ -61,6 +62,7 @@ std::string option_text(const BrdfFileOptions& options) {
         text += (fit.phi_views > 1 ? "x" + std::to_string(fit.phi_views) : "") + " ";
     }
     if (options.diffuse_share > 0.0f) text += "--diffuse-floor " + option_number(options.diffuse_share) + " ";
+    if (options.max_weight > 0.0) text += "--max-weight " + option_number(options.max_weight) + " ";
     if (fit.fit == ACDF_FIT_VARIANCE) return text + (fit.sharing ? "" : "--no-sharing ") + goal_text(fit.goal);
     text += "--knots " + std::to_string(fit.phi_segments) + "x" + std::to_string(fit.theta_segments);
     return fit.epsilon > 0.0 ? text + " --eps " + option_number(fit.epsilon) : text;
@@ -108,7 +110,7 @@ std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFil
 namespace {
 
 /// `goal`: before compression; what the file says of its options keeps that of `given`.
-BrdfFile build_plain(const Brdf& brdf, const BrdfFileOptions& given, const compress::Goal& goal,
+BrdfFile build_plain(const Brdf& brdf, const BrdfFileOptions& given, const compress::Goal& goal, double max_weight,
                      const Progress& progress) {
     BrdfFileOptions options = given;
     const bool isotropic = brdf.isotropic && options.fit.phi_views <= 1;
@@ -119,6 +121,7 @@ BrdfFile build_plain(const Brdf& brdf, const BrdfFileOptions& given, const compr
     plain.codec = ACDF_CODEC_NONE;
     compress::BrdfOptions fit_options = options.fit;
     fit_options.goal = goal;
+    if (max_weight > 0.0) fit_options.max_weight = max_weight;
     fit_options.file_size = [&](const compress::BrdfFit& fit) {
         return std::uint64_t{brdf_bytes(fit, plain, unknown).size()};
     };
@@ -139,12 +142,14 @@ BrdfFile build_plain(const Brdf& brdf, const BrdfFileOptions& given, const compr
 
 BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& options, const Progress& progress) {
     const compress::Goal& goal = options.fit.goal;
-    if (options.codec == ACDF_CODEC_NONE || goal.kind != compress::Goal::Kind::budget)
-        return build_plain(brdf, options, goal, progress);
-    return fill_compressed(goal.budget, [&](std::uint64_t bytes) {
-        compress::Goal plain = goal;
-        plain.budget = bytes;
-        return build_plain(brdf, options, plain, progress);
+    return within_weight(options.max_weight, [&](double max_weight) {
+        if (options.codec == ACDF_CODEC_NONE || goal.kind != compress::Goal::Kind::budget)
+            return build_plain(brdf, options, goal, max_weight, progress);
+        return fill_compressed(goal.budget, [&](std::uint64_t bytes) {
+            compress::Goal plain = goal;
+            plain.budget = bytes;
+            return build_plain(brdf, options, plain, max_weight, progress);
+        });
     });
 }
 

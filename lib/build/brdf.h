@@ -16,7 +16,8 @@ namespace acdf::build {
 
 /// What `acdf brdf` was asked for, beside the BRDF.
 struct BrdfFileOptions {
-    compress::BrdfOptions fit; ///< symmetry and file_size are set by build_brdf
+    compress::BrdfOptions fit; ///< symmetry, max_weight and file_size are set by build_brdf
+    double max_weight = 0.0;   ///< of rows that are shared: of the measured weights; 0: what costs next to nothing
     AcdfChannels channels = ACDF_CHANNELS_WEIGHTED;
     compress::ChannelWeights weights;
     float diffuse_share = 0.0f; ///< of a cosine lobe, in [0, 1)

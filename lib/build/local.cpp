@@ -4,6 +4,7 @@
 #include "build/compressed_budget.h"
 #include "build/errors.h"
 #include "build/option_text.h"
+#include "build/weight_bound.h"
 #include "compress/fit_local.h"
 
 #include <algorithm>
@@ -165,10 +166,11 @@ void add_places(Draft& draft, const LocalOptions& options, std::uint64_t budget,
 
 /// At most `whole_budget` bytes before compression, and nearly as many.
 Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
-                  std::uint64_t whole_budget, const Progress& progress) {
+                  std::uint64_t whole_budget, double max_weight, const Progress& progress) {
     const std::uint64_t budget = local_budget(options, whole_budget);
     const NormalBins bins = bins_for(options, double(budget));
     compress::LocalSize size = size_for(options, bins, double(budget));
+    if (max_weight > 0.0) size.max_weight = max_weight;
     for (int tries = 0;; ++tries) {
         Draft draft = shared_draft(target, source, options, bins, size, progress);
         const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
@@ -196,8 +198,12 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
 
 Local build_in_budget(const compress::Target& target, const Source& source, const LocalOptions& options,
                       std::uint64_t budget, const Progress& progress) {
-    const auto build = [&](std::uint64_t bytes) { return build_plain(target, source, options, bytes, progress); };
-    return options.codec == ACDF_CODEC_NONE ? build(budget) : fill_compressed(budget, build);
+    return within_weight(options.max_weight, [&](double max_weight) {
+        const auto build = [&](std::uint64_t bytes) {
+            return build_plain(target, source, options, bytes, max_weight, progress);
+        };
+        return options.codec == ACDF_CODEC_NONE ? build(budget) : fill_compressed(budget, build);
+    });
 }
 
 /// The smallest file whose measured variance is low enough.
@@ -267,6 +273,7 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.places.scene && o.scene_text.find("--places") == std::string::npos) text += "--places ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {
+        if (o.max_weight > 0.0) text += "--max-weight " + option_number(o.max_weight) + " ";
         if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";
         return text + goal_text(o.goal);
     }
@@ -306,7 +313,11 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
         const NormalBins bins = bins_for(options, bytes / 0.3);
         compress::LocalSize size = size_for(options, bins, bytes / 0.3);
         size.tree_bytes = static_cast<std::uint64_t>(bytes);
-        return finish(shared_draft(target, source, options, bins, size, progress), target, source, options, bins);
+        return within_weight(options.max_weight, [&](double max_weight) {
+            if (max_weight > 0.0) size.max_weight = max_weight;
+            return finish(shared_draft(target, source, options, bins, size, progress), target, source, options,
+                          bins);
+        });
     }
     }
 }

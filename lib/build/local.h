@@ -30,6 +30,7 @@ struct LocalOptions {
     std::uint32_t subdivisions = 0;           ///< octahedral bins; 0: as suits the size
     std::uint32_t columns = 0, rows = 0;      ///< lat-long bins, if not 0
     std::uint32_t tiles = 0;                  ///< 0: as suits the size
+    double max_weight = 0.0;                  ///< with sharing: of the measured weights; 0: no bound
     std::vector<compress::SceneNormal> scene; ///< empty: all normals
     bool sharing = true;
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing

@@ -1,6 +1,7 @@
 #include "compress/fit_brdf.h"
 
 #include "compress/brdf_views.h"
+#include "compress/brdf_weights.h"
 #include "compress/fit_separate.h"
 #include "compress/no_energy.h"
 
@@ -18,6 +19,7 @@ namespace acdf::compress {
 namespace {
 
 constexpr int kSteps = 24;               // of optimise_rows
+constexpr int kRaises = 12;              // of rows whose bytes do not keep a bound on weights
 constexpr std::uint32_t kFileRow = 1;    // axis of the file: cos_theta_h
 constexpr std::uint32_t kFileColumn = 0; // phi_h
 constexpr std::uint32_t kLeastCells = 16;
@@ -58,11 +60,11 @@ Between around(const std::vector<std::size_t>& nodes, std::size_t views, std::si
 /// Fits all that bins share, for one set of nodes.
 class SharedFit {
 public:
-    SharedFit(const BrdfViews& views, Nodes nodes, std::uint32_t most_cells)
-        : views_(views), nodes_(std::move(nodes)), mixtures_(mix()), targets_(serve()),
+    SharedFit(const BrdfViews& views, const HorizonSquares& horizon, Nodes nodes, std::uint32_t most_cells)
+        : views_(views), horizon_(horizon), nodes_(std::move(nodes)), mixtures_(mix()), targets_(serve()),
           partition_(views.measures, targets_, most_cells) {}
 
-    BrdfFit fit(std::uint32_t cells, bool mirrored) const {
+    BrdfFit fit(std::uint32_t cells, bool mirrored, double max_weight) const {
         const TileTree tree = partition_.pruned(cells);
         const std::vector<std::uint32_t> cell = cell_of_squares(views_.measures, tree);
         std::vector<SharedMixture> mixtures = mixtures_;
@@ -76,10 +78,13 @@ public:
         BrdfFit out = empty(mirrored);
         out.rows.codebook = row_codebook();
         out.rows.row_count = nodes_.bins();
-        for (std::vector<double>& row : rows) {
-            const std::vector<std::uint8_t> codes = encode_row(tree, row);
-            out.rows.codes.insert(out.rows.codes.end(), codes.begin(), codes.end());
-            row = decode_row(tree, out.rows.codebook, codes.data());
+        const WeightBound bound(views_, horizon_, cell, tree.tiles.size(), max_weight);
+        bound.raise(rows, mixtures, rows);
+        RowProbabilities wanted = rows; // a byte may stand for less than half of what is wanted
+        store_rows(tree, rows, out.rows);
+        for (int step = 0; step < kRaises && bound.raise(rows, mixtures, wanted); ++step) {
+            rows = wanted;
+            store_rows(tree, rows, out.rows);
         }
         out.relative_variance = second_moment(rows, mixtures) - 1.0;
         out.rows.splits = in_file(tree);
@@ -89,6 +94,16 @@ public:
 private:
     std::size_t view_of(std::size_t bin) const {
         return nodes_.x[bin / nodes_.phi.size()] * views_.phi.size() + nodes_.phi[bin % nodes_.phi.size()];
+    }
+
+    /// The bytes of all rows, which become what the bytes stand for.
+    static void store_rows(const TileTree& tree, RowProbabilities& rows, StoredRows& out) {
+        out.codes.clear();
+        for (std::vector<double>& row : rows) {
+            const std::vector<std::uint8_t> codes = encode_row(tree, row);
+            out.codes.insert(out.codes.end(), codes.begin(), codes.end());
+            row = decode_row(tree, out.codebook, codes.data());
+        }
     }
 
     std::vector<SharedMixture> mix() const {
@@ -212,6 +227,7 @@ private:
     }
 
     const BrdfViews& views_;
+    const HorizonSquares& horizon_;
     Nodes nodes_;
     std::vector<SharedMixture> mixtures_; ///< one a view, without moments
     std::vector<SharedTarget> targets_;   ///< one a bin
@@ -291,7 +307,8 @@ public:
         const bool isotropic = options_.symmetry.isotropic;
         const std::size_t parts = isotropic ? std::clamp<std::size_t>(kViews / x.size(), 3, 8) : 2,
                           turns = isotropic ? 1 : p.azimuths * std::max(2u, 24 / p.azimuths);
-        const BrdfViews views = look_at(reflected_, grid_, subdivided(x, parts), azimuths(turns));
+        BrdfViews views = look_at(reflected_, grid_, subdivided(x, parts), azimuths(turns));
+        const HorizonSquares horizon = look_at_horizon(reflected_, views);
         if (std::none_of(views.targets.begin(), views.targets.end(),
                          [](const ViewTarget& t) { return t.albedo > 0.0; }))
             throw NoEnergy("it reflects nothing, so there is nothing to sample");
@@ -299,8 +316,8 @@ public:
         Nodes nodes;
         for (std::size_t i = 0; i < x.size(); ++i) nodes.x.push_back(i * parts);
         for (std::size_t k = 0; k < p.azimuths; ++k) nodes.phi.push_back(k * turns / p.azimuths);
-        const SharedFit shared(views, nodes, p.cells + p.cells / 2);
-        return shared.fit(p.cells, options_.symmetry.mirrored);
+        const SharedFit shared(views, horizon, nodes, p.cells + p.cells / 2);
+        return shared.fit(p.cells, options_.symmetry.mirrored, options_.max_weight);
     }
 
     /// The smallest file for a variance, to about a tenth.

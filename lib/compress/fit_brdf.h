@@ -26,6 +26,9 @@ struct BrdfFit {
     std::uint32_t bins() const { return static_cast<std::uint32_t>(nodes.size()) * phi_views; }
 };
 
+/// A bound on weights that costs next to nothing: docs/brdf.md.
+constexpr double kUsualMaxWeight = 20.0;
+
 struct BrdfOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
     bool sharing = true; ///< variance: bins share cells and are mixed; else each has a tree, and the nearest serves
@@ -34,6 +37,8 @@ struct BrdfOptions {
     /// Stored views in theta_o and phi_o; 0: as the fit sees fit (without sharing 32, or 32 x 16, as in Lawrence et
     /// al. 2005, §6.2).
     std::uint32_t theta_views = 0, phi_views = 0;
+    /// What no weight is to be above, over their mean, of the views that the fit looks at; of rows that are shared.
+    double max_weight = kUsualMaxWeight;
     std::uint32_t theta_segments = 30, phi_segments = 10; ///< uniform, cdf, pdf: of a curve over theta_h and phi_h
     double epsilon = 0.0;                                 ///< cdf, pdf: see CurveBudget
     std::function<std::uint64_t(const BrdfFit&)> file_size;

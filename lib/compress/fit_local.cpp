@@ -25,6 +25,9 @@ constexpr double kHorizonMargin = 1e-4;
 constexpr double kGlimpse = 1e-3;
 /// Radians across which light in a cell is taken to have one cosine.
 constexpr double kPointStep = 0.02;
+/// Of a bound on weights, what cells alone may take; the rest is for the cosines of what lies in a tile.
+constexpr double kWeightOfCells = 0.5;
+constexpr int kRaises = 12; // of rows whose bytes do not keep a bound on weights
 
 std::vector<double> worth_of_tiles(const Target& target, const std::vector<Box>& tiles, const Worth& worth) {
     std::vector<double> out;
@@ -45,11 +48,11 @@ struct Curves {
 };
 
 /// The curves at the lowest price at which they take at most `bytes`.
-Curves fit_curves(const TileTree& tiles, TileCurves& curves, std::uint64_t bytes) {
+Curves fit_curves(const TileTree& tiles, TileCurves& curves, std::uint64_t bytes, double most_ratio) {
     const auto at = [&](double price) {
         Curves out;
         out.cascade = std::make_unique<TileCascade>(tiles, curves, price);
-        out.tree = encode_tree(out.cascade->cascade, 2.0 * price);
+        out.tree = encode_tree(out.cascade->cascade, 2.0 * price, most_ratio);
         return out;
     };
     constexpr double cheapest = 1e-14; // of the sum of costs: rounding, no gain
@@ -131,19 +134,20 @@ public:
     TileLight(const Target& target, const TileTree& tiles, const TileCascade& cascade,
               const std::vector<AcdfLight>& lights)
         : target_(target), tiles_(tiles), points_(tiles.tiles.size()), lit_(tiles.tiles.size()),
-          least_(tiles.tiles.size(), 0.0) {
+          cost_(tiles.tiles.size(), 0.0), heaviest_(tiles.tiles.size(), 0.0) {
         std::vector<bool> is_light(points_.size(), false);
         for (const AcdfLight& light : lights) is_light[light.tile] = true;
         tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t t) {
             const double cost = cascade.tile_cost(t);
             if (is_light[t] || !(cost > 0.0)) return;
-            least_[t] = kGlimpse * cost;
+            cost_[t] = cost;
             cascade.for_each_cell(t, [&](const Part& part) {
                 // A cell of measure mu and probability P within the tile, P = cost of cell / cost of tile, adds
                 // mu / P times the integral of g^2 cos^2: cost of tile . cost of cell . cos^2.
                 const double amount = cost * part.moments.cost();
                 if (!(amount > 0.0)) return;
-                lit_[t].push_back(part.box);
+                lit_[t].push_back({part.box, part.moments.weight()});
+                heaviest_[t] = std::max(heaviest_[t], part.moments.weight());
                 for_each_block(target, part.box, kPointStep, [&](const Box& block, double share) {
                     points_[t].push_back({centre(target, block), amount * share, 0.0});
                 });
@@ -161,30 +165,71 @@ public:
                 sum += p.amount * cosine * cosine;
             }
             out[t] = std::sqrt(sum);
-            if (out[t] < least_[t] && seen(t, normal)) out[t] = least_[t];
+            const double least = kGlimpse * cost_[t];
+            if (out[t] < least && seen(t, normal)) out[t] = least;
+        }
+        return out;
+    }
+
+    /// The least that each tile's part of the irradiance may be taken for, so that no weight is above
+    /// `max_weight` times the mean: p in a cell is the tile's part times that of the cell in it.
+    std::vector<double> least(const Direction& normal, const std::vector<double>& costs, double max_weight) const {
+        std::vector<double> out(costs.size(), 0.0);
+        for (std::size_t t = 0; t < out.size(); ++t) {
+            if (!(costs[t] > 0.0)) continue;
+            const double scale = cost_[t] / max_weight;
+            const double cosine = largest_cosine(target_, tiles_.tiles[t], normal);
+            if (heaviest_[t] * cosine * scale <= costs[t]) continue; // as nearly everywhere
+            for (const LitCell& cell : lit_[t])
+                out[t] = std::max(out[t], cell.weight * largest_cosine(target_, cell.box, normal) * scale);
         }
         return out;
     }
 
 private:
+    struct LitCell {
+        Box box;
+        double weight; ///< see Moments
+    };
+
     /// Whether any cell with light in it reaches above the horizon.
     bool seen(std::size_t t, const Direction& normal) const {
         if (!(largest_cosine(target_, tiles_.tiles[t], normal) > -kHorizonMargin)) return false;
-        return std::any_of(lit_[t].begin(), lit_[t].end(), [&](const Box& cell) {
-            return largest_cosine(target_, cell, normal) > -kHorizonMargin;
+        return std::any_of(lit_[t].begin(), lit_[t].end(), [&](const LitCell& cell) {
+            return largest_cosine(target_, cell.box, normal) > -kHorizonMargin;
         });
     }
 
     const Target& target_;
     const TileTree& tiles_;
     std::vector<std::vector<LightPoint>> points_;
-    std::vector<std::vector<Box>> lit_; ///< cells of each tile that have light
-    std::vector<double> least_;
+    std::vector<std::vector<LitCell>> lit_; ///< cells of each tile that have light
+    std::vector<double> cost_, heaviest_;   ///< of each tile; 0: a light, or dark
 };
 
-/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to.
-template <class Costs>
-void fill_rows(const Costs& costs, const NormalBins& bins, LocalFit& out) {
+/// The row of `cost`, raised where what its bytes stand for is less than `least`.
+std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cost, std::vector<double> least) {
+    double sum = 0.0;
+    for (std::size_t t = 0; t < cost.size(); ++t) sum += cost[t] = std::max(cost[t], least[t]);
+    std::vector<std::uint8_t> row = encode_row(fit.tiles, cost);
+    for (int step = 0; step < kRaises; ++step) {
+        const std::vector<double> stored = decode_row(fit.tiles, fit.shared.codebook, row.data());
+        bool any = false;
+        for (std::size_t t = 0; t < cost.size(); ++t)
+            if (stored[t] * sum < 0.99 * least[t]) {
+                cost[t] *= least[t] / (stored[t] * sum);
+                any = true;
+            }
+        if (!any) break;
+        row = encode_row(fit.tiles, cost);
+    }
+    return row;
+}
+
+/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to, and
+/// `row(bin, costs)` the bytes of that.
+template <class Costs, class Row>
+void fill_rows(const Costs& costs, const Row& row_of, const NormalBins& bins, LocalFit& out) {
     const std::size_t count = bins.normals.size(), width = out.tiles.splits.size();
     out.shares.assign(count, 0.0f);
     out.tree.roots.assign(count, ACDF_NO_ROOT);
@@ -196,7 +241,7 @@ void fill_rows(const Costs& costs, const NormalBins& bins, LocalFit& out) {
         const std::vector<double> cost = costs(b);
         double sum = 0.0;
         for (double c : cost) sum += c;
-        const std::vector<std::uint8_t> row = encode_row(out.tiles, cost);
+        const std::vector<std::uint8_t> row = row_of(b, cost);
         std::copy(row.begin(), row.end(), out.shared.codes.begin() + std::ptrdiff_t(out.tree.roots[b] * width));
         out.shares[b] = static_cast<float>(sum);
     });
@@ -223,8 +268,11 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
     report(0.4);
     const Target filled = beside ? beside->filled(target) : Target{};
     const Target& fitted = beside ? filled : target;
-    TileCurves tile_curves(fitted, out.tiles.tiles, worth_of_tiles(target, out.tiles.tiles, light_worth));
-    Curves curves = fit_curves(out.tiles, tile_curves, size.tree_bytes);
+    const bool bounded = std::isfinite(size.max_weight);
+    TileCurves tile_curves(fitted, out.tiles.tiles, worth_of_tiles(target, out.tiles.tiles, light_worth),
+                           kWeightOfCells * size.max_weight);
+    constexpr double near = 1.01, any = std::numeric_limits<double>::infinity();
+    Curves curves = fit_curves(out.tiles, tile_curves, size.tree_bytes, bounded ? near : any);
     report(0.8);
     out.lights = find_lights(target, out.tiles, *curves.cascade, tile_curves.total(), light_worth, rule);
     out.tree = std::move(curves.tree);
@@ -245,10 +293,16 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
                                   static_cast<float>(flux[b] / tile_curves.total())};
                 return shares;
             },
-            bins, out);
+            [&](std::size_t, const std::vector<double>& shares) { return encode_row(out.tiles, shares); }, bins,
+            out);
     } else {
         const TileLight light(target, out.tiles, *curves.cascade, out.lights);
-        fill_rows([&](std::size_t b) { return light.costs(bins.normals[b]); }, bins, out);
+        fill_rows([&](std::size_t b) { return light.costs(bins.normals[b]); },
+                  [&](std::size_t b, const std::vector<double>& costs) {
+                      if (!bounded) return encode_row(out.tiles, costs);
+                      return row_above(out, costs, light.least(bins.normals[b], costs, size.max_weight));
+                  },
+                  bins, out);
     }
     out.cascade = std::move(curves.cascade->cascade);
     report(1.0);

@@ -9,6 +9,7 @@
 #include <acdf/layout.h>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace acdf::compress {
@@ -17,6 +18,8 @@ namespace acdf::compress {
 struct LocalSize {
     std::uint32_t tiles = 900;         ///< at most so many
     std::uint64_t tree_bytes = 131072; ///< of the curves within tiles, at most (but for the least there must be)
+    /// What weights are held to, over their mean, as far as bins tell; not beside a company.
+    double max_weight = std::numeric_limits<double>::infinity();
 };
 
 /// A local environment map, ready to be stored.

@@ -86,7 +86,7 @@ private:
         Trial grown = grow();
         progress(0.6);
         if (grown.beyond) {
-            if (forgetful()) forget(grown.price);
+            forget(grown.price);
             grown.tree = {}; // of other partitions
             return bisect(std::move(grown));
         }
@@ -211,12 +211,9 @@ private:
         return options_.file_size ? options_.file_size(candidate.fitted.tree) : candidate.fitted.tree.bytes.size();
     }
 
-    /// Forgotten parts would be divided again where a bound on weights is tightened.
-    bool forgetful() const { return !(options_.max_weight > 0.0); }
-
     void forget(double price) {
         for (auto& partition : partitions_)
-            if (partition) partition->forget(price);
+            if (partition) partition->forget(price, heaviest_);
         look_at_partitions();
     }
 
@@ -233,9 +230,8 @@ private:
 
     /// Parts of the largest tree that a variance may take: cells, and as many again that are divided.
     std::size_t too_many_parts() const {
-        const bool bounded = goal_.kind == Goal::Kind::variance && forgetful();
         const std::uint64_t cells = options_.most_bytes / kCellBytes;
-        return bounded && cells < std::numeric_limits<std::uint64_t>::max() / kCellBytes
+        return goal_.kind == Goal::Kind::variance && cells < std::numeric_limits<std::uint64_t>::max() / kCellBytes
                    ? std::max<std::size_t>(2 * cells / partitions_.size(), kFewParts)
                    : std::numeric_limits<std::size_t>::max();
     }
@@ -247,8 +243,7 @@ private:
         bool any = false, full = false;
         for (auto& partition : partitions_) {
             if (!partition) continue;
-            Forgetting forgetting;
-            if (forgetful()) forgetting = {finest / kLeastBytes, most_parts(*partition), too_many_parts()};
+            const Forgetting forgetting{finest / kLeastBytes, most_parts(*partition), too_many_parts()};
             any = partition->refine(finest, heaviest_, forgetting) || any;
             full = full || partition->full();
         }

@@ -118,8 +118,8 @@ void copy_below(const std::vector<Part>& parts, const std::vector<bool>& pays, s
 }
 
 /// The parts without the divisions that pay at no price from `price` on. What belongs together lies together.
-std::vector<Part> without_dear(const std::vector<Part>& parts, double price) {
-    const std::vector<bool> pays = may_pay(parts, price);
+std::vector<Part> without_dear(const std::vector<Part>& parts, double price, double heaviest) {
+    const std::vector<bool> pays = may_pay(parts, price, heaviest);
     std::size_t kept = 1; // at most
     for (std::size_t i = 0; i < parts.size(); ++i) kept += pays[i] ? parts[i].children : 0;
     std::vector<Part> out;
@@ -200,7 +200,7 @@ private:
         std::mutex visiting;
         tbb::parallel_for(begin, end, [&](std::size_t k) {
             const std::vector<Part> all = grow_subtree(growth_, forced(aside_[k]), parts_[aside_[k]]);
-            kept[k - begin] = without_dear(all, forgetting_.price);
+            kept[k - begin] = without_dear(all, forgetting_.price, growth_.heaviest);
             const std::lock_guard<std::mutex> lock(visiting);
             for (const Part& part : all)
                 if (part.split != Part::whole) visit(part);
@@ -241,13 +241,13 @@ void Partition::add_first_part(const Box& box, std::uint8_t depth) {
     parts_.push_back(first);
 }
 
-void Partition::forget(double price) {
-    parts_ = without_dear(parts_, price);
+void Partition::forget(double price, double heaviest) {
+    parts_ = without_dear(parts_, price, heaviest);
     forgot_ = true;
 }
 
 bool Partition::refine(double finest, double heaviest, const Forgetting& forgetting) {
-    if (parts_.size() > forgetting.parts) forget(forgetting.price);
+    if (parts_.size() > forgetting.parts) forget(forgetting.price, heaviest);
     bool any_new = false;
     const Growth growth{grid_, total_, finest, heaviest};
     Levels levels(growth, first_, forgetting, parts_);

@@ -49,10 +49,10 @@ public:
     /// happens. Returns whether any part was divided that was not before, be it that it has been forgotten since.
     ///
     /// With `forgetting`, memory does not grow with all that is tried: what is forgotten is divided again when
-    /// refine is called again. Not for a bound on weights.
+    /// refine is called again.
     bool refine(double finest, double heaviest, const Forgetting& forgetting = {});
-    /// Forgets divisions that pay at no price from `price` on.
-    void forget(double price);
+    /// Forgets divisions that pay at no price from `price` on, but for parts with weights above `heaviest`.
+    void forget(double price, double heaviest);
     /// Whether the last refine() gave up: it divided some of what it was to divide.
     bool full() const { return full_; }
     const std::vector<Part>& parts() const { return parts_; }

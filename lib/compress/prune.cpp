@@ -46,7 +46,7 @@ Pruned prune(const std::vector<Part>& parts, double price, double heaviest) {
     return prune(prune_nodes(parts, heaviest), price);
 }
 
-std::vector<bool> may_pay(const std::vector<Part>& parts, double price) {
+std::vector<bool> may_pay(const std::vector<Part>& parts, double price, double heaviest) {
     constexpr double rounding = 1e-9; // of the cost: far more than sums of costs are off by
     std::vector<bool> out(parts.size(), false);
     std::vector<double> value(parts.size()); // at most what prune() makes of it at that price
@@ -56,8 +56,9 @@ std::vector<bool> may_pay(const std::vector<Part>& parts, double price) {
         if (part.split == Part::whole) continue;
         double divided = price * kKnotBytes * (part.children - 1);
         for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k) divided += value[k];
-        out[i] = divided < value[i] * (1.0 + rounding);
-        value[i] = std::min(value[i], divided);
+        const bool heavy = part.moments.weight() > heaviest;
+        out[i] = heavy || divided < value[i] * (1.0 + rounding);
+        value[i] = heavy ? divided : std::min(value[i], divided);
     }
     return out;
 }

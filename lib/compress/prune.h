@@ -38,10 +38,10 @@ struct Pruned {
 Pruned prune(const PruneNodes& nodes, double price);
 Pruned prune(const std::vector<Part>& parts, double price, double heaviest);
 
-/// For each part, whether prune() could keep its division at a price from `price` on, without a bound on weights:
-/// divisions that a lower cost could pay if the curves below them took no bytes of their own. Then a division that
-/// does not pay pays at no higher price either.
-std::vector<bool> may_pay(const std::vector<Part>& parts, double price);
+/// For each part, whether prune() could keep its division at a price from `price` on: divisions that a lower cost
+/// could pay if the curves below them took no bytes of their own, and those of parts with weights above `heaviest`.
+/// Then a division that does not pay pays at no higher price either.
+std::vector<bool> may_pay(const std::vector<Part>& parts, double price, double heaviest);
 
 /// The trees of all bins, and what belongs to their cells.
 struct Flattened {

@@ -7,14 +7,10 @@
 #include <limits>
 
 namespace acdf::compress {
-namespace {
 
-constexpr double kNoBound = std::numeric_limits<double>::infinity(); // on weights
-
-} // namespace
-
-TileCurves::TileCurves(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth)
-    : worth_(std::move(worth)), total_(integral(target)), partitions_(tiles.size()) {
+TileCurves::TileCurves(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth,
+                       double heaviest)
+    : worth_(std::move(worth)), heaviest_(heaviest), total_(integral(target)), partitions_(tiles.size()) {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
         partitions_[t] =
             std::make_unique<Partition>(grid_of(target), total_, tiles[t], std::uint8_t{TileTree::most_depth + 1});
@@ -23,13 +19,13 @@ TileCurves::TileCurves(const Target& target, const std::vector<Box>& tiles, std:
 
 void TileCurves::refine(double price) {
     tbb::parallel_for(std::size_t{0}, partitions_.size(), [&](std::size_t t) {
-        if (worth_[t] > 0.0) partitions_[t]->refine(price * kLeastBytes / (worth_[t] * total_), kNoBound);
+        if (worth_[t] > 0.0) partitions_[t]->refine(price * kLeastBytes / (worth_[t] * total_), heaviest_);
     });
 }
 
 Pruned TileCurves::pruned(std::size_t tile, double price) const {
     const double own = worth_[tile] > 0.0 ? price / (worth_[tile] * total_) : std::numeric_limits<double>::max();
-    return prune(partitions_[tile]->parts(), own, kNoBound);
+    return prune(partitions_[tile]->parts(), own, heaviest_);
 }
 
 TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double price)

@@ -5,6 +5,7 @@
 #include "compress/tiles.h"
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -13,8 +14,10 @@ namespace acdf::compress {
 /// A partition of each tile, grown once and pruned at any price.
 class TileCurves {
 public:
-    /// `worth`: one a tile, what its light is worth; tiles of none stay whole.
-    TileCurves(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth);
+    /// `worth`: one a tile, what its light is worth; tiles of none stay whole. Cells whose weight() is above
+    /// `heaviest` are divided at any price.
+    TileCurves(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth,
+               double heaviest = std::numeric_limits<double>::infinity());
 
     /// The integral of the target, to which all costs are normalised.
     double total() const { return total_; }
@@ -25,7 +28,7 @@ public:
 
 private:
     std::vector<double> worth_;
-    double total_ = 0.0;
+    double heaviest_, total_ = 0.0;
     std::vector<std::unique_ptr<Partition>> partitions_;
 };
 

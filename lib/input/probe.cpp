@@ -1,5 +1,6 @@
 #include "input/probe.h"
 
+#include "build/builder/pixels.h"
 #include "build/probe_rows.h"
 #include "input/detect.h"
 #include "input/file_name.h"
@@ -35,21 +36,10 @@ void refuse_bad_texels(const std::string& path, const build::BadTexels& bad) {
 } // namespace
 
 const char* to_string(Projection projection) {
-    switch (projection) {
-    case Projection::automatic:
-        return "auto";
-    case Projection::latlong:
-        return "latlong";
-    case Projection::angular:
-        return "angular";
-    case Projection::mirrorball:
-        return "mirrorball";
-    case Projection::cube_cross:
-        return "cube-cross";
-    case Projection::octahedral:
-        return "octahedral";
-    }
-    return "unknown";
+    using Of = builder::Projection;
+    constexpr Of of[] = {Of::latlong, Of::latlong, Of::angular, Of::mirrorball, Of::vertical_cross, Of::octahedral};
+    return projection == Projection::automatic ? "auto"
+                                               : builder::name_of(of[static_cast<std::size_t>(projection)]);
 }
 
 Probe read_probe(const std::string& path, const ProbeOptions& options) {

@@ -144,6 +144,7 @@ LocalOptions local_options(const Options& options) {
     options.take("subdivisions", out.subdivisions);
     options.take("tiles", out.tiles);
     out.normals = normals_of(options);
+    options.take("max_weight", out.max_weight);
     options.take("cosine_share", out.cosine_share);
     options.take("sharing", out.sharing);
     out.company = company_of(options);
@@ -159,6 +160,7 @@ BrdfOptions brdf_options(const Options& options) {
     options.take("sharing", out.sharing);
     options.take("theta_views", out.theta_views);
     options.take("phi_views", out.phi_views);
+    options.take("max_weight", out.max_weight);
     options.take("diffuse_share", out.diffuse_share);
     out.codec = codec_of(options);
     out.source = source_of(options);

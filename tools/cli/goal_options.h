@@ -45,6 +45,20 @@ inline void add_goal(CLI::App& command, std::uint32_t& cells, std::string& budge
         ->group(group);
 }
 
+/// --max-weight; `beyond` tells what holds for one kind alone.
+inline void add_max_weight(CLI::App& command, double& max_weight, const char* beyond = "") {
+    command
+        .add_option(
+            "--max-weight", max_weight,
+            std::string("No sample weighs more than W times the mean (largest f/p): no fireflies, at the price "
+                        "of some cells. It holds for whatever size is asked for, and fails where that is too "
+                        "small") +
+                beyond)
+        ->check(number_range(1.01, 1e9))
+        ->option_text("W")
+        ->group("Size and accuracy");
+}
+
 /// Takes over what was given; else `goal` stays as it is. Returns how many were. Throws CLI::ValidationError where
 /// there are two, or a budget is no size.
 inline int read_goal(const CLI::App& command, const std::string& budget, builder::Goal& goal) {

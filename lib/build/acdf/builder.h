@@ -100,8 +100,7 @@ struct FitOptions {
     Conditional conditional = Conditional::energy;
 };
 
-/// Where a source came from. All of it is optional, UTF-8, up to 4096 bytes each, and goes into the file's
-/// metadata.
+/// Where a source came from: optional, UTF-8, up to 4096 bytes each; it goes into the file's metadata.
 struct Source {
     std::string name;       ///< source.name
     std::string sha256;     ///< source.sha256, hex
@@ -279,6 +278,7 @@ struct LocalOptions {
     std::uint32_t subdivisions = 0;       ///< octahedral bins, 4 n^2 + 2 of them, n up to 256; 0: as suits the size
     std::uint32_t columns = 0, rows = 0;  ///< instead lat-long bins, up to 1024 each, without sharing
     std::uint32_t tiles = 0;              ///< up to ACDF_MAX_TILES; 0: as suits the size
+    double max_weight = 0.0;              ///< with sharing: the largest measured weight, as FitOptions; 0: no bound
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
@@ -342,6 +342,8 @@ struct BrdfOptions {
     std::uint32_t phi_segments = 10, theta_segments = 30; ///< cdf, pdf, uniform: of curves over phi_h and theta_h
     double epsilon = 0.0;                                 ///< cdf, pdf: see FitOptions
     float diffuse_share = 0.0f;                           ///< of samples that follow the cosine, in [0, 0.99]
+    double max_weight =
+        0.0; ///< with sharing: the largest measured weight, at least 1; 0: what costs next to nothing
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source; ///< name and sha256
 };
@@ -389,8 +391,6 @@ struct Table {
 /// A table: a density over its sampled axes for every bin (acdf::TableView). Each number is the value of a function
 /// that is constant on its box of the grid; numbers that float32 does not hold are scaled by a power of two.
 Status table(const Array& array, const TableOptions& options, Table& result, const Control& control = {}) noexcept;
-
-// ---- what makes a file ----
 
 /// What a file's `fit.options` will tell: with source and version it tells the bytes. Empty where memory is short.
 std::string option_text(const EnvironmentOptions& options) noexcept;

@@ -99,6 +99,10 @@ void check_bins(const LocalOptions& options) {
             "columns and rows are for bins without sharing: those that share tiles are interpolated");
     require(options.tiles <= ACDF_MAX_TILES, "tiles is above ACDF_MAX_TILES");
     require(options.tiles == 0 || options.sharing, "tiles is for bins that share them");
+    check_max_weight(options.max_weight);
+    require(options.max_weight == 0.0 ||
+                (options.sharing && !options.places.point && options.company.kind == ACDF_COMPANY_NONE),
+            "max_weight is for bins that share tiles, without places or a company");
 }
 
 } // namespace
@@ -173,6 +177,9 @@ void check(const BrdfOptions& options) {
     require(phi == 0 || theta > 0, "phi_views needs theta_views");
     check_segments(options.phi_segments, options.theta_segments, options.epsilon);
     require(is_share(double{options.diffuse_share}, 0.99f), "diffuse_share is not in [0, 0.99]");
+    check_max_weight(options.max_weight);
+    require(options.max_weight == 0.0 || (options.fit == ACDF_FIT_VARIANCE && options.sharing),
+            "max_weight is for the variance fit of views that share cells");
     if (options.fit != ACDF_FIT_VARIANCE) return;
     check(options.goal, 1);
     require(options.goal.kind != Goal::Kind::cells || options.goal.cells <= ACDF_MAX_TILES,

@@ -123,6 +123,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.columns = options.columns;
     out.rows = options.rows;
     out.tiles = options.tiles;
+    out.max_weight = options.max_weight;
     out.scene = internal(options.normals);
     out.company = internal(options.company);
     out.sharing = options.sharing;
@@ -148,6 +149,7 @@ build::BrdfFileOptions internal(const BrdfOptions& options) {
     out.fit.theta_segments = options.theta_segments;
     out.fit.phi_segments = options.phi_segments;
     out.fit.epsilon = options.epsilon;
+    out.max_weight = options.max_weight;
     out.channels = options.channels.mode;
     out.weights = internal(options.channels.weights);
     out.diffuse_share = options.diffuse_share;

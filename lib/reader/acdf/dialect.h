@@ -1,4 +1,4 @@
-/* The words of acdf/pieces.h and of lib/shader/environment.h, which are one text for C, C++, CUDA, OpenCL C, GLSL,
+/* The words of acdf/pieces.h and of acdf/shader.h, which are one text for C, C++, CUDA, OpenCL C, GLSL,
  * HLSL and WGSL. Here they are C; lib/shader has the other dialects.
  *
  * ACDF_LET is a constant and ACDF_VAR a variable of a function, ACDF_FN1 to ACDF_FN5 begin functions of so many

@@ -36,9 +36,9 @@ Target lights() {
 
 Partition partition_of(const Target& target) { return Partition(grid_of(target), integral(target)); }
 
-Cascade pruned_cascade(const Partition& partition, double price) {
+Cascade pruned_cascade(const Partition& partition, double price, double heaviest = kNoBound) {
     Flattened flat;
-    flatten(partition, prune(partition.parts(), price, kNoBound), flat);
+    flatten(partition, prune(partition.parts(), price, heaviest), flat);
     return flat.cascade;
 }
 
@@ -68,8 +68,30 @@ TEST(PartitionGrowth, WhatIsForgottenChangesNoTreeAndNoNews) {
             for (const double above : {1.0, 1.3, 7.0, 300.0})
                 expect_equal(pruned_cascade(whole, above * price), pruned_cascade(forgetful, above * price));
         }
-        forgetful.forget(finest * 4.0 / kLeastBytes);
+        forgetful.forget(finest * 4.0 / kLeastBytes, kNoBound);
         expect_equal(pruned_cascade(whole, finest * 4.0), pruned_cascade(forgetful, finest * 4.0));
+    }
+}
+
+TEST(PartitionGrowth, WhatABoundOnWeightsNeedsIsNotForgotten) {
+    const double heaviest = 2.0;
+    for (const Target& target : {noise(), lights()}) {
+        Partition whole = partition_of(target), forgetful = partition_of(target);
+        bool bound = false, fewer = false;
+        for (double finest = 1e-2; finest > 1e-7; finest *= 0.25) {
+            SCOPED_TRACE(finest);
+            const double price = finest / kLeastBytes;
+            whole.refine(finest, heaviest);
+            forgetful.refine(finest, heaviest, {price, kFew});
+            fewer = fewer || forgetful.parts().size() < whole.parts().size();
+            for (const double above : {1.0, 1.3, 7.0, 300.0}) {
+                const Cascade wanted = pruned_cascade(whole, above * price, heaviest);
+                expect_equal(wanted, pruned_cascade(forgetful, above * price, heaviest));
+                bound = bound || wanted.curves.size() > pruned_cascade(whole, above * price).curves.size();
+            }
+        }
+        EXPECT_TRUE(bound); // else the same as without
+        EXPECT_TRUE(fewer);
     }
 }
 
@@ -117,7 +139,7 @@ TEST(PartitionGrowth, GivesUpWhereThereAreTooManyParts) {
     EXPECT_TRUE(bounded.full());
     // What is divided at once: subtrees of half of the grid each, at most, of two parts a step.
     EXPECT_LT(bounded.parts().size(), kMost + 2 * target.values.size());
-    bounded.forget(coarse / kLeastBytes);
+    bounded.forget(coarse / kLeastBytes, kNoBound);
     bounded.refine(coarse, kNoBound, {coarse / kLeastBytes, kFew, kMost});
     EXPECT_FALSE(bounded.full());
     expect_equal(pruned_cascade(whole, coarse), pruned_cascade(bounded, coarse));

@@ -1,5 +1,6 @@
 // acdf/local.h against a decoder written from the specification, on files of which no fit would think.
 #include "tests/lib/reader/load.h"
+#include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/local_reference.h"
 
@@ -21,17 +22,6 @@ using acdf_reference::Local;
 
 // Files of both parameterizations: the first `latlong_count` are lat-long, the others octahedral.
 constexpr std::uint32_t latlong_count = 80, file_count = 2 * latlong_count;
-
-struct Loaded {
-    Bytes bytes;
-    acdf::File file;
-
-    explicit Loaded(LocalSpec spec) : bytes(spec.encode()) {
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
-        EXPECT_TRUE(status.ok()) << status.message;
-    }
-    acdf::LocalEnvironmentView view() const { return file.local(); }
-};
 
 LocalSpec random_local(std::uint32_t seed, bool tilts) {
     RandomOptions options;
@@ -75,7 +65,7 @@ Normal random_normal(std::mt19937_64& rng) {
 
 TEST(LocalView, agreesWithTheSlowDecoder) {
     for (std::uint32_t seed = 0; seed < file_count; ++seed) {
-        const Loaded loaded(random_local(seed, seed % 2 == 0));
+        const LoadedLocal loaded(random_local(seed, seed % 2 == 0));
         const Local reference(loaded.bytes);
         const acdf::LocalEnvironmentView view = loaded.view();
         std::mt19937_64 rng(seed);
@@ -114,7 +104,7 @@ TEST(LocalView, agreesWithTheSlowDecoder) {
 TEST(LocalView, pdfOfASampleIsExact) {
     const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000};
     for (std::uint32_t seed = 0; seed < file_count; ++seed) {
-        const Loaded loaded(random_local(seed, false));
+        const LoadedLocal loaded(random_local(seed, false));
         const acdf::LocalEnvironmentView view = loaded.view();
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 2000; ++i) {
@@ -189,11 +179,11 @@ TEST(NormalBins, everyCornerServesItself) {
 }
 
 TEST(LocalView, normalsThatAreNoneHaveNoDensity) {
-    const Loaded shared(lit_local()), separate(separate_local());
+    const LoadedLocal shared(lit_local()), separate(separate_local());
     const float up[3] = {0.0f, 0.0f, 1.0f}, nan = std::nanf(""), inf = HUGE_VALF;
     const float bad[][3] = {{0, 0, 0},   {-0.0f, 0, 0}, {nan, 0, 1},   {0, nan, 1},
                             {1, 0, nan}, {inf, 0, 1},   {0, -inf, inf}};
-    for (const Loaded* loaded : {&shared, &separate})
+    for (const LoadedLocal* loaded : {&shared, &separate})
         for (const auto& normal : bad) {
             const acdf::LocalEnvironmentView view = loaded->view();
             EXPECT_EQ(view.pdf(normal, up), 0.0f);
@@ -208,7 +198,7 @@ TEST(LocalView, directionsThatAreNoneHaveNoDensity) {
     LocalSpec spec = lit_local();
     for (float cosine : {0.0f, 0.5f}) {
         spec.cosine_share = cosine;
-        const Loaded loaded(spec);
+        const LoadedLocal loaded(spec);
         const float up[3] = {0.1f, 0.2f, 1.0f}, nan = std::nanf("");
         const float nans[][3] = {{nan, 0, 0}, {0, 0, nan}, {1, nan, 0}};
         for (const auto& d : nans) EXPECT_EQ(loaded.view().pdf(up, d), 0.0f);
@@ -218,7 +208,7 @@ TEST(LocalView, directionsThatAreNoneHaveNoDensity) {
 }
 
 TEST(LocalView, whatIsStoredIsTold) {
-    const Loaded shared(shared_local()); // corners 0 +z, 1 +x, 2 +y, 3 -x (not stored), 4 -y, 5 -z
+    const LoadedLocal shared(shared_local()); // corners 0 +z, 1 +x, 2 +y, 3 -x (not stored), 4 -y, 5 -z
     const auto stored = [&](float x, float y, float z) {
         const float n[3] = {x, y, z};
         return shared.view().stored(n);
@@ -243,7 +233,7 @@ TEST(LocalView, handMadeDensities) {
     LocalSpec spec = shared_local();
     spec.tile_curves.clear(); // all tiles are cells
     spec.tree = {{CurveSpec{}}, {}};
-    const Loaded loaded(spec);
+    const LoadedLocal loaded(spec);
     const float x[3] = {7.0f, 0.0f, 0.0f};
     const auto at = [&](double column, double row) { // positions
         const double phi = pi - 2 * pi * column / 8, theta = pi * row / 8;
@@ -269,7 +259,7 @@ TEST(LocalView, handMadeLight) {
     LocalSpec spec = lit_local();
     spec.lights[0].radius = 0.1f;
     spec.lights[0].share = 2.0f;
-    const Loaded loaded(spec);
+    const LoadedLocal loaded(spec);
     const double h[] = {0.8, 0.05, 0.0, -0.05, -0.1, -0.2};
     const double weight[] = {1.6, 2 * 0.15 * 0.15 / 0.4, 2 * 0.1 * 0.1 / 0.4, 2 * 0.05 * 0.05 / 0.4, 0.0, 0.0};
     for (std::size_t i = 0; i < std::size(h); ++i) {
@@ -294,7 +284,7 @@ TEST(LocalView, handMadeLight) {
 
 TEST(LocalView, compiledAsCIsTheSame) {
     for (std::uint32_t seed = 0; seed < 8; ++seed) {
-        const Loaded loaded(random_local(seed, true));
+        const LoadedLocal loaded(random_local(seed, true));
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 300; ++i) {
             const Normal n = random_normal(rng);
@@ -315,7 +305,7 @@ TEST(LocalView, throughTheCInterface) {
     AcdfEnvironment environment;
     ASSERT_TRUE(acdf_local(file, &local));
     EXPECT_FALSE(acdf_environment(file, &environment));
-    const Loaded same(lit_local());
+    const LoadedLocal same(lit_local());
     const float n[3] = {1.0f, 0.5f, 2.0f};
     const auto a = same.view().sample(n, 0.3, 0.7), b = acdf_local_sample(&local, n, 0.3, 0.7);
     EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);

@@ -1,6 +1,6 @@
 // Places: what is drawn where, from files written by hand, and the frozen one.
 #include "tests/lib/reader/golden_numbers.h"
-#include "tests/lib/reader/local_builder.h"
+#include "tests/lib/reader/local_loaded.h"
 
 #include <acdf/reader.h>
 
@@ -12,17 +12,6 @@
 namespace {
 
 using namespace acdf_test;
-
-struct LoadedPlaces {
-    Bytes bytes;
-    acdf::File file;
-
-    explicit LoadedPlaces(LocalSpec spec) : bytes(spec.encode()) {
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
-        EXPECT_TRUE(status.ok()) << status.message;
-    }
-    acdf::LocalEnvironmentView view() const { return file.local(); }
-};
 
 constexpr float kNormals[][3] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0.1f, -0.9f, 0.2f}};
 /// In each cell, between two and three of them, and at the bounds.
@@ -47,7 +36,7 @@ TEST(Places, DensitiesIntegrateToOne) {
     for (LocalSpec spec : {placed_local(), regional_local(), regional_local()}) {
         spec.cosine_share = share;
         share = 0.25f;
-        const LoadedPlaces loaded(spec);
+        const LoadedLocal loaded(spec);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
                 const AcdfLocalPoint point = loaded.view().at(x, n);
@@ -62,7 +51,7 @@ TEST(Places, DensitiesIntegrateToOne) {
 
 TEST(Places, SamplesHaveTheDensityThatIsFoundForThem) {
     for (const LocalSpec& spec : {placed_local(), regional_local()}) {
-        const LoadedPlaces loaded(spec);
+        const LoadedLocal loaded(spec);
         std::mt19937_64 random(5);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
@@ -80,7 +69,7 @@ TEST(Places, SamplesHaveTheDensityThatIsFoundForThem) {
 /// The frequency of directions in octants against the integral of the density there.
 TEST(Places, DirectionsFallWhereTheDensitySays) {
     for (const LocalSpec& spec : {placed_local(), regional_local()}) {
-        const LoadedPlaces loaded(spec);
+        const LoadedLocal loaded(spec);
         const AcdfLocalPoint point = loaded.view().at(kPositions[3], kNormals[1]);
         const auto octant = [](const float* d) { return (d[0] > 0) + 2 * (d[1] > 0) + 4 * (d[2] > 0); };
         double expected[8] = {}, found[8] = {};
@@ -98,7 +87,7 @@ TEST(Places, DirectionsFallWhereTheDensitySays) {
 
 TEST(Places, NothingThatANormalSeesIsLost) {
     for (const LocalSpec& spec : {placed_local(), regional_local()}) {
-        const LoadedPlaces loaded(spec);
+        const LoadedLocal loaded(spec);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
                 const AcdfLocalPoint here = loaded.view().at(x, n), anywhere = loaded.view().at(n);
@@ -110,7 +99,7 @@ TEST(Places, NothingThatANormalSeesIsLost) {
 }
 
 TEST(Places, OutsideTheNormalAloneCounts) {
-    const LoadedPlaces loaded(placed_local());
+    const LoadedLocal loaded(placed_local());
     const float nan = std::nanf("");
     const float outside[][3] = {{-1.5f, 0, 1}, {0, 2.5f, 1}, {0, 0, -0.1f}, {nan, 0, 1}, {0, 0, INFINITY}};
     for (const auto& x : outside)
@@ -122,7 +111,7 @@ TEST(Places, OutsideTheNormalAloneCounts) {
             EXPECT_EQ(a.pdf, b.pdf);
             for (int k = 0; k < 3; ++k) EXPECT_EQ(a.direction[k], b.direction[k]);
         }
-    const LoadedPlaces plain(lit_local());
+    const LoadedLocal plain(lit_local());
     EXPECT_FALSE(plain.view().has_places());
     EXPECT_EQ(plain.view().at(kPositions[0], kNormals[0]).place.count, 0);
 }
@@ -131,7 +120,7 @@ TEST(Places, PositionsAreTransformed) {
     LocalSpec spec = placed_local(), turned = placed_local();
     const float to_cells[12] = {0, 0, 2, 1, 2, 0, 0, 0, 0, 2, 0, -1}; // twice (z, x, y), moved
     std::copy_n(to_cells, 12, turned.places->transform);
-    const LoadedPlaces loaded(spec), other(turned);
+    const LoadedLocal loaded(spec), other(turned);
     for (const auto& x : kPositions) {
         const float there[3] = {x[1] / 2, (x[2] + 1) / 2, (x[0] - 1) / 2};
         const AcdfLocalPoint a = loaded.view().at(x, kNormals[1]), b = other.view().at(there, kNormals[1]);
@@ -142,7 +131,7 @@ TEST(Places, PositionsAreTransformed) {
 
 /// Weights change by no more than a position does.
 TEST(Places, CellsAreMixedWithoutAJump) {
-    const LoadedPlaces loaded(placed_local());
+    const LoadedLocal loaded(placed_local());
     const float up[3] = {0, 0, 1};
     double before = -1.0;
     for (int i = 0; i <= 2000; ++i) {

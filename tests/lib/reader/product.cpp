@@ -1,6 +1,7 @@
 // acdf/product.h and acdf/cut.h on files and lobes of every kind: that the density is exactly that of the samples,
 // that it integrates to 1, and that nothing is left out.
 #include "tests/lib/reader/load.h"
+#include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 
 #include <acdf/product.h>
@@ -14,17 +15,6 @@
 using namespace acdf_test;
 
 namespace {
-
-struct Loaded {
-    Bytes bytes;
-    acdf::File file;
-
-    explicit Loaded(LocalSpec spec) : bytes(spec.encode()) {
-        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
-        EXPECT_TRUE(status.ok()) << status.message;
-    }
-    AcdfLocal light() const { return file.local().data(); }
-};
 
 constexpr std::uint32_t file_count = 48;
 
@@ -117,7 +107,7 @@ using Sampler = acdf::ProductSampler<TestLobe>;
 template <class Visit> // visit(file, lobe, sampler, point, name, random): of many files, with any number of parts
 void each_point(bool tilts, const Visit& visit) {
     for (std::uint32_t seed = 0; seed < file_count; ++seed) {
-        const Loaded loaded(random_local(seed, tilts));
+        const LoadedLocal loaded(random_local(seed, tilts));
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 6; ++i) {
             acdf::ProductOptions options;
@@ -139,8 +129,8 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
     const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000, NAN, -1.0, 2.0};
     int drawn = 0, all = 0;
     for (const bool tilts : {false, true})
-        each_point(tilts, [&](const Loaded&, const TestLobe&, const Sampler& sampler, const Sampler::Point& point,
-                              const std::string& name, std::mt19937_64& rng) {
+        each_point(tilts, [&](const LoadedLocal&, const TestLobe&, const Sampler& sampler,
+                              const Sampler::Point& point, const std::string& name, std::mt19937_64& rng) {
             for (int i = 0; i < 200; ++i) {
                 const double u0 = rng() % 8 == 0 ? edges[rng() % 10] : unit(rng);
                 const double u1 = rng() % 8 == 0 ? edges[rng() % 10] : unit(rng);
@@ -159,7 +149,7 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
 // The light's part, over the squares of its grid, in which it is constant; the lobe's part is the lobe's own.
 TEST(Product, DensityIntegratesToOne) {
     int cuts = 0;
-    each_point(false, [&](const Loaded& loaded, const TestLobe& lobe, const Sampler& sampler,
+    each_point(false, [&](const LoadedLocal& loaded, const TestLobe& lobe, const Sampler& sampler,
                           const Sampler::Point& point, const std::string& name, std::mt19937_64&) {
         if (point.light.what != ACDF_LOCAL_BLEND || point.cut.count == 0) return;
         ++cuts;
@@ -185,8 +175,8 @@ TEST(Product, DensityIntegratesToOne) {
 
 // Wherever the lobe's own sampler draws, whatever the light; nothing is drawn where nothing is reflected.
 TEST(Product, NothingIsLeftOut) {
-    each_point(true, [&](const Loaded&, const TestLobe& lobe, const Sampler& sampler, const Sampler::Point& point,
-                         const std::string& name, std::mt19937_64& rng) {
+    each_point(true, [&](const LoadedLocal&, const TestLobe& lobe, const Sampler& sampler,
+                         const Sampler::Point& point, const std::string& name, std::mt19937_64& rng) {
         for (int i = 0; i < 100; ++i) {
             const acdf::ProductSample s = lobe.sample(point.lobe, unit(rng), unit(rng));
             float world[3], wi[3];
@@ -209,7 +199,7 @@ TEST(Product, HemispheresWithoutLightAreTheLobes) {
     for (auto& light : spec.lights) light.share = 1e-30f;
     for (auto& bin : spec.bins) bin.share = 0.0f;
     spec.lights.clear();
-    const Loaded loaded(std::move(spec));
+    const LoadedLocal loaded(std::move(spec));
     const TestLobe lobe{0.1};
     const Sampler sampler(loaded.light(), lobe);
     std::mt19937_64 rng(3);
@@ -241,7 +231,7 @@ AcdfDirectionSample c_sample(const void* data, const float wo[3], double u0, dou
 
 TEST(Product, InCIsTheSame) {
     for (std::uint32_t seed = 0; seed < 8; ++seed) {
-        const Loaded loaded(random_local(seed, false));
+        const LoadedLocal loaded(random_local(seed, false));
         const AcdfLocal light = loaded.light();
         const TestLobe lobe{0.1};
         const AcdfLobe c_lobe{&lobe, c_value, c_sample, c_pdf};

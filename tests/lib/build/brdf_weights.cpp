@@ -1,0 +1,82 @@
+// Weights of samples of BRDF files: bounded without being asked to be, next to free, and by a number where one is
+// given; and more bytes never make more noise.
+#include "tests/inputs/brdf_files.h"
+#include "tests/inputs/sanitized.h"
+
+#include "input/brdf.h"
+
+#include <filesystem>
+#include <limits>
+#include <stdexcept>
+
+using namespace acdf_test;
+
+namespace {
+
+/// Reflects as much at the horizon as measured materials are told to: rho cos does not fall to 0 there.
+class BrightHorizon : public acdf::build::Brdf {
+public:
+    BrightHorizon() {
+        isotropic = mirror = true;
+        name = "bright horizon";
+    }
+    void evaluate(const double wo[3], const double wi[3], double rgb[3]) const override {
+        const bool lit = wo[2] > 0.0 && wi[2] > 0.0;
+        rgb[0] = rgb[1] = rgb[2] = lit ? 0.2 + 0.1 / wi[2] : 0.0;
+    }
+};
+
+constexpr double kNoBound = 1e30;
+
+/// Over views and half-vectors that neither the fit nor the file's own figures know of.
+acdf::build::BrdfAccuracy elsewhere(const MadeBrdf& brdf, std::uint32_t views) {
+    const auto measured = acdf::build::measure_views(brdf.file, brdf.reflected,
+                                                     acdf::build::random_views(views, true, 0.03, 1.0), 101, 233);
+    return acdf::build::summary(measured);
+}
+
+TEST(BrdfWeights, AreBoundedAtNextToNoCost) {
+    acdf::build::BrdfFileOptions options = budget(24 << 10);
+    const auto usual = make_brdf(std::make_unique<BrightHorizon>(), options);
+    options.max_weight = kNoBound;
+    const auto unbounded = make_brdf(std::make_unique<BrightHorizon>(), options);
+    EXPECT_LE(elsewhere(*usual, 40).max_weight, 30.0);
+    EXPECT_LE(usual->made.accuracy.relative_variance, 1.02 * unbounded->made.accuracy.relative_variance);
+    EXPECT_EQ(usual->made.accuracy.support_violations, 0u);
+}
+
+TEST(BrdfWeights, StayBelowANumber) {
+    if (kSanitized) GTEST_SKIP() << "the same code with another number";
+    acdf::build::BrdfFileOptions options = budget(16 << 10);
+    options.max_weight = 5.0;
+    const auto brdf = make_brdf(std::make_unique<BrightHorizon>(), options);
+    EXPECT_LE(brdf->made.accuracy.max_weight, 5.0);
+    EXPECT_LE(elsewhere(*brdf, 40).max_weight, 7.5);
+    EXPECT_NE(acdf::build::option_text(options).find("--max-weight 5 "), std::string::npos);
+    options.max_weight = 1.02;
+    EXPECT_THROW(acdf::build::build_brdf(*brdf->source, options), std::runtime_error);
+}
+
+class MeasuredWeights : public testing::TestWithParam<const char*> {};
+
+TEST_P(MeasuredWeights, AreBoundedAndNoiseFallsWithEveryByte) {
+    const std::string path = std::string(ACDF_TEST_DATA) + "/brdfs/" + GetParam();
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    double variance = std::numeric_limits<double>::infinity(), worst = variance;
+    for (const std::uint64_t kib : {128, 200}) {
+        const auto brdf = make_brdf(acdf::input::open_brdf(path), budget(kib << 10));
+        const acdf::build::BrdfAccuracy a = elsewhere(*brdf, 64);
+        EXPECT_LE(a.max_weight, 30.0) << kib;
+        EXPECT_LT(a.relative_variance, variance) << kib;
+        EXPECT_LT(a.worst, worst) << kib;
+        EXPECT_LE(a.worst, 6.0 * a.relative_variance) << kib;
+        variance = a.relative_variance;
+        worst = a.worst;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, MeasuredWeights,
+                         testing::Values("cc_ibiza_sunset_rgb.bsdf", "paper_white_rgb.bsdf"),
+                         [](const auto& info) { return std::string(info.param).substr(0, 5); });
+
+} // namespace

@@ -1,0 +1,24 @@
+// A local environment file written by hand, and loaded.
+#pragma once
+
+#include "tests/lib/reader/local_builder.h"
+
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+namespace acdf_test {
+
+struct LoadedLocal {
+    Bytes bytes;
+    acdf::File file;
+
+    explicit LoadedLocal(LocalSpec spec) : bytes(spec.encode()) {
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+        EXPECT_TRUE(status.ok()) << status.message;
+    }
+    acdf::LocalEnvironmentView view() const { return file.local(); }
+    AcdfLocal light() const { return view().data(); }
+};
+
+} // namespace acdf_test
