@@ -27,6 +27,9 @@ std::string number(double value, const char* format = "%.9g") {
     return text;
 }
 
+/// A variance is searched for in files of up to so many bytes, or of one for each number of the table.
+constexpr std::uint64_t kVarianceBytes = 16 << 20;
+
 std::uint64_t bin_count(const std::vector<std::uint32_t>& shape, std::uint32_t indexed) {
     std::uint64_t bins = 1;
     for (std::uint32_t axis = 0; axis < indexed; ++axis) bins *= shape[axis];
@@ -212,6 +215,7 @@ Table build_table(const Array& array, const std::string& source_name, const std:
     options.fit.file_size = [&](const compress::EncodedTree& tree) {
         return std::uint64_t{compress::store(tree, description, options.codec).size()};
     };
+    options.fit.most_bytes = std::max<std::uint64_t>(kVarianceBytes, array.values.size());
     options.fit.size_by_length = options.codec == ACDF_CODEC_NONE;
     options.fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
