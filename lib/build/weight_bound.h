@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 namespace acdf::build {
@@ -14,8 +15,11 @@ auto within_weight(double max_weight, const Build& build) {
     constexpr int kMostBuilds = 6;
     auto made = build(max_weight);
     double bound = max_weight;
+    double before = std::numeric_limits<double>::infinity();
     for (int builds = 1; max_weight > 0.0 && made.accuracy.max_weight > max_weight; ++builds) {
-        if (builds == kMostBuilds) {
+        const bool stuck = made.accuracy.max_weight > 0.98 * before;
+        before = made.accuracy.max_weight;
+        if (stuck || builds == kMostBuilds) {
             char text[160];
             std::snprintf(text, sizeof text,
                           "a largest weight of %.9g is out of reach at this size; it came to %.6g", max_weight,

@@ -3,6 +3,7 @@
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/sanitized.h"
 
+#include "build/weight_bound.h"
 #include "input/brdf.h"
 
 #include <filesystem>
@@ -28,6 +29,13 @@ public:
 
 constexpr double kNoBound = 1e30;
 
+acdf::build::BrdfFileOptions few_views(double max_weight) {
+    acdf::build::BrdfFileOptions options = budget(12 << 10);
+    options.fit.theta_views = 6;
+    options.max_weight = max_weight;
+    return options;
+}
+
 /// Over views and half-vectors that neither the fit nor the file's own figures know of.
 acdf::build::BrdfAccuracy elsewhere(const MadeBrdf& brdf, std::uint32_t views) {
     const auto measured = acdf::build::measure_views(brdf.file, brdf.reflected,
@@ -36,25 +44,44 @@ acdf::build::BrdfAccuracy elsewhere(const MadeBrdf& brdf, std::uint32_t views) {
 }
 
 TEST(BrdfWeights, AreBoundedAtNextToNoCost) {
-    acdf::build::BrdfFileOptions options = budget(24 << 10);
-    const auto usual = make_brdf(std::make_unique<BrightHorizon>(), options);
-    options.max_weight = kNoBound;
-    const auto unbounded = make_brdf(std::make_unique<BrightHorizon>(), options);
-    EXPECT_LE(elsewhere(*usual, 40).max_weight, 30.0);
+    const auto usual = make_brdf(std::make_unique<BrightHorizon>(), few_views(0.0));
+    const auto unbounded = make_brdf(std::make_unique<BrightHorizon>(), few_views(kNoBound));
+    EXPECT_LE(elsewhere(*usual, 24).max_weight, 30.0);
     EXPECT_LE(usual->made.accuracy.relative_variance, 1.02 * unbounded->made.accuracy.relative_variance);
     EXPECT_EQ(usual->made.accuracy.support_violations, 0u);
 }
 
 TEST(BrdfWeights, StayBelowANumber) {
     if (kSanitized) GTEST_SKIP() << "the same code with another number";
-    acdf::build::BrdfFileOptions options = budget(16 << 10);
-    options.max_weight = 5.0;
+    acdf::build::BrdfFileOptions options = few_views(5.0);
     const auto brdf = make_brdf(std::make_unique<BrightHorizon>(), options);
     EXPECT_LE(brdf->made.accuracy.max_weight, 5.0);
-    EXPECT_LE(elsewhere(*brdf, 40).max_weight, 7.5);
+    EXPECT_LE(elsewhere(*brdf, 24).max_weight, 7.5);
     EXPECT_NE(acdf::build::option_text(options).find("--max-weight 5 "), std::string::npos);
-    options.max_weight = 1.02;
-    EXPECT_THROW(acdf::build::build_brdf(*brdf->source, options), std::runtime_error);
+}
+
+struct Weighed {
+    struct {
+        double max_weight;
+    } accuracy;
+};
+
+TEST(WithinWeight, TightensAsLongAsItHelps) {
+    int builds = 0;
+    const auto half_more = [&](double bound) { // what is measured is half more than what the fit knows of
+        ++builds;
+        return Weighed{{1.5 * bound}};
+    };
+    EXPECT_LE(acdf::build::within_weight(8.0, half_more).accuracy.max_weight, 8.0);
+    EXPECT_EQ(builds, 2);
+    builds = 0;
+    const auto same = [&](double) {
+        ++builds;
+        return Weighed{{9.0}};
+    };
+    EXPECT_THROW(acdf::build::within_weight(8.0, same), std::runtime_error);
+    EXPECT_EQ(builds, 2);
+    EXPECT_EQ(acdf::build::within_weight(0.0, same).accuracy.max_weight, 9.0); // no bound
 }
 
 class MeasuredWeights : public testing::TestWithParam<const char*> {};
