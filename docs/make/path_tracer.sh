@@ -6,9 +6,7 @@ build=$(cd "$1" && pwd)
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cmake --install "$build" --prefix "$work/prefix" --component reader >/dev/null
-cmake -S "$root/docs/examples/path_tracer" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
-cmake --build "$work/build" >/dev/null
+"$root/docs/make/build_path_tracer.sh" "$build" "$work"
 cd "$work"
 python3 "$root/tests/inputs/sky_pfm.py" 1024 sky.pfm
 "$build/tools/acdf" env sky.pfm --budget 16KiB -o environment.acdf --quiet

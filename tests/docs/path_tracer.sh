@@ -10,9 +10,7 @@ if ! ls /usr/include/embree3/rtcore.h >/dev/null 2>&1; then
 fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cmake --install "$build" --prefix "$work/prefix" --component reader >/dev/null
-cmake -S "$root/docs/examples/path_tracer" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
-cmake --build "$work/build" >/dev/null
+"$root/docs/make/build_path_tracer.sh" "$build" "$work"
 cd "$work"
 python3 "$root/tests/inputs/sky_pfm.py" 256 sky.pfm
 "$acdf" env sky.pfm --budget 8KiB -o environment.acdf --quiet

@@ -132,7 +132,7 @@ TEST_F(Commands, NoNumberMayBeNanOrInfinite) {
         {"local", "--target-variance"}, {"local", "--eps"},        {"local", "--cosine-share"},
         {"brdf", "--target-variance"},  {"brdf", "--eps"},         {"brdf", "--diffuse-floor"},
         {"table", "--target-variance"}, {"table", "--max-weight"}, {"sweep", "--visible"},
-        {"render", "--shadow-ray-ns"}};
+        {"render", "--shadow-ray-ns"},  {"local", "--max-weight"}, {"brdf", "--max-weight"}};
     for (const auto& [command, option] : options)
         for (const char* value : {"nan", "1e999"}) {
             SCOPED_TRACE(command + ' ' + option + '=' + value);

@@ -108,6 +108,7 @@ def build_local(
     tiles: Optional[int] = None,
     normals: Optional[Any] = None,
     normal_weights: Optional[Any] = None,
+    max_weight: float = 0.0,
     cosine_share: float = 0.0,
     sharing: bool = True,
     company: str = "none",
@@ -123,6 +124,7 @@ def build_local(
     Options are those of build_environment, and:
     subdivisions, tiles: how many bins of normals (4 n^2 + 2) and shared tiles; None: as suits the size.
     normals, normal_weights: only what a scene has, of shape (n, 3), and how often each occurs; None: all normals.
+    max_weight: of the samples of all normals that accuracy is measured for.
     cosine_share: of samples that are drawn around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
     """
@@ -141,6 +143,7 @@ def build_brdf(
     sharing: bool = True,
     theta_views: Optional[int] = None,
     phi_views: Optional[int] = None,
+    max_weight: float = 0.0,
     diffuse_share: float = 0.0,
     compress: str = "none",
     source_name: str = "",
@@ -156,6 +159,8 @@ def build_brdf(
     isotropic, mirrored: of a function: whether it depends on the difference of azimuths alone, and not on its sign. False is
         always right.
     theta_views, phi_views: stored views; None: as suits the size.
+    max_weight: the largest weight of a sample over the mean, at least 1, of all views that accuracy is measured for; 0: about
+        20 where that costs next to nothing.
     diffuse_share: of samples that follow the cosine, in [0, 0.99].
     """
     return open(_acdf.build_brdf(source, _options({k: v for k, v in locals().items() if k != "source"})))

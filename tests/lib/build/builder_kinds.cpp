@@ -116,6 +116,8 @@ TEST(BuilderLocal, Misuse) {
     refused("columns with sharing", [](LocalOptions& o) { o.columns = o.rows = 4; });
     refused("columns alone", [](LocalOptions& o) { o.columns = 4, o.sharing = false; });
     refused("tiles without sharing", [](LocalOptions& o) { o.tiles = 4, o.sharing = false; });
+    refused("a small weight", [](LocalOptions& o) { o.max_weight = 0.5; });
+    refused("a bound without sharing", [](LocalOptions& o) { o.max_weight = 9.0, o.sharing = false; });
     refused("a share", [](LocalOptions& o) { o.cosine_share = 1.0; });
     refused("a NaN share", [](LocalOptions& o) { o.cosine_share = kNan; });
     refused("a variance without sharing",
@@ -221,6 +223,9 @@ TEST(BuilderBrdf, Misuse) {
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.theta_views = 8, o.phi_views = 2; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.phi_views = 8; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.diffuse_share = NAN; }));
+    EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = 0.5; }));
+    EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = kNan; }));
+    EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = 9.0, o.sharing = false; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.goal = Goal::of_variance(kNan); }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.fit = static_cast<AcdfFit>(5); }));
     options.goal = Goal::of_budget(300);

@@ -113,6 +113,9 @@ class Errors(unittest.TestCase):
         ):
             with self.assertRaisesRegex(ValueError, message):
                 acdf.build_environment(image, **options)
+        for build in (acdf.build_local, lambda image, **o: acdf.build_brdf(np.ones((4, 1, 4, 4)), **o)):
+            with self.assertRaisesRegex(ValueError, "max_weight"):
+                build(image, max_weight=0.5)
         with self.assertRaisesRegex(TypeError, "cells: -4 is of the wrong type or out of range"):
             acdf.build_environment(image, cells=-4)
         with self.assertRaises(TypeError):
