@@ -1,5 +1,5 @@
 // Weights of samples of BRDF files: bounded without being asked to be, next to free, and by a number where one is
-// given; and more bytes never make more noise.
+// given; and what more bytes gain.
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/sanitized.h"
 
@@ -58,6 +58,19 @@ TEST(BrdfWeights, StayBelowANumber) {
     EXPECT_LE(brdf->made.accuracy.max_weight, 5.0);
     EXPECT_LE(elsewhere(*brdf, 24).max_weight, 7.5);
     EXPECT_NE(acdf::build::option_text(options).find("--max-weight 5 "), std::string::npos);
+}
+
+TEST(BrdfWeights, TwiceTheBytesMakeLessNoise) {
+    if (kSanitized) GTEST_SKIP() << "the same code, on more of it";
+    double variance = std::numeric_limits<double>::infinity(), worst = variance;
+    for (const std::uint64_t kib : {8, 16}) { // with more views and more cells
+        const auto brdf = make_brdf(std::make_unique<BrightHorizon>(), budget(kib << 10));
+        const acdf::build::BrdfAccuracy a = elsewhere(*brdf, 24);
+        EXPECT_LT(a.relative_variance, variance) << kib;
+        EXPECT_LT(a.worst, worst) << kib;
+        variance = a.relative_variance;
+        worst = a.worst;
+    }
 }
 
 struct Weighed {
