@@ -27,7 +27,7 @@ constexpr double kGlimpse = 1e-3;
 constexpr double kPointStep = 0.02;
 /// Of a bound on weights, what cells alone may take; the rest is for the cosines of what lies in a tile.
 constexpr double kWeightOfCells = 0.5;
-constexpr int kRaises = 12; // of rows whose bytes do not keep a bound on weights
+constexpr int kRowRaises = 12; // of rows whose bytes do not keep a bound on weights
 
 std::vector<double> worth_of_tiles(const Target& target, const std::vector<Box>& tiles, const Worth& worth) {
     std::vector<double> out;
@@ -212,7 +212,7 @@ std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cos
     double sum = 0.0;
     for (std::size_t t = 0; t < cost.size(); ++t) sum += cost[t] = std::max(cost[t], least[t]);
     std::vector<std::uint8_t> row = encode_row(fit.tiles, cost);
-    for (int step = 0; step < kRaises; ++step) {
+    for (int step = 0; step < kRowRaises; ++step) {
         const std::vector<double> stored = decode_row(fit.tiles, fit.shared.codebook, row.data());
         bool any = false;
         for (std::size_t t = 0; t < cost.size(); ++t)
