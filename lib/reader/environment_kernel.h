@@ -85,12 +85,13 @@ ACDF_LANE std::uint32_t first_cell(const Search& s, const Sought& sought, std::s
 
 struct Drawn {
     alignas(64) float azimuth[kBlock], cap[kBlock], pdf[kBlock];
-    alignas(64) std::uint32_t quarter[kBlock], south[kBlock];
+    alignas(64) std::uint32_t quarter[kBlock], south[kBlock]; // in their lowest bits
 };
 
 ACDF_LANE void piece_directions(const Drawn& drawn, std::size_t first, Floats out[3]) {
     const Floats y = *(const Floats*)&drawn.azimuth[first], cap = *(const Floats*)&drawn.cap[first];
-    const Words quarter = *(const Words*)&drawn.quarter[first], south = *(const Words*)&drawn.south[first];
+    const Words quarter = *(const Words*)&drawn.quarter[first] & 3u;
+    const Words south = *(const Words*)&drawn.south[first];
     const Floats q = y * y, radius = root(cap * (2.0f - cap));
     const Floats sine = y + y * q * (-0.16666651f + q * (0.0083320351f + q * -0.00019503819f));
     const Floats cosine = 1.0f + q * (-0.5f + q * (0.041666616f + q * (-0.0013886617f + q * 2.4379725e-5f)));
@@ -101,13 +102,19 @@ ACDF_LANE void piece_directions(const Drawn& drawn, std::size_t first, Floats ou
     out[2] = (Floats)((Words)(1.0f - cap) ^ (south << 31));
 }
 
+/* Lanes that are not to be searched for. */
+ACDF_LANE void drop(std::uint32_t lanes, Sought* sought) {
+    for (; lanes; lanes &= lanes - 1) sought->mask[acdf_lowest_bit(lanes)] = 0;
+}
+
 /* Finds the pieces that numbers lead to, in steps of 2^-52, and where in them. Returns the lanes without one. */
 ACDF_LANE std::uint32_t draw_pieces(const AcdfCells* cells, const Search& s, const Sought& sought,
-                                    const std::uint64_t (*n)[2], std::uint32_t lost, Drawn* drawn) {
+                                    const std::uint64_t (*n)[2], Drawn* drawn) {
     const auto* const pieces = (const AcdfPiece*)(const void*)(s.tables + cells->pieces);
     const auto* const densities = (const float*)(const void*)(s.tables + cells->densities);
+    std::uint32_t lost = 0;
     for (std::size_t i = 0; i < kBlock; ++i) {
-        std::uint32_t mask = lost >> i & 1u ? 0 : sought.mask[i];
+        std::uint32_t mask = sought.mask[i];
         for (; mask; mask &= mask - 1) {
             const std::uint32_t cell = first_cell(s, sought, i, mask);
             const AcdfPiece& piece = pieces[cell];
@@ -119,11 +126,14 @@ ACDF_LANE std::uint32_t draw_pieces(const AcdfCells* cells, const Search& s, con
             drawn->azimuth[i] = piece.azimuth.origin + d0 * piece.azimuth.slope;
             drawn->cap[i] = piece.height.origin + d1 * piece.height.slope;
             drawn->pdf[i] = densities[cell];
-            drawn->quarter[i] = width0 & 3u;
-            drawn->south[i] = width1 & 1u;
+            drawn->quarter[i] = width0;
+            drawn->south[i] = width1;
             break;
         }
-        lost |= (std::uint32_t)(mask == 0) << i;
+        if (__builtin_expect(mask != 0, 1)) continue;
+        drawn->azimuth[i] = drawn->cap[i] = drawn->pdf[i] = 0.0f;
+        drawn->quarter[i] = drawn->south[i] = 0;
+        lost |= 1u << i;
     }
     return lost;
 }
@@ -149,19 +159,22 @@ ACDF_LANE void sample_block(const AcdfEnvironment& env, const Search& s, const d
     Sought sought;
     Drawn drawn;
     std::uint32_t lost = 0;
+    __m128i high = _mm_setzero_si128();
     for (std::size_t i = 0; i < kBlock; ++i) {
         const __m128d shifted = _mm_add_pd(_mm_loadu_pd(u[i]), _mm_set1_pd(1.0));
         const __m128i number = _mm_xor_si128(_mm_castpd_si128(shifted), _mm_set1_epi64x(0x3FF0000000000000));
-        const __m128i high = _mm_srli_epi64(number, 52), key = _mm_srli_epi64(number, 21);
-        const std::uint32_t outside = !_mm_testz_si128(high, high);
+        const __m128i key = _mm_and_si128(_mm_srli_epi64(number, 21), _mm_set1_epi64x(0x7FFFFFFF));
         _mm_store_si128((__m128i*)n[i], number);
-        sought.key[0][i] = outside ? 0 : (std::uint32_t)_mm_cvtsi128_si32(key);
-        sought.key[1][i] = outside ? 0 : (std::uint32_t)_mm_extract_epi32(key, 2);
-        lost |= outside << i;
+        high = _mm_or_si128(high, number);
+        sought.key[0][i] = (std::uint32_t)_mm_cvtsi128_si32(key);
+        sought.key[1][i] = (std::uint32_t)_mm_extract_epi32(key, 2);
     }
-    std::memset(&drawn, 0, sizeof drawn);
     find(s, &sought);
-    lost = draw_pieces(env.cells, s, sought, n, lost, &drawn);
+    if (!_mm_testz_si128(high, _mm_set1_epi64x((long long)0xFFF0000000000000u))) { // numbers outside of [0, 1)
+        for (std::size_t i = 0; i < kBlock; ++i) lost |= (std::uint32_t)((n[i][0] | n[i][1]) >> 52 != 0) << i;
+        drop(lost, &sought);
+    }
+    lost = draw_pieces(env.cells, s, sought, n, &drawn);
     for (std::size_t first = 0; first < kBlock; first += kLanes) {
         Floats direction[3];
         piece_directions(drawn, first, direction);
@@ -219,8 +232,9 @@ ACDF_LANE void pdf_block(const AcdfEnvironment& env, const Search& s, const floa
     std::uint32_t lost = 0;
     for (std::size_t first = 0; first < kBlock; first += kLanes) lost |= place(w, first, &places, &sought);
     find(s, &sought);
+    drop(lost, &sought);
     for (std::size_t i = 0; i < kBlock; ++i) {
-        std::uint32_t mask = lost >> i & 1u ? 0 : sought.mask[i];
+        std::uint32_t mask = sought.mask[i];
         for (; mask; mask &= mask - 1) {
             const std::uint32_t cell = first_cell(s, sought, i, mask);
             const AcdfPiece& piece = pieces[cell];
@@ -232,7 +246,7 @@ ACDF_LANE void pdf_block(const AcdfEnvironment& env, const Search& s, const floa
             out[i] = densities[cell];
             break;
         }
-        if (mask == 0) out[i] = acdf_environment_pdf(&env, w[i]);
+        if (__builtin_expect(mask == 0, 0)) out[i] = acdf_environment_pdf(&env, w[i]);
     }
 }
 
