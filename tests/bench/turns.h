@@ -1,6 +1,6 @@
 // Timing on machines that others use too: short turns of each candidate, one after the other, by the processor time
 // of the thread. What is told is the least of a candidate's turns; what was read or written between them is
-// everyone's.
+// everyone's; each round has another order, as who comes next to its like finds more in the caches.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +9,8 @@
 #include <ctime>
 #include <functional>
 #include <limits>
+#include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -43,17 +45,23 @@ struct Turns {
 inline void take_turns(std::vector<Candidate>& candidates, const Turns& turns) {
     static std::vector<std::uint64_t> other;
     if (turns.evict) other.resize(std::size_t{8} << 20);
+    std::vector<std::size_t> order(candidates.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::mt19937 random(1);
     for (std::size_t round = 0, first = 0; round < turns.rounds;
-         ++round, first = (first + turns.calls) % turns.period)
-        for (Candidate& candidate : candidates) {
+         ++round, first = (first + turns.calls) % turns.period) {
+        std::shuffle(order.begin(), order.end(), random);
+        for (const std::size_t i : order) {
+            Candidate& candidate = candidates[i];
             if (turns.evict)
-                for (std::size_t i = 0; i < other.size(); i += 8) ++other[i];
+                for (std::size_t k = 0; k < other.size(); k += 8) ++other[k];
             else candidate.calls(turns.period - turns.calls - first, turns.calls);
             const double begin = thread_seconds();
             candidate.calls(first, turns.calls);
             const double ns = (thread_seconds() - begin) * 1e9 / static_cast<double>(turns.calls);
             candidate.least = std::min(candidate.least, ns);
         }
+    }
 }
 
 } // namespace acdf_bench
