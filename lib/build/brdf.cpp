@@ -109,47 +109,70 @@ std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFil
 
 namespace {
 
-/// `goal`: before compression; what the file says of its options keeps that of `given`.
-BrdfFile build_plain(const Brdf& brdf, const BrdfFileOptions& given, const compress::Goal& goal, double max_weight,
-                     const Progress& progress) {
-    BrdfFileOptions options = given;
-    const bool isotropic = brdf.isotropic && options.fit.phi_views <= 1;
-    options.fit.symmetry = {isotropic, isotropic && brdf.mirror};
-    const compress::Reflected reflected = reflected_light(brdf, options.channels, options.weights);
-    const compress::Metadata unknown = metadata(brdf, options, {});
-    BrdfFileOptions plain = options; // rows that are not made yet cannot tell how well they compress
+/// What of a BRDF and its options every attempt at a file has in common.
+struct Task {
+    Task(const Brdf& b, const BrdfFileOptions& given)
+        : brdf(b), options(given), reflected(reflected_light(b, given.channels, given.weights)) {
+        const bool isotropic = b.isotropic && given.fit.phi_views <= 1;
+        options.fit.symmetry = {isotropic, isotropic && b.mirror};
+        unknown = metadata(b, options, {});
+    }
+
+    const Brdf& brdf;
+    BrdfFileOptions options;
+    compress::Reflected reflected;
+    compress::Metadata unknown; ///< with zeros for the accuracy: of the same size
+};
+
+/// A file whose accuracy is not measured yet, which changes none of its size.
+struct Draft {
+    compress::BrdfFit fit;
+    std::vector<std::uint8_t> bytes;
+};
+
+/// `goal`: before compression; what the file says of its options keeps that of the task. `max_weight`: 0 for that
+/// of the task.
+Draft draft(const Task& task, const compress::Goal& goal, double max_weight, const Progress& progress) {
+    BrdfFileOptions plain = task.options; // rows that are not made yet cannot tell how well they compress
     plain.codec = ACDF_CODEC_NONE;
-    compress::BrdfOptions fit_options = options.fit;
+    compress::BrdfOptions fit_options = task.options.fit;
     fit_options.goal = goal;
     if (max_weight > 0.0) fit_options.max_weight = max_weight;
     fit_options.file_size = [&](const compress::BrdfFit& fit) {
-        return std::uint64_t{brdf_bytes(fit, plain, unknown).size()};
+        return std::uint64_t{brdf_bytes(fit, plain, task.unknown).size()};
     };
     fit_options.progress = [&](double share) {
         if (progress) progress(0.8 * share, "fitting");
     };
-    const compress::BrdfFit fit = compress::fit_brdf(reflected, fit_options);
+    Draft out{compress::fit_brdf(task.reflected, fit_options), {}};
+    out.bytes = brdf_bytes(out.fit, task.options, task.unknown);
+    return out;
+}
+
+BrdfFile finish(const Task& task, const Draft& draft, const Progress& progress) {
     if (progress) progress(0.8, "measuring");
     BrdfFile out;
-    out.accuracy = measure_bytes(brdf_bytes(fit, options, unknown), reflected, brdf.isotropic);
-    out.bytes = brdf_bytes(fit, options, metadata(brdf, options, out.accuracy));
-    out.theta_views = static_cast<std::uint32_t>(fit.nodes.size());
-    out.phi_views = fit.phi_views;
+    out.accuracy = measure_bytes(draft.bytes, task.reflected, task.brdf.isotropic);
+    out.bytes = brdf_bytes(draft.fit, task.options, metadata(task.brdf, task.options, out.accuracy));
+    out.theta_views = static_cast<std::uint32_t>(draft.fit.nodes.size());
+    out.phi_views = draft.fit.phi_views;
     return out;
 }
 
 } // namespace
 
 BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& options, const Progress& progress) {
+    const Task task(brdf, options);
     const compress::Goal& goal = options.fit.goal;
     return within_weight(options.max_weight, [&](double max_weight) {
         if (options.codec == ACDF_CODEC_NONE || goal.kind != compress::Goal::Kind::budget)
-            return build_plain(brdf, options, goal, max_weight, progress);
-        return fill_compressed(goal.budget, [&](std::uint64_t bytes) {
+            return finish(task, draft(task, goal, max_weight, progress), progress);
+        const Draft best = fill_compressed(goal.budget, [&](std::uint64_t bytes) {
             compress::Goal plain = goal;
             plain.budget = bytes;
-            return build_plain(brdf, options, plain, max_weight, progress);
+            return draft(task, plain, max_weight, progress);
         });
+        return finish(task, best, progress);
     });
 }
 

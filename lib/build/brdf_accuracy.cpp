@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -71,23 +72,27 @@ private:
     std::uint64_t violations_ = 0;
 };
 
-/// Half-vectors around the view's azimuth; theta_h in steps of its square root.
-ViewAccuracy measure_view(const ViewDensity& density, const compress::Reflected& reflected,
-                          const compress::View& view, std::uint32_t columns, std::uint32_t rows) {
-    double wo[3];
-    view.direction(wo);
+/// Half-vectors around the view's azimuth; theta_h in steps of its square root. `density(wi)` is that of the view
+/// wo.
+template <typename Density>
+ViewAccuracy measure_view(const Density& density, const compress::Reflected& reflected, const compress::View& view,
+                          const double wo[3], std::uint32_t columns, std::uint32_t rows) {
     ViewSums sums;
+    std::vector<std::array<double, 2>> azimuth;
+    for (std::uint32_t c = 0; c < columns; ++c) {
+        const double phi = view.phi + 2.0 * ACDF_PI * (c + 0.5) / columns;
+        azimuth.push_back({std::cos(phi), std::sin(phi)});
+    }
     const auto theta = [&](double r) { return 0.5 * ACDF_PI * (r / rows) * (r / rows); };
     for (std::uint32_t r = 0; r < rows; ++r) {
         const double sine = std::sin(theta(r + 0.5)), hz = std::cos(theta(r + 0.5));
         const double low = std::sin(0.5 * theta(r)), high = std::sin(0.5 * theta(r + 1.0));
         const double measure = 2.0 * (high * high - low * low) * 2.0 * ACDF_PI / columns;
         for (std::uint32_t c = 0; c < columns; ++c) {
-            const double phi = view.phi + 2.0 * ACDF_PI * (c + 0.5) / columns;
-            const double h[3] = {sine * std::cos(phi), sine * std::sin(phi), hz};
+            const double h[3] = {sine * azimuth[c][0], sine * azimuth[c][1], hz};
             const double dot = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
             const double wi[3] = {2.0 * dot * h[0] - wo[0], 2.0 * dot * h[1] - wo[1], 2.0 * dot * h[2] - wo[2]};
-            const double p = density(wo, wi);
+            const double p = density(wi);
             sums.add(wi[2] > 0.0 ? reflected(wo, wi) : 0.0, p, measure * 4.0 * std::abs(dot), wi[2]);
         }
     }
@@ -114,21 +119,34 @@ std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compre
                                         const std::vector<compress::View>& views, std::uint32_t columns,
                                         std::uint32_t rows) {
     std::vector<ViewAccuracy> out(views.size());
-    tbb::parallel_for(std::size_t{0}, views.size(),
-                      [&](std::size_t v) { out[v] = measure_view(density, reflected, views[v], columns, rows); });
+    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+        double wo[3];
+        views[v].direction(wo);
+        const auto of_view = [&](const double wi[3]) { return density(wo, wi); };
+        out[v] = measure_view(of_view, reflected, views[v], wo, columns, rows);
+    });
     return out;
 }
 
 std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflected& reflected,
                                         const std::vector<compress::View>& views, std::uint32_t columns,
                                         std::uint32_t rows) {
-    const BrdfView brdf = file.brdf();
-    const ViewDensity density = [&](const double wo[3], const double wi[3]) {
+    const BrdfView whole = file.brdf();
+    const AcdfBrdf& brdf = whole.data();
+    std::vector<ViewAccuracy> out(views.size());
+    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+        double wo[3];
+        views[v].direction(wo);
         const float o[3] = {float(wo[0]), float(wo[1]), float(wo[2])};
-        const float i[3] = {float(wi[0]), float(wi[1]), float(wi[2])};
-        return double{brdf.pdf(o, i)};
-    };
-    return measure_views(density, reflected, views, columns, rows);
+        AcdfBrdfView view; // looked up once
+        const bool seen = acdf_brdf_view(&brdf, o, &view) != 0;
+        const auto of_view = [&](const double wi[3]) {
+            const float i[3] = {float(wi[0]), float(wi[1]), float(wi[2])};
+            return seen ? double{acdf_brdf_view_pdf(&brdf, &view, i)} : 0.0;
+        };
+        out[v] = measure_view(of_view, reflected, views[v], wo, columns, rows);
+    });
+    return out;
 }
 
 std::vector<ViewAccuracy> with_lost_samples(std::vector<ViewAccuracy> views) {
