@@ -1,6 +1,7 @@
 // Local environment maps for tests: fitted, stored and loaded again; and what is exact about them.
 #pragma once
 
+#include "tests/inputs/irradiance.h"
 #include "tests/inputs/synthetic.h"
 
 #include "compress/fit_local.h"
@@ -25,13 +26,6 @@
 #include <vector>
 
 namespace acdf_test {
-
-using Normal = std::array<float, 3>;
-
-inline double dot(const float a[3], const float b[3]) {
-    return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
-}
-inline double length(const float a[3]) { return std::sqrt(dot(a, a)); }
 
 inline Normal random_direction(std::mt19937_64& random) {
     Normal n;
@@ -113,11 +107,26 @@ struct LocalMap {
     acdf::compress::NormalBins bins;
     std::vector<std::uint8_t> bytes;
     acdf::File file;
+    ExactIrradiance exact;
+    std::vector<Normal> centres;  ///< of texels, row-major
+    std::vector<Normal> quarters; ///< of each texel's four
 
     LocalMap(acdf::compress::Target t, acdf::compress::NormalBins b, const LocalFileOptions& options)
-        : target(std::move(t)), bins(std::move(b)), bytes(local_bytes(target, bins, options)) {
+        : target(std::move(t)), bins(std::move(b)), bytes(local_bytes(target, bins, options)), exact(target) {
         const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
         if (!status.ok()) throw std::runtime_error(status.message);
+        for (std::uint32_t r = 0; r < target.rows; ++r)
+            for (std::uint32_t c = 0; c < target.columns; ++c) {
+                centres.push_back(place_direction(target, c + 0.5, r + 0.5));
+                for (int k = 0; k < 4; ++k)
+                    quarters.push_back(place_direction(target, c + 0.25 + 0.5 * (k % 2), r + 0.25 + 0.5 * (k / 2)));
+            }
+    }
+    LocalMap(const LocalMap&) = delete;
+    LocalMap& operator=(const LocalMap&) = delete;
+    double irradiance(const Normal& normal) const { return exact(normal.data()); }
+    std::size_t texel(std::uint32_t column, std::uint32_t row) const {
+        return std::size_t{row} * target.columns + column;
     }
     acdf::LocalEnvironmentView view() const { return file.local(); }
     /// The same without its cosine share: what follows the light.
@@ -163,60 +172,6 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
     return out;
 }
 
-/// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where
-/// no part is below the horizon, else of quarters, down to a thousandth of a radian.
-inline double clamped_cosine(const double n[3], double phi0, double phi1, double theta0, double theta1) {
-    const auto cosine = [&](double phi, double theta) {
-        return std::sin(theta) * (n[0] * std::cos(phi) + n[1] * std::sin(phi)) + n[2] * std::cos(theta);
-    };
-    const double phi = 0.5 * (phi0 + phi1), theta = 0.5 * (theta0 + theta1);
-    const double reach = 0.5 * (std::fabs(phi0 - phi1) + std::fabs(theta1 - theta0)), middle = cosine(phi, theta);
-    if (middle <= -reach) return 0.0;
-    if (middle >= reach || reach < 1e-3) {
-        if (middle <= 0.0) return 0.0;
-        const auto sine_square = [](double t) { return 0.5 * (t - std::sin(t) * std::cos(t)); };
-        return (n[0] * (std::sin(phi0) - std::sin(phi1)) - n[1] * (std::cos(phi0) - std::cos(phi1))) *
-                   (sine_square(theta1) - sine_square(theta0)) +
-               n[2] * (phi0 - phi1) * 0.5 *
-                   (std::sin(theta1) * std::sin(theta1) - std::sin(theta0) * std::sin(theta0));
-    }
-    return clamped_cosine(n, phi0, phi, theta0, theta) + clamped_cosine(n, phi, phi1, theta0, theta) +
-           clamped_cosine(n, phi0, phi, theta, theta1) + clamped_cosine(n, phi, phi1, theta, theta1);
-}
-
-/// The same over a texel of the octahedral square, of 8 x 8 directions.
-inline double square_cosine(const acdf::compress::Target& target, const double n[3], std::uint32_t column,
-                            std::uint32_t row) {
-    double sum = 0.0;
-    for (int i = 0; i < 64; ++i) {
-        double d[3];
-        acdf_octahedral_direction((column + (i % 8 + 0.5) / 8) / target.columns,
-                                  (row + (i / 8 + 0.5) / 8) / target.rows, d);
-        sum += std::max(0.0, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
-    }
-    return sum / 64 * 4.0 * kPi / target.columns / target.rows;
-}
-
-/// Of a texel.
-inline double clamped_cosine(const acdf::compress::Target& target, const float normal[3], std::uint32_t column,
-                             std::uint32_t row) {
-    const double size = length(normal);
-    const double n[3] = {normal[0] / size, normal[1] / size, normal[2] / size};
-    if (target.parameterization == ACDF_PARAM_OCTAHEDRAL) return square_cosine(target, n, column, row);
-    return clamped_cosine(n, kPi - 2.0 * kPi * column / target.columns,
-                          kPi - 2.0 * kPi * (column + 1) / target.columns, kPi * row / target.rows,
-                          kPi * (row + 1) / target.rows);
-}
-
-inline double exact_irradiance(const acdf::compress::Target& target, const float normal[3]) {
-    acdf::compress::Sum sum;
-    for (std::uint32_t r = 0; r < target.rows; ++r)
-        for (std::uint32_t c = 0; c < target.columns; ++c)
-            if (const float g = target.row(r)[c]; g > 0.0f)
-                sum.add(static_cast<double>(g) * clamped_cosine(target, normal, c, r));
-    return sum.value();
-}
-
 /// E[(f/p)^2] of one sample for f = L max(0, n . omega), about: of 2 x 2 directions a texel.
 inline double second_moment(const LocalMap& map, const float normal[3]) {
     const auto view = map.view();
@@ -225,8 +180,7 @@ inline double second_moment(const LocalMap& map, const float normal[3]) {
     for (std::uint32_t r = 0; r < map.target.rows; ++r)
         for (std::uint32_t c = 0; c < map.target.columns; ++c)
             for (int k = 0; k < 4 && map.radiance(c, r) > 0.0f; ++k) {
-                const Normal at = place_direction(map.target, c + 0.25 + 0.5 * (k % 2), r + 0.25 + 0.5 * (k / 2));
-                const float* d = at.data();
+                const float* d = map.quarters[4 * map.texel(c, r) + std::size_t(k)].data();
                 const double cosine = dot(normal, d) / size, f = static_cast<double>(map.radiance(c, r)) * cosine;
                 if (!(cosine > 0.0)) continue;
                 sum.add(0.25 * square_area(view.data().environment, r) * f * f /

@@ -97,7 +97,7 @@ std::vector<measure::Rgb> mean_of_all(const std::vector<Compared>& samplers) {
     return mean;
 }
 
-std::string gain_text(const measure::Interval& gain) {
+std::string range_text(const measure::Interval& gain) {
     char text[96];
     std::snprintf(text, sizeof text, "%.3g (%.3g to %.3g)", gain.value, gain.low, gain.high);
     return text;
@@ -123,7 +123,7 @@ std::string judge(const Comparison& comparison, Gain gain, const char* where, co
     const Compared& second = wins ? *rival : *ours;
     const measure::Interval factor = gain(first, second);
     std::string text = std::string("At equal ") + where + (wins ? " ours, '" : " a rival wins: '") +
-                       first.spec.text + "'" + (wins ? ", wins: " : ", ") + gain_text(factor) + " times less " +
+                       first.spec.text + "'" + (wins ? ", wins: " : ", ") + range_text(factor) + " times less " +
                        what + " than " + (wins ? "the best rival, '" : "the best of ours, '") + second.spec.text +
                        "'";
     if (factor.low <= 1.0) text += "; within the noise of this run";

@@ -45,7 +45,7 @@ std::string text_of(const Step& step, const builder::BrdfOptions& o) {
     return "--fit " + step.fit + " " + knots_text(o.phi_segments, o.theta_segments);
 }
 
-const char* label_of(const std::string& fit) {
+const char* brdf_label(const std::string& fit) {
     return fit == "variance"   ? "shared cells (default)"
            : fit == "separate" ? "a tree for each view"
            : fit == "cdf"      ? "cdf fit (the paper's)"
@@ -89,7 +89,7 @@ Candidate make_file(const input::Brdf& brdf, const SweepOptions& sweep, const St
     builder::BrdfFile made;
     throw_unless_built(builder::brdf(builder::described(brdf), options, made));
     Candidate out = file_candidate(std::move(made.bytes));
-    out.row.label = label_of(step.fit);
+    out.row.label = brdf_label(step.fit);
     out.row.options = text_of(step, options);
     take(out.row, made.accuracy);
     return out;

@@ -40,7 +40,7 @@ std::string text_of(const Step& step, const builder::EnvironmentOptions& o) {
     return "--fit " + step.fit + " " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
 }
 
-const char* label_of(const std::string& fit) {
+const char* environment_label(const std::string& fit) {
     return fit == "variance"  ? "variance fit (default)"
            : fit == "cascade" ? "variance fit, two levels"
            : fit == "cdf"     ? "cdf fit (the paper's)"
@@ -54,7 +54,7 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
     builder::Environment made;
     throw_unless_built(builder::environment(target, options, made));
     Candidate out = file_candidate(std::move(made.bytes));
-    out.row.label = label_of(step.fit);
+    out.row.label = environment_label(step.fit);
     out.row.options = text_of(step, options);
     out.row.cells = made.accuracy.cells;
     out.row.relative_variance = made.accuracy.support_violations > 0 ? HUGE_VAL : made.accuracy.relative_variance;

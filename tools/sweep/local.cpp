@@ -39,7 +39,7 @@ std::string text_of(const Step& step, const builder::LocalOptions& o) {
     return "--no-sharing --normals 25x10 --fit cdf " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
 }
 
-const char* label_of(const std::string& fit) {
+const char* local_label(const std::string& fit) {
     return fit == "variance"   ? "shared tiles (default)"
            : fit == "separate" ? "a tree for each normal"
                                : "the paper's: 25 x 10 normals, cdf fit";
@@ -54,7 +54,7 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
     Candidate out = file_candidate(std::move(made.bytes));
     const build::LocalAccuracy accuracy =
         build::summary(build::measure_normals(out.file->file, builder::grid_of(target), normals));
-    out.row.label = label_of(step.fit);
+    out.row.label = local_label(step.fit);
     out.row.options = text_of(step, options);
     out.row.cells = 0;
     out.row.relative_variance = accuracy.support_violations > 0 ? HUGE_VAL : accuracy.relative_variance;
@@ -84,7 +84,7 @@ Density reflected_density(const compress::Target& target, const Normal& n) {
     };
 }
 
-void add_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
+void add_local_pictures(Sweep& sweep, const compress::Target& target, const std::vector<Candidate>& candidates) {
     const Normal normal = {1.0f, 0.0f, 1.0f};
     const build::Map map = plot_map(build::Layout::latlong, kPictureWidth);
     const DensityImage full = draw_density(map, reflected_density(target, normal));
@@ -136,7 +136,7 @@ Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, 
     for (Candidate& rival : local_rivals(target, normals)) candidates.push_back(std::move(rival));
     part(0.85, 0.0)(0.0, "drawing");
     add_sobol(target, normals, options, candidates);
-    if (options.pictures) add_pictures(sweep, target, candidates);
+    if (options.pictures) add_local_pictures(sweep, target, candidates);
     finish_rows(sweep, std::move(candidates), timed_points(), options, part(0.9, 0.1));
     return sweep;
 }

@@ -18,7 +18,7 @@ std::string element(const std::string& open, const std::string& text) {
     return "<" + open + ">" + escaped(text) + "</" + open.substr(0, open.find(' ')) + ">";
 }
 
-std::string interval_text(const Interval& i) {
+std::string interval_html(const Interval& i) {
     if (!i.known()) return "";
     return short_number(i.value) + " <small>" + short_number(i.low) + " to " + short_number(i.high) + "</small>";
 }
@@ -192,7 +192,7 @@ std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
         out += "<tr>" + element("td class=\"left\"", row.label) + element("td", short_number(c.bytes)) +
                element("td", short_number(c.variance));
         if (sweep.timed)
-            out += "<td>" + interval_text(c.time) + "</td><td>" + interval_text(c.equal_time) +
+            out += "<td>" + interval_html(c.time) + "</td><td>" + interval_html(c.equal_time) +
                    "</td><td class=\"text\">" + verdict_html(c.verdict) + "</td>";
         out += "</tr>\n";
     }

@@ -1,0 +1,144 @@
+// The irradiance that a map gives to normals: all that does not depend on the normal is found once.
+#pragma once
+
+#include "tests/inputs/synthetic.h"
+
+#include "compress/sum.h"
+#include "compress/target.h"
+
+#include <acdf/octahedral.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace acdf_test {
+
+using Normal = std::array<float, 3>;
+
+inline double dot(const float a[3], const float b[3]) {
+    return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
+}
+inline double length(const float a[3]) { return std::sqrt(dot(a, a)); }
+
+/// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where
+/// no part is below the horizon, else of quarters, down to a thousandth of a radian.
+inline double clamped_cosine(const double n[3], double phi0, double phi1, double theta0, double theta1) {
+    const auto cosine = [&](double phi, double theta) {
+        return std::sin(theta) * (n[0] * std::cos(phi) + n[1] * std::sin(phi)) + n[2] * std::cos(theta);
+    };
+    const double phi = 0.5 * (phi0 + phi1), theta = 0.5 * (theta0 + theta1);
+    const double reach = 0.5 * (std::fabs(phi0 - phi1) + std::fabs(theta1 - theta0)), middle = cosine(phi, theta);
+    if (middle <= -reach) return 0.0;
+    if (middle >= reach || reach < 1e-3) {
+        if (middle <= 0.0) return 0.0;
+        const auto sine_square = [](double t) { return 0.5 * (t - std::sin(t) * std::cos(t)); };
+        return (n[0] * (std::sin(phi0) - std::sin(phi1)) - n[1] * (std::cos(phi0) - std::cos(phi1))) *
+                   (sine_square(theta1) - sine_square(theta0)) +
+               n[2] * (phi0 - phi1) * 0.5 *
+                   (std::sin(theta1) * std::sin(theta1) - std::sin(theta0) * std::sin(theta0));
+    }
+    return clamped_cosine(n, phi0, phi, theta0, theta) + clamped_cosine(n, phi, phi1, theta0, theta) +
+           clamped_cosine(n, phi0, phi, theta, theta1) + clamped_cosine(n, phi, phi1, theta, theta1);
+}
+
+class ExactIrradiance {
+public:
+    /// `target` must live as long.
+    explicit ExactIrradiance(const acdf::compress::Target& target) : target_(target) {
+        if (octahedral()) {
+            for (std::uint32_t r = 0; r < target.rows; ++r)
+                for (std::uint32_t c = 0; c < target.columns; ++c) squares_.push_back(square(c, r));
+            return;
+        }
+        const auto sine_square = [](double t) { return 0.5 * (t - std::sin(t) * std::cos(t)); };
+        for (std::uint32_t c = 0; c < target.columns; ++c) {
+            const double phi0 = phi(c), phi1 = phi(c + 1), middle = 0.5 * (phi0 + phi1);
+            columns_.push_back({std::cos(middle), std::sin(middle), std::sin(phi0) - std::sin(phi1),
+                                std::cos(phi0) - std::cos(phi1)});
+        }
+        for (std::uint32_t r = 0; r < target.rows; ++r) {
+            const double theta0 = theta(r), theta1 = theta(r + 1), middle = 0.5 * (theta0 + theta1);
+            const double squares = std::sin(theta1) * std::sin(theta1) - std::sin(theta0) * std::sin(theta0);
+            rows_.push_back({std::cos(middle), std::sin(middle), sine_square(theta1) - sine_square(theta0),
+                             (phi(0) - phi(1)) * 0.5 * squares});
+        }
+    }
+
+    /// The integral of L max(0, n . omega) for a normal of any length.
+    double operator()(const float normal[3]) const {
+        acdf::compress::Sum sum;
+        for (std::uint32_t r = 0; r < target_.rows; ++r)
+            for (std::uint32_t c = 0; c < target_.columns; ++c)
+                if (const float g = target_.row(r)[c]; g > 0.0f) sum.add(double{g} * of_texel(normal, c, r));
+        return sum.value();
+    }
+
+    /// The integral of max(0, n . omega) over a texel.
+    double of_texel(const float normal[3], std::uint32_t column, std::uint32_t row) const {
+        const double size = length(normal);
+        const double n[3] = {normal[0] / size, normal[1] / size, normal[2] / size};
+        if (octahedral()) return of_square(n, column, row);
+        const Axis &x = columns_[column], &y = rows_[row];
+        const double reach = 0.5 * (2.0 * kPi / target_.columns + kPi / target_.rows);
+        const double middle = y.sine * (n[0] * x.cosine + n[1] * x.sine) + n[2] * y.cosine;
+        if (middle <= -reach) return 0.0;
+        if (middle >= reach) return (n[0] * x.first - n[1] * x.second) * y.first + n[2] * y.second;
+        return clamped_cosine(n, phi(column), phi(column + 1), theta(row), theta(row + 1));
+    }
+
+private:
+    /// Of one column or row: of its middle, and the two parts of the closed form of a box.
+    struct Axis {
+        double cosine, sine, first, second;
+    };
+    /// Of one texel of the octahedral square: the sum of its 8 x 8 directions, and how far they are from its mean.
+    struct Square {
+        double sum[3] = {0.0, 0.0, 0.0}, reach = 0.0;
+    };
+
+    bool octahedral() const { return target_.parameterization == ACDF_PARAM_OCTAHEDRAL; }
+    double phi(std::uint32_t column) const { return kPi - 2.0 * kPi * column / target_.columns; }
+    double theta(std::uint32_t row) const { return kPi * row / target_.rows; }
+
+    void direction(std::uint32_t column, std::uint32_t row, int i, double d[3]) const {
+        acdf_octahedral_direction((column + (i % 8 + 0.5) / 8) / target_.columns,
+                                  (row + (i / 8 + 0.5) / 8) / target_.rows, d);
+    }
+    Square square(std::uint32_t column, std::uint32_t row) const {
+        Square out;
+        double d[3];
+        for (int i = 0; i < 64; ++i) {
+            direction(column, row, i, d);
+            for (int k = 0; k < 3; ++k) out.sum[k] += d[k];
+        }
+        for (int i = 0; i < 64; ++i) {
+            direction(column, row, i, d);
+            for (int k = 0; k < 3; ++k) d[k] -= out.sum[k] / 64.0;
+            out.reach = std::max(out.reach, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+        }
+        return out;
+    }
+    /// By 8 x 8 directions, one by one only where the horizon is between them.
+    double of_square(const double n[3], std::uint32_t column, std::uint32_t row) const {
+        const Square& s = squares_[std::size_t{row} * target_.columns + column];
+        const double area = 4.0 * kPi / target_.columns / target_.rows;
+        double sum = n[0] * s.sum[0] + n[1] * s.sum[1] + n[2] * s.sum[2];
+        if (sum <= -64.0 * s.reach) return 0.0;
+        if (sum >= 64.0 * s.reach) return sum / 64.0 * area;
+        sum = 0.0;
+        for (int i = 0; i < 64; ++i) {
+            double d[3];
+            direction(column, row, i, d);
+            sum += std::max(0.0, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
+        }
+        return sum / 64.0 * area;
+    }
+
+    const acdf::compress::Target& target_;
+    std::vector<Axis> columns_, rows_;
+    std::vector<Square> squares_;
+};
+
+} // namespace acdf_test
