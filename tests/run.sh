@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Everything that must hold, from a bare Debian 12: installs what is missing, then
 #   0. checks the formatting,
-#   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, and runs the tests on synthetic data,
-#   2. fuzzes the reader for a minute, and every parser of our own for half a one,
-#   3. builds optimised with warnings as errors, and compares the files that both builds make byte for byte,
-#   4. runs all tests of the optimised build, those on real data too where it is present.
+#   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, runs the tests on synthetic data, and beside them
+#      fuzzes the reader for a minute, and every parser of our own for half a one,
+#   2. builds optimised with warnings as errors, and compares the files that both builds make byte for byte,
+#   3. runs all tests of the optimised build, those on real data too where it is present.
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
 #
 #   tests/run.sh            all of it
-#   tests/run.sh --quick    stage 4 and what it needs: the optimised build and its tests
+#   tests/run.sh --quick    stage 3 and what it needs: the optimised build and its tests
 set -euo pipefail
 
 quick=false
@@ -33,12 +33,7 @@ run_sanitized_tests() {
     # Real data is left to the release build: sanitizers make it many times slower and it adds no code paths.
     cmake --preset asan -DACDF_TEST_DATA=/nonexistent
     cmake --build --preset asan --parallel "$jobs"
-    ctest --preset asan --parallel "$jobs" --label-exclude 'packaging|fuzz'
-}
-
-run_fuzzers() {
-    # Two at a time.
-    ctest --preset asan --parallel 2 --label-regex fuzz
+    ctest --preset asan --parallel "$jobs" --label-exclude packaging
 }
 
 build_release() {
@@ -71,12 +66,10 @@ step "Packages"
 tools/install_packages.sh build quick test
 step "0. Formatting"
 check_formatting
-step "1. Tests with sanitizers, in build/asan"
+step "1. Tests with sanitizers and fuzzers, in build/asan"
 run_sanitized_tests
-step "2. A minute of the fuzzers, in build/asan"
-run_fuzzers
-step "3. The same bytes from both builds, with any number of threads"
+step "2. The same bytes from both builds, with any number of threads"
 build_release
 run_all_builds_alike
-step "4. All tests, optimised, in build/release"
+step "3. All tests, optimised, in build/release"
 run_all_tests
