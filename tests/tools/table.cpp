@@ -199,9 +199,10 @@ TEST(TableCommand, CompressedFilesDrawTheSame) {
 /// Runs one command line of the guide in `folder`, with the programs that it calls by their names.
 std::string guide_output(const Folder& folder, const std::string& command) {
     const std::string program = quoted(ACDF_PROGRAM), examples = ACDF_EXAMPLES;
-    const std::string script = "cd " + quoted(folder / "") + " && acdf() { " + program + " \"$@\"; }; " +
-                               "light_field() { " + quoted(examples + "/light_field") + " \"$@\"; }; " +
-                               "read_table() { " + quoted(examples + "/read_table") + " \"$@\"; }; " + command;
+    const std::string script =
+        "cd " + quoted(folder / "") + " && acdf() { " + program + " \"$@\"; }; " + "light_field() { " +
+        quoted(examples + "/light_field") + " \"$@\"; }; " + "read_table() { " + quoted(examples + "/read_table") +
+        " \"$@\"; }; " + "light_at_point() { " + quoted(examples + "/light_at_point") + " \"$@\"; }; " + command;
     EXPECT_EQ(std::system(("{ " + script + "; } > " + quoted(folder / "output") + " 2>&1").c_str()), 0) << command;
     return read_text(folder / "output");
 }

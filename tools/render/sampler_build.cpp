@@ -5,6 +5,7 @@
 #include "measure/light_samplers.h"
 #include "measure/product_rivals.h"
 #include "measure/product_samplers.h"
+#include "measure/product_warp.h"
 #include "measure/stratified_map.h"
 #include "measure/surface_points.h"
 #include "tools/cli/built.h"
@@ -172,6 +173,7 @@ struct SamplerBuilder::Store {
         case SamplerKind::strata:
         case SamplerKind::mis:
         case SamplerKind::product:
+        case SamplerKind::warp:
             break;
         }
         throw std::logic_error("is no sampler of single directions");
@@ -214,6 +216,21 @@ struct SamplerBuilder::Store {
         });
         return *made.sampler;
     }
+    const measure::LightSampler& warp(const SamplerSpec& spec, std::size_t material) {
+        const File* light = table(spec.parts[0], material).file;
+        const File* brdf = table(spec.parts[1], material).file;
+        if (light->company())
+            throw SpecError("sampler '" + spec.text + "': its light has no support where its company is enough");
+        return *kept(spec.text, material, [&] {
+                    return brdf ? measure::product_warp_sampler(*light, *brdf)
+                                : measure::product_warp_sampler(*light, spec.parts[1].alpha);
+                }).sampler;
+    }
+    /// One that single directions are drawn from, made for `samples` at a point.
+    const measure::LightSampler& single(const SamplerSpec& spec, std::size_t material, std::uint32_t samples) {
+        if (spec.kind == SamplerKind::product) return product(spec, material, samples);
+        return spec.kind == SamplerKind::warp ? warp(spec, material) : sampler(spec, material);
+    }
     const measure::LightSampler& candidates(const SamplerSpec& spec, std::size_t material) {
         if (spec.parts.empty()) return sampler(spec, material);
         const measure::LightSampler &a = sampler(spec.parts[0], material), &b = sampler(spec.parts[1], material);
@@ -233,20 +250,16 @@ struct SamplerBuilder::Store {
                                                                   samples);
         if (spec.kind == SamplerKind::strata)
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
-        if (spec.kind == SamplerKind::product)
-            return std::make_unique<measure::SingleEstimator>(product(spec, material, samples), samples);
         if (spec.kind == SamplerKind::file && table(spec, material).file->company())
             throw SpecError("sampler '" + spec.text + "': has no support where its company is enough: mis(" +
                             spec.text + ", cosine)");
         if (spec.kind != SamplerKind::mis)
-            return std::make_unique<measure::SingleEstimator>(sampler(spec, material), samples);
+            return std::make_unique<measure::SingleEstimator>(single(spec, material, samples), samples);
         const std::vector<std::uint32_t> counts = divided(samples, spec);
         std::vector<measure::Share> shares;
         for (std::size_t i = 0; i < counts.size(); ++i) {
             const SamplerSpec& part = spec.parts[i];
-            shares.push_back(
-                {part.kind == SamplerKind::product ? &product(part, material, counts[i]) : &sampler(part, material),
-                 counts[i], part.automatic});
+            shares.push_back({&single(part, material, counts[i]), counts[i], part.automatic});
         }
         return std::make_unique<measure::MisEstimator>(shares, spec.power ? measure::Heuristic::power
                                                                           : measure::Heuristic::balance);

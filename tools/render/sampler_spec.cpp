@@ -46,6 +46,7 @@ constexpr Name names[] = {
     {"strata", SamplerKind::strata, "solid-angle"},
     {"ris", SamplerKind::ris, "32"},
     {"product", SamplerKind::product, "auto"},
+    {"warp", SamplerKind::warp, nullptr},
     {"ideal", SamplerKind::ideal, nullptr},
     {"file", SamplerKind::file, ""},
 };
@@ -208,6 +209,11 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
                        "ggx:ALPHA or "
                        "a file");
         return spec;
+    case SamplerKind::warp:
+        if (count != 2 || !is_brdf(last) ||
+            (first.kind != SamplerKind::local && first.kind != SamplerKind::env && first.kind != SamplerKind::file))
+            fail(text, "is warp(LIGHT,BRDF): of local:SIZE, env:SIZE or a file, and brdf:SIZE, ggx:ALPHA or a file");
+        return spec;
     case SamplerKind::tiles:
         if (count != 1 || !is_brdf(last)) fail(text, "is tiles:12x12(BRDF): of brdf:SIZE, ggx:ALPHA or a file");
         return spec;
@@ -215,11 +221,11 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
         if (count != 2) fail(text, "takes its candidates from two samplers");
         for (const SamplerSpec& part : spec.parts)
             if (part.kind == SamplerKind::ris || part.kind == SamplerKind::strata ||
-                part.kind == SamplerKind::product)
+                part.kind == SamplerKind::product || part.kind == SamplerKind::warp)
                 fail(text, "'" + part.text + "' cannot give candidates");
         return spec;
     default:
-        fail(text, "is made of nothing: product(...), tiles:12x12(...), ris:32(...) and mis(...) are");
+        fail(text, "is made of nothing: product(...), warp(...), tiles:12x12(...), ris:32(...) and mis(...) are");
     }
 }
 
@@ -229,6 +235,7 @@ SamplerSpec parse_part(const std::string& text) {
     if (open == std::string::npos || text.back() != ')' || text.compare(0, 5, "file:") == 0) {
         SamplerSpec spec = parse_single(text);
         if (spec.kind == SamplerKind::product) fail(text, "is product(LIGHT,BRDF)");
+        if (spec.kind == SamplerKind::warp) fail(text, "is warp(LIGHT,BRDF)");
         return spec;
     }
     return parse_made(text, open);

@@ -37,6 +37,7 @@ enum class SamplerKind {
     ideal,   ///< ideal: light times cosine on all texels, made at each point; --with cosine: filled up for it
     file,    ///< file:my.acdf: any environment, local environment or BRDF file
     product, ///< product(local:1MB,brdf:64KiB), product:32(file:sky.acdf,ggx:0.1): light times BRDF, in 32 parts
+    warp,    ///< warp(local:1MB,brdf:64KiB): the light's numbers bent towards the BRDF, Hart et al. 2020
 };
 
 struct SamplerSpec {
@@ -54,8 +55,8 @@ struct SamplerSpec {
     bool automatic = false;              ///< a part of mis: gives as many samples as it recommends itself
     std::string path;                    ///< file
     std::uint32_t divisions = 0;         ///< product: parts of the sphere; 0: as many as the samples pay for
-    std::vector<SamplerSpec> parts;      ///< mis: two or more; product: light and BRDF; ris: two; tiles: a BRDF
-    std::vector<double> shares;          ///< mis: of the samples; their sum is 1
+    std::vector<SamplerSpec> parts; ///< mis: two or more; product, warp: light and BRDF; ris: two; tiles: a BRDF
+    std::vector<double> shares;     ///< mis: of the samples; their sum is 1
 };
 
 /// `mis(4*local:1MB,cosine)` gives the first part four times as many samples as the second, `mis(auto:local:1MB

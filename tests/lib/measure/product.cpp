@@ -4,6 +4,7 @@
 #include "tests/lib/measure/light_sampler_checks.h"
 
 #include "measure/product_samplers.h"
+#include "measure/product_warp.h"
 #include "measure/surface_frame.h"
 
 namespace {
@@ -91,6 +92,18 @@ TEST(Product, DrawsByItsDensity) {
             expect_samples_as_its_density(*sampler, at[static_cast<std::size_t>(i++)], bins,
                                           light.name + ", " + surface.name, check);
         }
+}
+
+TEST(Product, WarpedNumbersDrawByTheirDensity) {
+    const std::vector<Light>& all_lights = lights();
+    const acdf::File& brdf = surfaces().front().made->file;
+    SamplerCheck check;
+    check.tolerance = 1e-2;
+    check.samples = 4000;
+    const std::vector<ShadingPoint> at = points(12);
+    for (std::size_t i = 0; i < all_lights.size(); ++i)
+        expect_samples_as_its_density(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
+                                      SphereBins{64, 32, 4}, all_lights[i].name, check);
 }
 
 /// Reflected light of a point, by summation over the grid of the light.

@@ -170,6 +170,7 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(product.parts[0].bytes, 1000000u);
     EXPECT_EQ(product.parts[1].alpha, 0.1);
     EXPECT_EQ(parse_sampler("product(env,file:a.acdf)").divisions, 0u); // as the samples ask for
+    EXPECT_EQ(parse_sampler("mis(warp(local,brdf),brdf)").parts[0].kind, SamplerKind::warp);
     EXPECT_EQ(parse_sampler("ris:8(local,brdf)").candidates, 8u);
     EXPECT_EQ(parse_sampler("tiles:12x12(brdf)").parts[0].kind, SamplerKind::brdf);
     EXPECT_EQ(parse_sampler("file:a(1)").path, "a(1)");
@@ -206,6 +207,8 @@ TEST(RenderSampler, MistakesAreNamed) {
         {"product:0(local,brdf)", "parts are counted"},
         {"product:97(local,brdf)", "parts are counted"},
         {"product(local)", "is product(LIGHT,BRDF)"},
+        {"warp", "is warp(LIGHT,BRDF)"},
+        {"warp(brdf,local)", "is warp(LIGHT,BRDF)"},
         {"product(brdf,local)", "is product(LIGHT,BRDF)"},
         {"product(local,product(local,brdf))", "is none of"},
         {"ris:8(local)", "from two samplers"},
