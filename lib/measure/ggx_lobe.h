@@ -18,6 +18,7 @@ public:
     };
 
     explicit GgxLobe(double alpha) : ggx_(alpha) {}
+    GgxLobe(double alpha_x, double alpha_y) : ggx_(alpha_x, alpha_y) {}
 
     static bool at(const float wo[3], Point& point) {
         std::copy_n(wo, 3, point.wo);

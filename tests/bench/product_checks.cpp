@@ -1,0 +1,147 @@
+// Checks acdf/product.h at many shading points of real files, and prints a row of a table:
+// product_checks LOCAL.acdf (BRDF.acdf | ALPHA_X ALPHA_Y)
+//
+// Normals and views are random, one view in four grazing, one normal in four where bins of normals meet. Light is
+// what the file's environment says, the BRDF its own sampler's density over the cosine. Columns: pairs; how far the
+// density of the cut is from integrating to 1, by summation over the squares of the grid, for a few pairs; samples
+// whose density pdf() tells otherwise; samples and random directions with light and BRDF but without density; pairs
+// whose mean is farther than 4 standard errors from that of another sampler, half light and half BRDF.
+#include "measure/ggx_lobe.h"
+
+#include <acdf/product.h>
+#include <acdf/reader.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+namespace {
+
+using namespace acdf;
+
+struct Random {
+    std::mt19937_64 bits{1};
+
+    double operator()() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+    void direction(double z, float out[3]) {
+        const double phi = 2.0 * (*this)() - 1.0, r = std::sqrt(std::max(0.0, 1.0 - z * z));
+        double sine, cosine;
+        acdf_sincospi(phi, &sine, &cosine);
+        const double d[3] = {r * cosine, r * sine, z};
+        for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(d[k]);
+    }
+    void normal(int i, float out[3]) {
+        double d[3], length = 0.0;
+        if (i % 4 != 1) return direction(2.0 * (*this)() - 1.0, out);
+        while (!(length > 0.0)) {
+            for (double& x : d) x = static_cast<double>(bits() % 5) - 2.0;
+            length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        }
+        for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(d[k] / length);
+    }
+};
+
+struct Mean {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+
+    void add(double x) {
+        sum += x;
+        squares += x * x;
+        count += 1.0;
+    }
+    double value() const { return sum / count; }
+    double error2() const { return std::max(0.0, squares / count - value() * value()) / (count - 1.0); }
+};
+
+struct Counts {
+    double worst_integral = 0.0;
+    int disagree = 0, violations = 0, beyond = 0;
+};
+
+double cut_integral(const AcdfLocal& light, const AcdfLocalPoint& point, const AcdfCut& cut) {
+    const AcdfGrid grid = acdf_environment_grid(&light.environment);
+    const double middle[2] = {0.5, 0.5};
+    double sum = 0.0;
+    for (std::uint32_t y = 0; y < grid.rows; ++y)
+        for (std::uint32_t x = 0; x < grid.columns; ++x) {
+            const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
+            const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
+            sum += double{acdf_cut_pdf(&light, &point, &cut, at.direction)} * acdf_grid_solid_angle(&grid, square);
+        }
+    return sum;
+}
+
+template <class AnyLobe>
+Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
+    constexpr int draws = 4000, sums = 4;
+    const ProductSampler<AnyLobe> sampler(light, lobe, ProductOptions{64});
+    Random random;
+    Counts out;
+    for (int i = 0; i < pairs; ++i) {
+        float normal[3], local_wo[3], wo[3], wi[3];
+        random.normal(i, normal);
+        const SurfaceFrame frame = surface_frame(normal);
+        random.direction(i % 4 == 2 ? 0.001 + 0.02 * random() : 0.02 + 0.98 * random(), local_wo);
+        frame.to_world(local_wo, wo);
+        const auto point = sampler.at(frame, wo);
+        if (!(point.share >= 0.0)) continue;
+        const auto reflected = [&](const float d[3]) { // light times BRDF times cosine
+            frame.to_local(d, wi);
+            return wi[2] > 0.0f
+                       ? double{acdf_environment_pdf(&light.environment, d)} * double{lobe.pdf(point.lobe, wi)}
+                       : 0.0;
+        };
+        Mean ours, other;
+        for (int k = 0; k < draws; ++k) {
+            const ProductSample s = sampler.sample(point, random(), random());
+            out.disagree += s.pdf > 0.0f && sampler.pdf(point, s.direction) != s.pdf;
+            ours.add(s.pdf > 0.0f ? reflected(s.direction) / double{s.pdf} : 0.0);
+            const bool first = random.bits() % 2 != 0;
+            ProductSample t = first ? acdf_local_sample_at(&light, &point.light, random(), random())
+                                    : lobe.sample(point.lobe, random(), random());
+            if (!first && t.pdf > 0.0f) {
+                float world[3];
+                frame.to_world(t.direction, world);
+                std::copy_n(world, 3, t.direction);
+            }
+            if (!(t.pdf > 0.0f)) {
+                other.add(0.0);
+                continue;
+            }
+            frame.to_local(t.direction, wi);
+            const double density = 0.5 * double{acdf_local_pdf_at(&light, &point.light, t.direction)} +
+                                   0.5 * double{lobe.pdf(point.lobe, wi)};
+            const double f = reflected(t.direction);
+            other.add(density > 0.0 ? f / density : 0.0);
+            random.direction(2.0 * random() - 1.0, wo);
+            out.violations += f > 0.0 && !(sampler.pdf(point, t.direction) > 0.0f);
+            out.violations += reflected(wo) > 0.0 && !(sampler.pdf(point, wo) > 0.0f);
+        }
+        const double error = std::sqrt(ours.error2() + other.error2());
+        out.beyond += std::fabs(ours.value() - other.value()) > 4.0 * error;
+        if (i < sums && point.light.what == ACDF_LOCAL_BLEND && point.cut.count > 0)
+            out.worst_integral =
+                std::max(out.worst_integral, std::fabs(cut_integral(light, point.light, point.cut) - 1.0));
+    }
+    return out;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    File light, brdf;
+    const bool lobe = argc >= 4;
+    if (argc < 3 || !File::open(argv[1], light).ok() || light.kind() != ACDF_KIND_LOCAL ||
+        (!lobe && (!File::open(argv[2], brdf).ok() || brdf.kind() != ACDF_KIND_BRDF))) {
+        std::fprintf(stderr, "usage: product_checks LOCAL.acdf (BRDF.acdf | ALPHA_X ALPHA_Y)\n");
+        return 1;
+    }
+    constexpr int pairs = 200;
+    const AcdfLocal data = light.local().data();
+    const Counts c = lobe ? check(data, measure::GgxLobe(std::atof(argv[2]), std::atof(argv[3])), pairs)
+                          : check(data, BrdfLobe(brdf.brdf().data()), pairs);
+    std::printf("| %d | %.1g | %d | %d | %d |\n", pairs, c.worst_integral, c.disagree, c.violations, c.beyond);
+    return c.worst_integral > 1e-4 || c.disagree > 0 || c.violations > 0 || c.beyond > 1 ? 1 : 0;
+}
