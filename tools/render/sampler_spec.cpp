@@ -212,7 +212,8 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
     case SamplerKind::warp:
         if (count != 2 || !is_brdf(last) ||
             (first.kind != SamplerKind::local && first.kind != SamplerKind::env && first.kind != SamplerKind::file))
-            fail(text, "is warp(LIGHT,BRDF): of local:SIZE, env:SIZE or a file, and brdf:SIZE, ggx:ALPHA or a file");
+            fail(text,
+                 "is warp(LIGHT,BRDF): of local:SIZE, env:SIZE or a file, and brdf:SIZE, ggx:ALPHA or a file");
         return spec;
     case SamplerKind::tiles:
         if (count != 1 || !is_brdf(last)) fail(text, "is tiles:12x12(BRDF): of brdf:SIZE, ggx:ALPHA or a file");
