@@ -41,12 +41,15 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/row_heights.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tables.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/short_curves.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tile_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tree.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/views.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/wavefront.h

@@ -209,8 +209,7 @@ void File::make_tables() noexcept {
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
     // On the octahedral square a walk needs no trigonometry; its cells are not pieces of azimuth and height.
-    if (description_->parameterization != ACDF_PARAM_LATLONG) return;
-    if (kind() == ACDF_KIND_ENVIRONMENT)
+    if (kind() == ACDF_KIND_ENVIRONMENT && description_->parameterization == ACDF_PARAM_LATLONG)
         cells_ = make_cells(environment().data(), tree_units_, most, allocator_, owned_[2]);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
@@ -239,7 +238,7 @@ Text File::metadata(const char* key) const noexcept {
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
-                            cells_, company_});
+                            cells_, company_, tree_units_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
@@ -252,7 +251,8 @@ LocalEnvironmentView File::local() const noexcept {
                          description_->total,
                          description_->parameterization,
                          nullptr,
-                         company_};
+                         company_,
+                         tree_units_};
     local.company = company_;
     local.bins = bins_;
     local.lights = lights_;

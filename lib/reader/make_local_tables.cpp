@@ -2,9 +2,12 @@
 
 #include "make_sides.h"
 #include "make_squares.h"
+#include "make_tile_tables.h"
 #include "memory.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -16,24 +19,27 @@ using u32 = std::uint32_t;
 
 std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
 
-// Where tables are larger, calls would wait for memory longer than the walk takes.
+// Of pieces and parts: where they are larger, calls would wait for memory longer than the walk takes.
 constexpr std::size_t kMostBytes = std::size_t{3} << 20;
 
 constexpr std::size_t kMostPieces = 65535; // what lists can name
 
-class LocalTablesMaker {
+class PiecesMaker {
 public:
-    LocalTablesMaker(const AcdfLocal& local, u32 tree_units, std::size_t most_bytes)
+    PiecesMaker(const AcdfLocal& local, u32 tree_units, std::size_t most_bytes)
         : local_(local), most_bytes_(std::min(most_bytes, kMostBytes)),
           most_cells_(2 * std::size_t{tree_units} + local.blend.tiles->tile_count),
           most_pieces_(std::min(kMostPieces, most_bytes_ / (2 * sizeof(AcdfTilePiece)))),
           sides_(local.environment.columns, local.environment.rows) {}
 
-    /// False where there can be no tables.
-    bool gather();
-    AcdfLocalTables* assemble(const AcdfAllocator& allocator, AcdfBlock& block) const;
+    /// False where there can be none.
+    bool make();
+    std::size_t words() const;
+    std::size_t place(u32* words, std::size_t at, AcdfLocalTables& out) const;
 
 private:
+    std::size_t part_words() const;
+    bool gather();
     bool gather(u32 node, const Cell& box);
     bool add(const Cell& cell, u32 tile);
     void add_parts(const std::uint8_t* row, u32 node, double product, double* out) const;
@@ -46,18 +52,20 @@ private:
     SquaresMaker directions_;
 };
 
-bool LocalTablesMaker::gather() {
+bool PiecesMaker::make() { return gather() && 4 * words() <= most_bytes_; }
+
+bool PiecesMaker::gather() {
     const AcdfEnvironment& env = local_.environment;
     const AcdfTiles& tiles = *local_.blend.tiles;
     if (sizeof(double) * tiles.row_count * tiles.tile_count > most_bytes_) return false;
     const Cell whole = {1.0, {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {env.columns, env.rows}, false, false};
-    return sides_.remember(most_cells_) && gather(tiles.tile_count > 1 ? 0 : ACDF_TILE_FLAG, whole) &&
+    return sides_.remember(most_cells_) && gather(acdf_blend_root(&local_.blend), whole) &&
            !(pieces_.failed() || keys_.failed()) &&
            directions_.make(keys_.data(), keys_.size(), ACDF_DIRECTION_BITS);
 }
 
 // The cells of all tiles below a node. A path passes at most 48 splits.
-bool LocalTablesMaker::gather(u32 node, const Cell& box) {
+bool PiecesMaker::gather(u32 node, const Cell& box) {
     if (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit& split = local_.blend.splits[node];
         const u32 axis = split.place & 7u;
@@ -72,7 +80,7 @@ bool LocalTablesMaker::gather(u32 node, const Cell& box) {
 
 // False where there are too many cells, or more than the file has bytes, as curves may be shared. Those with tilts
 // are left to the walk.
-bool LocalTablesMaker::add(const Cell& cell, u32 tile) {
+bool PiecesMaker::add(const Cell& cell, u32 tile) {
     if (++cells_ > most_cells_) return false;
     if (cell.tilted) return true;
     const double probability = cell.dark ? 0.0 : acdf_positive(cell.probability);
@@ -101,34 +109,27 @@ bool LocalTablesMaker::add(const Cell& cell, u32 tile) {
     return pieces_.size() <= most_pieces_;
 }
 
-AcdfLocalTables* LocalTablesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& block) const {
+std::size_t PiecesMaker::part_words() const {
+    return padded(2 * std::size_t{local_.blend.tiles->row_count} * local_.blend.tiles->tile_count);
+}
+std::size_t PiecesMaker::words() const { return padded(pieces_.bytes() / 4) + directions_.words() + part_words(); }
+
+std::size_t PiecesMaker::place(u32* words, std::size_t at, AcdfLocalTables& out) const {
     const AcdfBlend& blend = local_.blend;
-    const std::size_t tiles = blend.tiles->tile_count, rows = blend.tiles->row_count;
-    const std::size_t begin = sizeof(AcdfLocalTables) / 4;
-    static_assert(sizeof(AcdfLocalTables) % 64 == 0, "arrays are aligned");
-    const std::size_t piece_words = padded(pieces_.bytes() / 4), part_words = padded(2 * rows * tiles);
-    const std::size_t words = begin + piece_words + directions_.words() + part_words + padded((tiles + 3) / 4);
-    if (4 * words > most_bytes_) return nullptr;
-    block = take_block(allocator, 4 * words);
-    if (!block.data) return nullptr;
-    u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
-    AcdfLocalTables* const tables = new (block.data) AcdfLocalTables();
-    tables->words = static_cast<u32>(words);
-    tables->count = static_cast<u32>(pieces_.size());
-    tables->pieces = static_cast<u32>(begin);
-    if (pieces_.size() > 0) std::memcpy(out + begin, pieces_.data(), pieces_.bytes());
-    tables->parts = static_cast<u32>(directions_.place(out, begin + piece_words, tables->directions));
-    tables->lights = tables->parts + static_cast<u32>(part_words);
-    auto* const parts = reinterpret_cast<double*>(out + tables->parts);
-    for (std::size_t i = 0; i < rows; ++i)
-        add_parts(blend.rows + i * (tiles - 1), tiles > 1 ? 0 : ACDF_TILE_FLAG, 1.0, parts + i * tiles);
-    auto* const lights = reinterpret_cast<std::uint8_t*>(out + tables->lights);
-    for (u32 i = 0; i < local_.light_count; ++i) lights[local_.lights[i].tile] = static_cast<std::uint8_t>(i + 1);
-    return tables;
+    const std::size_t tiles = blend.tiles->tile_count;
+    out.count = static_cast<u32>(pieces_.size());
+    out.pieces = static_cast<u32>(at);
+    if (pieces_.size() > 0) std::memcpy(words + at, pieces_.data(), pieces_.bytes());
+    at = directions_.place(words, at + padded(pieces_.bytes() / 4), out.directions);
+    out.parts = static_cast<u32>(at);
+    auto* const parts = reinterpret_cast<double*>(words + at);
+    for (std::size_t i = 0; i < blend.tiles->row_count; ++i)
+        add_parts(blend.rows + i * (tiles - 1), acdf_blend_root(&blend), 1.0, parts + i * tiles);
+    return at + part_words();
 }
 
 // What a row gives to each tile: the products of its splits, as acdf_blend_find_tile forms them.
-void LocalTablesMaker::add_parts(const std::uint8_t* row, u32 node, double product, double* out) const {
+void PiecesMaker::add_parts(const std::uint8_t* row, u32 node, double product, double* out) const {
     const AcdfBlend& blend = local_.blend;
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit& split = blend.splits[node];
@@ -140,12 +141,71 @@ void LocalTablesMaker::add_parts(const std::uint8_t* row, u32 node, double produ
     out[node & ~ACDF_TILE_FLAG] = product;
 }
 
+constexpr u32 kMostSubdivisions = 32; // of an octahedron whose corners are told in a table
+
+std::size_t corner_words(const AcdfLocal& local) {
+    const std::size_t n = local.subdivisions, side = 2 * n + 1;
+    return n > 0 && n <= kMostSubdivisions ? padded(2 * side * side * sizeof(AcdfCornerRecord) / 4) : 0;
+}
+
+void place_corners(const AcdfLocal& local, AcdfCornerRecord* out) {
+    const auto n = static_cast<std::int32_t>(local.subdivisions);
+    for (std::int32_t south = 0; south < 2; ++south)
+        for (std::int32_t y = -n; y <= n; ++y)
+            for (std::int32_t x = -n; x <= n; ++x, ++out) {
+                const std::int32_t height = n - std::abs(x) - std::abs(y), z = south ? -height : height;
+                if (height < 0) continue;
+                const AcdfBin& bin = local.bins[acdf_octahedral_corner(local.subdivisions, x, y, z)];
+                if (bin.root == ACDF_NO_ROOT) continue;
+                *out = {std::sqrt(static_cast<double>(x * x + y * y + z * z)), bin.share, bin.root};
+            }
+}
+
 } // namespace
 
 AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::size_t most_bytes,
                                    const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
-    LocalTablesMaker maker(local, tree_units, most_bytes);
-    return maker.gather() ? maker.assemble(allocator, block) : nullptr;
+    const AcdfEnvironment& env = local.environment;
+    const bool latlong = env.parameterization == ACDF_PARAM_LATLONG;
+    const std::size_t heights = latlong ? padded(2 * (std::size_t{env.rows} + 1)) : 0;
+    std::size_t at = sizeof(AcdfLocalTables) / 4;
+    TileTablesMaker tiles(local.blend, env.columns, env.rows);
+    if (!tiles.make()) return nullptr;
+    const std::size_t corners = corner_words(local),
+                      lights = padded(local.light_count * sizeof(AcdfLightRecord) / 4);
+    std::size_t words = at + tiles.words() + heights + corners + lights;
+    if (4 * words > most_bytes) return nullptr;
+    PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
+    const bool small = latlong && pieces.make();
+    if (small) words += pieces.words();
+    block = take_block(allocator, 4 * words);
+    if (!block.data) return nullptr;
+    u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
+    AcdfLocalTables* const tables = new (block.data) AcdfLocalTables();
+    tables->words = static_cast<u32>(words);
+    at = tiles.place(out, at, tables->tiles);
+    for (u32 i = 0; i < local.light_count; ++i)
+        reinterpret_cast<AcdfTileRecord*>(out + tables->tiles.tiles)[local.lights[i].tile].light =
+            static_cast<std::uint16_t>(i + 1);
+    tables->lights = static_cast<u32>(at);
+    for (u32 i = 0; i < local.light_count; ++i) {
+        const AcdfLight& light = local.lights[i];
+        const float(&d)[3] = light.direction;
+        reinterpret_cast<AcdfLightRecord*>(out + at)[i] = {{d[0], d[1], d[2]}, light.radius, light.share};
+    }
+    at += lights;
+    if (corners > 0) {
+        tables->corners = static_cast<u32>(at);
+        place_corners(local, reinterpret_cast<AcdfCornerRecord*>(out + at));
+        at += corners;
+    }
+    if (latlong) {
+        tables->heights = static_cast<u32>(at);
+        for (u32 i = 0; i <= env.rows; ++i) reinterpret_cast<double*>(out + at)[i] = acdf_row_z(i, env.rows);
+        at += heights;
+    }
+    if (small) pieces.place(out, at, *tables);
+    return tables;
 }
 
 } // namespace acdf

@@ -9,8 +9,8 @@
 
 namespace acdf {
 
-/// The tables of a local environment on a lat-long grid whose bins share tiles and whose tree takes `tree_units`,
-/// in `block`, which the caller gives back, of at most `most_bytes` and of what a cache holds;
+/// The tables of a local environment whose bins share tiles and whose tree takes `tree_units`,
+/// in `block`, which the caller gives back, of at most `most_bytes`; pieces only where a cache holds them;
 /// null where they would take more, and where memory fails. The work is linear in the file.
 AcdfLocalTables* make_local_tables(const AcdfLocal& local, std::uint32_t tree_units, std::size_t most_bytes,
                                    const AcdfAllocator& allocator, AcdfBlock& block) noexcept;

@@ -1,6 +1,9 @@
-// Time of a shading point, a draw and a density of local environment files, with runtime tables and without.
+// Time of a shading point, a draw and a density of local environment files, with runtime tables and without, beside
+// the full table of an environment of as many columns, which knows nothing of normals.
 //
-//   bench_local FILE.acdf...      a table in Markdown; local files of lat-long probes
+//   bench_local FILE.acdf...      tables in Markdown
+//   bench_local --count point|draw|pdf FILE N [walk]     N calls and nothing else, for callgrind
+#include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
 #include <acdf/reader.h>
@@ -8,6 +11,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <random>
 
 namespace {
@@ -57,27 +62,47 @@ Candidate each(const LocalEnvironmentView& view, const Questions& q, std::size_t
             }};
 }
 
-template <class Ask>
-void report(const char* what, const LocalEnvironmentView& plain, const LocalEnvironmentView& fast,
-            const Questions& q, std::size_t shared, const Ask& ask) {
-    std::vector<Candidate> both = {each(plain, q, shared, ask), each(fast, q, shared, ask)};
-    acdf_bench::take_turns(both, {});
-    std::printf("| %s | %.1f | %.1f (%.2f) |\n", what, both[0].least, both[1].least, both[1].least / both[0].least);
+struct Compared {
+    const acdf_bench::FullTable& full;
+    const LocalEnvironmentView &plain, &fast;
+    const Questions& q;
+};
+
+template <class Ask, class Full>
+void report(const char* what, const Compared& all, std::size_t shared, const Ask& ask, const Full& full) {
+    std::vector<Candidate> rows = {{"",
+                                    [&](std::size_t first, std::size_t count) {
+                                        for (std::size_t i = first; i < first + count; ++i) full(i);
+                                    }},
+                                   each(all.plain, all.q, shared, ask),
+                                   each(all.fast, all.q, shared, ask)};
+    acdf_bench::take_turns(rows, {});
+    std::printf("| %s | %.1f | %.1f (%.2f) | %.1f (%.2f) |\n", what, rows[0].least, rows[1].least,
+                rows[1].least / rows[0].least, rows[2].least, rows[2].least / rows[0].least);
     std::fflush(stdout);
 }
 
+bool open(const char* path, bool tables, File& file) {
+    LoadOptions options;
+    options.tables = tables;
+    return File::open(path, file, options).ok() && file.kind() == ACDF_KIND_LOCAL;
+}
+
 bool run(const char* path) {
-    LoadOptions walk;
-    walk.tables = false;
     File tables, none;
-    if (!File::open(path, tables).ok() || !File::open(path, none, walk).ok() || tables.kind() != ACDF_KIND_LOCAL)
-        return false;
+    if (!open(path, true, tables) || !open(path, false, none)) return false;
     const LocalEnvironmentView fast = tables.local(), plain = none.local();
+    const AcdfEnvironment& env = fast.data().environment;
+    const bool latlong = env.parameterization == ACDF_PARAM_LATLONG;
+    const std::uint32_t columns = latlong ? env.columns : 1024;
+    const acdf_bench::FullTable full(acdf_bench::sky(columns));
     const Questions q(plain);
-    std::printf("\nA file of %llu bytes, with tables of %llu bytes\n\n| ns a call | walked | with tables "
-                "|\n|---|---|---|\n",
-                static_cast<unsigned long long>(tables.size()),
-                static_cast<unsigned long long>(tables.table_bytes()));
+    std::printf(
+        "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
+        "table's) | full table | walked | with tables |\n|---|---|---|---|\n",
+        static_cast<unsigned long long>(tables.size()), latlong ? "" : ", octahedral",
+        static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
+    const Compared all = {full, plain, fast, q};
     const auto nothing = [](const auto&, const AcdfLocalPoint& point, std::size_t) { keep(point); };
     const auto draw = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.sample(point, q.u[k][0], q.u[k][1]));
@@ -88,18 +113,38 @@ bool run(const char* path) {
     const auto drawn = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.pdf(point, q.drawn[k].data()));
     };
-    report("shading point", plain, fast, q, 1, nothing);
-    report("shading point and draw", plain, fast, q, 1, draw);
-    report("one of 16 draws at a point", plain, fast, q, kShared, draw);
-    report("shading point and density of a uniform direction", plain, fast, q, 1, anywhere);
-    report("shading point and density of a drawn direction", plain, fast, q, 1, drawn);
-    report("one of 16 densities at a point", plain, fast, q, kShared, drawn);
+    const auto full_draw = [&](std::size_t i) { keep(full.sample(q.u[i][0], q.u[i][1])); };
+    const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
+    const auto full_drawn = [&](std::size_t i) { keep(full.pdf(q.drawn[i].data())); };
+    report("shading point (full table: a draw)", all, 1, nothing, full_draw);
+    report("shading point and draw", all, 1, draw, full_draw);
+    report("one of 16 draws at a point", all, kShared, draw, full_draw);
+    report("shading point and density of a uniform direction", all, 1, anywhere, full_anywhere);
+    report("shading point and density of a drawn direction", all, 1, drawn, full_drawn);
+    report("one of 16 densities at a point", all, kShared, drawn, full_drawn);
+    return true;
+}
+
+bool count(char** arguments, bool walk) {
+    File file;
+    if (!open(arguments[1], !walk, file)) return false;
+    const LocalEnvironmentView view = file.local();
+    const Questions q(view);
+    const char what = arguments[0][1]; // point, draw, pdf
+    for (std::size_t i = 0, calls = std::strtoull(arguments[2], nullptr, 10); i < calls; ++i) {
+        const std::size_t k = i % kCalls;
+        const AcdfLocalPoint point = view.at(q.normals[k].data());
+        if (what == 'o') keep(point);
+        if (what == 'r') keep(view.sample(point, q.u[k][0], q.u[k][1]));
+        if (what == 'd') keep(view.pdf(point, q.anywhere[k].data()));
+    }
     return true;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
+    if (argc >= 5 && std::strcmp(argv[1], "--count") == 0) return count(argv + 2, argc > 5) ? 0 : 1;
     for (int i = 1; i < argc; ++i)
         if (!run(argv[i])) {
             std::fprintf(stderr, "%s: no local environment file\n", argv[i]);

@@ -5,6 +5,7 @@
 #   tests/bench/run.sh BUILD [WIDTHS...]      BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON
 #
 # Needs valgrind for the counts, and the measured BRDFs of ACDF_TEST_DATA. Best on a machine that does nothing else. Widths: 1024 and 4096; 16384 takes some 6 GiB.
+# Local files are timed by tests/bench/local.sh.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)

@@ -111,7 +111,8 @@ ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint
     }
     root = acdf_cut_root(local, tile);
     if (root == ACDF_NO_ROOT) return probability;
-    return acdf_positive(probability * acdf_tree_sample(local->blend.tree, root, u, range));
+    return acdf_positive(probability *
+                         acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
 }
 
 /* Finds the cell of a grid square in a part. Returns its probability, 0 where no sample can fall. */
@@ -134,7 +135,7 @@ ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* 
     }
     root = acdf_cut_root(local, tile);
     if (root == ACDF_NO_ROOT) return probability;
-    inside = acdf_tree_find(local->blend.tree, root, square, range, 0);
+    inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
     return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
 }
 

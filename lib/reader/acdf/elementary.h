@@ -80,29 +80,44 @@ ACDF_FN double acdf_cosine(double y) {
 ACDF_FN void acdf_sincospi(double x, double* sine, double* cosine) {
     const int quadrant = (int)(2.0 * x + 4.5) - 4; /* the nearest multiple of 1/2 */
     const double y = (x - 0.5 * quadrant) * ACDF_PI;
-    const double s = acdf_sine(y), c = acdf_cosine(y);
-    *sine = (quadrant & 1) ? c : s;
-    *cosine = (quadrant & 1) ? s : c;
-    if (quadrant & 2) *sine = -*sine;
-    if ((quadrant + 1) & 2) *cosine = -*cosine;
+    const double either[2] = {acdf_sine(y), acdf_cosine(y)};
+    uint64_t bits[2], swapped;
+    memcpy(bits, either, sizeof bits);
+    /* Swapped and negated by their bits: nobody can guess which quadrant comes next. */
+    swapped = (bits[0] ^ bits[1]) & (0u - (uint64_t)(quadrant & 1));
+    bits[0] ^= swapped ^ (uint64_t)(quadrant & 2) << 62;
+    bits[1] ^= swapped ^ (uint64_t)((quadrant + 1) & 2) << 62;
+    memcpy(sine, &bits[0], sizeof *sine);
+    memcpy(cosine, &bits[1], sizeof *cosine);
 }
 
-/* atan2(y, x) / pi, error below 2e-16; 0 for y = x = 0. The series in q = w^2 of atan(w) / (pi w) was
- * interpolated at the Chebyshev nodes of [0, tan(pi/8)^2]. */
+/* 1 or -1, with the sign of x. */
+ACDF_FN double acdf_sign(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = (bits & (uint64_t)1 << 63) | 0x3FF0000000000000u;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* atan2(y, x) / pi of finite numbers, error below 2e-16; 0 for y = x = 0. The series in q = w^2 of atan(w) / (pi w)
+ * was interpolated at the Chebyshev nodes of [0, tan(pi/8)^2]. */
 ACDF_FN double acdf_atan2pi(double y, double x) {
     const double ax = fabs(x), ay = fabs(y);
-    const double high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-    const int wide = low > 0.41421356237309503 * high; /* beyond tan(pi/8): measure from pi/4 */
-    const double w = high > 0.0 ? (wide ? low - high : low) / (wide ? low + high : high) : 0.0;
+    const double high = ax > ay ? ax : ay, low = ax < ay ? ax : ay;
+    /* Signs are multiplied by: no processor guesses in which octant a direction lies. */
+    const double narrow = acdf_sign(0.41421356237309503 * high - low); /* -1 beyond tan(pi/8): from pi/4 */
+    const double level = acdf_sign(ax - ay), east = acdf_sign(x + 0.0), wide = 0.5 - 0.5 * narrow;
+    const double w = high > 0.0 ? (low - wide * high) / (high + wide * low) : 0.0;
     const double q = w * w, q4 = (q * q) * (q * q);
     const double series =
         acdf_polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
                          0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
         q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
-    double turn = w * series + (wide ? 0.25 : 0.0);
-    if (ay > ax) turn = 0.5 - turn;
-    if (x < 0.0) turn = 1.0 - turn;
-    return y < 0.0 ? -turn : turn;
+    double turn = w * series + 0.25 * wide;
+    turn = (0.25 - 0.25 * level) + level * turn;
+    turn = (0.5 - 0.5 * east) + east * turn;
+    return acdf_sign(y + 0.0) * turn;
 }
 
 #ifdef __cplusplus

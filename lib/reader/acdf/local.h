@@ -9,12 +9,18 @@
 #define ACDF_LOCAL_H
 
 #include <acdf/local_point.h>
+#include <acdf/row_heights.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* A tile of the mixture, by the walk of the normal alone or of normal and place. */
+/* Whether runtime tables know the tiles as a point sees them. */
+ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    return local->tables && point->place.count == 0;
+}
+
+/* A tile of the mixture: by the walk of the normal alone or of normal and place. */
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                         AcdfRange* range, double* probability) {
     if (point->place.count > 0)
@@ -22,8 +28,32 @@ ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalP
                                        acdf_blend_root(&local->blend), u, range, probability);
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }
+
+/* The same by tables; u[0] is that of lights and mixture. */
+ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
+                                           AcdfRange* range, double* probability) {
+    const uint32_t* words = acdf_local_words(local->tables);
+    const AcdfTileTables* tables = &local->tables->tiles;
+    const double whole = acdf_mixture_sum(&point->mix), from[2] = {u[0] * point->sum - point->lights, u[1] * whole};
+    const uint32_t tile = acdf_tile_draw(words, tables, &point->mix, point->codes, from, u, probability);
+    acdf_tile_range(acdf_tile_record(words, tables, tile), range);
+    *probability = acdf_positive(*probability / whole);
+    return tile;
+}
+
+/* Finds the tile of a square, with its share of the mixture. */
 ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
                                       AcdfRange* range, double* probability) {
+    if (acdf_local_tabled(local, point)) {
+        const uint32_t* words = acdf_local_words(local->tables);
+        const AcdfTileTables* tables = &local->tables->tiles;
+        const uint32_t tile = acdf_tile_at(words, tables, square);
+        const AcdfTileRecord* record = acdf_tile_record(words, tables, tile);
+        const double given = acdf_tile_share(words, tables, &point->mix, point->codes, record);
+        acdf_tile_range(record, range);
+        *probability = given > 0.0 ? acdf_positive(given / acdf_mixture_sum(&point->mix)) : 0.0;
+        return tile;
+    }
     if (point->place.count > 0)
         return acdf_place_find_below(&local->places, &local->blend, &point->mix, &point->place,
                                      acdf_blend_root(&local->blend), square, range, probability);
@@ -35,7 +65,8 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
                                        AcdfRange* range) {
     double probability;
     uint32_t tile, root, axis;
-    const AcdfLight* light = acdf_local_draw_light(local, point, u, &probability);
+    const int tabled = acdf_local_tabled(local, point) && acdf_local_draws_mixture(point, u[0]);
+    const AcdfLight* light = tabled ? 0 : acdf_local_draw_light(local, point, u, &probability);
     if (light) {
         for (axis = 0; axis < 2; ++axis) {
             range[axis].low = light->low[axis];
@@ -44,36 +75,51 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
         probability = acdf_positive(probability / point->sum);
         tile = light->tile;
     } else {
-        tile = acdf_local_sample_tile(local, point, u, range, &probability);
+        tile = tabled ? acdf_local_table_tile(local, point, u, range, &probability)
+                      : acdf_local_sample_tile(local, point, u, range, &probability);
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
     root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return probability;
-    return acdf_positive(probability * acdf_tree_sample(local->blend.tree, root, u, range));
+    return acdf_positive(probability *
+                         acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
+}
+
+/* The light of a tile: its number and 1; 0 where it has none. */
+ACDF_FN uint32_t acdf_local_light_of(const AcdfLocal* local, uint32_t tile) {
+    uint32_t low = 0, high = local->light_count;
+    if (local->tables) return acdf_local_tile(local->tables, tile)->light;
+    while (low < high) {
+        const uint32_t middle = (low + high) / 2;
+        if (local->lights[middle].tile < tile) low = middle + 1;
+        else high = middle;
+    }
+    return low < local->light_count && local->lights[low].tile == tile ? low + 1 : 0;
+}
+
+/* The probability of a tile to which the mixture gives that part of itself; 0 where no sample can fall. */
+ACDF_FN double acdf_local_tile_probability(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
+                                           double of_mixture) {
+    uint32_t light;
+    double probability;
+    if (of_mixture > 0.0) return acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * of_mixture);
+    light = acdf_local_light_of(local, tile); /* no row gives a light any probability */
+    if (light == 0) return 0.0;
+    probability = acdf_local_light_weight(local, point, light - 1) / point->sum;
+    return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 
 /* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
                                      AcdfRange* range) {
     double probability, inside;
-    uint32_t low = 0, high = local->light_count, root;
+    uint32_t root;
     const uint32_t tile = acdf_local_find_tile(local, point, square, range, &probability);
+    probability = acdf_local_tile_probability(local, point, tile, probability);
     root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
-    if (probability > 0.0) {
-        probability = acdf_mixture_sum(&point->mix) / point->sum * probability;
-    } else { /* no row gives a light any probability */
-        while (low < high) {
-            const uint32_t middle = (low + high) / 2;
-            if (local->lights[middle].tile < tile) low = middle + 1;
-            else high = middle;
-        }
-        if (low == local->light_count || local->lights[low].tile != tile) return 0.0;
-        probability = acdf_local_light_weight(local, point, low) / point->sum;
-        if (!(probability > 0.0)) return 0.0;
-    }
-    if (root == ACDF_NO_ROOT) return acdf_positive(probability);
-    inside = acdf_tree_find(local->blend.tree, root, square, range, 0);
-    return inside > 0.0 ? acdf_positive(acdf_positive(probability) * inside) : 0.0;
+    if (!(probability > 0.0) || root == ACDF_NO_ROOT) return probability;
+    inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
+    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
 }
 
 /* The part of the density that follows the light, by runtime tables, as the walk finds it. Returns 0 where they do
@@ -87,17 +133,12 @@ ACDF_INLINE int acdf_local_table_pdf(const AcdfLocal* local, const AcdfLocalPoin
     if (!piece) return 0;
     for (i = 0; i < mix->count; ++i) part[i] = point->parts[i][piece->tile];
     probability = acdf_mixture_of(mix, mix->count, part);
-    if (probability > 0.0) {
-        const double sum = acdf_mixture_sum(mix);
-        probability = sum / point->sum * acdf_positive(probability / sum);
-    } else { /* no row gives a light any probability */
-        const uint32_t light = acdf_local_light(local->tables, piece->tile);
-        probability = light > 0 ? acdf_light_weight(&local->lights[light - 1], point) / point->sum : 0.0;
-    }
+    if (probability > 0.0) probability = acdf_positive(probability / acdf_mixture_sum(mix));
+    probability = acdf_local_tile_probability(local, point, piece->tile, probability);
     *pdf = 0.0f;
     if (probability > 0.0 && piece->probability > 0.0)
-        *pdf = acdf_area_pdf(acdf_positive(acdf_positive(probability) * piece->probability),
-                             local->environment.columns, piece->area, 1.0);
+        *pdf = acdf_area_pdf(acdf_positive(probability * piece->probability), local->environment.columns,
+                             piece->area, 1.0);
     return 1;
 }
 
@@ -108,15 +149,18 @@ ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint*
     double t[2] = {0.5, 0.5}, position[2], p;
     uint32_t square[2];
     float told;
-    if (point->what == ACDF_LOCAL_BLEND && local->tables && point->place.count == 0 &&
+    if (point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) && local->tables->pieces &&
         acdf_local_table_pdf(local, point, direction, &told))
         return told;
     if (point->what == ACDF_LOCAL_NOTHING || !acdf_grid_square(&grid, direction, square, position)) return 0.0f;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    p = point->what == ACDF_LOCAL_BLEND ? acdf_local_blend_find(local, point, square, range)
-                                        : acdf_tree_find(local->environment.tree, point->root, square, range, 0);
+    p = point->what == ACDF_LOCAL_BLEND
+            ? acdf_local_blend_find(local, point, square, range)
+            : acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->root, square, range);
     if (!(p > 0.0)) return 0.0f;
     if (range[0].tilt != 0.0 || range[1].tilt != 0.0) acdf_grid_fractions(&grid, direction, position, range, t);
+    else if (local->tables && local->tables->heights)
+        return acdf_row_pdf(acdf_local_heights(local->tables), grid.columns, range, p);
     return acdf_grid_pdf(&grid, range, t, p);
 }
 
@@ -173,9 +217,12 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
         acdf_sphere_ranges(grid.columns, grid.rows, range);
-        p = point->what == ACDF_LOCAL_BLEND ? acdf_local_blend_sample(local, point, u, range)
-                                            : acdf_tree_sample(local->environment.tree, point->root, u, range);
-        out = acdf_grid_place(&grid, range, u, p);
+        p = point->what == ACDF_LOCAL_BLEND
+                ? acdf_local_blend_sample(local, point, u, range)
+                : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
+        if (!(point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) && local->tables->heights &&
+              acdf_row_place(acdf_local_heights(local->tables), grid.columns, range, u, p, &out)))
+            out = acdf_grid_place(&grid, range, u, p);
     }
     out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
     return out;

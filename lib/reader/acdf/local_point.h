@@ -41,23 +41,26 @@ typedef struct AcdfLocalPoint {
     double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
     double length;    /* of that */
     AcdfMixture mix;  /* of the blend; the weights are those that reach the place */
-    const double* parts[ACDF_MAX_ROWS_MIXED]; /* of the rows in the runtime tables, where there are such */
-    double lights;                            /* sum of the weights of the lights */
-    double sum;                               /* of all weights */
-    AcdfPlaceMixture place;                   /* empty: the position is not known, or does not matter */
+    const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
+    const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
+    double lights;                             /* sum of the weights of the lights */
+    double sum;                                /* of all weights */
+    AcdfPlaceMixture place;                    /* empty: the position is not known, or does not matter */
 } AcdfLocalPoint;
 
 /* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
  * from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
-ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
-    const double radius = (double)light->radius * point->length;
-    const double height = point->normal[0] * (double)light->direction[0] +
-                          point->normal[1] * (double)light->direction[1] +
-                          point->normal[2] * (double)light->direction[2];
+ACDF_INLINE double acdf_cap_weight(const AcdfLocalPoint* point, double x, double y, double z, double radius,
+                                   double share) {
+    const double height = point->normal[0] * x + point->normal[1] * y + point->normal[2] * z;
+    radius *= point->length;
     /* The horizon rarely cuts a light, and whether one is above it is not to be guessed: no branch. */
-    if (fabs(height) < radius)
-        return (double)light->share * ((height + radius) * (height + radius) / (4.0 * radius));
-    return (double)light->share * (height > 0.0 ? height : 0.0);
+    if (fabs(height) < radius) return share * ((height + radius) * (height + radius) / (4.0 * radius));
+    return share * (height > 0.0 ? height : 0.0);
+}
+ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
+    return acdf_cap_weight(point, (double)light->direction[0], (double)light->direction[1],
+                           (double)light->direction[2], (double)light->radius, (double)light->share);
 }
 
 /* The same of light `k` as its place sees it. */
@@ -85,6 +88,49 @@ ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], Ac
     out->length = scale * length;
 }
 
+/* Where the row of the next one that is added to the mixture goes. */
+ACDF_INLINE void acdf_local_tabled_row(const AcdfLocal* local, uint32_t row, AcdfLocalPoint* out) {
+    const AcdfLocalTables* tables = local->tables;
+    out->codes[out->mix.count] = acdf_tile_row(acdf_local_words(tables), &tables->tiles, row);
+    ACDF_PREFETCH(out->codes[out->mix.count]);
+    if (tables->parts) out->parts[out->mix.count] = acdf_local_parts(tables, row, local->blend.tiles->tile_count);
+}
+
+/* Finds the rows of a normal within one of the triangles of the octahedron, by tables: the weights are those of
+ * acdf_octahedral_bins. Returns 0 on the edges of triangles, and where a corner is not stored or has no light. */
+ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    const double ax = fabs((double)normal[0]), ay = fabs((double)normal[1]), az = fabs((double)normal[2]);
+    const double sum = ax + ay + az;
+    const int32_t n = (int32_t)local->subdivisions, side = 2 * n + 1;
+    const AcdfCornerRecord* corner[3];
+    double a[3], weight[3];
+    int32_t base[3], over = n, down, x, y, i;
+    if (!acdf_are_finite(normal) || !(sum > 0.0)) return 0;
+    a[0] = ax / sum * n;
+    a[1] = ay / sum * n;
+    a[2] = az / sum * n;
+    for (i = 0; i < 3; ++i) {
+        base[i] = (int32_t)a[i];
+        over -= base[i];
+    }
+    if ((uint32_t)(over - 1) > 1) return 0;
+    down = over - 1;
+    x = 1 - 2 * (int32_t)(normal[0] < 0.0f);
+    y = side - 2 * side * (int32_t)(normal[1] < 0.0f);
+    corner[2] = acdf_local_corners(local->tables) + (side * side * (int32_t)(normal[2] < 0.0f) + n * side + n) +
+                (x * (base[0] + down) + y * (base[1] + down));
+    corner[0] = corner[2] + x * (1 - 2 * down);
+    corner[1] = corner[2] + y * (1 - 2 * down);
+    for (i = 0; i < 3; ++i)
+        weight[i] = fabs((double)down - (a[i] - base[i])) * corner[i]->length * (double)corner[i]->share;
+    if (!(weight[0] > 0.0) || !(weight[1] > 0.0) || !(weight[2] > 0.0)) return 0;
+    for (i = 0; i < 3; ++i) {
+        acdf_local_tabled_row(local, corner[i]->row, out);
+        acdf_mixture_add(&out->mix, &local->blend, corner[i]->row, weight[i]);
+    }
+    return 1;
+}
+
 /* Finds what serves a normal, without the weights of lights. Returns 0 where lights and mixture do not. */
 ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
@@ -97,12 +143,17 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
         out->mix.row[i] = 0;
         out->mix.weight[i] = 0.0;
+        out->codes[i] = 0;
         out->parts[i] = 0;
     }
     for (i = 0; i < ACDF_MAX_PLACES_MIXED; ++i) {
         out->place.row[i] = 0;
         out->place.columns[i] = 0;
         out->place.weight[i] = 0.0;
+    }
+    if (local->tables && local->tables->corners && acdf_local_table_rows(local, normal, out)) {
+        acdf_local_normal(local, normal, out);
+        return 1;
     }
     if (!acdf_local_bins(local, normal, &bins)) return 0;
     if (!local->blend.tiles) {
@@ -118,8 +169,7 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
             out->root = local->environment.root;
             return 0;
         }
-        if (local->tables) /* where the row goes, if it has a weight */
-            out->parts[out->mix.count] = acdf_local_parts(local->tables, bin->root, local->blend.tiles->tile_count);
+        if (local->tables) acdf_local_tabled_row(local, bin->root, out);
         acdf_mixture_add(&out->mix, &local->blend, bin->root, bins.weight[i] * (double)bin->share);
     }
     acdf_local_normal(local, normal, out);
@@ -128,9 +178,12 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
 
 /* Weighs lights and mixture together; `visible`: what of each light arrives, null: all. */
 ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
+    const AcdfLightRecord* light = local->tables ? acdf_local_lights(local->tables) : 0;
     uint32_t k;
     for (k = 0; k < local->light_count; ++k) {
-        const double weight = acdf_light_weight(&local->lights[k], out);
+        const double weight = light ? acdf_cap_weight(out, light[k].direction[0], light[k].direction[1],
+                                                      light[k].direction[2], light[k].radius, light[k].share)
+                                    : acdf_light_weight(&local->lights[k], out);
         out->lights += visible ? weight * visible[k] : weight;
     }
     out->sum = out->lights + acdf_mixture_sum(&out->mix);
@@ -161,6 +214,11 @@ ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3]
     if (!(out->sum > 0.0)) out->place.count = 0;
 }
 
+/* Whether u0 in [0, 1] draws from the mixture, not a light. */
+ACDF_FN int acdf_local_draws_mixture(const AcdfLocalPoint* point, double u0) {
+    return !(u0 * point->sum < point->lights || point->mix.count == 0);
+}
+
 /* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left
  * of u[0] takes its place. */
 ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
@@ -168,7 +226,7 @@ ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const Acd
     const AcdfLight* light = 0;
     double x = u[0] * point->sum;
     uint32_t k;
-    if (!(x < point->lights || point->mix.count == 0)) {
+    if (acdf_local_draws_mixture(point, u[0])) {
         u[0] = acdf_unit_interval((x - point->lights) / (point->sum - point->lights));
         return 0;
     }

@@ -1,13 +1,13 @@
-/* Runtime tables of a local environment whose bins share tiles, for densities: which cell of which tile holds a
- * direction, and what each row gives to each tile. Made once at load (acdf/reader.h); flat words without pointers,
- * which a GPU takes as they lie.
+/* Runtime tables of a local environment whose bins share tiles: its tiles (acdf/tile_tables.h) and, of small files
+ * on lat-long grids, which cell of which tile holds a direction, and what each row gives to each tile. Made once at
+ * load (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
- * As those of an environment (acdf/cells.h) they only answer where it is sure that the walk finds the same cell,
+ * As those of an environment (acdf/cells.h) pieces only answer where it is sure that the walk finds the same cell,
  * and what they tell is the walk's to the bit. */
 #ifndef ACDF_LOCAL_TABLES_H
 #define ACDF_LOCAL_TABLES_H
 
-#include <acdf/blend.h>
+#include <acdf/tile_tables.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -23,16 +23,33 @@ typedef struct AcdfTilePiece {
     double area;        /* 2 pi times the cell's columns times its difference of z */
 } AcdfTilePiece;
 
+/* A corner of the octahedron of normals (acdf/normals.h). */
+typedef struct AcdfCornerRecord {
+    double length; /* from the middle, in steps of an edge */
+    float share;   /* of its bin; 0 also where that is not stored */
+    uint32_t row;  /* of the bin */
+} AcdfCornerRecord;
+
+/* A light, as acdf_light_weight needs it. */
+typedef struct AcdfLightRecord {
+    double direction[3], radius, share;
+} AcdfLightRecord;
+
 /* Offsets in words from the start of this struct, which the arrays follow. */
 typedef struct AcdfLocalTables {
-    uint32_t words;         /* of all */
-    uint32_t count;         /* of pieces */
+    uint32_t words; /* of all */
+    uint32_t count; /* of pieces */
+    AcdfTileTables tiles;
     AcdfSquares directions; /* keys: acdf_direction_place */
-    uint32_t pieces;        /* AcdfTilePiece, `count` of them */
-    uint32_t parts;         /* f64 a tile of each row: what part of the row it has */
-    uint32_t lights;        /* u8 a tile: the number of its light and 1; 0: it has none */
-    uint32_t reserved[2];
+    uint32_t pieces;        /* AcdfTilePiece, `count` of them; 0: the file is too large for such */
+    uint32_t parts;         /* f64 a tile of each row: what part of the row it has; 0: as pieces */
+    uint32_t heights;       /* f64, one more than there are rows: z between them; 0: not on a lat-long grid */
+    uint32_t corners;       /* AcdfCornerRecord, in two squares of (2 n + 1)^2, north and south, of x + n and
+                               (y + n) (2 n + 1); 0: the octahedron is too large, or there is none */
+    uint32_t lights;        /* AcdfLightRecord, one a light */
+    uint32_t reserved[4];
 } AcdfLocalTables;
+ACDF_STATIC_ASSERT(sizeof(AcdfLocalTables) % 64 == 0); /* arrays are aligned */
 
 ACDF_INLINE const uint32_t* acdf_local_words(const AcdfLocalTables* tables) {
     return (const uint32_t*)(const void*)tables;
@@ -40,8 +57,17 @@ ACDF_INLINE const uint32_t* acdf_local_words(const AcdfLocalTables* tables) {
 ACDF_INLINE const double* acdf_local_parts(const AcdfLocalTables* tables, uint32_t row, uint32_t tile_count) {
     return (const double*)(const void*)(acdf_local_words(tables) + tables->parts) + (size_t)row * tile_count;
 }
-ACDF_INLINE uint32_t acdf_local_light(const AcdfLocalTables* tables, uint32_t tile) {
-    return ((const uint8_t*)(const void*)(acdf_local_words(tables) + tables->lights))[tile];
+ACDF_INLINE const double* acdf_local_heights(const AcdfLocalTables* tables) {
+    return (const double*)(const void*)(acdf_local_words(tables) + tables->heights);
+}
+ACDF_INLINE const AcdfCornerRecord* acdf_local_corners(const AcdfLocalTables* tables) {
+    return (const AcdfCornerRecord*)(const void*)(acdf_local_words(tables) + tables->corners);
+}
+ACDF_INLINE const AcdfLightRecord* acdf_local_lights(const AcdfLocalTables* tables) {
+    return (const AcdfLightRecord*)(const void*)(acdf_local_words(tables) + tables->lights);
+}
+ACDF_INLINE const AcdfTileRecord* acdf_local_tile(const AcdfLocalTables* tables, uint32_t tile) {
+    return acdf_tile_record(acdf_local_words(tables), &tables->tiles, tile);
 }
 
 /* The piece that holds a direction; null where the tree must be walked. */

@@ -35,31 +35,31 @@ ACDF_FN uint32_t acdf_octahedral_corner(uint32_t n, int32_t x, int32_t y, int32_
 ACDF_FN int acdf_octahedral_bins(uint32_t n, const float normal[3], AcdfNormalBins* out) {
     const double ax = fabs((double)normal[0]), ay = fabs((double)normal[1]), az = fabs((double)normal[2]);
     const double sum = ax + ay + az;
-    double a[3], f[3], rest;
-    int32_t base[3], sign[3];
-    int i, k, down;
+    double a[3], f[3];
+    int32_t base[3], sign[3], over, down;
+    int i, k;
     if (!acdf_are_finite(normal) || !(sum > 0.0)) return 0;
     a[0] = ax / sum * n;
     a[1] = ay / sum * n;
     a[2] = az / sum * n;
-    rest = (double)n;
+    over = (int32_t)n;
     for (i = 0; i < 3; ++i) {
-        sign[i] = normal[i] < 0.0f ? -1 : 1;
+        sign[i] = 1 - 2 * (int32_t)(normal[i] < 0.0f);
         base[i] = (int32_t)a[i];
         f[i] = a[i] - base[i];
-        rest -= base[i];
+        over -= base[i];
     }
     /* The fractions add up to 0, 1 or 2 but for rounding: at a corner, or in a triangle that points up or down. */
-    if (rest > 2.5) /* at a corner too, all three rounded down */
-        for (i = 0; i < 3; ++i, rest -= 1.0) ++base[i];
-    down = rest > 1.5;
+    if (over > 2) { /* at a corner too, all three rounded down */
+        for (i = 0; i < 3; ++i) ++base[i];
+        over = 0;
+    }
+    down = over >> 1;
     out->count = 0;
     for (i = 0; i < 3; ++i) {
-        const double either[2] = {f[i], 1.0 - f[i]};
         int32_t c[3];
-        double weight = either[down];
-        if (rest < 0.5) weight = i == 0 ? 1.0 : 0.0;
-        for (k = 0; k < 3; ++k) c[k] = base[k] + (int32_t)(rest >= 0.5) * ((int32_t)(k == i) ^ down);
+        double weight = over > 0 ? fabs((double)down - f[i]) : (double)(i == 0);
+        for (k = 0; k < 3; ++k) c[k] = base[k] + (over > 0 ? (int32_t)(k == i) ^ down : 0);
         if (!(weight > 0.0)) continue;
         /* The corner lies at |c| / n from the centre: times that, its unit vector is the point on the face. */
         weight *= sqrt((double)(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]));

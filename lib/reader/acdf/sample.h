@@ -18,6 +18,7 @@
 #include <acdf/company.h>
 #include <acdf/grid.h>
 #include <acdf/random.h>
+#include <acdf/short_curves.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,6 +33,7 @@ typedef struct AcdfEnvironment {
     uint32_t parameterization;  /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
     const AcdfCells* cells;     /* runtime tables; null: the tree is walked */
     const AcdfCompany* company; /* null: to be used alone */
+    uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
 } AcdfEnvironment;
 
 ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
@@ -50,7 +52,7 @@ ACDF_OUTLINE AcdfDirectionSample acdf_environment_walk_sample(const AcdfEnvironm
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     acdf_sphere_ranges(env->columns, env->rows, range);
-    p = acdf_tree_sample(env->tree, env->root, u, range);
+    p = acdf_tree_draw(env->tree, env->tree_units, env->root, u, range);
     return acdf_grid_place(&grid, range, u, p);
 }
 
@@ -73,7 +75,8 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     uint32_t square[2];
     if (!acdf_grid_square(&grid, direction, square, position)) return 0.0;
     acdf_sphere_ranges(env->columns, env->rows, range);
-    p = acdf_tree_find(env->tree, env->root, square, range, strata);
+    p = strata ? acdf_tree_find(env->tree, env->root, square, range, strata)
+               : acdf_tree_locate(env->tree, env->tree_units, env->root, square, range);
     t[0] = t[1] = 0.5;
     if (strata || range[0].tilt != 0.0 || range[1].tilt != 0.0)
         acdf_grid_fractions(&grid, direction, position, range, t);

@@ -21,10 +21,10 @@ enum { ACDF_AXIS_PHI = 0, ACDF_AXIS_THETA = 1 };
 
 /* z = cos(theta) at a row position in [0, rows]: 1 - 2 sin(theta/2)^2, exact at the poles. */
 ACDF_FN double acdf_row_z(uint32_t row, uint32_t rows) {
-    const int south = 2 * (uint64_t)row > rows;
-    const double s = acdf_sine((double)(south ? rows - row : row) / (double)rows * (0.5 * ACDF_PI));
-    const double z = 1.0 - 2.0 * s * s;
-    return south ? -z : z;
+    const uint32_t south = (uint32_t)(2 * (uint64_t)row > rows);
+    const uint32_t from = row ^ ((row ^ (rows - row)) & (0u - south)); /* the nearer pole, without a branch */
+    const double s = acdf_sine((double)from / (double)rows * (0.5 * ACDF_PI));
+    return (1.0 - 2.0 * (double)south) * (1.0 - 2.0 * s * s);
 }
 
 /* Density per steradian of a cell of probability p whose solid angle is `area` over `columns`; `shape` is the

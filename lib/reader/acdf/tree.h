@@ -147,12 +147,9 @@ ACDF_FN uint32_t acdf_curve_link(const AcdfCurve* curve, uint32_t i) {
 /* A product of 64 probabilities may underflow; what can be drawn keeps a positive one. */
 ACDF_FN double acdf_positive(double probability) { return probability > 0x1p-1000 ? probability : 0x1p-1000; }
 
-/* Draws a cell. In: u[axis] in [0, 1] and range[axis] = the whole axis with tilt 0, for each sampled axis.
- * Out: u[axis] in [0, 1] is what is left of the random number, uniform within the cell; range[axis] is the
- * cell. Returns the cell's probability, > 0. */
-ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, AcdfRange* range) {
-    double probability = 1.0;
-    uint32_t at = root;
+/* acdf_tree_sample from a curve on that is drawn with a probability. */
+ACDF_FN double acdf_tree_sample_on(const uint8_t* tree, uint32_t at, double* u, AcdfRange* range,
+                                   double probability) {
     for (;;) {
         const AcdfCurve curve = acdf_curve_at(tree, at);
         const uint32_t axis = acdf_curve_axis(&curve);
@@ -174,13 +171,16 @@ ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, A
     }
 }
 
-/* Finds the cell that holds the unit grid square at[axis], at[axis] in [0, resolution). `range` as in
- * acdf_tree_sample; `strata` may be null, else strata[axis] = {0, 1} becomes the random numbers that lead
- * here. Returns the cell's probability, 0 where no sample can fall. */
-ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t* square, AcdfRange* range,
-                              AcdfStratum* strata) {
-    double probability = 1.0;
-    uint32_t at = root;
+/* Draws a cell. In: u[axis] in [0, 1] and range[axis] = the whole axis with tilt 0, for each sampled axis.
+ * Out: u[axis] in [0, 1] is what is left of the random number, uniform within the cell; range[axis] is the
+ * cell. Returns the cell's probability, > 0. */
+ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, AcdfRange* range) {
+    return acdf_tree_sample_on(tree, root, u, range, 1.0);
+}
+
+/* acdf_tree_find from a curve on that is found with a probability. */
+ACDF_FN double acdf_tree_find_on(const uint8_t* tree, uint32_t at, const uint32_t* square, AcdfRange* range,
+                                 AcdfStratum* strata, double probability) {
     for (;;) {
         const AcdfCurve curve = acdf_curve_at(tree, at);
         const uint32_t axis = acdf_curve_axis(&curve);
@@ -200,6 +200,14 @@ ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t
         if (link == 0) return acdf_positive(probability);
         at += link;
     }
+}
+
+/* Finds the cell that holds the unit grid square at[axis], at[axis] in [0, resolution). `range` as in
+ * acdf_tree_sample; `strata` may be null, else strata[axis] = {0, 1} becomes the random numbers that lead
+ * here. Returns the cell's probability, 0 where no sample can fall. */
+ACDF_FN double acdf_tree_find(const uint8_t* tree, uint32_t root, const uint32_t* square, AcdfRange* range,
+                              AcdfStratum* strata) {
+    return acdf_tree_find_on(tree, root, square, range, strata, 1.0);
 }
 
 /* Where in [0, 1] a tilted density puts u: solves t + s (t^2 - t) = u without cancellation. */

@@ -148,7 +148,9 @@ TEST(Places, CellsAreMixedWithoutAJump) {
 TEST(Places, GoldenFileDrawsTheSameSamples) {
     const std::string path = ACDF_TEST_DIR "/golden/v1.0/places";
     acdf::File file;
-    const acdf::Status status = acdf::File::open((path + ".acdf").c_str(), file);
+    acdf::LoadOptions walked; // what is drawn by runtime tables differs as floats round
+    walked.tables = false;
+    const acdf::Status status = acdf::File::open((path + ".acdf").c_str(), file, walked);
     ASSERT_TRUE(status.ok()) << status.message;
     const auto lines = golden_numbers<12>(path + ".txt");
     ASSERT_EQ(lines.size(), 6u * 6u * 16u);

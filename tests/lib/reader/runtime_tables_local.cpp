@@ -1,5 +1,6 @@
 // Runtime tables of local environments beside the walk that they stand for: the same density to the bit for every
-// direction and normal, on golden files, random ones, those that break their luck, and a fitted one.
+// direction and normal, and the same draws but for rounding, on golden files, random ones, those that break their
+// luck, and a fitted one.
 #include "tests/inputs/local_maps.h"
 #include "tests/lib/reader/local_builder.h"
 #include "tests/lib/reader/local_random.h"
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -38,7 +40,32 @@ void expect_same(const LocalPair& pair, const AcdfLocalPoint points[2], const fl
     ASSERT_TRUE(same_bits(fast, plain))
         << fast << " is not " << plain << " at " << direction[0] << ' ' << direction[1] << ' ' << direction[2];
     ++served.asked;
-    served.told += pair.tables() && acdf_local_find_piece(pair.tables(), direction);
+    served.told += pair.tables() && pair.tables()->pieces && acdf_local_find_piece(pair.tables(), direction);
+}
+
+/// Whether two draws are of one cell and at one place but for the rounding of floats. (Where a share is drawn
+/// around the normal the density depends on the place.)
+bool same_draw(const acdf::DirectionSample& a, const acdf::DirectionSample& b, double most) {
+    for (int i = 0; i < 3; ++i)
+        if (!(std::fabs(double{a.direction[i]} - b.direction[i]) <= most)) return false;
+    return std::fabs(double{a.pdf} - b.pdf) <= 1e-5 * b.pdf;
+}
+
+/// A draw is the walk's but next to borders, where it is that of numbers 2^-24 away. Its density is what the same
+/// view tells of it, where that holds of the walk: cells without tilts.
+void expect_same_draw(const LocalPair& pair, const AcdfLocalPoint points[2], const double u[2]) {
+    const acdf::DirectionSample a = pair.fast.local().sample(points[0], u[0], u[1]);
+    const acdf::DirectionSample b = pair.plain.local().sample(points[1], u[0], u[1]);
+    if (a.pdf > 0.0f && same_bits(b.pdf, pair.plain.local().pdf(points[1], b.direction))) {
+        ASSERT_TRUE(same_bits(a.pdf, pair.fast.local().pdf(points[0], a.direction))) << u[0] << ' ' << u[1];
+    }
+    if (same_draw(a, b, 4e-7)) return;
+    bool near = false;
+    for (int k = 0; k < 9 && !near; ++k)
+        near = same_draw(
+            a, pair.plain.local().sample(points[1], u[0] + 0x1p-24 * (k % 3 - 1), u[1] + 0x1p-24 * (k / 3 - 1)),
+            1e-4);
+    ASSERT_TRUE(near) << u[0] << ' ' << u[1] << ' ' << a.pdf;
 }
 
 /// Draws of a normal and their densities, directions anywhere, and such beside borders between squares.
@@ -48,9 +75,9 @@ void expect_same(const LocalPair& pair, const float normal[3], std::mt19937_64& 
     const AcdfEnvironment env = pair.plain.local().data().environment;
     for (int i = 0; i < 8 && !testing::Test::HasFatalFailure(); ++i) {
         const double u0 = uniform(random), u1 = uniform(random);
+        const double u[2] = {i == 0 ? 0.0 : u0, i == 1 ? 1.0 : u1};
+        expect_same_draw(pair, points, u);
         const acdf::DirectionSample a = pair.fast.local().sample(points[0], u0, u1);
-        const acdf::DirectionSample b = pair.plain.local().sample(points[1], u0, u1);
-        ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0);
         if (a.pdf > 0.0f) expect_same(pair, points, a.direction, served);
         const Normal any = random_direction(random);
         expect_same(pair, points, any.data(), served);
@@ -125,6 +152,45 @@ TEST(LocalRuntimeTables, AgreeOnHandMadeLights) {
     LocalPair pair(lit_local().encode());
     ASSERT_NE(pair.tables(), nullptr);
     expect_agreement(pair, 500);
+}
+
+// Points are what the walk makes of a normal, to the bit.
+TEST(LocalRuntimeTables, MakeTheSamePoints) {
+    LocalPair pair(lit_local().encode());
+    std::mt19937_64 random(8);
+    for (int i = 0; i < 3000; ++i) {
+        Normal normal = random_direction(random);
+        if (i % 3 == 0)
+            for (float& n : normal) n = static_cast<float>(static_cast<int>(random() % 9) - 4);
+        if (i % 5 == 0) normal[random() % 3] = i % 2 == 0 ? 0.0f : -0.0f;
+        const AcdfLocalPoint a = pair.fast.local().at(normal.data()), b = pair.plain.local().at(normal.data());
+        ASSERT_EQ(a.what, b.what);
+        ASSERT_EQ(a.mix.count, b.mix.count);
+        ASSERT_EQ(std::memcmp(a.normal, b.normal, sizeof a.normal), 0);
+        ASSERT_EQ(a.length, b.length);
+        ASSERT_EQ(a.lights, b.lights);
+        ASSERT_EQ(a.sum, b.sum);
+        for (int k = 0; k < a.mix.count; ++k) {
+            ASSERT_EQ(a.mix.weight[k], b.mix.weight[k]);
+            ASSERT_EQ(a.mix.row[k] - pair.fast.local().data().blend.rows,
+                      b.mix.row[k] - pair.plain.local().data().blend.rows);
+        }
+    }
+}
+
+// Rows of several cache lines, whose splits have other numbers in the tables.
+TEST(LocalRuntimeTables, AgreeOnManyTiles) {
+    const auto sky = texel_target(128, 64, [](std::uint32_t c, std::uint32_t r) {
+        return 1.0 +
+               smooth_sky(centre_phi(c, 128), centre_z(r, 64)) * static_cast<double>(1 + (c * 7 + r * 13) % 17);
+    });
+    LocalFileOptions options;
+    options.size.tiles = 400;
+    const LocalMap map(sky, acdf::compress::octahedral_bins(2), options);
+    LocalPair pair(map.bytes);
+    ASSERT_NE(pair.tables(), nullptr);
+    EXPECT_GT(pair.tables()->tiles.stride, 320u);
+    expect_agreement(pair, 300);
 }
 
 // As many tiles as files in use have: nearly all that is asked is told by the tables, in bounded memory.

@@ -1,0 +1,228 @@
+/* Runtime tables of boxes that rows share (acdf/blend.h): which tile holds a square, the way to each tile, and what
+ * codes stand for. Flat words without pointers, which a GPU takes as they lie.
+ *
+ * What they tell of a square is what the walk of the splits finds, to the bit. A draw is the walk's but for the
+ * rounding of the numbers that are left of it: what the rows give to the two halves of a split is summed in another
+ * order, so that a number next to a border may fall to its other side. */
+#ifndef ACDF_TILE_TABLES_H
+#define ACDF_TILE_TABLES_H
+
+#include <acdf/blend.h>
+#include <acdf/short_curves.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A tile: where it lies, and the way to it. */
+typedef struct AcdfTileRecord {
+    uint32_t low[2], high[2];
+    uint32_t path;  /* number of the first step to it */
+    uint16_t depth; /* how many steps */
+    uint16_t light; /* the number of its light and 1; 0: it has none */
+    uint32_t reserved[2];
+} AcdfTileRecord;
+
+/* Offsets are in words, from the start of all tables. Splits are numbered anew: those of the upper levels stand in
+ * one cache line of a row, those below them line by line. */
+typedef struct AcdfTileTables {
+    uint32_t codes;    /* f64, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
+    uint32_t splits;   /* AcdfSplit, `stride` of them; some are none */
+    uint32_t rows;     /* u8 a split of each row, `stride` bytes a row; and a line more */
+    uint32_t stride;   /* a multiple of 64 */
+    uint32_t root;     /* split 0, or the only tile */
+    uint32_t tiles;    /* AcdfTileRecord, one a tile */
+    uint32_t paths;    /* u16 a step: 2 * split, and 1 where it leads to the upper half */
+    uint32_t grid;     /* u16: the split or (with its flag) the tile that holds a part of the square */
+    uint32_t shift[2]; /* bits of positions that are finer than the grid */
+    uint32_t bits0;    /* the grid has 2^bits0 entries along axis 0, which are next to each other */
+    uint32_t reserved;
+} AcdfTileTables;
+
+ACDF_INLINE const uint8_t* acdf_tile_row(const uint32_t* words, const AcdfTileTables* tables, uint32_t row) {
+    return (const uint8_t*)(const void*)(words + tables->rows) + (size_t)row * tables->stride;
+}
+ACDF_INLINE const AcdfSplit* acdf_tile_splits(const uint32_t* words, const AcdfTileTables* tables) {
+    return (const AcdfSplit*)(const void*)(words + tables->splits);
+}
+ACDF_INLINE const double* acdf_tile_codes(const uint32_t* words, const AcdfTileTables* tables) {
+    return (const double*)(const void*)(words + tables->codes);
+}
+ACDF_INLINE const AcdfTileRecord* acdf_tile_record(const uint32_t* words, const AcdfTileTables* tables,
+                                                   uint32_t tile) {
+    return (const AcdfTileRecord*)(const void*)(words + tables->tiles) + tile;
+}
+
+ACDF_INLINE void acdf_tile_range(const AcdfTileRecord* tile, AcdfRange range[2]) {
+    int i;
+    for (i = 0; i < 2; ++i) {
+        range[i].low = tile->low[i];
+        range[i].high = tile->high[i];
+    }
+}
+
+/* The tile that holds a square of the grid of positions. */
+ACDF_INLINE uint32_t acdf_tile_at(const uint32_t* words, const AcdfTileTables* tables, const uint32_t* square) {
+    const AcdfSplit* splits = acdf_tile_splits(words, tables);
+    const uint32_t key0 = square[0] << 3 | 7u, key1 = square[1] << 3 | 7u; /* as in acdf_blend_find_rows */
+    uint32_t node =
+        ((const uint16_t*)(const void*)(words + tables->grid))[(square[1] >> tables->shift[1] << tables->bits0) +
+                                                               (square[0] >> tables->shift[0])];
+    while (!(node & ACDF_TILE_FLAG)) {
+        const uint32_t place = splits[node].place, first = key0 >= place;
+        node = splits[node].child[first ^ ((first ^ (key1 >= place)) & (place & 7u))];
+    }
+    return node & ~ACDF_TILE_FLAG;
+}
+
+/* What a mixture gives to a tile, of all that it gives: the products of acdf_blend_find_rows. */
+ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
+                                        const uint8_t* const* row, const int rows, const AcdfTileRecord* tile) {
+    const double* codes = acdf_tile_codes(words, tables);
+    const uint16_t* step = (const uint16_t*)(const void*)(words + tables->paths) + tile->path;
+    const uint16_t* end = step + tile->depth;
+    double part[ACDF_MAX_ROWS_MIXED];
+    int i;
+    for (i = 0; i < rows; ++i) part[i] = 1.0;
+    for (; step < end; ++step) {
+        const uint32_t split = *step >> 1;
+        const double* side = codes + (*step & 1u);
+        for (i = 0; i < rows; ++i) part[i] *= side[2 * row[i][split]];
+    }
+    return acdf_mixture_of(mix, rows, part);
+}
+
+/* Draws a tile, as acdf_blend_sample_rows does, of random numbers that are told as what x they are of all that the
+ * mixture gives; u becomes what is left of them, *given what the mixture gives to the tile. No branch depends on
+ * what is drawn but where the way ends. */
+#ifdef ACDF_SQUARES_SSE2
+ACDF_INLINE __m128d acdf_either(__m128d mask, __m128d no, __m128d yes) {
+    return _mm_or_pd(_mm_and_pd(mask, yes), _mm_andnot_pd(mask, no));
+}
+/* Splits and bytes of both halves are loaded before it is known which one is taken: else all wait for each other.
+ */
+ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
+                                         const AcdfMixture* mix, const uint8_t* const* row, const int rows,
+                                         const double* from, double* u, double* given) {
+    const double* codes = acdf_tile_codes(words, tables);
+    const uint64_t* splits = (const uint64_t*)(const void*)acdf_tile_splits(words, tables);
+    const __m128d one = _mm_set1_pd(1.0), zero = _mm_setzero_pd();
+    __m128d weight[ACDF_MAX_ROWS_MIXED]; /* and part */
+    __m128d chosen = _mm_set1_pd(acdf_mixture_sum(mix)), x = _mm_set_pd(from[1], from[0]);
+    size_t byte[ACDF_MAX_ROWS_MIXED];
+    double part[ACDF_MAX_ROWS_MIXED];
+    uint64_t split = splits[0];
+    uint32_t node;
+    int i;
+    for (i = 0; i < rows; ++i) {
+        weight[i] = _mm_set_pd(1.0, mix->weight[i]);
+        byte[i] = row[i][0];
+    }
+    do {
+        const int64_t axis = (int64_t)(split & 1u);
+        const __m128d along = _mm_castsi128_pd(_mm_set_epi64x(-axis, axis - 1));
+        /* Of a tile any other split's, which is not used. */
+        const uint32_t next0 = (uint32_t)(split >> 32) & 0x7FFFu, next1 = (uint32_t)(split >> 48) & 0x7FFFu;
+        const uint64_t split0 = splits[next0], split1 = splits[next1];
+        __m128d half = _mm_mul_pd(_mm_unpacklo_pd(weight[0], weight[0]), _mm_load_pd(codes + 2 * byte[0]));
+        __m128d lower, taken, in_upper;
+        uint64_t mask;
+        size_t upper;
+        for (i = 1; i < rows; ++i)
+            half = _mm_add_pd(half,
+                              _mm_mul_pd(_mm_unpacklo_pd(weight[i], weight[i]), _mm_load_pd(codes + 2 * byte[i])));
+        lower = _mm_unpacklo_pd(half, half);
+        taken = _mm_unpackhi_pd(half, half);
+        in_upper = _mm_and_pd(_mm_and_pd(_mm_cmpnlt_pd(x, lower), _mm_cmplt_pd(zero, taken)), along);
+        in_upper = _mm_or_pd(in_upper, _mm_shuffle_pd(in_upper, in_upper, 1));
+        upper = (size_t)_mm_movemask_pd(in_upper) & 1u;
+        mask = 0 - (uint64_t)upper;
+        taken = acdf_either(in_upper, lower, taken);
+        for (i = 0; i < rows; ++i) {
+            const size_t byte0 = row[i][next0], byte1 = row[i][next1];
+            weight[i] = _mm_mul_pd(weight[i], _mm_set1_pd(codes[2 * byte[i] + upper]));
+            byte[i] = byte0 ^ ((byte0 ^ byte1) & (size_t)mask);
+        }
+        x = _mm_sub_pd(x, _mm_and_pd(_mm_and_pd(in_upper, along), lower));
+        x = _mm_mul_pd(x, acdf_either(along, _mm_div_pd(taken, chosen), one));
+        chosen = taken;
+        node = (uint32_t)(split >> (32 + 16 * upper));
+        split = split0 ^ ((split0 ^ split1) & mask);
+    } while (!(node & ACDF_TILE_FLAG));
+    _mm_storeu_pd(u, acdf_either(_mm_cmplt_pd(x, chosen), one, _mm_max_pd(_mm_div_pd(x, chosen), zero)));
+    for (i = 0; i < rows; ++i) _mm_storeh_pd(&part[i], weight[i]);
+    *given = acdf_mixture_of(mix, rows, part);
+    return node & 0x7FFFu;
+}
+#else
+ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
+                                         const AcdfMixture* mix, const uint8_t* const* row, const int rows,
+                                         const double* from, double* u, double* given) {
+    const double* codes = acdf_tile_codes(words, tables);
+    const AcdfSplit* splits = acdf_tile_splits(words, tables);
+    double weight[ACDF_MAX_ROWS_MIXED], part[ACDF_MAX_ROWS_MIXED], x[2], chosen = acdf_mixture_sum(mix);
+    uint32_t node = 0;
+    int i;
+    for (i = 0; i < 2; ++i) x[i] = from[i];
+    for (i = 0; i < rows; ++i) {
+        weight[i] = mix->weight[i];
+        part[i] = 1.0;
+    }
+    do {
+        const AcdfSplit* split = &splits[node];
+        const uint32_t axis = split->place & 1u;
+        double half[2] = {0.0, 0.0}, below[2] = {0.0, 0.0};
+        uint32_t upper;
+        for (i = 0; i < rows; ++i) {
+            half[0] += weight[i] * codes[2 * row[i][node]];
+            half[1] += weight[i] * codes[2 * row[i][node] + 1];
+        }
+        below[1] = half[0];
+        upper = (uint32_t) !(x[axis] < half[0]) & (uint32_t)(half[1] > 0.0);
+        for (i = 0; i < rows; ++i) {
+            weight[i] *= codes[2 * row[i][node] + upper];
+            part[i] *= codes[2 * row[i][node] + upper];
+        }
+        x[axis] -= below[upper];
+        x[axis ^ 1u] *= half[upper] / chosen;
+        chosen = half[upper];
+        node = split->child[upper];
+    } while (!(node & ACDF_TILE_FLAG));
+    for (i = 0; i < 2; ++i) u[i] = x[i] < chosen ? (x[i] > 0.0 ? x[i] / chosen : 0.0) : 1.0;
+    *given = acdf_mixture_of(mix, rows, part);
+    return node & ~ACDF_TILE_FLAG;
+}
+#endif
+
+/* The same for any number of rows, and for the only tile. */
+ACDF_INLINE double acdf_tile_share(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
+                                   const uint8_t* const* row, const AcdfTileRecord* tile) {
+    switch (mix->count) {
+    case 3:
+        return acdf_tile_share_rows(words, tables, mix, row, 3, tile);
+    default:
+        return acdf_tile_share_rows(words, tables, mix, row, mix->count, tile);
+    }
+}
+ACDF_INLINE uint32_t acdf_tile_draw(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
+                                    const uint8_t* const* row, const double* from, double* u, double* given) {
+    int i;
+    if (tables->root & ACDF_TILE_FLAG) {
+        *given = acdf_mixture_sum(mix);
+        for (i = 0; i < 2; ++i) u[i] = acdf_unit_interval(from[i] / *given);
+        return tables->root & ~ACDF_TILE_FLAG;
+    }
+    switch (mix->count) {
+    case 1:
+        return acdf_tile_draw_rows(words, tables, mix, row, 1, from, u, given);
+    case 2:
+        return acdf_tile_draw_rows(words, tables, mix, row, 2, from, u, given);
+    default:
+        return acdf_tile_draw_rows(words, tables, mix, row, 3, from, u, given);
+    }
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
