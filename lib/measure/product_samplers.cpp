@@ -25,7 +25,9 @@ public:
     explicit ProductAtPoint(const ProductTable<AnyLobe>& table) : sampler_(table.sampler), point_() {
         point_.share = -1.0;
     }
-    void move_to(const ShadingPoint& point) override { point_ = sampler_.at(point.position, frame_of(point), point.wo); }
+    void move_to(const ShadingPoint& point) override {
+        point_ = sampler_.at(point.position, frame_of(point), point.wo);
+    }
     AcdfDirectionSample sample(double u0, double u1) const override { return sampler_.sample(point_, u0, u1); }
     float pdf(const float wi[3]) const override { return sampler_.pdf(point_, wi); }
 
