@@ -3,6 +3,7 @@
 //   bench_environment [COLUMNS...]            tables in Markdown; 1024 and 4096 by default
 //   bench_environment --write FILE BYTES              the file of 1024 x 512 texels
 //   bench_environment --count draw|pdf FILE N [walk]  N calls and nothing else, for callgrind
+#include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
@@ -25,9 +26,11 @@ namespace {
 
 using namespace acdf;
 using acdf_bench::Candidate;
+using acdf_bench::Directions;
 using acdf_bench::FullTable;
 using acdf_bench::keep;
 using acdf_bench::sky;
+using acdf_bench::uniform_directions;
 
 constexpr std::size_t kNumbers = std::size_t{1} << 18; // pairs, before they repeat
 
@@ -69,25 +72,12 @@ std::vector<float> numbers(bool coherent) {
     return u;
 }
 
-using Directions = std::vector<std::array<float, 3>>;
 Directions drawn_directions(const EnvironmentView& view, const std::vector<float>& u) {
     Directions out(kNumbers);
     for (std::size_t i = 0; i < kNumbers; ++i)
         std::memcpy(out[i].data(), view.sample(u[2 * i], u[2 * i + 1]).direction, sizeof out[i]);
     return out;
 }
-Directions uniform_directions() {
-    std::mt19937_64 random(9);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    Directions out(kNumbers);
-    for (auto& d : out) {
-        const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * ACDF_PI * uniform(random),
-                     r = std::sqrt(1.0 - z * z);
-        d = {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), static_cast<float>(z)};
-    }
-    return out;
-}
-
 template <class Sampler>
 Candidate draws(const char* name, const Sampler& sampler, const std::vector<float>& u) {
     return {name, [&sampler, &u](std::size_t first, std::size_t count) {
@@ -165,7 +155,7 @@ void run(std::uint32_t columns) {
                 "| 64 KiB, "
                 "no tables | 64 KiB, AVX2 | 64 KiB, AVX-512 |\n|---|---|---|---|---|---|---|---|---|\n");
     const std::vector<float> u = numbers(false), coherent = numbers(true);
-    const Directions drawn = drawn_directions(walk, u), uniform = uniform_directions();
+    const Directions drawn = drawn_directions(walk, u), uniform = uniform_directions(kNumbers, 9);
     const Waves waves[2][2] = {{{fast, u, Instructions::avx2}, {fast, u, Instructions::avx512}},
                                {{fast, coherent, Instructions::avx2}, {fast, coherent, Instructions::avx512}}};
     const auto all_draws = [&](const std::vector<float>& given) {
@@ -196,7 +186,7 @@ int count(const char* what, const char* path, std::size_t calls, bool walk) {
     if (!File::open(path, file, options).ok() || file.kind() != ACDF_KIND_ENVIRONMENT) return 1;
     const EnvironmentView view = file.environment();
     const std::vector<float> u = numbers(false);
-    const Directions w = uniform_directions();
+    const Directions w = uniform_directions(kNumbers, 9);
     if (std::strcmp(what, "draw") == 0) draws(what, view, u).calls(0, calls);
     else densities(what, view, w).calls(0, calls);
     return 0;

@@ -3,6 +3,7 @@
 //
 //   bench_local FILE.acdf...      tables in Markdown
 //   bench_local --count point|draw|pdf FILE N [walk]     N calls and nothing else, for callgrind
+#include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
@@ -19,27 +20,16 @@ namespace {
 
 using namespace acdf;
 using acdf_bench::Candidate;
+using acdf_bench::Directions;
 using acdf_bench::keep;
+using acdf_bench::uniform_directions;
 
 constexpr std::size_t kCalls = std::size_t{1} << 18; // before they repeat
 constexpr std::size_t kShared = 16;                  // calls a point, where a point has several
 
-using Directions = std::vector<std::array<float, 3>>;
-Directions uniform_directions(unsigned seed) {
-    std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    Directions out(kCalls);
-    for (auto& d : out) {
-        const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * ACDF_PI * uniform(random),
-                     r = std::sqrt(1.0 - z * z);
-        d = {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), static_cast<float>(z)};
-    }
-    return out;
-}
-
 /// What is asked: normals, pairs of numbers, directions anywhere and such as are drawn.
 struct Questions {
-    Directions normals = uniform_directions(1), anywhere = uniform_directions(2), drawn{kCalls};
+    Directions normals = uniform_directions(kCalls, 1), anywhere = uniform_directions(kCalls, 2), drawn{kCalls};
     std::vector<std::array<float, 2>> u{kCalls};
 
     explicit Questions(const LocalEnvironmentView& view) {

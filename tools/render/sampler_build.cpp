@@ -20,16 +20,19 @@
 #include <set>
 
 namespace acdf::tools {
-namespace {
 
 using measure::LightSamplerPtr;
 
 /// A sampler and what it refers to.
-struct Table {
+struct SamplerTable {
     std::shared_ptr<const void> keep;
     LightSamplerPtr sampler;
     const File* file = nullptr; ///< that it draws from; null where there is none
 };
+
+namespace {
+
+using Table = SamplerTable;
 
 Table file_table(std::vector<std::uint8_t> bytes) {
     auto loaded = std::make_shared<LoadedFile>();
@@ -130,7 +133,7 @@ struct SamplerBuilder::Store {
     std::string data;
     std::vector<builder::SceneNormal> normals;
     const measure::Geometry* geometry;
-    std::map<std::string, Table> tables; ///< by text, and the material where that matters
+    std::map<std::string, SamplerTable> tables; ///< by text, and the material where that matters
     std::map<std::string, std::unique_ptr<const measure::StratifiedMap>> maps;
     std::vector<std::unique_ptr<measure::Estimator>> estimators;
 
