@@ -63,7 +63,7 @@ TEST(BrdfWeights, StayBelowANumber) {
 TEST(BrdfWeights, TwiceTheBytesMakeLessNoise) {
     if (kSanitized) GTEST_SKIP() << "the same code, on more of it";
     double variance = std::numeric_limits<double>::infinity(), worst = variance;
-    for (const std::uint64_t kib : {8, 16}) { // with more views and more cells
+    for (const std::uint64_t kib : {8u, 16u}) { // with more views and more cells
         const auto brdf = make_brdf(std::make_unique<BrightHorizon>(), budget(kib << 10));
         const acdf::build::BrdfAccuracy a = elsewhere(*brdf, 24);
         EXPECT_LT(a.relative_variance, variance) << kib;
@@ -103,7 +103,7 @@ TEST_P(MeasuredWeights, AreBoundedAndNoiseFallsWithEveryByte) {
     const std::string path = std::string(ACDF_TEST_DATA) + "/brdfs/" + GetParam();
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     double variance = std::numeric_limits<double>::infinity(), worst = variance;
-    for (const std::uint64_t kib : {128, 200}) {
+    for (const std::uint64_t kib : {128u, 200u}) {
         const auto brdf = make_brdf(acdf::input::open_brdf(path), budget(kib << 10));
         const acdf::build::BrdfAccuracy a = elsewhere(*brdf, 64);
         EXPECT_LE(a.max_weight, 30.0) << kib;
