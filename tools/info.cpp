@@ -200,6 +200,11 @@ std::string number(double value) {
 }
 
 std::string text_of(const Json& value) {
+    if (value.is_array()) {
+        std::string text;
+        for (const Json& each : value) text += (text.empty() ? "(" : ", ") + text_of(each);
+        return text + ")";
+    }
     return value.is_string()         ? value.get<std::string>()
            : value.is_number_float() ? number(value.get<double>())
                                      : value.dump();
@@ -221,7 +226,7 @@ std::string local_text(const Json& local) {
                                          " rows, " + text_of(local["lights"]) + " lights";
     const std::string places = local.contains("places")
                                    ? "; " + text_of(local["places"]["cells"]) + " places from " +
-                                         local["places"]["low"].dump() + " to " + local["places"]["high"].dump()
+                                         text_of(local["places"]["low"]) + " to " + text_of(local["places"]["high"])
                                    : "";
     return bins + shared + "; cosine share " + number(local["cosine_share"]) + places;
 }

@@ -188,18 +188,8 @@ ROWS
 
 # ---- into the page ------------------------------------------------------------------------------------------------------
 
-put() { # NAME: replaces what stands between its marks, in the page that has them
-    local page
-    page=$(grep -lFx "<!-- $1 -->" "$root"/docs/*.md) || { echo "no place for $1 in docs/*.md" >&2; exit 1; }
-    awk -v name="$1" -v table="$results/$1.md" '
-        $0 == "<!-- " name " -->" { print; while ((getline line < table) > 0) print line; inside = 1; next }
-        $0 == "<!-- /" name " -->" { inside = 0 }
-        !inside { print }' "$page" > "$results/page.md"
-    cat "$results/page.md" > "$page"
-}
-
 for section in "${@:-${sections[@]}}"; do
     echo "$section" >&2
     "$section" > "$results/$section.md"
-    put "$section"
+    "$root/docs/make/put_table.sh" "$section" < "$results/$section.md"
 done

@@ -10,7 +10,6 @@ shift
 scenes=${*:-hidden-grace room courtyard car trees}
 bench=${BENCH:-$root/build/release/tests/bench/bench_places}
 results=${RESULTS:-$root/build/places}
-page=$root/docs/places.md
 mkdir -p "$results"
 python3 "$root/docs/make/place_scenes.py" "$results" > /dev/null
 cp "$root/tools/render/scenes/hidden-grace.json" "$results"
@@ -29,8 +28,4 @@ for scene in $scenes; do
     "$bench" measure "$results/$scene.json" "$data" "${POINTS:-1000}" "$results/$scene-local.acdf" "$results/$scene-places.acdf" |
         sed "s/^/| $scene /" >> "$table"
 done
-awk -v table="$table" '
-    /<!-- table -->/ { print; while ((getline line < table) > 0) print line; skip = 1 }
-    /<!-- \/table -->/ { skip = 0 }
-    !skip' "$page" > "$page.new"
-mv "$page.new" "$page"
+"$root/docs/make/put_table.sh" places < "$table"

@@ -5,7 +5,6 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=$(cd "${1:?usage: product_checks.sh BUILD DATA}" && pwd)
 data=$(cd "${2:?usage: product_checks.sh BUILD DATA}" && pwd)
-page=$root/docs/product.md
 work=$(mktemp -d "${TMPDIR:-/tmp}/acdf-checks-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 lights=()
@@ -45,9 +44,4 @@ file() { # NAME BRDF
     for name in nickel.binary blue-metallic-paint.binary cc_ibiza_sunset_rgb.bsdf cg_sunflower_rgb.bsdf paper_white_rgb.bsdf satin_rosaline_rgb.bsdf; do
         file "$name" "$data/brdfs/$name"
     done
-} > "$work/table"
-awk -v table="$work/table" '
-    $0 == "<!-- checks -->" { print; while ((getline line < table) > 0) print line; inside = 1; next }
-    $0 == "<!-- /checks -->" { inside = 0 }
-    !inside { print }' "$page" > "$work/page"
-cp "$work/page" "$page"
+} | "$root/docs/make/put_table.sh" checks

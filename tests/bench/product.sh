@@ -5,14 +5,9 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(cd "$1" && pwd)
 data=$(cd "$2" && pwd)
-page=$here/../../docs/performance.md
 work=$(mktemp -d "${TMPDIR:-/tmp}/acdf-bench-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 "$build/tools/acdf" local "$data/probes/grace_probe.hdr" --projection angular --budget 1MB -o "$work/light.acdf" --quiet
 "$build/tools/acdf" brdf "$data/brdfs/nickel.binary" --budget 64KiB -o "$work/brdf.acdf" --quiet
-"$build/tests/bench/bench_product" "$work/light.acdf" "$work/brdf.acdf" > "$work/table"
-awk -v table="$work/table" '
-    $0 == "<!-- product -->" { print; while ((getline line < table) > 0) print line; inside = 1; next }
-    $0 == "<!-- /product -->" { inside = 0 }
-    !inside { print }' "$page" > "$work/page"
-cp "$work/page" "$page"
+"$build/tests/bench/bench_product" "$work/light.acdf" "$work/brdf.acdf" |
+    "$here/../../docs/make/put_table.sh" product

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# put_table.sh NAME < TABLE: replaces what stands between <!-- NAME --> and <!-- /NAME --> in the page of docs/ that has them.
+set -euo pipefail
+docs=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+page=$(grep -lFx "<!-- $1 -->" "$docs"/*.md) || { echo "no place for $1 in docs/*.md" >&2; exit 1; }
+work=$(mktemp -d "${TMPDIR:-/tmp}/acdf-table-XXXXXX")
+trap 'rm -rf "$work"' EXIT
+cat > "$work/table"
+awk -v name="$1" -v table="$work/table" '
+    $0 == "<!-- " name " -->" { print; while ((getline line < table) > 0) print line; inside = 1; next }
+    $0 == "<!-- /" name " -->" { inside = 0 }
+    !inside { print }' "$page" > "$work/page"
+cat "$work/page" > "$page"
