@@ -32,7 +32,8 @@ TEST_P(GoldenLocal, DrawsTheSameSamplesByRuntimeTables) { // but for the roundin
         const auto s = file_.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_NEAR(s.direction[i], line.direction[i], 4e-7);
         EXPECT_EQ(file_.local().pdf(line.given, s.direction), s.pdf);
-        EXPECT_NEAR(s.pdf, line.pdf, 2e-6 * line.pdf); // of the direction: tilts and the cosine share change along a cell
+        EXPECT_NEAR(s.pdf, line.pdf,
+                    2e-6 * line.pdf); // of the direction: tilts and the cosine share change along a cell
     }
 }
 
