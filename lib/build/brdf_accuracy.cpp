@@ -72,6 +72,15 @@ private:
     std::uint64_t violations_ = 0;
 };
 
+/// A direction as the reader takes it. By way of memory: gcc 12 drops the rounding of vectors of doubles that
+/// become doubles again in a function that it inlines.
+void rounded(const double direction[3], float out[3]) {
+    for (int k = 0; k < 3; ++k) {
+        volatile float value = static_cast<float>(direction[k]);
+        out[k] = value;
+    }
+}
+
 /// Half-vectors around the view's azimuth; theta_h in steps of its square root. `density(wi)` is that of the view
 /// wo.
 template <typename Density>
@@ -137,11 +146,13 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
-        const float o[3] = {float(wo[0]), float(wo[1]), float(wo[2])};
+        float o[3];
+        rounded(wo, o);
         AcdfBrdfView view; // looked up once
         const bool seen = acdf_brdf_view(&brdf, o, &view) != 0;
         const auto of_view = [&](const double wi[3]) {
-            const float i[3] = {float(wi[0]), float(wi[1]), float(wi[2])};
+            float i[3];
+            rounded(wi, i);
             return seen ? double{acdf_brdf_view_pdf(&brdf, &view, i)} : 0.0;
         };
         out[v] = measure_view(of_view, reflected, views[v], wo, columns, rows);
