@@ -8,13 +8,8 @@
 #include <acdf/wavefront.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <limits>
-#include <memory>
-#include <new>
 #include <utility>
 
 namespace acdf {

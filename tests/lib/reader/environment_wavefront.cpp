@@ -90,12 +90,8 @@ TEST(EnvironmentWavefront, IsTheViewOnGoldenFiles) {
 
 TEST(EnvironmentWavefront, IsTheViewOnRandomTrees) {
     for (std::uint32_t seed = 0; seed < 40; ++seed) {
-        RandomOptions options;
-        options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 4096;
-        options.rows = seed % 2 == 0 ? 32 : 511;
-        options.depth = 2 + static_cast<int>(seed % 9);
+        RandomOptions options = varied_options(seed);
         options.tilts = seed % 10 == 0;
-        options.narrow_cells = seed % 6 == 0;
         SCOPED_TRACE(seed);
         expect_the_view(RandomTree(seed, options).make().encode(), 500);
         if (HasFatalFailure()) return;

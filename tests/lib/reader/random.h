@@ -25,6 +25,16 @@ struct RandomOptions {
     bool octahedral = false;   ///< axes u and v
 };
 
+/// Grids, depths and widths of cells in turns.
+inline RandomOptions varied_options(std::uint32_t seed, std::uint32_t widest = 4096) {
+    RandomOptions options;
+    options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : widest;
+    options.rows = seed % 2 == 0 ? 32 : 511;
+    options.depth = 2 + static_cast<int>(seed % 9);
+    options.narrow_cells = seed % 6 == 0;
+    return options;
+}
+
 class RandomTree {
 public:
     RandomTree(std::uint32_t seed, const RandomOptions& options) : rng_(seed), options_(options) {}

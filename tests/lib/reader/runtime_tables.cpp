@@ -144,12 +144,8 @@ TEST(RuntimeTables, AgreeOnGoldenFiles) {
 TEST(RuntimeTables, AgreeOnRandomTrees) {
     int with_tables = 0;
     for (std::uint32_t seed = 0; seed < 150; ++seed) {
-        RandomOptions options;
-        options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 4096;
-        options.rows = seed % 2 == 0 ? 32 : 511;
-        options.depth = 2 + static_cast<int>(seed % 9);
+        RandomOptions options = varied_options(seed);
         options.tilts = seed % 10 == 0;
-        options.narrow_cells = seed % 6 == 0;
         SCOPED_TRACE(seed);
         Pair pair(RandomTree(seed, options).make().encode());
         with_tables += pair.cells() != nullptr;

@@ -29,13 +29,9 @@ inline std::unique_ptr<Loaded> loaded(EnvironmentSpec spec) {
 constexpr std::uint32_t latlong_count = 120, tree_count = 2 * latlong_count;
 
 inline RandomOptions options_of(std::uint32_t seed) {
-    RandomOptions options;
-    options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 1024;
-    options.rows = seed % 2 == 0 ? 32 : 511;
-    options.depth = 2 + static_cast<int>(seed % 9);
+    RandomOptions options = varied_options(seed, 1024);
     options.tilts = seed % 4 != 0;
     options.dark = seed % 5 != 0;
-    options.narrow_cells = seed % 6 == 0;
     options.octahedral = seed >= latlong_count;
     return options;
 }

@@ -165,12 +165,8 @@ TEST(ShaderTables, AnswerAsTheReaderOnGoldenFiles) {
 TEST(ShaderTables, AnswerAsTheReaderOnRandomTrees) {
     int with_tables = 0, others = 0;
     for (std::uint32_t seed = 0; seed < 120; ++seed) {
-        RandomOptions options;
-        options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 4096;
-        options.rows = seed % 2 == 0 ? 32 : 511;
-        options.depth = 2 + static_cast<int>(seed % 9);
+        RandomOptions options = varied_options(seed);
         options.tilts = false;
-        options.narrow_cells = seed % 6 == 0;
         SCOPED_TRACE(seed);
         const ShaderFile file(RandomTree(seed, options).make().encode());
         if (!file.status.ok()) continue;
