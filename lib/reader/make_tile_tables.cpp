@@ -161,7 +161,9 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
     }
     at = padded(at + 2 * stride());
     out.rows = static_cast<u32>(at);
-    for (std::size_t row = 0; row < blend_.tiles->row_count; ++row) {
+    const std::size_t rows =
+        splits > 0 ? blend_.tiles->row_count : 0; // without splits any number of them takes no byte
+    for (std::size_t row = 0; row < rows; ++row) {
         auto* const to = reinterpret_cast<std::uint8_t*>(words + at) + row * stride();
         for (std::size_t i = 0; i < splits; ++i) to[numbers_[i]] = blend_.rows[row * splits + i];
     }
