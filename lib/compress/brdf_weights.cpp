@@ -19,17 +19,22 @@ public:
         view.direction(wo_);
     }
 
-    /// Whether the half-vector at cap = 1 - cos(theta_h) reflects above the horizon, and the density there.
-    bool at(double cap, double phi, double& density) const {
+    /// A half-vector and the direction into which it reflects the view.
+    struct Reflection {
+        double dot;
+        double wi[3];
+        bool above() const { return dot > 0.0 && wi[2] > 0.0; }
+    };
+
+    /// Of the half-vector at cap = 1 - cos(theta_h) and an azimuth.
+    Reflection at(double cap, const double azimuth[2]) const {
         const double hz = 1.0 - cap, radius = std::sqrt(cap * (2.0 - cap));
-        const double h[3] = {radius * std::cos(phi), radius * std::sin(phi), hz};
+        const double h[3] = {radius * azimuth[0], radius * azimuth[1], hz};
         const double dot = wo_[0] * h[0] + wo_[1] * h[1] + wo_[2] * h[2];
-        const double wi[3] = {2.0 * dot * h[0] - wo_[0], 2.0 * dot * h[1] - wo_[1], 2.0 * dot * h[2] - wo_[2]};
-        density = 0.0;
-        if (dot <= 0.0 || wi[2] <= 0.0) return false;
-        density = reflected_(wo_, wi) * dot * scale_;
-        return true;
+        return {dot, {2.0 * dot * h[0] - wo_[0], 2.0 * dot * h[1] - wo_[1], 2.0 * dot * h[2] - wo_[2]}};
     }
+
+    double density(const Reflection& r) const { return r.above() ? reflected_(wo_, r.wi) * r.dot * scale_ : 0.0; }
 
     /// Of the azimuths from `begin` to `end` that which is nearest to the view's.
     double nearest(double begin, double end) const {
@@ -45,6 +50,11 @@ private:
     double phi_, scale_;
 };
 
+struct Azimuth {
+    explicit Azimuth(double phi) : of{std::cos(phi), std::sin(phi)} {}
+    double of[2];
+};
+
 /// The mean over a square of the square of the density.
 double mean_square(const Reflections& reflections, const HalfGrid& grid, std::uint32_t r, std::uint32_t c) {
     constexpr int kPoints = 4; // each way
@@ -55,8 +65,8 @@ double mean_square(const Reflections& reflections, const HalfGrid& grid, std::ui
                 grid.row_knots[r] + (grid.row_knots[r + 1] - grid.row_knots[r]) * (i + 0.5) / kPoints;
             const double column =
                 grid.column_knots[c] + (grid.column_knots[c + 1] - grid.column_knots[c]) * (k + 0.5) / kPoints;
-            double density;
-            reflections.at(grid.cap(row), grid.phi(column), density);
+            const Azimuth azimuth(grid.phi(column));
+            const double density = reflections.density(reflections.at(grid.cap(row), azimuth.of));
             sum += density * density;
         }
     return sum / (kPoints * kPoints);
@@ -70,14 +80,14 @@ std::vector<HorizonSquare> horizon_squares(const Reflected& reflected, const Hal
     std::vector<HorizonSquare> out;
     for (std::uint32_t c = 0; c < grid.columns(); ++c) {
         const double begin = grid.phi(grid.column_knots[c]), end = grid.phi(grid.column_knots[c + 1]);
-        const double first = reflections.nearest(begin, end);
+        const Azimuth first(reflections.nearest(begin, end)), middle(0.5 * (begin + end));
         for (std::uint32_t r = 0; r < grid.rows(); ++r) {
-            double peak, centre;
-            if (!reflections.at(grid.cap(grid.row_knots[r]), first, peak)) break;
+            const auto edge = reflections.at(grid.cap(grid.row_knots[r]), first.of);
+            if (!edge.above()) break;
             const double t =
                 0.5 * (std::sqrt(double(grid.row_knots[r])) + std::sqrt(double(grid.row_knots[r + 1])));
-            if (reflections.at(grid.cap(t * t), 0.5 * (begin + end), centre)) continue;
-            out.push_back({r * grid.columns() + c, static_cast<float>(peak),
+            if (reflections.at(grid.cap(t * t), middle.of).above()) continue;
+            out.push_back({r * grid.columns() + c, static_cast<float>(reflections.density(edge)),
                            static_cast<float>(mean_square(reflections, grid, r, c))});
         }
     }
