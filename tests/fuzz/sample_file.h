@@ -64,9 +64,7 @@ inline bool is_unit(const float v[3]) {
     return std::fabs(square - 1.0) < 2e-6;
 }
 inline bool is_density(double pdf) { return pdf >= 0.0 && std::isfinite(pdf); }
-inline bool in_unit_square(const double u[2]) {
-    return u[0] >= 0.0 && u[0] <= 1.0 + 1e-9 && u[1] >= 0.0 && u[1] <= 1.0 + 1e-9;
-}
+inline bool in_unit_square(const double u[2]) { return u[0] >= 0.0 && u[0] <= 1.0 && u[1] >= 0.0 && u[1] <= 1.0; }
 
 inline constexpr int samples_a_file = 24;
 

@@ -212,7 +212,7 @@ ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const floa
     if (!(acdf_brdf_find(brdf, &view, &place, range, strata) > 0.0)) return 0;
     for (axis = 0; axis < 2; ++axis) {
         const double t = acdf_brdf_fraction(&range[axis], place.position[axis]);
-        u[axis] = strata[axis].low + strata[axis].width * acdf_tilt_cdf(range[axis].tilt, t);
+        u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t);
     }
     if (acdf_brdf_mirrored(brdf)) u[0] = 0.5 + 0.5 * sign * u[0];
     u[1] = floor + (1.0 - floor) * u[1];

@@ -110,8 +110,7 @@ ACDF_FN int acdf_environment_invert(const AcdfEnvironment* env, const float dire
     strata[0].low = strata[1].low = 0.0;
     strata[0].width = strata[1].width = 1.0;
     if (!(acdf_environment_find(env, direction, range, t, strata) > 0.0)) return 0;
-    for (axis = 0; axis < 2; ++axis)
-        u[axis] = strata[axis].low + strata[axis].width * acdf_tilt_cdf(range[axis].tilt, t[axis]);
+    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
     return 1;
 }
 

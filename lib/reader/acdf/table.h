@@ -177,7 +177,7 @@ ACDF_FN int acdf_table_invert(const AcdfTable* table, const uint32_t* index, con
     for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
         const AcdfRange* range = &place.range[axis];
         const double t = acdf_table_fraction(range, place.position[axis]);
-        u[axis - table->indexed_count] = strata[axis].low + strata[axis].width * acdf_tilt_cdf(range->tilt, t);
+        u[axis - table->indexed_count] = acdf_stratum_number(&strata[axis], range, t);
     }
     return 1;
 }

@@ -218,6 +218,12 @@ ACDF_FN double acdf_tilt_sample(double tilt, double u) {
 ACDF_FN double acdf_tilt_cdf(double tilt, double t) { return t + tilt * (t * t - t); }
 ACDF_FN double acdf_tilt_density(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
 
+/* The random number in [0, 1] that a cell's stratum has at t of the cell: never more than 1 by rounding. */
+ACDF_FN double acdf_stratum_number(const AcdfStratum* stratum, const AcdfRange* range, double t) {
+    const double u = stratum->low + stratum->width * acdf_tilt_cdf(range->tilt, t);
+    return u < 1.0 ? u : 1.0;
+}
+
 #ifdef __cplusplus
 }
 #endif
