@@ -14,6 +14,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/allocator.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/block_grids.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_half.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_pair.h
@@ -24,6 +25,8 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_c.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_words.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
@@ -44,7 +47,10 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/row_heights.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_point.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_square.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tables.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_walk.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/short_curves.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h

@@ -1,4 +1,5 @@
-// acdf export: draws and densities of an environment for shaders: functions in their languages, and tables.
+// acdf export: draws and densities of an environment or a local environment for shaders: functions in their
+// languages, and tables.
 #include "shader/texts.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
@@ -25,7 +26,13 @@ struct ExportArguments {
     std::string file;
     Target target = Target::c;
     std::string output = "-", tables;
-    bool force = false;
+    bool force = false, walk = false;
+};
+
+/// Which functions, and the tables that they read.
+struct Exported {
+    bool walk; // acdf/shader_walk.h; else acdf/shader.h
+    ShaderTables tables;
 };
 
 constexpr int texture_width = 2048; // of the texture that head.txt of GLSL reads
@@ -43,8 +50,9 @@ std::string rows_of_words(const ShaderTables& tables, const char* format, const 
     return text + "\n";
 }
 
-std::string c_text(const ShaderTables& tables, bool with_words) {
-    std::string text = shader_text_c;
+std::string c_text(const Exported& exported, bool with_words) {
+    const ShaderTables& tables = exported.tables;
+    std::string text = exported.walk ? shader_walk_c : shader_cells_c;
     if (!with_words) return text;
     return text + "\n#if !defined(ACDF_TABLES_H) && !defined(__OPENCL_VERSION__)\n#define ACDF_TABLES_H\n" +
            "static const uint32_t acdf_tables[" + std::to_string(tables.size()) + "] = {\n" +
@@ -52,39 +60,52 @@ std::string c_text(const ShaderTables& tables, bool with_words) {
 }
 
 /// What a program needs to make a buffer or a texture of the tables, and to check that they are the file's.
-std::string description(const ExportArguments& options, const LoadedFile& loaded, const ShaderTables& tables) {
-    const auto& cells = *reinterpret_cast<const AcdfCells*>(tables.words());
+std::string description(const ExportArguments& options, const LoadedFile& loaded, const Exported& exported) {
+    const ShaderTables& tables = exported.tables;
     const std::size_t rows = (tables.size() + texture_width - 1) / texture_width;
     nlohmann::ordered_json json = {{"what", "tables for the functions of acdf export"},
                                    {"version", ACDF_VERSION},
+                                   {"functions", exported.walk ? "walk" : "cells"},
                                    {"element", "uint32, little-endian"},
                                    {"words", tables.size()},
-                                   {"texture", {{"format", "r32ui"}, {"width", texture_width}, {"height", rows}}},
-                                   {"pieces", cells.count},
-                                   {"resolution", {loaded.file.axis(0).resolution, loaded.file.axis(1).resolution}},
-                                   {"total", loaded.file.description().total},
-                                   {"recommended_share", loaded.file.environment().recommended_share()},
-                                   {"needs_company", loaded.file.environment().needs_company()}};
+                                   {"texture", {{"format", "r32ui"}, {"width", texture_width}, {"height", rows}}}};
+    if (!exported.walk) json["pieces"] = reinterpret_cast<const AcdfCells*>(tables.words())->count;
+    json["resolution"] = {loaded.file.axis(0).resolution, loaded.file.axis(1).resolution};
+    json["total"] = loaded.file.description().total;
+    if (loaded.file.kind() == ACDF_KIND_ENVIRONMENT)
+        json["recommended_share"] = loaded.file.environment().recommended_share();
+    json["needs_company"] = loaded.file.company() != nullptr;
     const std::string head = json.dump(2);
     if (!options.tables.empty()) return head + "\n";
     return head.substr(0, head.size() - 2) + ",\n  \"tables\": [\n" + rows_of_words(tables, "%u", "    ") +
            "  ]\n}\n";
 }
 
-std::string text_of(const ExportArguments& options, const LoadedFile& loaded, const ShaderTables& tables) {
+std::string text_of(const ExportArguments& options, const LoadedFile& loaded, const Exported& exported) {
     switch (options.target) {
     case Target::c:
-        return c_text(tables, options.tables.empty());
+        return c_text(exported, options.tables.empty());
     case Target::glsl:
-        return shader_text_glsl;
+        return exported.walk ? shader_walk_glsl : shader_cells_glsl;
     case Target::hlsl:
-        return shader_text_hlsl;
+        return exported.walk ? shader_walk_hlsl : shader_cells_hlsl;
     case Target::wgsl:
-        return shader_text_wgsl;
+        return exported.walk ? shader_walk_wgsl : shader_cells_wgsl;
     case Target::json:
         break;
     }
-    return description(options, loaded, tables);
+    return description(options, loaded, exported);
+}
+
+/// Environments on a lat-long grid have tables of cells, all others are walked.
+Exported make_tables(const ExportArguments& options, const LoadedFile& loaded) {
+    const bool cells = !options.walk && loaded.file.kind() == ACDF_KIND_ENVIRONMENT &&
+                       loaded.file.description().parameterization == ACDF_PARAM_LATLONG;
+    Exported exported = {!cells, {}};
+    const Status status = cells ? ShaderTables::make(loaded.file, exported.tables)
+                                : ShaderTables::make_walk(loaded.file, exported.tables);
+    if (!status.ok()) throw Failure(options.file + ": " + status.message);
+    return exported;
 }
 
 void run(const ExportArguments& options) {
@@ -96,13 +117,11 @@ void run(const ExportArguments& options) {
     std::optional<Output> words;
     if (!options.tables.empty())
         words.emplace(options.tables, options.force, std::vector<std::string>{options.file});
-    const LoadedFile loaded = load_environment(options.file, "export");
-    ShaderTables tables;
-    if (const Status status = ShaderTables::make(loaded.file, tables); !status.ok())
-        throw Failure(options.file + ": " + status.message);
-    output.write(text_of(options, loaded, tables));
+    const LoadedFile loaded = load_file(options.file);
+    const Exported exported = make_tables(options, loaded);
+    output.write(text_of(options, loaded, exported));
     if (words) {
-        words->write(tables.words(), 4 * tables.size());
+        words->write(exported.tables.words(), 4 * exported.tables.size());
         words->commit();
     }
     output.commit();
@@ -118,8 +137,10 @@ void add_export(CLI::App& program, int& exit_code) {
                                                           {"json", Target::json}};
     auto options = std::make_shared<ExportArguments>();
     CLI::App* command = program.add_subcommand(
-        "export", "Write an environment for shaders: functions that draw and evaluate, and their tables");
-    command->add_option("FILE", options->file, "The .acdf file of an environment (- is stdin)")
+        "export",
+        "Write an environment or a local environment for shaders: functions that draw and evaluate, and tables");
+    command
+        ->add_option("FILE", options->file, "The .acdf file of an environment or a local environment (- is stdin)")
         ->required()
         ->type_name("");
     command
@@ -140,14 +161,22 @@ void add_export(CLI::App& program, int& exit_code) {
             "files")
         ->type_name("FILE")
         ->group("Output");
+    command
+        ->add_flag(
+            "--walk", options->walk,
+            "Walk a tree, also of an environment on a lat-long grid, for which there are faster functions: its "
+            "tables are smaller by half, and the functions are those of local environments")
+        ->group("Output");
     add_output(*command, options->output, options->force, "The text to write, stdout by default");
-    command->footer(help_footer(
-        "Draws and densities are those of the reader, of 32-bit words and floats alone: some 130 bytes a cell. "
-        "docs/shaders.md tells how to bind the tables, and how nearly results agree.",
-        "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
-        "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"
-        "acdf export sky.acdf --target c -o sky.h               # functions and tables in one header\n"
-        "acdf export sky.acdf --target json --tables sky.bin    # how large the texture is"));
+    command->footer(
+        help_footer("Draws and densities are those of the reader, of 32-bit words and floats alone: some 130 bytes "
+                    "a cell, or 60 where "
+                    "trees are walked. "
+                    "docs/shaders.md tells how to bind the tables, and how nearly results agree.",
+                    "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
+                    "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"
+                    "acdf export sky.acdf --target c -o sky.h               # functions and tables in one header\n"
+                    "acdf export sky.acdf --target json --tables sky.bin    # how large the texture is"));
     command->callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

@@ -23,6 +23,13 @@ struct Mark {
     u32 a, b;
 };
 
+u32 bits_set(u64 x) {
+    x -= x >> 1 & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+    x = (x + (x >> 4)) & 0x0F0F0F0F0F0F0F0Fu;
+    return static_cast<u32>(x * 0x0101010101010101u >> 56);
+}
+
 // Where curves start, as bits, and how many start before each run of 64 units: a curve's index in constant time.
 struct Starts {
     u64* bits;
@@ -31,7 +38,7 @@ struct Starts {
     bool at(u32 unit) const { return bits[unit / 64] >> (unit % 64) & 1; }
     u32 index(u32 unit) const {
         const u64 lower = bits[unit / 64] & ((u64{1} << (unit % 64)) - 1);
-        return before[unit / 64] + static_cast<u32>(__builtin_popcountll(lower));
+        return before[unit / 64] + bits_set(lower);
     }
 };
 
@@ -139,7 +146,7 @@ void count_before(u32 units, const Starts& starts) {
     u32 count = 0;
     for (u32 i = 0; i <= units / 64; ++i) {
         starts.before[i] = count;
-        count += static_cast<u32>(__builtin_popcountll(starts.bits[i]));
+        count += bits_set(starts.bits[i]);
     }
 }
 

@@ -2,6 +2,7 @@
 #include <acdf/shader_tables.h>
 
 #include "make_cells.h"
+#include "make_walk.h"
 #include "memory.h"
 
 #include <cstddef>
@@ -39,11 +40,20 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return none("it is no environment");
     if (file.description().parameterization != ACDF_PARAM_LATLONG)
-        return none("its cells lie on the octahedral square; make it with --domain latlong");
+        return none("its cells lie on the octahedral square; walks (--walk) do that, or --domain latlong");
     if (!make_shader_cells(file.environment().data(), file.tree_units(), out.block_))
         return none(
             "its cells tilt (--fit pdf), are more than 65535 pieces or too small at a pole, or memory is too "
             "little; make it with fewer cells");
+    return {};
+}
+
+Status ShaderTables::make_walk(const File& file, ShaderTables& out) noexcept {
+    out = ShaderTables();
+    if (file.kind() != ACDF_KIND_ENVIRONMENT && file.kind() != ACDF_KIND_LOCAL)
+        return none("it is no environment and no local environment");
+    if (!acdf::make_walk(file, out.block_))
+        return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
     return {};
 }
 

@@ -1,12 +1,12 @@
-# Joins HEAD, BODY and TAIL into TEXT and into a string constant, TEXT.cpp.
+# Joins HEAD, BODY and TAIL into TEXT and into a string constant of a name, TEXT.cpp.
 file(READ ${HEAD} head)
 file(READ ${BODY} body)
 file(READ ${TAIL} tail)
 # What stands before the first function tells of the headers; the head takes its place.
-string(FIND "${body}" "/* ---- grids of blocks" begin)
+string(FIND "${body}" "/* ---- " begin)
 if(begin LESS 0)
-    message(FATAL_ERROR "${BODY}: where acdf/pieces.h begins is not to be found")
+    message(FATAL_ERROR "${BODY}: where functions begin is not to be found")
 endif()
 string(SUBSTRING "${body}" ${begin} -1 body)
 file(WRITE ${TEXT} "${head}${body}${tail}")
-file(WRITE ${TEXT}.cpp "#include \"shader/texts.h\"\n\nconst char acdf::shader_text_${LANGUAGE}[] = R\"acdf_text(${head}${body}${tail})acdf_text\";\n")
+file(WRITE ${TEXT}.cpp "#include \"shader/texts.h\"\n\nconst char acdf::${NAME}[] = R\"acdf_text(${head}${body}${tail})acdf_text\";\n")

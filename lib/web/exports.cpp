@@ -151,9 +151,10 @@ ACDF_EXPORT std::size_t acdf_web_cells(const Opened* opened, u32* out, std::size
     return count;
 }
 
-/// How many words of tables for shaders there are, made by the first call; 0, and an error, where there are none.
-ACDF_EXPORT std::size_t acdf_web_shader_tables(Opened* opened) {
-    if (opened->tables.size() == 0) opened->status = acdf::ShaderTables::make(opened->file, opened->tables);
+/// How many words of tables for shaders there are, for walks or for cells; 0, and an error, where there are none.
+ACDF_EXPORT std::size_t acdf_web_shader_tables(Opened* opened, u32 walk) {
+    opened->status = walk ? acdf::ShaderTables::make_walk(opened->file, opened->tables)
+                          : acdf::ShaderTables::make(opened->file, opened->tables);
     return opened->tables.size();
 }
 ACDF_EXPORT const u32* acdf_web_shader_words(const Opened* opened) { return opened->tables.words(); }

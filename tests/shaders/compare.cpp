@@ -1,11 +1,15 @@
 // What a device answers by exported functions and tables, beside the reader.
 //
-//   compare_shader inputs FILE.acdf COUNT FOLDER     writes words.bin and directions.bin
+//   compare_shader inputs FILE.acdf COUNT FOLDER     writes words.bin, directions.bin and normals.bin
 //   compare_shader check FILE.acdf COUNT FOLDER ULPS reads draws.bin and densities.bin, and fails where they differ
+//   compare_shader check_walk FILE.acdf COUNT FOLDER ULPS the same of functions that walk (compare_walk.cpp)
 //
-// words.bin: two u32 a draw. directions.bin: x y z 0, floats. draws.bin: x y z pdf. densities.bin: the density of
-// the direction, and that of the draw. Random numbers are fixed. ULPS: by how many steps of 2^-24 coordinates may
-// differ.
+// words.bin: two u32 a draw. directions.bin, normals.bin: x y z 0, floats. draws.bin: x y z pdf. densities.bin: the
+// density of the direction, and that of the draw. Random numbers are fixed. ULPS: by how many steps of 2^-24
+// coordinates may differ.
+#include "tests/shaders/answers.h"
+#include "tests/shaders/compare_walk.h"
+
 #include <acdf/reader.h>
 
 #include <algorithm>
@@ -19,41 +23,27 @@
 
 namespace {
 
-template <class T>
-std::vector<T> read_all(const std::string& path, std::size_t count) {
-    std::vector<T> values(count);
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (!file || std::fread(values.data(), sizeof(T), count, file) != count) {
-        std::fprintf(stderr, "%s: cannot read %zu values\n", path.c_str(), count);
-        std::exit(1);
-    }
-    std::fclose(file);
-    return values;
-}
-
-template <class T>
-void write_all(const std::string& path, const std::vector<T>& values) {
-    std::FILE* file = std::fopen(path.c_str(), "wb");
-    if (!file || std::fwrite(values.data(), sizeof(T), values.size(), file) != values.size() || std::fclose(file)) {
-        std::fprintf(stderr, "%s: cannot write\n", path.c_str());
-        std::exit(1);
-    }
-}
+using namespace acdf_test;
 
 void write_inputs(std::size_t count, const std::string& folder) {
     std::mt19937 random(7);
     std::vector<std::uint32_t> words;
-    std::vector<float> directions;
-    for (std::size_t i = 0; i < count; ++i) {
-        for (int axis = 0; axis < 2; ++axis) words.push_back(static_cast<std::uint32_t>(random()));
+    std::vector<float> directions, normals;
+    const auto add_direction = [&](std::vector<float>& out) {
         const double z = 1.0 - static_cast<double>(random()) * 0x1p-31,
                      phi = 2.0 * M_PI * static_cast<double>(random()) * 0x1p-32;
         const double sine = std::sqrt((1.0 - z) * (1.0 + z));
         for (const double x : {sine * std::cos(phi), sine * std::sin(phi), z, 0.0})
-            directions.push_back(static_cast<float>(x));
+            out.push_back(static_cast<float>(x));
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        for (int axis = 0; axis < 2; ++axis) words.push_back(static_cast<std::uint32_t>(random()));
+        add_direction(directions);
     }
+    for (std::size_t i = 0; i < count; ++i) add_direction(normals);
     write_all(folder + "/words.bin", words);
     write_all(folder + "/directions.bin", directions);
+    write_all(folder + "/normals.bin", normals);
 }
 
 struct Differences {
@@ -107,18 +97,26 @@ int check(const AcdfEnvironment& environment, std::size_t count, const std::stri
 
 int main(int argc, char** argv) {
     const std::string what = argc > 1 ? argv[1] : "";
-    if (!(what == "inputs" && argc == 5) && !(what == "check" && argc == 6)) {
-        std::fprintf(stderr, "usage: compare_shader inputs|check FILE.acdf COUNT FOLDER [ULPS]\n");
+    const bool walk = what == "check_walk";
+    if (!(what == "inputs" && argc == 5) && !((what == "check" || walk) && argc == 6)) {
+        std::fprintf(stderr, "usage: compare_shader inputs|check|check_walk FILE.acdf COUNT FOLDER [ULPS]\n");
         return 2;
     }
     acdf::File file;
     const acdf::Status status = acdf::File::open(argv[2], file);
-    if (!status.ok() || file.kind() != ACDF_KIND_ENVIRONMENT || !file.environment().data().cells) {
-        std::fprintf(stderr, "%s: %s\n", argv[2], status.ok() ? "no runtime tables" : status.message);
+    if (!status.ok()) {
+        std::fprintf(stderr, "%s: %s\n", argv[2], status.message);
         return 1;
     }
     const auto count = static_cast<std::size_t>(std::strtoul(argv[3], nullptr, 10));
-    if (what == "check") return check(file.environment().data(), count, argv[4], std::strtod(argv[5], nullptr));
-    write_inputs(count, argv[4]);
-    return 0;
+    if (walk) return check_walk(file, count, argv[4], std::strtod(argv[5], nullptr));
+    if (what == "inputs") {
+        write_inputs(count, argv[4]);
+        return 0;
+    }
+    if (file.kind() != ACDF_KIND_ENVIRONMENT || !file.environment().data().cells) {
+        std::fprintf(stderr, "%s: no runtime tables\n", argv[2]);
+        return 1;
+    }
+    return check(file.environment().data(), count, argv[4], std::strtod(argv[5], nullptr));
 }

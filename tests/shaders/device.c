@@ -1,5 +1,5 @@
-/* The exported C on this processor: answers to words.bin and directions.bin in FOLDER. TABLES: 0: those in the
- * header. */
+/* The exported C on this processor: answers to words.bin and directions.bin (WALK: and normals.bin) in FOLDER.
+ * TABLES_FILE: by tables.bin, else by those in the header. */
 #include "exported.h"
 
 #include <stdio.h>
@@ -25,6 +25,9 @@ int main(int argc, char** argv) {
     const char* folder = argc > 1 ? argv[1] : ".";
     const uint32_t* words = (const uint32_t*)read_file(folder, "words.bin", &size);
     const float* directions = (const float*)read_file(folder, "directions.bin", &size);
+#ifdef WALK
+    const float* normals = (const float*)read_file(folder, "normals.bin", &size);
+#endif
     char path[4096];
     FILE *draws, *densities;
 #ifdef TABLES_FILE
@@ -39,10 +42,17 @@ int main(int argc, char** argv) {
     densities = fopen(path, "wb");
     if (!draws || !densities) return 1;
     for (i = 0; i < count; ++i) {
-        const AcdfShaderSample s = acdf_sample(tables, words[2 * i], words[2 * i + 1]);
         const float* d = directions + 4 * i;
-        const float four[4] = {s.x, s.y, s.z, s.pdf};
+#ifdef WALK
+        const float* n = normals + 4 * i;
+        const AcdfShaderPoint at = acdf_at(tables, n[0], n[1], n[2]);
+        const AcdfWalkSample s = acdf_sample(tables, at, words[2 * i], words[2 * i + 1]);
+        const float two[2] = {acdf_pdf(tables, at, d[0], d[1], d[2]), acdf_pdf(tables, at, s.x, s.y, s.z)};
+#else
+        const AcdfShaderSample s = acdf_sample(tables, words[2 * i], words[2 * i + 1]);
         const float two[2] = {acdf_pdf(tables, d[0], d[1], d[2]), acdf_pdf(tables, s.x, s.y, s.z)};
+#endif
+        const float four[4] = {s.x, s.y, s.z, s.pdf};
         fwrite(four, sizeof four, 1, draws);
         fwrite(two, sizeof two, 1, densities);
     }

@@ -11,10 +11,18 @@
 
 #include "exported.h"
 
+#ifdef WALK
+#define AT acdf_at(tables, directions[3], directions[4], directions[5]),
+typedef AcdfWalkSample Sample;
+#else
+#define AT
+typedef AcdfShaderSample Sample;
+#endif
+
 __global__ void answer(const uint32_t* tables, const uint32_t* words, const float* directions, float* out) {
-    const AcdfShaderSample s = acdf_sample(tables, words[0], words[1]);
+    const Sample s = acdf_sample(tables, AT words[0], words[1]);
     out[0] = s.x + s.y + s.z;
-    out[1] = s.pdf + acdf_pdf(tables, s.x, s.y, s.z);
-    out[2] = acdf_pdf(tables, directions[0], directions[1], directions[2]);
-    out[3] = acdf_sample_float(tables, out[0], out[1]).pdf;
+    out[1] = s.pdf + acdf_pdf(tables, AT s.x, s.y, s.z);
+    out[2] = acdf_pdf(tables, AT directions[0], directions[1], directions[2]);
+    out[3] = acdf_sample_float(tables, AT out[0], out[1]).pdf;
 }

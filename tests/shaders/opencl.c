@@ -1,4 +1,5 @@
-/* The exported C as OpenCL: answers to words.bin and directions.bin in FOLDER by the first device there is. */
+/* The exported C as OpenCL: answers to words.bin, directions.bin and normals.bin in FOLDER by the first device
+ * there is. Any second argument: the functions walk. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -7,15 +8,22 @@
 #include <string.h>
 
 static const char kernel_source[] =
+    "#ifdef WALK\n"
+    "#define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),\n"
+    "#define SAMPLE AcdfWalkSample\n"
+    "#else\n"
+    "#define AT\n"
+    "#define SAMPLE AcdfShaderSample\n"
+    "#endif\n"
     "__kernel void answer(__global const uint* tables, __global const uint2* words,\n"
-    "        __global const float4* directions, __global float4* draws,\n"
+    "        __global const float4* directions, __global const float4* normals, __global float4* draws,\n"
     "        __global float2* densities) {\n"
     "    const size_t i = get_global_id(0);\n"
-    "    const AcdfShaderSample s = acdf_sample(tables, words[i].x, words[i].y);\n"
+    "    const SAMPLE s = acdf_sample(tables, AT words[i].x, words[i].y);\n"
     "    const float4 d = directions[i];\n"
     "    draws[i] = (float4)(s.x, s.y, s.z, s.pdf);\n"
-    "    densities[i] = (float2)(acdf_pdf(tables, d.x, d.y, d.z),\n"
-    "                            acdf_pdf(tables, s.x, s.y, s.z));\n"
+    "    densities[i] = (float2)(acdf_pdf(tables, AT d.x, d.y, d.z),\n"
+    "                            acdf_pdf(tables, AT s.x, s.y, s.z));\n"
     "}\n";
 
 static char* read_file(const char* folder, const char* name, size_t* size) {
@@ -53,8 +61,10 @@ static void write_buffer(cl_command_queue queue, cl_mem buffer, size_t size, con
 
 int main(int argc, char** argv) {
     const char* folder = argc > 1 ? argv[1] : ".";
-    const char* names[3] = {"tables.bin", "words.bin", "directions.bin"};
+    const char* names[4] = {"tables.bin", "words.bin", "directions.bin", "normals.bin"};
     const char* sources[2];
+    const char* options = argc > 2 ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DWALK"
+                                   : "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
     char* exported;
     size_t size = 0, count = 0;
     cl_platform_id platform;
@@ -63,7 +73,7 @@ int main(int argc, char** argv) {
     cl_command_queue queue;
     cl_program program;
     cl_kernel kernel;
-    cl_mem buffers[5];
+    cl_mem buffers[6];
     cl_uint i;
     cl_int error;
     if (clGetPlatformIDs(1, &platform, NULL) != CL_SUCCESS ||
@@ -80,8 +90,7 @@ int main(int argc, char** argv) {
     sources[1] = kernel_source;
     program = clCreateProgramWithSource(context, 2, sources, NULL, &error);
     require(error, "program");
-    if (clBuildProgram(program, 1, &device, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt", NULL, NULL) !=
-        CL_SUCCESS) {
+    if (clBuildProgram(program, 1, &device, options, NULL, NULL) != CL_SUCCESS) {
         char log[8192] = "";
         clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, sizeof log, log, NULL);
         fprintf(stderr, "%s\n", log);
@@ -89,20 +98,20 @@ int main(int argc, char** argv) {
     }
     kernel = clCreateKernel(program, "answer", &error);
     require(error, "kernel");
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 4; ++i) {
         char* bytes = read_file(folder, names[i], &size);
         buffers[i] = clCreateBuffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, size, bytes, &error);
         require(error, names[i]);
         free(bytes);
     }
     count = size / 16;
-    buffers[3] = clCreateBuffer(context, CL_MEM_WRITE_ONLY, 16 * count, NULL, &error);
+    buffers[4] = clCreateBuffer(context, CL_MEM_WRITE_ONLY, 16 * count, NULL, &error);
     require(error, "draws");
-    buffers[4] = clCreateBuffer(context, CL_MEM_WRITE_ONLY, 8 * count, NULL, &error);
+    buffers[5] = clCreateBuffer(context, CL_MEM_WRITE_ONLY, 8 * count, NULL, &error);
     require(error, "densities");
-    for (i = 0; i < 5; ++i) require(clSetKernelArg(kernel, i, sizeof(cl_mem), &buffers[i]), "argument");
+    for (i = 0; i < 6; ++i) require(clSetKernelArg(kernel, i, sizeof(cl_mem), &buffers[i]), "argument");
     require(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &count, NULL, 0, NULL, NULL), "run");
-    write_buffer(queue, buffers[3], 16 * count, folder, "draws.bin");
-    write_buffer(queue, buffers[4], 8 * count, folder, "densities.bin");
+    write_buffer(queue, buffers[4], 16 * count, folder, "draws.bin");
+    write_buffer(queue, buffers[5], 8 * count, folder, "densities.bin");
     return 0;
 }

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT: exports an environment, draws and evaluates COUNT times on a device, and
-# compares with the reader. DEVICE: c, opencl, webgl, webgpu; or glslang
-# and kernels, which only compile.
+# run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, draws and evaluates COUNT times on a device, and compares
+# with the reader. DEVICE: c, opencl, webgl, webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
+# on a lat-long grid; or what is walked: local, local_square, square (the octahedral one) and walk (the first one again).
 # PROBE and BUDGET in the environment name another source than the sky of tests, and the size of the file.
 set -euo pipefail
-device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5
+device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5 form=${6:-cells}
+walk=
+[ "$form" = cells ] || walk=1
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -16,24 +18,34 @@ skip() {
 need() { command -v "$1" >/dev/null || skip "no $1"; }
 
 make_file() {
-    local probe=${PROBE:-$work/sky.exr}
+    local probe=${PROBE:-$work/sky.exr} domain=latlong kind=env
     [ -n "${PROBE-}" ] || "$make_sky" "$probe"
-    "$acdf" env "$probe" --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
+    case $form in *square) domain=octahedral ;; esac
+    case $form in local*) kind=local ;; esac
+    "$acdf" $kind "$probe" --domain $domain --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
     "$compare" inputs "$work/sky.acdf" "$count" "$work"
 }
 
-# Steps of 2^-24 by which coordinates may be off. Where floats are IEEE's, and sums of products are not fused: none.
-check() { "$compare" check "$work/sky.acdf" "$count" "$work" "$1"; }
+# export TARGET -o FILE ...
+export_sky() {
+    local flags=()
+    [ "$form" != walk ] || flags=(--walk)
+    "$acdf" export "$work/sky.acdf" --force --target "$@" "${flags[@]}"
+}
+
+# Steps of 2^-24 by which coordinates may be off, or of walks the density that is told of a draw. Where floats are IEEE's,
+# and sums of products are not fused: none.
+check() { "$compare" "check${walk:+_walk}" "$work/sky.acdf" "$count" "$work" "$1"; }
 
 on_c() {
     make_file
-    "$acdf" export "$work/sky.acdf" --target c -o "$work/exported.h"
-    "${CC:-cc}" -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -ffp-contract=off -I"$work" "$here/device.c" \
+    export_sky c -o "$work/exported.h"
+    "${CC:-cc}" -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -ffp-contract=off ${walk:+-DWALK} -I"$work" "$here/device.c" \
         -o "$work/device" -lm
     "$work/device" "$work"
     check 0
-    "$acdf" export "$work/sky.acdf" --target c --tables "$work/tables.bin" -o "$work/exported.h" --force
-    "${CC:-cc}" -std=c99 -O2 -Werror -ffp-contract=off -DTABLES_FILE -I"$work" "$here/device.c" -o "$work/device" -lm
+    export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
+    "${CC:-cc}" -std=c99 -O2 -Werror -ffp-contract=off ${walk:+-DWALK} -DTABLES_FILE -I"$work" "$here/device.c" -o "$work/device" -lm
     rm "$work/draws.bin" "$work/densities.bin"
     "$work/device" "$work"
     check 0
@@ -44,9 +56,9 @@ on_opencl() {
     cc -c "$work/has.c" -o "$work/has.o" 2>/dev/null || skip "no CL/cl.h"
     cc "$here/opencl.c" -o "$work/device" -lOpenCL 2>/dev/null || skip "no libOpenCL"
     make_file
-    "$acdf" export "$work/sky.acdf" --target c --tables "$work/tables.bin" -o "$work/exported.h"
+    export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
     status=0
-    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" || status=$?
+    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" ${walk:+walk} || status=$?
     [ "$status" != 77 ] || exit 77
     [ "$status" = 0 ]
     check 0
@@ -56,9 +68,10 @@ on_opencl() {
 on_glslang() {
     need glslangValidator
     make_file
-    "$acdf" export "$work/sky.acdf" --target glsl -o "$work/sky.glsl"
-    "$acdf" export "$work/sky.acdf" --target hlsl -o "$work/sky.hlsl"
-    local main='void main() { answer = acdf_sample(uvec2(1u, 2u)) + acdf_sample(vec2(0.5)) * acdf_pdf(vec3(0.0, 0.0, 1.0)); }'
+    export_sky glsl -o "$work/sky.glsl"
+    export_sky hlsl -o "$work/sky.hlsl"
+    local at=${walk:+acdf_at(vec3(0.0, 1.0, 0.0)), }
+    local main="void main() { answer = acdf_sample(${at}uvec2(1u, 2u)) + acdf_sample(${at}vec2(0.5)) * acdf_pdf(${at}vec3(0.0, 0.0, 1.0)); }"
     for version in '300 es' '330' '430'; do
         {
             printf '#version %s\nprecision highp float;\nprecision highp int;\n' "$version"
@@ -81,7 +94,8 @@ on_glslang() {
         cat "$work/sky.hlsl"
         printf 'RWStructuredBuffer<float4> answers : register(u0);\n[numthreads(64, 1, 1)]\n'
         printf 'void main(uint3 id : SV_DispatchThreadID) {\n'
-        printf '    answers[id.x] = acdf_sample(id.xy) + acdf_sample(float2(0.5, 0.5)) * acdf_pdf(float3(0.0, 0.0, 1.0));\n}\n'
+        at=${at/vec3/float3}
+        printf '    answers[id.x] = acdf_sample(%sid.xy) + acdf_sample(%sfloat2(0.5, 0.5)) * acdf_pdf(%sfloat3(0.0, 0.0, 1.0));\n}\n' "$at" "$at" "$at"
     } >"$work/shader.hlsl"
     glslangValidator -D -V -S comp -e main "$work/shader.hlsl" -o "$work/hlsl.spv"
     echo "GLSL, GLSL with buffers, SPIR-V and HLSL compile"
@@ -91,13 +105,13 @@ on_glslang() {
 on_kernels() {
     need clang++
     make_file
-    "$acdf" export "$work/sky.acdf" --target c --tables "$work/tables.bin" -o "$work/exported.h"
+    export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
     cp "$here/kernel.cu" "$work"
     local flags=(-std=c++17 -O2 -S -emit-llvm -nostdinc++ --cuda-device-only -Wno-unknown-cuda-version)
     local cuda=(-x cuda --cuda-gpu-arch=sm_70 -nocudainc -nocudalib) hip=(-x hip --offload-arch=gfx906 -nogpuinc -nogpulib)
     for language in cuda hip; do
         local -n target=$language
-        clang++ "${flags[@]}" "${target[@]}" "$work/kernel.cu" -o "$work/kernel.ll"
+        clang++ "${flags[@]}" ${walk:+-DWALK} "${target[@]}" "$work/kernel.cu" -o "$work/kernel.ll"
         grep -q 'define.*answer' "$work/kernel.ll" || { echo "$language: no kernel" >&2; exit 1; }
         if grep -q '\bdouble\b' "$work/kernel.ll"; then
             echo "$language: the kernel computes in doubles" >&2
@@ -112,9 +126,9 @@ on_browser() {
     need chromium
     need python3
     make_file
-    "$acdf" export "$work/sky.acdf" --target "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
+    export_sky "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
     cp "$here/$1.html" "$work/index.html"
-    python3 "$here/browser.py" "$work" index.html || exit "$?"
+    python3 "$here/browser.py" "$work" "index.html${walk:+?walk}" || exit "$?"
     check "$3"
 }
 
@@ -126,7 +140,7 @@ kernels) on_kernels ;;
 webgl) on_browser webgl glsl 4 ;;
 webgpu) on_browser webgpu wgsl 4 ;;
 *)
-    echo "usage: run.sh c|opencl|glslang|kernels|webgl|webgpu ACDF COMPARE MAKE_SKY COUNT" >&2
+    echo "usage: run.sh c|opencl|glslang|kernels|webgl|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
     exit 2
     ;;
 esac

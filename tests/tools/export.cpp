@@ -74,6 +74,28 @@ TEST_F(Export, WithoutTablesCAndJsonHoldThem) {
               std::string::npos);
 }
 
+// Local environments and the octahedral square are walked, other environments where it is asked for.
+TEST_F(Export, WalksWhatHasNoCells) {
+    const std::string golden = std::string(ACDF_TEST_DIR) + "/golden/v1.0/";
+    for (const char* name : {"local.acdf", "local_grid.acdf", "octahedral.acdf", "places.acdf", "zlib.acdf"}) {
+        const bool cells = std::string(name) == "zlib.acdf";
+        std::vector<std::string> command = {"export", golden + name, "--target", "glsl", "--tables", tables, "-f"};
+        if (cells) command.emplace_back("--walk");
+        const Result result = run_acdf(command);
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find("AcdfShaderPoint acdf_at(vec3 normal)"), std::string::npos) << name;
+        File opened;
+        ShaderTables made;
+        ASSERT_TRUE(File::open((golden + name).c_str(), opened).ok());
+        ASSERT_TRUE(ShaderTables::make_walk(opened, made).ok());
+        const std::string bytes = read_text(tables);
+        ASSERT_EQ(bytes.size(), 4 * made.size()) << name;
+        EXPECT_EQ(std::memcmp(bytes.data(), made.words(), bytes.size()), 0) << name;
+        EXPECT_EQ(json::parse(run_acdf({"export", golden + name, "--target", "json", "--walk"}).out)["functions"],
+                  "walk");
+    }
+}
+
 TEST_F(Export, RefusesWithOneLine) {
     expect_failure({"export", file}, 2, "--target");
     expect_failure({"export", file, "--target", "metal"}, 2, "'metal' is none of c, glsl, hlsl, json, wgsl");
@@ -105,8 +127,8 @@ TEST_F(Export, RefusesWhatHasNoTables) {
         if (entry.path().extension() != ".acdf") continue;
         File opened;
         ASSERT_TRUE(File::open(entry.path().c_str(), opened).ok());
-        if (opened.kind() == ACDF_KIND_ENVIRONMENT) continue;
-        expect_failure({"export", entry.path(), "--target", "c"}, 1, "export");
+        if (opened.kind() == ACDF_KIND_ENVIRONMENT || opened.kind() == ACDF_KIND_LOCAL) continue;
+        expect_failure({"export", entry.path(), "--target", "c"}, 1, "no environment");
     }
 }
 

@@ -39,6 +39,7 @@ done
 "$acdf" sample sky.acdf -n 20000 >sky.csv
 "$acdf" sample local.acdf -n 20000 --normal 0,0.6,0.8 >local.csv
 "$acdf" export sky.acdf --target glsl --tables tables.bin >sky.glsl
+"$acdf" export local.acdf --target wgsl --tables walk.bin >walk.wgsl
 cp "$here/package_test.mjs" .
 GOLDEN=$golden node --test package_test.mjs
 # The types are those that the calls are meant for, and are checked at all.

@@ -4,7 +4,7 @@ import {readdirSync, readFileSync} from "node:fs";
 import {test} from "node:test";
 
 import {AcdfError, createTablesBuffer, loadReader, tablesTexture, TABLES_WIDTH} from "acdf";
-import {glsl, wgsl} from "acdf/shaders";
+import {glsl, glslWalk, wgsl, wgslWalk} from "acdf/shaders";
 
 const reader = await loadReader();
 const golden = readdirSync(process.env.GOLDEN).filter(name => name.endsWith(".acdf"));
@@ -73,6 +73,15 @@ test("tables for shaders are those of acdf export", () => {
     const queue = {writeBuffer: (buffer, offset, given) => assert.deepEqual([offset, given], [0, words])};
     assert.equal(createTablesBuffer({queue, createBuffer: made => made}, words).size, words.byteLength);
     assert.throws(() => reader.open(readFileSync("local.acdf")).shaderTables(), /no environment/);
+});
+
+test("words that are walked are those of acdf export", () => {
+    const words = reader.open(readFileSync("local.acdf")).shaderTables({walk: true});
+    assert.deepEqual(Buffer.from(words.buffer), readFileSync("walk.bin"));
+    assert.equal(wgslWalk, readFileSync("walk.wgsl", "utf8"));
+    assert.match(glslWalk, /AcdfShaderPoint acdf_at\(vec3 normal\)/);
+    const sky = reader.open(readFileSync("sky.acdf"));
+    assert.ok(sky.shaderTables({walk: true}).length < sky.shaderTables().length);
 });
 
 test("every golden file", () => {

@@ -60,6 +60,7 @@ struct Goal {
     std::uint64_t budget = 0;   ///< budget: the most accurate file of at most so many bytes
     double variance = 0.0;      ///< variance: the smallest file of at most this relative variance, > 0
 
+    /// Goals of each kind.
     static Goal of_cells(std::uint32_t n) { return {Kind::cells, n, 0, 0.0}; }
     static Goal of_budget(std::uint64_t bytes) { return {Kind::budget, 4096, bytes, 0.0}; }
     static Goal of_variance(double v) { return {Kind::variance, 4096, 0, v}; }
@@ -110,6 +111,7 @@ struct Source {
 
 // ---- light ----
 
+/// How a number is stored.
 enum class Number { float32, float16, float64 };
 
 /// How an image is laid out.
@@ -158,6 +160,7 @@ struct BadTexels {
     std::uint64_t nan = 0, infinite = 0, negative = 0;
     int x = -1, y = -1;
 
+    /// All of them.
     std::uint64_t count() const { return nan + infinite + negative; }
 };
 
@@ -184,11 +187,14 @@ class Target {
 public:
     struct Data;
 
+    /// Reads a map from memory, or row by row. ErrorCode::bad_source and no_energy where the map is wrong,
+    /// bad_option where the options are; `target` is then empty.
     static Status from(const Pixels& pixels, const TargetOptions& options, Target& target,
                        const Control& control = {}) noexcept;
     static Status from(const Rows& rows, const TargetOptions& options, Target& target,
                        const Control& control = {}) noexcept;
 
+    /// Whether it holds no map.
     bool empty() const noexcept { return !data_; }
     // Of a target that is not empty:
     std::uint32_t columns() const noexcept; ///< of the grid that is fitted
@@ -196,6 +202,7 @@ public:
     double total() const noexcept; ///< integral over the sphere, of several channels their sum
     const BadTexels& bad_texels() const noexcept;
 
+    /// For the library's own use.
     Target() noexcept = default;
     explicit Target(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
     const std::shared_ptr<const Data>& data() const noexcept { return data_; }
@@ -221,6 +228,7 @@ struct SceneNormal {
     double weight = 1.0;
 };
 
+/// How an environment is fitted and stored.
 struct EnvironmentOptions {
     TargetOptions target; ///< of pixels and rows; a Target has its own
     Goal goal;            ///< cells: in all, about 4.2 bytes each; variance: up to 16 MiB. Of the variance fit only
@@ -232,6 +240,7 @@ struct EnvironmentOptions {
     Source source;
 };
 
+/// The file of an environment, and what is known of it.
 struct Environment {
     std::vector<std::uint8_t> bytes; ///< the whole file
     EnvironmentAccuracy accuracy;
@@ -272,6 +281,7 @@ struct Places {
     float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 };
 
+/// How a local environment is fitted and stored.
 struct LocalOptions {
     TargetOptions target;                 ///< of pixels and rows; a Target has its own
     Goal goal = Goal::of_budget(1 << 20); ///< cells: of the curves that bins share, or without sharing of a bin
@@ -291,6 +301,7 @@ struct LocalOptions {
     Places places; ///< both callbacks: bins share tiles, the goal is a budget, and places take three quarters of it
 };
 
+/// The file of a local environment, and what is known of it.
 struct Local {
     std::vector<std::uint8_t> bytes; ///< the whole file
     LocalAccuracy accuracy;          ///< over `normals` of them: random ones, or those of the scene
@@ -332,6 +343,7 @@ struct Array {
 /// centres linear in each angle. Negative numbers count as 0; NaN and infinite ones are ErrorCode::bad_source.
 Status tabulated(const Array& table, Brdf& brdf) noexcept;
 
+/// How a BRDF is fitted and stored.
 struct BrdfOptions {
     Channels channels;
     Goal goal = Goal::of_budget(64 << 10); ///< variance; cells: that views share, or of each, up to ACDF_MAX_TILES
@@ -348,6 +360,7 @@ struct BrdfOptions {
     Source source; ///< name and sha256
 };
 
+/// The file of a BRDF, and what is known of it.
 struct BrdfFile {
     std::vector<std::uint8_t> bytes; ///< the whole file
     BrdfAccuracy accuracy;
@@ -364,9 +377,11 @@ struct BadNumbers {
     std::uint64_t nan = 0, infinite = 0, negative = 0;
     std::uint64_t first = UINT64_MAX;
 
+    /// All of them.
     std::uint64_t count() const { return nan + infinite + negative; }
 };
 
+/// How a table is fitted and stored.
 struct TableOptions {
     std::uint32_t indexed = 0;      ///< leading axes that the caller of a sample chooses: each index is a bin
     std::vector<std::string> names; ///< one an axis, 1 to 15 bytes, all different; empty: x0, x1, ...
@@ -381,6 +396,7 @@ struct TableOptions {
     Source source; ///< name and sha256
 };
 
+/// The file of a table, and what is known of it.
 struct Table {
     std::vector<std::uint8_t> bytes; ///< the whole file
     TableAccuracy accuracy;

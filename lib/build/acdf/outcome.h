@@ -23,6 +23,7 @@ struct Status {
     ErrorCode code = ErrorCode::none;
     char message[400] = {}; ///< one line, UTF-8: what is wrong and what would help
 
+    /// Whether the call did what it was asked for.
     bool ok() const noexcept { return code == ErrorCode::none; }
 };
 

@@ -38,6 +38,7 @@ typedef enum AcdfErrorCode {
     ACDF_UNSUPPORTED = 6 /* a newer or unknown version, kind, feature or critical chunk */
 } AcdfErrorCode;
 
+/* Why a file was not loaded, or not served. */
 struct AcdfError {
     AcdfErrorCode code;
     int rule;          /* number of the broken rule of SPEC.md, 0 if none */
@@ -79,6 +80,7 @@ int acdf_brdf(const AcdfFile* file, AcdfBrdf* out);
 /* The same for a table file, to be used with acdf/table.h. */
 int acdf_table(const AcdfFile* file, AcdfTable* out);
 
+/* What a file says of itself, and its parts as they lie in it: valid until it is closed. `file` is not null. */
 AcdfKind acdf_kind(const AcdfFile* file);
 uint64_t acdf_size(const AcdfFile* file);        /* bytes of the whole file */
 uint64_t acdf_table_bytes(const AcdfFile* file); /* of the runtime tables; 0: there are none */
@@ -93,6 +95,7 @@ typedef struct AcdfText {
     size_t size;
 } AcdfText;
 
+/* How many pairs of metadata there are. */
 uint32_t acdf_metadata_count(const AcdfFile* file);
 /* Pair i. Returns 1, or 0 (and key, value unset) where i >= the count. */
 int acdf_metadata_pair(const AcdfFile* file, uint32_t i, AcdfText* key, AcdfText* value);

@@ -17,6 +17,7 @@
 extern "C" {
 #endif
 
+/* The whole square of half-vectors, before a tree narrows it. */
 ACDF_FN void acdf_brdf_whole(const AcdfBrdf* brdf, AcdfRange range[2]) {
     range[0].low = range[1].low = 0;
     range[0].high = brdf->columns;
@@ -36,6 +37,7 @@ ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, co
     return acdf_blend_find(&brdf->blend, &view->mix, square, range, strata);
 }
 
+/* Fraction across a cell, of a position in it, in [0, 1]. */
 ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
     return acdf_clamp((position - (double)range->low) / (double)(range->high - range->low), 0.0, 1.0);
 }
@@ -58,6 +60,7 @@ ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange 
     return p > 0.0 || pdf > 1.17549435e-38 ? acdf_brdf_positive(pdf) : 0.0f;
 }
 
+/* acdf_brdf_pdf for a view that serves several directions. */
 ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3]) {
     AcdfBrdfPlace place;
     AcdfRange range[2];

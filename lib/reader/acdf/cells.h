@@ -10,6 +10,7 @@
 #ifndef ACDF_CELLS_H
 #define ACDF_CELLS_H
 
+#include <acdf/pieces.h>
 #include <acdf/sphere.h>
 #include <acdf/squares.h>
 
@@ -92,14 +93,6 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
 }
 
 /* ---- finding ---------------------------------------------------------------------------------------- */
-
-/* atan(t) for t in [-1, 1], interpolated at the Chebyshev nodes of t^2; error below 2e-7. */
-ACDF_INLINE float acdf_atan_float(float t) {
-    const float q = t * t, q2 = q * q;
-    const float low = (0.99999988f + q * -0.33331813f) + q2 * (0.19966962f + q * -0.14003290f);
-    const float high = (0.098688655f + q * -0.058829753f) + q2 * (0.023780519f + q * -0.0045597920f);
-    return t * (low + q2 * q2 * high);
-}
 
 /* Returns 0 where floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by
  * more than 5e-5 or that are not finite. */

@@ -6,34 +6,18 @@
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 
+#include <acdf/dialect_c.h>
 #include <acdf/elementary.h>
 
+#define ACDF_DIALECT_FN ACDF_INLINE
 #define ACDF_U32 uint32_t
-#define ACDF_F32 float
 #define ACDF_TABLES const uint32_t*
-#define ACDF_WORD(tables, i) (tables)[i]
 
-#define ACDF_FN1(result, name, t0, p0) ACDF_INLINE result name(t0 p0)
-#define ACDF_FN3(result, name, t0, p0, t1, p1, t2, p2) ACDF_INLINE result name(t0 p0, t1 p1, t2 p2)
-#define ACDF_FN4(result, name, t0, p0, t1, p1, t2, p2, t3, p3) ACDF_INLINE result name(t0 p0, t1 p1, t2 p2, t3 p3)
-#define ACDF_FN5(result, name, t0, p0, t1, p1, t2, p2, t3, p3, t4, p4)                                             \
-    ACDF_INLINE result name(t0 p0, t1 p1, t2 p2, t3 p3, t4 p4)
-#define ACDF_LET(type, name) const type name
-#define ACDF_VAR(type, name) type name
-#define ACDF_STRUCT_BEGIN(name) typedef struct name {
-#define ACDF_FIELD(type, name) type name;
-#define ACDF_STRUCT_END(name)                                                                                      \
-    }                                                                                                              \
-    name;
-
-#define ACDF_SELECT(condition, yes, no) ((condition) ? (yes) : (no))
 #define ACDF_TO_U32(x) ((uint32_t)(int32_t)(x)) /* of 0 to 2^31 */
-#define ACDF_TO_F32(x) ((float)(x))
 #define ACDF_BITS(x) acdf_float_bits(x)
 #define ACDF_FLOAT(bits) acdf_bits_float(bits)
 #define ACDF_ABS(x) fabsf(x)
 #define ACDF_SQRT(x) sqrtf(x)
-#define ACDF_MIN(a, b) ((a) < (b) ? (a) : (b))
 /* minor / major, which is in [-1, 1] where division rounds correctly. */
 #define ACDF_RATIO(minor, major) ((minor) / (major))
 

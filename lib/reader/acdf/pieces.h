@@ -1,5 +1,5 @@
-/* What runtime tables compute: where in their grids a point lies, and pieces of the sphere. One text for processors
- * and for shaders of every language (acdf/dialect.h), in 32-bit words alone.
+/* Pieces of the sphere, in which directions are drawn and found in floats. One text for processors and for shaders
+ * of every language (acdf/dialect.h).
  *
  * The sphere is cut into eight pieces along z = 0 and the meridians half-way between the x and the y axes. In each,
  * azimuth is measured from the x or y axis in its middle: sine and cosine need no reduction, and minor over major
@@ -13,66 +13,15 @@
 extern "C" {
 #endif
 
-/* ---- grids of blocks: acdf/squares.h ---------------------------------------------------------------- */
-
-/* Words of an AcdfSquares. */
-#define ACDF_SQUARES_SHIFT0 0u
-#define ACDF_SQUARES_SHIFT1 1u
-#define ACDF_SQUARES_BITS0 2u
-#define ACDF_SQUARES_GRID 4u
-#define ACDF_SQUARES_FINER_GRIDS 5u
-#define ACDF_SQUARES_BOXES 6u
-#define ACDF_SQUARES_CELLS 7u
-
-/* An entry: shifts of both keys (5 bits each) and the number of a block; or the flag, and of a finer grid the bits
- * along key 0 (3 bits) and the number. */
-#define ACDF_SQUARES_FINER 0x80000000u
-#define ACDF_SQUARES_BLOCK_BITS 21u
-#define ACDF_SQUARES_BLOCK_MASK 0x001FFFFFu
-#define ACDF_FINER_BITS 4u
-
-/* The entry of a point by the grids at word `squares`. */
-ACDF_FN4(ACDF_U32, acdf_squares_entry, ACDF_TABLES, tables, ACDF_U32, squares, ACDF_U32, key0, ACDF_U32, key1) {
-    ACDF_VAR(ACDF_U32, shift0) = ACDF_WORD(tables, squares + ACDF_SQUARES_SHIFT0);
-    ACDF_VAR(ACDF_U32, shift1) = ACDF_WORD(tables, squares + ACDF_SQUARES_SHIFT1);
-    ACDF_LET(ACDF_U32, row) = (key1 >> shift1) << ACDF_WORD(tables, squares + ACDF_SQUARES_BITS0);
-    ACDF_VAR(ACDF_U32, entry) =
-        ACDF_WORD(tables, ACDF_WORD(tables, squares + ACDF_SQUARES_GRID) + row + (key0 >> shift0));
-    while ((entry & ACDF_SQUARES_FINER) != 0u) {
-        ACDF_LET(ACDF_U32, bits0) = (entry >> 28u) & 7u;
-        ACDF_LET(ACDF_U32, bits1) = ACDF_FINER_BITS - bits0;
-        shift0 = shift0 - bits0;
-        shift1 = shift1 - bits1;
-        entry =
-            ACDF_WORD(tables, ACDF_WORD(tables, squares + ACDF_SQUARES_FINER_GRIDS) + (entry & 0x0FFFFFFFu) * 16u +
-                                  ((((key1 >> shift1) & ((1u << bits1) - 1u)) << bits0) |
-                                   ((key0 >> shift0) & ((1u << bits0) - 1u))));
-    }
-    return entry;
-}
-
-/* Bit i: whether cell i of the block whose boxes stand at a word may hold the point; never of those that it lacks.
- */
-ACDF_FN4(ACDF_U32, acdf_boxes_around, ACDF_TABLES, tables, ACDF_U32, boxes, ACDF_U32, byte0, ACDF_U32, byte1) {
-    ACDF_VAR(ACDF_U32, mask) = 0u;
-    ACDF_VAR(ACDF_U32, word) = 0u;
-    for (word = 0u; word < 4u; word = word + 1u) { /* numbers less 128 become numbers again by their high bit */
-        ACDF_LET(ACDF_U32, low0) = ACDF_WORD(tables, boxes + word) ^ 0x80808080u;
-        ACDF_LET(ACDF_U32, high0) = ACDF_WORD(tables, boxes + word + 4u) ^ 0x80808080u;
-        ACDF_LET(ACDF_U32, low1) = ACDF_WORD(tables, boxes + word + 8u) ^ 0x80808080u;
-        ACDF_LET(ACDF_U32, high1) = ACDF_WORD(tables, boxes + word + 12u) ^ 0x80808080u;
-        ACDF_VAR(ACDF_U32, shift) = 0u;
-        for (shift = 0u; shift < 32u; shift = shift + 8u) {
-            if (((low0 >> shift) & 0xFFu) <= byte0 && byte0 <= ((high0 >> shift) & 0xFFu) &&
-                ((low1 >> shift) & 0xFFu) <= byte1 && byte1 <= ((high1 >> shift) & 0xFFu)) {
-                mask = mask | (1u << (word * 4u + (shift >> 3u)));
-            }
-        }
-    }
-    return mask;
-}
-
 /* ---- drawing ---------------------------------------------------------------------------------------- */
+
+/* The word of a random number in [0, 1] (others are clamped, NaN counts as 0): its first 32 bits. */
+ACDF_FN1(ACDF_U32, acdf_number, ACDF_F32, u) {
+    ACDF_LET(ACDF_F32, from_zero) = ACDF_SELECT(u > 0.0f, u, 0.0f);
+    ACDF_LET(ACDF_F32, high) = ACDF_MIN(from_zero, 0.99999994f) * 65536.0f;
+    ACDF_LET(ACDF_U32, bits) = ACDF_TO_U32(high);
+    return (bits << 16u) | ACDF_TO_U32((high - ACDF_TO_F32(bits)) * 65536.0f);
+}
 
 /* Sine and cosine for |y| <= pi/4, interpolated at the Chebyshev nodes of y^2; error below 1e-7. */
 ACDF_FN1(ACDF_F32, acdf_sine_float, ACDF_F32, y) {
@@ -104,6 +53,15 @@ ACDF_FN4(AcdfVector, acdf_piece_direction, ACDF_F32, azimuth, ACDF_F32, cap, ACD
 }
 
 /* ---- finding ---------------------------------------------------------------------------------------- */
+
+/* atan(t) for t in [-1, 1], interpolated at the Chebyshev nodes of t^2; error below 2e-7. */
+ACDF_FN1(ACDF_F32, acdf_atan_float, ACDF_F32, t) {
+    ACDF_LET(ACDF_F32, q) = t * t;
+    ACDF_LET(ACDF_F32, q2) = q * q;
+    ACDF_LET(ACDF_F32, low) = (0.99999988f + q * -0.33331813f) + q2 * (0.19966962f + q * -0.14003290f);
+    ACDF_LET(ACDF_F32, high) = (0.098688655f + q * -0.058829753f) + q2 * (0.023780519f + q * -0.0045597920f);
+    return t * (low + q2 * q2 * high);
+}
 
 /* A direction as pieces see it. */
 ACDF_STRUCT_BEGIN(AcdfPlace)

@@ -40,6 +40,7 @@ struct Status {
     std::uint64_t offset = 0; ///< byte in the file where it shows
     char message[240] = {};   ///< one line, UTF-8: what is wrong and where
 
+    /// Whether the file was loaded.
     bool ok() const noexcept { return code == ErrorCode::none; }
 };
 
@@ -86,8 +87,10 @@ public:
     static Status from_memory(const void* data, std::size_t size, File& file,
                               const LoadOptions& options = {}) noexcept;
 
+    /// Whether no file was loaded: then only this may be asked.
     bool empty() const noexcept { return bytes_ == nullptr; }
     // Everything below asks for a file that is not empty.
+    /// Kind, and the parts of the file as they lie in it; axis i < axis_count, bin i < bin_count.
     AcdfKind kind() const noexcept { return static_cast<AcdfKind>(header().kind); }
     const AcdfHeader& header() const noexcept { return *reinterpret_cast<const AcdfHeader*>(bytes_); }
     const AcdfDescription& description() const noexcept { return *description_; }

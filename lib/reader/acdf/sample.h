@@ -24,6 +24,7 @@
 extern "C" {
 #endif
 
+/* A density over the sphere in a checked file, and tables of it. */
 typedef struct AcdfEnvironment {
     const uint8_t* tree; /* chunk TREE */
     uint32_t root;
@@ -36,6 +37,7 @@ typedef struct AcdfEnvironment {
     uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
 } AcdfEnvironment;
 
+/* The grid that positions lie on. */
 ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
     AcdfGrid grid;
     grid.columns = env->columns;

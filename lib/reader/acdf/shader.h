@@ -10,6 +10,7 @@
 #ifndef ACDF_SHADER_H
 #define ACDF_SHADER_H
 
+#include <acdf/block_grids.h>
 #include <acdf/pieces.h>
 
 #ifdef __cplusplus
@@ -26,6 +27,7 @@ extern "C" {
 #define ACDF_PIECE_WORDS 8u
 #define ACDF_ENDS_WORDS 8u
 
+/* What is drawn. */
 ACDF_STRUCT_BEGIN(AcdfShaderSample)
 ACDF_FIELD(ACDF_F32, x) /* a unit direction, towards the light; right-handed, z up */
 ACDF_FIELD(ACDF_F32, y)
@@ -33,6 +35,7 @@ ACDF_FIELD(ACDF_F32, z)
 ACDF_FIELD(ACDF_F32, pdf) /* sr^-1 */
 ACDF_STRUCT_END(AcdfShaderSample)
 
+/* Float i of the array that begins at the word which stands at a place. */
 ACDF_FN3(ACDF_F32, acdf_word_float, ACDF_TABLES, tables, ACDF_U32, place, ACDF_U32, i) {
     return ACDF_FLOAT(ACDF_WORD(tables, ACDF_WORD(tables, place) + i));
 }
@@ -84,14 +87,6 @@ ACDF_FN4(AcdfShaderSample, acdf_draw_in_piece, ACDF_TABLES, tables, ACDF_U32, ce
     drawn.z = d.z;
     drawn.pdf = acdf_word_float(tables, ACDF_CELLS_DENSITIES, cell);
     return drawn;
-}
-
-/* The word of a random number in [0, 1] (others are clamped, NaN counts as 0): its first 32 bits. */
-ACDF_FN1(ACDF_U32, acdf_number, ACDF_F32, u) {
-    ACDF_LET(ACDF_F32, from_zero) = ACDF_SELECT(u > 0.0f, u, 0.0f);
-    ACDF_LET(ACDF_F32, high) = ACDF_MIN(from_zero, 0.99999994f) * 65536.0f;
-    ACDF_LET(ACDF_U32, bits) = ACDF_TO_U32(high);
-    return (bits << 16u) | ACDF_TO_U32((high - ACDF_TO_F32(bits)) * 65536.0f);
 }
 
 /* Draws a direction for two random words: n0 / 2^32 (azimuth) and n1 / 2^32 (elevation) are the random numbers of

@@ -1,12 +1,14 @@
-// Words for a shader's buffer or texture, from which acdf/shader.h draws; `acdf export` writes them, too.
+// Words for a shader's buffer or texture, from which acdf/shader.h and acdf/shader_walk.h draw; `acdf export`
+// writes them, too.
 #pragma once
 
 #include <acdf/reader.h>
 #include <acdf/shader.h>
+#include <acdf/shader_walk.h>
 
 namespace acdf {
 
-/// The tables of one environment file, which outlive it. They are offsets and never addresses: they may be copied
+/// The tables of one file, which outlive it. They are offsets and never addresses: they may be copied
 /// anywhere, aligned to four bytes, and tables of several files may stand one after the other in one buffer.
 class ShaderTables {
 public:
@@ -17,11 +19,17 @@ public:
     ShaderTables(const ShaderTables&) = delete;
     ShaderTables& operator=(const ShaderTables&) = delete;
 
-    /// Makes the tables of a file that is not empty. `unsupported` where there are none: files of another kind or
-    /// on the octahedral square, with cells that tilt (--fit pdf), of more than 65,535 pieces of cells (some 60,000
-    /// cells) or with more than 16 cells in a circle of 2^-11 radians about a pole. `out` then is empty. Work and
-    /// memory are in proportion to the cells, some 130 bytes each.
+    /// Makes the tables of acdf/shader.h of a file that is not empty. `unsupported` where there are none: files of
+    /// another kind or on the octahedral square, with cells that tilt (--fit pdf), of more than 65,535 pieces of
+    /// cells (some 60,000 cells) or with more than 16 cells in a circle of 2^-11 radians about a pole. `out` then
+    /// is empty. Work and memory are in proportion to the cells, some 130 bytes each.
     static Status make(const File& file, ShaderTables& out) noexcept;
+
+    /// Makes the tables of acdf/shader_walk.h of a file that is not empty: of environments and local environments,
+    /// on either grid. `unsupported` where there are none: for BRDFs and tables, and for cells that tilt (--fit
+    /// pdf). `out` then is empty. Work and memory are in proportion to the cells, some 60 bytes each, and rows.
+    /// Places are left out: what serves a normal anywhere serves it at each of them.
+    static Status make_walk(const File& file, ShaderTables& out) noexcept;
 
     /// Little-endian, as a GPU takes them.
     const std::uint32_t* words() const noexcept { return static_cast<const std::uint32_t*>(block_.data); }

@@ -8,8 +8,8 @@
 #ifndef ACDF_SQUARES_H
 #define ACDF_SQUARES_H
 
+#include <acdf/block_grids.h>
 #include <acdf/layout.h>
-#include <acdf/pieces.h>
 
 #if defined(__SSE2__) && !defined(__CUDACC__) && !defined(__HIPCC__) && !defined(__SYCL_DEVICE_ONLY__)
 #define ACDF_SQUARES_SSE2 1

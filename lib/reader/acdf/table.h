@@ -16,6 +16,7 @@
 extern "C" {
 #endif
 
+/* A density over the sampled axes for each bin of the indexed ones, in a checked file. */
 typedef struct AcdfTable {
     const uint8_t* tree;        /* chunk TREE */
     const AcdfBin* bins;        /* row-major over the indexed axes, the last one fastest */
@@ -35,6 +36,7 @@ typedef struct AcdfTablePlace {
 #define ACDF_DOUBLE_MIN 2.2250738585072014e-308
 #define ACDF_DOUBLE_MAX 1.7976931348623157e308
 
+/* How many axes are drawn: numbers of `u` and `x`. */
 ACDF_FN uint32_t acdf_table_sampled_count(const AcdfTable* table) {
     return table->axis_count - table->indexed_count;
 }
@@ -58,6 +60,7 @@ ACDF_FN int acdf_table_axis_steps(const AcdfAxis* axis) {
     return largest <= 0x1p100 && step >= 0x1p-100 && step >= 0x1p-40 * largest;
 }
 
+/* Where on an axis a coordinate lies, in steps from its low end, and back. */
 ACDF_FN double acdf_table_position(const AcdfAxis* axis, double x) {
     return (x - axis->low) / (axis->high - axis->low) * (double)axis->resolution;
 }
@@ -84,6 +87,7 @@ ACDF_FN double acdf_table_fraction(const AcdfRange* range, double position) {
     return acdf_clamp((position - (double)range->low) / (double)(range->high - range->low), 0.0, 1.0);
 }
 
+/* All of each axis, before a tree narrows it: range[axis_count]. */
 ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfRange* range) {
     uint32_t axis;
     for (axis = 0; axis < table->axis_count; ++axis) {

@@ -162,6 +162,7 @@ public:
     ACDF_METHOD explicit TableView(const AcdfTable& data) noexcept : data_(data) {}
     ACDF_METHOD bool empty() const noexcept { return data_.axis_count == 0; }
 
+    /// How many axes are chosen by `index`, and how many are drawn.
     ACDF_METHOD std::uint32_t indexed_count() const noexcept { return data_.indexed_count; }
     ACDF_METHOD std::uint32_t sampled_count() const noexcept { return acdf_table_sampled_count(&data_); }
     /// Sampled axis i: its name, range and steps.

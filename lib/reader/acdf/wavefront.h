@@ -36,6 +36,7 @@ public:
     /// EnvironmentView::pdf of directions[i] into out[i], i < count.
     void pdf(const float (*directions)[3], std::size_t count, float* out) const noexcept;
 
+    /// Those that serve.
     Instructions instructions() const noexcept { return instructions_; }
 
 private:
@@ -67,6 +68,7 @@ public:
 
     /// Bytes of tables of its own; 0 where there are none.
     std::size_t bytes() const noexcept;
+    /// Those that serve.
     Instructions instructions() const noexcept { return instructions_; }
 
 private:

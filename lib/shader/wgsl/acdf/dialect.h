@@ -1,4 +1,4 @@
-// The words of acdf/pieces.h and acdf/shader.h in WGSL.
+// The words of the reader's acdf/dialect.h in WGSL.
 #ifndef ACDF_DIALECT_H
 #define ACDF_DIALECT_H
 
@@ -10,6 +10,7 @@
 #define ACDF_WORD(tables, i) acdf_word(tables, i)
 
 #define ACDF_FN1(result, name, t0, p0) fn name(p0 : t0) -> result
+#define ACDF_FN2(result, name, t0, p0, t1, p1) fn name(p0 : t0, p1 : t1) -> result
 #define ACDF_FN3(result, name, t0, p0, t1, p1, t2, p2) fn name(p0 : t0, p1 : t1, p2 : t2) -> result
 #define ACDF_FN4(result, name, t0, p0, t1, p1, t2, p2, t3, p3)                                                     \
     fn name(p0 : t0, p1 : t1, p2 : t2, p3 : t3) -> result
@@ -29,6 +30,7 @@
 #define ACDF_ABS(x) abs(x)
 #define ACDF_SQRT(x) sqrt(x)
 #define ACDF_MIN(a, b) min(a, b)
+#define ACDF_MAX(a, b) max(a, b)
 #define ACDF_RATIO(minor, major) clamp((minor) / (major), -1.0f, 1.0f) // divisions may round beyond
 
 // clang-format on
