@@ -4,7 +4,9 @@
 #include "compress/fit_shared.h"
 #include "compress/light.h"
 #include "compress/local_company.h"
+#include "compress/mixed_rows.h"
 #include "compress/tile_curves.h"
+#include "compress/tile_light.h"
 
 #include <acdf/local.h>
 
@@ -19,12 +21,6 @@
 namespace acdf::compress {
 namespace {
 
-/// Rounding of normals and directions to float must not take light over the horizon that was not expected.
-constexpr double kHorizonMargin = 1e-4;
-/// Of a tile that may be seen though none of its points are: its cost, of that of all it holds.
-constexpr double kGlimpse = 1e-3;
-/// Radians across which light in a cell is taken to have one cosine.
-constexpr double kPointStep = 0.02;
 /// Of a bound on weights, what cells alone may take; the rest is for the cosines of what lies in a tile.
 constexpr double kWeightOfCells = 0.5;
 constexpr int kRowRaises = 12; // of rows whose bytes do not keep a bound on weights
@@ -127,86 +123,6 @@ std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, 
     return out;
 }
 
-/// What rows are made from: of each tile but the lights, its light as points, weighted so that the sum of
-/// amount . cos^2 is the square of the cost of the tile for a normal.
-class TileLight {
-public:
-    TileLight(const Target& target, const TileTree& tiles, const TileCascade& cascade,
-              const std::vector<AcdfLight>& lights)
-        : target_(target), tiles_(tiles), points_(tiles.tiles.size()), lit_(tiles.tiles.size()),
-          cost_(tiles.tiles.size(), 0.0), heaviest_(tiles.tiles.size(), 0.0) {
-        std::vector<bool> is_light(points_.size(), false);
-        for (const AcdfLight& light : lights) is_light[light.tile] = true;
-        tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t t) {
-            const double cost = cascade.tile_cost(t);
-            if (is_light[t] || !(cost > 0.0)) return;
-            cost_[t] = cost;
-            cascade.for_each_cell(t, [&](const Part& part) {
-                // A cell of measure mu and probability P within the tile, P = cost of cell / cost of tile, adds
-                // mu / P times the integral of g^2 cos^2: cost of tile . cost of cell . cos^2.
-                const double amount = cost * part.moments.cost();
-                if (!(amount > 0.0)) return;
-                lit_[t].push_back({part.box, part.moments.weight()});
-                heaviest_[t] = std::max(heaviest_[t], part.moments.weight());
-                for_each_block(target, part.box, kPointStep, [&](const Box& block, double share) {
-                    points_[t].push_back({centre(target, block), amount * share, 0.0});
-                });
-            });
-        });
-    }
-
-    /// The cost of each tile for a normal: positive wherever light in it can be seen.
-    std::vector<double> costs(const Direction& normal) const {
-        std::vector<double> out(points_.size(), 0.0);
-        for (std::size_t t = 0; t < points_.size(); ++t) {
-            double sum = 0.0;
-            for (const LightPoint& p : points_[t]) {
-                const double cosine = std::max(0.0, dot(p.direction, normal));
-                sum += p.amount * cosine * cosine;
-            }
-            out[t] = std::sqrt(sum);
-            const double least = kGlimpse * cost_[t];
-            if (out[t] < least && seen(t, normal)) out[t] = least;
-        }
-        return out;
-    }
-
-    /// The least that each tile's part of the irradiance may be taken for, so that no weight is above
-    /// `max_weight` times the mean: p in a cell is the tile's part times that of the cell in it.
-    std::vector<double> least(const Direction& normal, const std::vector<double>& costs, double max_weight) const {
-        std::vector<double> out(costs.size(), 0.0);
-        for (std::size_t t = 0; t < out.size(); ++t) {
-            if (!(costs[t] > 0.0)) continue;
-            const double scale = cost_[t] / max_weight;
-            const double cosine = largest_cosine(target_, tiles_.tiles[t], normal);
-            if (heaviest_[t] * cosine * scale <= costs[t]) continue; // as nearly everywhere
-            for (const LitCell& cell : lit_[t])
-                out[t] = std::max(out[t], cell.weight * largest_cosine(target_, cell.box, normal) * scale);
-        }
-        return out;
-    }
-
-private:
-    struct LitCell {
-        Box box;
-        double weight; ///< see Moments
-    };
-
-    /// Whether any cell with light in it reaches above the horizon.
-    bool seen(std::size_t t, const Direction& normal) const {
-        if (!(largest_cosine(target_, tiles_.tiles[t], normal) > -kHorizonMargin)) return false;
-        return std::any_of(lit_[t].begin(), lit_[t].end(), [&](const LitCell& cell) {
-            return largest_cosine(target_, cell.box, normal) > -kHorizonMargin;
-        });
-    }
-
-    const Target& target_;
-    const TileTree& tiles_;
-    std::vector<std::vector<LightPoint>> points_;
-    std::vector<std::vector<LitCell>> lit_; ///< cells of each tile that have light
-    std::vector<double> cost_, heaviest_;   ///< of each tile; 0: a light, or dark
-};
-
 /// The row of `cost`, raised where what its bytes stand for is less than `least`.
 std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cost, std::vector<double> least) {
     double sum = 0.0;
@@ -297,7 +213,8 @@ LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize
             out);
     } else {
         const TileLight light(target, out.tiles, *curves.cascade, out.lights);
-        fill_rows([&](std::size_t b) { return light.costs(bins.normals[b]); },
+        const TileParts parts = mixed_rows(light, bins, out.lights);
+        fill_rows([&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); },
                   [&](std::size_t b, const std::vector<double>& costs) {
                       if (!bounded) return encode_row(out.tiles, costs);
                       return row_above(out, costs, light.least(bins.normals[b], costs, size.max_weight));
