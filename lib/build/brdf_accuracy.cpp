@@ -72,13 +72,10 @@ private:
     std::uint64_t violations_ = 0;
 };
 
-/// A direction as the reader takes it. By way of memory: gcc 12 drops the rounding of vectors of doubles that
-/// become doubles again in a function that it inlines.
+/// A direction as the reader takes it.
 void rounded(const double direction[3], float out[3]) {
-    for (int k = 0; k < 3; ++k) {
-        volatile float value = static_cast<float>(direction[k]);
-        out[k] = value;
-    }
+    const float given[3] = {float(direction[0]), float(direction[1]), float(direction[2])};
+    acdf_as_given(given, out);
 }
 
 /// Half-vectors around the view's azimuth; theta_h in steps of its square root. `density(wi)` is that of the view

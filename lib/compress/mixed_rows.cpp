@@ -15,8 +15,9 @@ namespace acdf::compress {
 namespace {
 
 constexpr int kSteps = 2; // towards the minimum: most of what is gained comes with the first
-/// Of a corner's own best part, what stays at least, and the cosine below which all stays: both bound weights.
-constexpr double kLeastPart = 0.25, kLeastCosine = 0.005;
+/// Of a corner's own best part, what stays at least, and the cosine below which all stays, times the subdivisions:
+/// both bound weights.
+constexpr double kLeastPart = 0.25, kLeastCosine = 0.06;
 /// Samples in vain count so many times more where they are many, fully from `kMany` on.
 constexpr double kVainCost = 6.0, kFew = 0.01, kMany = 0.02;
 /// Of what a bin's normals count, the corner itself.
@@ -44,6 +45,7 @@ public:
         for (std::uint32_t b = 0; b < near_.size(); ++b) add_corner(b);
     }
 
+    double subdivisions() const { return bins_.subdivisions; }
     const std::vector<MixedNormal>& near(std::size_t bin) const { return near_[bin]; }
 
 private:
@@ -127,7 +129,8 @@ class Step {
 public:
     Step(const TileLight& light, const std::vector<AcdfLight>& lights, const MixedNormals& normals,
          const TileParts& own, const TileParts& parts)
-        : light_(light), lights_(lights), normals_(normals), own_(own), parts_(parts) {}
+        : light_(light), lights_(lights), normals_(normals), own_(own), parts_(parts),
+          least_cosine_(kLeastCosine / normals.subdivisions()) {}
 
     void run(std::size_t bin, Scratch& s, std::vector<float>& out) const {
         s.mixed.resize(light_.size());
@@ -137,7 +140,7 @@ public:
         for (std::size_t t = 0; t < out.size(); ++t) {
             const double part = double{parts_[bin][t]}, own = double{own_[bin][t]};
             if (!(part > 0.0 && s.lower[t] > 0.0)) continue;
-            const double least = std::max(kLeastPart * own, std::min(own, kLeastCosine * light_.whole(t)));
+            const double least = std::max(kLeastPart * own, std::min(own, least_cosine_ * light_.whole(t)));
             out[t] = as_part(std::max(part * std::sqrt(s.raise[t] / s.lower[t]), least));
         }
     }
@@ -180,6 +183,7 @@ private:
     const std::vector<AcdfLight>& lights_;
     const MixedNormals& normals_;
     const TileParts &own_, &parts_;
+    const double least_cosine_;
 };
 
 } // namespace

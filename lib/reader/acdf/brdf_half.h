@@ -32,12 +32,7 @@ ACDF_INLINE double acdf_brdf_azimuth(double y, double x) {
     const double wide = (double)(low > 0.41421356237309503 * high), steep = (double)(y > ax),
                  left = (double)(x < 0.0);
     const double w = high > 0.0 ? (low - wide * high) / (high + wide * low) : 0.0;
-    const double q = w * w, q4 = (q * q) * (q * q);
-    const double series =
-        acdf_polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
-                         0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
-        q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
-    return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + w * series));
+    return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + acdf_narrow_atanpi(w)));
 }
 
 /* Place of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is not

@@ -67,14 +67,22 @@ ACDF_FN double acdf_view_nodes(const AcdfBrdf* brdf, double x, uint32_t node[2])
 /* The turn that brings wo into the plane of x and z. Returns 0 for wo that are not unit vectors above the surface.
  */
 ACDF_INLINE int acdf_brdf_turn(const float wo[3], int isotropic, AcdfBrdfView* view) {
-    const double x = wo[0], y = wo[1], z = wo[2], sin2 = x * x + y * y, length2 = sin2 + z * z;
-    const int turned = isotropic && sin2 > 0.0;
+    float given[3];
+    double x, y, z, sin2, length2;
+    int turned;
+    acdf_as_given(wo, given);
+    x = given[0];
+    y = given[1];
+    z = given[2];
+    sin2 = x * x + y * y;
+    length2 = sin2 + z * z;
+    turned = isotropic && sin2 > 0.0;
     view->wo[0] = x;
     view->wo[1] = y;
     view->wo[2] = z;
     view->turn[0] = turned ? x : 1.0;
     view->turn[1] = turned ? y : 0.0;
-    return acdf_are_finite(wo) && length2 > 0.999 && length2 < 1.001 && z > 0.0;
+    return acdf_are_finite(given) && length2 > 0.999 && length2 < 1.001 && z > 0.0;
 }
 
 ACDF_FN void acdf_brdf_add(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t index, double weight,

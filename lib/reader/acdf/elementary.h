@@ -53,6 +53,19 @@ ACDF_FN int acdf_are_finite(const float v[3]) {
 
 ACDF_FN double acdf_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
+/* The floats of v. Where a caller rounds doubles to v and is inlined, gcc 12 (x86 without AVX, from -O2 on) takes a
+ * pair of them that becomes doubles again for what was rounded. What it reads from memory it takes as it is. */
+ACDF_INLINE void acdf_as_given(const float v[3], float out[3]) {
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+    volatile float given[3];
+#else
+    float given[3];
+#endif
+    int i;
+    for (i = 0; i < 3; ++i) given[i] = v[i];
+    for (i = 0; i < 3; ++i) out[i] = given[i];
+}
+
 #define ACDF_PI 3.14159265358979323846
 
 /* Polynomials of degree 7 and 3 in q, summed as a tree: short chains of dependent operations. */
@@ -100,8 +113,18 @@ ACDF_FN double acdf_sign(double x) {
     return x;
 }
 
-/* atan2(y, x) / pi of finite numbers, error below 2e-16; 0 for y = x = 0. The series in q = w^2 of atan(w) / (pi w)
- * was interpolated at the Chebyshev nodes of [0, tan(pi/8)^2]. */
+/* atan(w) / pi for |w| <= tan(pi/8). The series in q = w^2 of atan(w) / (pi w) was interpolated at the Chebyshev
+ * nodes of [0, tan(pi/8)^2]. */
+ACDF_INLINE double acdf_narrow_atanpi(double w) {
+    const double q = w * w, q4 = (q * q) * (q * q);
+    const double series =
+        acdf_polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
+                         0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
+        q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
+    return w * series;
+}
+
+/* atan2(y, x) / pi of finite numbers, error below 2e-16; 0 for y = x = 0. */
 ACDF_FN double acdf_atan2pi(double y, double x) {
     const double ax = fabs(x), ay = fabs(y);
     const double high = ax > ay ? ax : ay, low = ax < ay ? ax : ay;
@@ -109,12 +132,7 @@ ACDF_FN double acdf_atan2pi(double y, double x) {
     const double narrow = acdf_sign(0.41421356237309503 * high - low); /* -1 beyond tan(pi/8): from pi/4 */
     const double level = acdf_sign(ax - ay), east = acdf_sign(x + 0.0), wide = 0.5 - 0.5 * narrow;
     const double w = high > 0.0 ? (low - wide * high) / (high + wide * low) : 0.0;
-    const double q = w * w, q4 = (q * q) * (q * q);
-    const double series =
-        acdf_polynomial8(q, 0.31830988618379064, -0.10610329539458131, 0.063661977233113842, -0.045472840550007838,
-                         0.035367749436769451, -0.028936829427649351, 0.024477882221680791, -0.0211365210662873) +
-        q4 * q4 * (0.018106577949592299 + q * (-0.01384028005905886 + q * 0.0067275982242772812));
-    double turn = w * series + 0.25 * wide;
+    double turn = acdf_narrow_atanpi(w) + 0.25 * wide;
     turn = (0.25 - 0.25 * level) + level * turn;
     turn = (0.5 - 0.5 * east) + east * turn;
     return acdf_sign(y + 0.0) * turn;

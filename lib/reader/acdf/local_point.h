@@ -137,7 +137,7 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     int i;
     out->what = ACDF_LOCAL_NOTHING;
     out->root = 0;
-    for (i = 0; i < 3; ++i) out->surface[i] = normal[i];
+    acdf_as_given(normal, out->surface);
     out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
     out->mix.count = out->place.count = 0;
     for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
@@ -151,11 +151,11 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
         out->place.columns[i] = 0;
         out->place.weight[i] = 0.0;
     }
-    if (local->tables && local->tables->corners && acdf_local_table_rows(local, normal, out)) {
-        acdf_local_normal(local, normal, out);
+    if (local->tables && local->tables->corners && acdf_local_table_rows(local, out->surface, out)) {
+        acdf_local_normal(local, out->surface, out);
         return 1;
     }
-    if (!acdf_local_bins(local, normal, &bins)) return 0;
+    if (!acdf_local_bins(local, out->surface, &bins)) return 0;
     if (!local->blend.tiles) {
         const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
         out->root = bin->root != ACDF_NO_ROOT ? bin->root : local->environment.root;
@@ -172,7 +172,7 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
         if (local->tables) acdf_local_tabled_row(local, bin->root, out);
         acdf_mixture_add(&out->mix, &local->blend, bin->root, bins.weight[i] * (double)bin->share);
     }
-    acdf_local_normal(local, normal, out);
+    acdf_local_normal(local, out->surface, out);
     return 1;
 }
 
@@ -202,7 +202,7 @@ ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3]
     double visible, of_light[ACDF_MAX_LIGHTS];
     int i;
     if (!acdf_local_begin(local, normal, out)) return;
-    acdf_place_at(&local->places, local->blend.tiles->tile_count, position, normal, &out->place);
+    acdf_place_at(&local->places, local->blend.tiles->tile_count, position, out->surface, &out->place);
     if (out->place.count == 0) {
         acdf_local_sum(local, 0, out);
         return;

@@ -103,6 +103,17 @@ TEST_F(LocalProbes, OneMegabyte) {
     EXPECT_GE(std::exp(sum / std::size(kProbes)), 100.0);
 }
 
+// Large soft boxes, too many for lights, and normals that get an 80th of the brightest one's light: most of theirs
+// is at the horizon.
+TEST_F(LocalProbes, SoftBoxesAtTheHorizon) {
+    const Probe probe = {"studio_small_05_1k.hdr", input::Projection::latlong};
+    std::uint64_t bytes = 0;
+    const build::LocalAccuracy a = accuracy_of(probe, 1000000, bytes);
+    EXPECT_GE(gain(probe, 1000000, a, bytes), 50.0);
+    EXPECT_GE(a.least_share_above_horizon, 0.97);
+    EXPECT_LE(a.max_weight, 200.0);
+}
+
 TEST_F(LocalProbes, AQuarterOfThat) {
     double sum = 0.0;
     for (const Probe& probe : kProbes) {
