@@ -308,8 +308,10 @@ private:
         if (!(options_.max_weight > 0.0))
             throw std::runtime_error(out_of_reach(cells ? "a number of cells" : "a size in bytes", wanted, least));
         char text[160];
-        std::snprintf(text, sizeof text, "so low a bound on weights takes about %.6g %s; %.9g are allowed", least,
-                      cells ? "cells" : "bytes", wanted);
+        std::snprintf(
+            text, sizeof text,
+            "so low a bound on weights takes about %.6g %s; %.9g are allowed: allow more, or raise the bound",
+            least, cells ? "cells" : "bytes", wanted);
         throw std::runtime_error(text);
     }
 

@@ -21,9 +21,11 @@ constexpr std::uintmax_t max_file = std::uintmax_t{1} << 31; // the largest of t
 std::vector<std::uint8_t> read_bytes(const std::string& path) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) throw input_error(path, "it is a folder; give a BRDF file");
-    if (!std::filesystem::is_regular_file(path, error))
+    if (!std::filesystem::exists(path, error))
         throw input_error(path,
                           "there is no such file, and no model of this name (lambert, ggx, cook-torrance, blinn)");
+    if (!std::filesystem::is_regular_file(path, error))
+        throw input_error(path, "it is a pipe or a device; give a BRDF file");
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (error) throw input_error(path, "it cannot be read: " + error.message());
     if (size > max_file) throw input_error(path, "it is larger than 2 GiB; give a BRDF file");

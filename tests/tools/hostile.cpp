@@ -94,6 +94,7 @@ TEST_F(Hostile, InputsWithoutAnEnd) {
                                                    {"local", input, "-o", out},
                                                    {"local", probe, "-q", "--scene", input, "-o", out},
                                                    {"table", input, "-o", out},
+                                                   {"brdf", input, "-o", out},
                                                    {"measure", file, "--against", input},
                                                    {"plot", input, "-o", folder / "out.png"},
                                                    {"render", "--scene", input, "-o", folder / "rendered"},
