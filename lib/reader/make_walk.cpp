@@ -86,6 +86,7 @@ private:
     u32 pieces(const Cell& cell, u32 light);
     u32 add(const Node& node);
     u32 add(const Leaf& leaf);
+    float unit() const;
     bool bins();
 
     const File& file_;
@@ -243,9 +244,20 @@ u32 WalkMaker::splits(u32 split, const Cell& box) {
     return link;
 }
 
+// A power of two that brings shares, which are only compared, to where the products of floats neither end nor
+// begin.
+float WalkMaker::unit() const {
+    if (!local_.blend.tiles) return 1.0f;
+    float most = 0.0f;
+    for (u32 i = 0; i < file_.description().bin_count; ++i) most = std::max(most, local_.bins[i].share);
+    for (u32 i = 0; i < local_.light_count; ++i) most = std::max(most, local_.lights[i].share);
+    return most > 0.0f ? static_cast<float>(std::ldexp(1.0, -std::max(std::ilogb(most), -126))) : 1.0f;
+}
+
 bool WalkMaker::bins() {
     const u32 count = file_.description().bin_count;
     const bool trees = !local_.blend.tiles;
+    const float scale = unit();
     const u32* const links = trees ? tree_links_.add(file_.tree_units(), ACDF_WALK_NONE) : nullptr;
     if (trees && !links) return false;
     for (u32 i = 0; i < count && !failed_; ++i) {
@@ -254,7 +266,7 @@ bool WalkMaker::bins() {
         if (trees && drawn && tree_links_[bin.root] == ACDF_WALK_NONE) // several may have the same
             tree_links_[bin.root] = tree(environment_.tree, bin.root, whole(), 0);
         bins_.add(trees && drawn ? tree_links_[bin.root] : bin.root);
-        bins_.add(acdf_float_bits(bin.share));
+        bins_.add(acdf_float_bits(bin.share * scale));
     }
     return !(failed_ || bins_.failed());
 }
@@ -278,6 +290,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     block = take_block({}, 4 * words);
     if (!block.data) return false;
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
+    const float scale = unit();
     std::size_t at = ACDF_WALK_HEADER_WORDS;
     const auto place = [&](u32 header, const void* from, std::size_t bytes) { // where there is none, its place is 0
         if (bytes == 0) return;
@@ -309,7 +322,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
         const AcdfLight& light = local_.lights[i];
         for (int k = 0; k < 3; ++k) out[at + static_cast<std::size_t>(k)] = acdf_float_bits(light.direction[k]);
         out[at + 3] = acdf_float_bits(light.radius);
-        out[at + 4] = acdf_float_bits(light.share);
+        out[at + 4] = acdf_float_bits(light.share * scale);
         out[at + 5] = light_links_[i];
         at += 8;
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <acdf/acdf.h>
+#include <acdf/shader_tables.h>
 #include <acdf/wavefront.h>
 
 #include <cmath>
@@ -190,6 +191,26 @@ inline void sample_in_c(const void* bytes, std::size_t size, const acdf::File& f
     acdf_close(c);
 }
 
+/// As shaders do, of whatever files have tables for them.
+inline void sample_walk(const acdf::File& file, FuzzRandom& random) {
+    acdf::ShaderTables tables;
+    if (!acdf::ShaderTables::make_walk(file, tables).ok()) return;
+    for (int n = 0; n < samples_a_file; ++n) {
+        float normal[3], any[3];
+        random.any_vector(normal);
+        random.any_vector(any);
+        const std::uint32_t* words = tables.words();
+        const AcdfShaderPoint point = acdf_point_at(words, normal[0], normal[1], normal[2]);
+        const auto n0 = static_cast<std::uint32_t>(random.next()), n1 = static_cast<std::uint32_t>(random.next());
+        const AcdfWalkSample s = acdf_walk_sample(words, point, n0, n1);
+        require(std::isfinite(acdf_walk_pdf(words, point, any[0], any[1], any[2])));
+        require(std::isfinite(s.pdf) && s.pdf >= 0.0f);
+        if (s.pdf == 0.0f) continue;
+        const float d[3] = {s.x, s.y, s.z};
+        require(is_unit(d) && acdf_walk_pdf(words, point, s.x, s.y, s.z) == s.pdf);
+    }
+}
+
 inline void sample_everything(const acdf::File& file, const void* bytes, std::size_t size) {
     FuzzRandom random(size);
     acdf::Text key, value;
@@ -201,6 +222,7 @@ inline void sample_everything(const acdf::File& file, const void* bytes, std::si
     if (file.kind() == ACDF_KIND_LOCAL) sample_everything(file.local(), random);
     if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), random);
     if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), random);
+    if (file.header().header_crc % 4 == 1) sample_walk(file, random);
     if (size % 8 == 0 && file.header().header_crc % 8 == 0) sample_in_c(bytes, size, file, random); // loads again
 }
 
