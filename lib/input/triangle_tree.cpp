@@ -1,4 +1,5 @@
-// A hierarchy of boxes, built top-down by the surface area heuristic in bins (Wald 2007), walked with a stack.
+// Builds a hierarchy of boxes: two children each, top-down by the surface area heuristic in bins (Wald 2007), then
+// four by leaving out nodes between (Ernst and Greiner 2008).
 #include "input/triangles.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace {
 
 using Vec3 = std::array<double, 3>;
 
-constexpr std::uint32_t kLeaf = 4, kBins = 16, kDeepest = 60;
+constexpr std::uint32_t kLeaf = 4, kBins = 16;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 Vec3 cross(const Vec3& a, const Vec3& b) {
@@ -82,8 +83,16 @@ Vec3 Triangles::position(std::size_t triangle, double b1, double b2) const {
 }
 
 struct TriangleTree::Work {
+    /// Of a tree with two children each; its triangles, and where it has children also the second one, which the
+    /// first comes before.
+    struct Node {
+        Bounds box;
+        std::uint32_t begin = 0, end = 0, second = 0, first = 0; ///< no children: both 0
+    };
     std::vector<Bounds> box;                  ///< one a triangle
     std::vector<std::array<float, 3>> middle; ///< of it
+    std::vector<std::uint32_t> order;         ///< triangles, those of a node together
+    std::vector<Node> nodes;
     std::uint32_t depth = 0;
 };
 
@@ -97,36 +106,78 @@ TriangleTree::TriangleTree(const Triangles& triangles) {
         work.middle.push_back({0.5f * (box.low[0] + box.high[0]), 0.5f * (box.low[1] + box.high[1]),
                                0.5f * (box.low[2] + box.high[2])});
         work.box.push_back(box);
-        order_.push_back(static_cast<std::uint32_t>(t));
+        work.order.push_back(static_cast<std::uint32_t>(t));
     }
-    if (order_.empty()) return;
+    if (work.order.empty()) return;
     for (std::size_t k = 0; k < 3; ++k) size_ = std::max(size_, double{all.high[k]} - double{all.low[k]});
-    build(work, 0, static_cast<std::uint32_t>(order_.size()));
-    for (const std::uint32_t triangle : order_) {
-        const Triangles::Corner* c = &triangles.corners[3 * std::size_t{triangle}];
-        const std::array<float, 3>& p = c[0].position;
-        edges_.push_back({{double{p[0]}, double{p[1]}, double{p[2]}},
-                          difference(c[1].position, p),
-                          difference(c[2].position, p)});
-    }
+    build(work, 0, static_cast<std::uint32_t>(work.order.size()));
+    join(work, triangles, 0);
 }
 
-std::uint32_t TriangleTree::build(Work& work, std::uint32_t begin, std::uint32_t end) {
+/// The node of four children, or fewer, that stands for one of two.
+std::uint32_t TriangleTree::join(const Work& work, const Triangles& triangles, std::uint32_t index) {
+    std::vector<std::uint32_t> children{index};
+    while (children.size() < wide) { // the largest is replaced by its own two
+        std::size_t largest = children.size();
+        double most = -1.0;
+        for (std::size_t k = 0; k < children.size(); ++k)
+            if (const Work::Node& node = work.nodes[children[k]]; node.second > 0 && node.box.surface() > most) {
+                largest = k;
+                most = node.box.surface();
+            }
+        if (largest == children.size()) break;
+        const Work::Node& node = work.nodes[children[largest]];
+        children[largest] = node.first;
+        children.insert(children.begin() + std::ptrdiff_t(largest) + 1, node.second);
+    }
+    const auto out = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    for (std::size_t k = 0; k < wide; ++k) {
+        const bool there = k < children.size();
+        const Bounds box = there ? work.nodes[children[k]].box : Bounds();
+        for (std::size_t a = 0; a < 3; ++a) { // a little larger: rounding misses nothing
+            const auto margin = static_cast<float>(1e-6 * size_);
+            nodes_[out].side[0][a][k] = box.low[a] - (there ? 1e-6f * std::fabs(box.low[a]) + margin : 0.0f);
+            nodes_[out].side[1][a][k] = box.high[a] + (there ? 1e-6f * std::fabs(box.high[a]) + margin : 0.0f);
+        }
+        std::uint32_t child = 0;
+        if (there)
+            child = work.nodes[children[k]].second > 0 ? join(work, triangles, children[k])
+                                                       : gather(work, triangles, children[k]);
+        nodes_[out].child[k] = child;
+    }
+    return out;
+}
+
+/// The leaf of a node without children.
+std::uint32_t TriangleTree::gather(const Work& work, const Triangles& triangles, std::uint32_t index) {
+    const Work::Node& node = work.nodes[index];
+    const auto first = static_cast<std::uint32_t>(quads_.size()), count = node.end - node.begin;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (i % wide == 0) quads_.push_back({});
+        Quad& quad = quads_.back();
+        const std::uint32_t triangle = work.order[node.begin + i];
+        const Triangles::Corner* c = &triangles.corners[3 * std::size_t{triangle}];
+        const Vec3 e1 = difference(c[1].position, c[0].position), e2 = difference(c[2].position, c[0].position);
+        for (std::size_t a = 0; a < 3; ++a) {
+            quad.corner[a][i % wide] = double{c[0].position[a]};
+            quad.to_second[a][i % wide] = e1[a];
+            quad.to_third[a][i % wide] = e2[a];
+        }
+        quad.triangle[i % wide] = triangle;
+    }
+    return leaf | (count - 1) / std::uint32_t{wide} << quad_bits | first;
+}
+
+std::uint32_t TriangleTree::build(Work& work, std::uint32_t begin, std::uint32_t end) const {
     Bounds box, middles;
     for (std::uint32_t i = begin; i < end; ++i) {
-        box.add(work.box[order_[i]]);
-        middles.add(work.middle[order_[i]]);
+        box.add(work.box[work.order[i]]);
+        middles.add(work.middle[work.order[i]]);
     }
-    const auto index = static_cast<std::uint32_t>(nodes_.size());
-    Node node;
-    for (std::size_t k = 0; k < 3; ++k) { // a little larger: rounding misses nothing
-        node.low[k] = box.low[k] - 1e-6f * std::fabs(box.low[k]) - static_cast<float>(1e-6 * size_);
-        node.high[k] = box.high[k] + 1e-6f * std::fabs(box.high[k]) + static_cast<float>(1e-6 * size_);
-    }
-    node.begin = begin;
-    node.count = end - begin;
-    nodes_.push_back(node);
-    if (end - begin <= kLeaf || work.depth >= kDeepest) return index;
+    const auto index = static_cast<std::uint32_t>(work.nodes.size());
+    work.nodes.push_back({box, begin, end});
+    if (end - begin <= kLeaf) return index;
     double best = double(end - begin) * box.surface();
     std::size_t best_axis = 3;
     std::uint32_t best_bin = 0;
@@ -140,8 +191,8 @@ std::uint32_t TriangleTree::build(Work& work, std::uint32_t begin, std::uint32_t
         Bounds of_bin[kBins];
         std::uint32_t count[kBins] = {};
         for (std::uint32_t i = begin; i < end; ++i) {
-            const std::uint32_t b = bin_of(order_[i], axis);
-            of_bin[b].add(work.box[order_[i]]);
+            const std::uint32_t b = bin_of(work.order[i], axis);
+            of_bin[b].add(work.box[work.order[i]]);
             ++count[b];
         }
         double upper[kBins] = {}; // cost of bin b and all above
@@ -164,89 +215,18 @@ std::uint32_t TriangleTree::build(Work& work, std::uint32_t begin, std::uint32_t
         }
     }
     std::uint32_t middle = begin + (end - begin) / 2;
-    if (best_axis < 3)
+    if (best_axis < 3 && work.depth < deepest)
         middle = static_cast<std::uint32_t>(
-            std::stable_partition(order_.begin() + begin, order_.begin() + end,
+            std::stable_partition(work.order.begin() + begin, work.order.begin() + end,
                                   [&](std::uint32_t t) { return bin_of(t, best_axis) < best_bin; }) -
-            order_.begin());
+            work.order.begin());
     else if (end - begin <= 4 * kLeaf) return index;
     ++work.depth;
-    build(work, begin, middle);
-    const std::uint32_t second = build(work, middle, end);
+    const std::uint32_t first = build(work, begin, middle), second = build(work, middle, end);
     --work.depth;
-    nodes_[index].begin = second;
-    nodes_[index].count = 0;
+    work.nodes[index].first = first;
+    work.nodes[index].second = second;
     return index;
-}
-
-template <bool any_hit>
-std::optional<TriangleTree::Hit> TriangleTree::search(const Vec3& origin, const Vec3& direction,
-                                                      double least) const {
-    if (nodes_.empty()) return std::nullopt;
-    std::optional<Hit> best;
-    double most = std::numeric_limits<double>::infinity();
-    float from[3], inverse[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-        from[k] = static_cast<float>(origin[k]);
-        const double d = std::fabs(direction[k]) > 1e-20 ? direction[k] : 1e-20;
-        inverse[k] = static_cast<float>(1.0 / d);
-    }
-    const auto enters = [&](const Node& node) { // at what distance, infinite where the box is missed
-        float low = 0.0f, high = static_cast<float>(most);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const float a = (node.low[k] - from[k]) * inverse[k], b = (node.high[k] - from[k]) * inverse[k];
-            low = std::max(low, std::min(a, b));
-            high = std::min(high, std::max(a, b));
-        }
-        return low <= high * 1.00001f ? low : kInfinite;
-    };
-    std::uint32_t stack[kDeepest + 4], depth = 0, now = 0;
-    if (!(enters(nodes_[0]) < kInfinite)) return std::nullopt;
-    for (;;) {
-        const Node& node = nodes_[now];
-        if (node.count == 0) {
-            std::uint32_t near = now + 1, far = node.begin;
-            float at_near = enters(nodes_[near]), at_far = enters(nodes_[far]);
-            if (at_far < at_near) {
-                std::swap(near, far);
-                std::swap(at_near, at_far);
-            }
-            if (at_near < kInfinite) {
-                if (at_far < kInfinite) stack[depth++] = far;
-                now = near;
-                continue;
-            }
-        } else {
-            for (std::uint32_t i = node.begin; i < node.begin + node.count; ++i) { // Moeller and Trumbore 1997
-                const Vec3 &corner = edges_[i].corner, &e1 = edges_[i].to_second, &e2 = edges_[i].to_third;
-                const Vec3 p = cross(direction, e2);
-                const double determinant = dot(e1, p);
-                if (determinant == 0.0) continue;
-                const Vec3 s{origin[0] - corner[0], origin[1] - corner[1], origin[2] - corner[2]};
-                const double b1 = dot(s, p) / determinant;
-                if (!(b1 >= 0.0 && b1 <= 1.0)) continue;
-                const Vec3 q = cross(s, e1);
-                const double b2 = dot(direction, q) / determinant;
-                if (!(b2 >= 0.0 && b1 + b2 <= 1.0)) continue;
-                const double distance = dot(e2, q) / determinant;
-                if (!(distance > least && distance < most)) continue;
-                best = Hit{distance, order_[i], b1, b2};
-                if (any_hit) return best;
-                most = distance;
-            }
-        }
-        if (depth == 0) return best;
-        now = stack[--depth];
-    }
-}
-
-std::optional<TriangleTree::Hit> TriangleTree::first(const Vec3& origin, const Vec3& direction,
-                                                     double least) const {
-    return search<false>(origin, direction, least);
-}
-
-bool TriangleTree::any(const Vec3& origin, const Vec3& direction, double least) const {
-    return search<true>(origin, direction, least).has_value();
 }
 
 } // namespace acdf::input

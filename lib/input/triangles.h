@@ -30,7 +30,8 @@ struct Triangles {
 /// Reads a mesh (.obj, .ply), polygons as fans of triangles; `up` as for normals. Throws Error.
 Triangles read_triangles(const std::string& path, UpAxis up);
 
-/// A hierarchy of boxes over triangles. Results are the same on every machine and for any number of threads.
+/// A hierarchy of boxes over triangles, four side by side. Results are the same on every machine and for any number
+/// of threads.
 class TriangleTree {
 public:
     struct Hit {
@@ -50,24 +51,32 @@ public:
     bool any(const std::array<double, 3>& origin, const std::array<double, 3>& direction, double least) const;
 
 private:
-    struct Node {
-        float low[3], high[3];
-        std::uint32_t begin = 0; ///< of its triangles in order_; or its second child, the first one follows at once
-        std::uint32_t count = 0; ///< of triangles; 0: it has children
+    static constexpr std::size_t wide = 4;
+    /// A child: a node, or leaf | number of quads - 1 | first of them.
+    static constexpr std::uint32_t leaf = 0x80000000u, quad_bits = 28, deepest = 60;
+
+    /// Boxes of up to four children; that of a child that is not there holds nothing.
+    struct alignas(64) Node {
+        float side[2][3][wide]; ///< low, high
+        std::uint32_t child[wide];
     };
-    /// A corner and the two edges from it.
-    struct Edges {
-        std::array<double, 3> corner, to_second, to_third;
+    /// Up to four triangles: a corner of each and the two edges from it; zero where there is none.
+    struct alignas(64) Quad {
+        double corner[3][wide], to_second[3][wide], to_third[3][wide];
+        std::uint32_t triangle[wide];
     };
     struct Work;
-    std::uint32_t build(Work& work, std::uint32_t begin, std::uint32_t end);
+    std::uint32_t build(Work& work, std::uint32_t begin, std::uint32_t end) const;
+    std::uint32_t join(const Work& work, const Triangles& triangles, std::uint32_t index);
+    std::uint32_t gather(const Work& work, const Triangles& triangles, std::uint32_t index);
     template <bool any_hit>
     std::optional<Hit> search(const std::array<double, 3>& origin, const std::array<double, 3>& direction,
                               double least) const;
+    static void meet(const Quad& quad, const std::array<double, 3>& origin, const std::array<double, 3>& direction,
+                     double least, std::optional<Hit>& best);
 
     double size_ = 1e-30;
-    std::vector<std::uint32_t> order_;
-    std::vector<Edges> edges_; ///< of the triangles in that order
+    std::vector<Quad> quads_;
     std::vector<Node> nodes_;
 };
 
