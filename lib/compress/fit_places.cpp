@@ -22,10 +22,13 @@ constexpr std::uint32_t kColumns = 127;
 constexpr std::uint64_t kCellsOfRegion = 200;
 /// How far cells are mixed, of the smaller one at their border.
 constexpr double kBlend = 0.4;
-/// Points of a cell, in the mean; rounds in which they are found; and candidates for each.
-constexpr std::size_t kPointsOfCell = 80;
+/// Points of a cell, in the mean: those that tell where it is divided and those that tell its row; rounds in which
+/// the first are found; and candidates for each.
+constexpr std::size_t kPointsOfDivision = 40, kPointsOfRow = 80;
 constexpr std::uint32_t kRounds = 3;
 constexpr std::uint64_t kCandidates = 24;
+/// Of the time, for progress: what it takes to find cells, before rows.
+constexpr double kDivisionShare = 0.4;
 /// Around the points: light is gathered next to them, too.
 constexpr float kMargin = 1e-3f;
 
@@ -106,9 +109,8 @@ void append(std::vector<std::uint8_t>& bytes, const Record* records, std::size_t
 /// Points of a scene, more of them where cells are small: so many that each cell has about as many.
 class PointsByCell {
 public:
-    explicit PointsByCell(const PointSource& source) : source_(source) {}
+    PointsByCell(const PointSource& source, std::vector<PlacePoint>& points) : source_(source), points_(points) {}
 
-    const std::vector<PlacePoint>& points() const { return points_; }
     /// Adds points until there are `count`, or no more are found in `most` candidates.
     void add(const AcdfPlaces& header, const std::vector<AcdfPlaceSplit>& splits, std::uint32_t cells,
              std::size_t count, std::uint64_t most) {
@@ -134,7 +136,7 @@ public:
 
 private:
     const PointSource& source_;
-    std::vector<PlacePoint> points_;
+    std::vector<PlacePoint>& points_;
     std::uint64_t next_ = 0;
 };
 
@@ -160,7 +162,7 @@ struct Division {
     AcdfPlaces header{};
     std::vector<PlacePoint> points;
     std::vector<AcdfPlaceSplit> splits;
-    PlaceLight light;
+    PlaceLight light;                 ///< of the first points
     std::unique_ptr<PlaceCells> tree; ///< refers to points and light
 };
 
@@ -169,18 +171,23 @@ void divide(Division& out, const PlaceParts& parts, const PlaceScene& scene, std
     const AcdfPlaces& h = out.header;
     const PlaceCells::Box low{h.low[0], h.low[1], h.low[2], -1.0f, -1.0f, -1.0f},
         high{h.high[0], h.high[1], h.high[2], 1.0f, 1.0f, 1.0f};
-    const std::size_t wanted = kPointsOfCell * std::size_t{cells};
-    PointsByCell points(scene.points);
+    PointsByCell points(scene.points, out.points);
+    const auto add = [&](std::size_t wanted) {
+        points.add(h, out.splits, out.tree ? out.tree->cell_count() : 1, std::max<std::size_t>(wanted, 1024),
+                   kCandidates * wanted + (1u << 20));
+    };
+    double before = 0.0;
     for (std::uint32_t round = 0; round < kRounds; ++round) {
         const std::uint32_t shift = 2 * (kRounds - 1 - round); // a quarter of points and cells before, and so on
-        points.add(h, out.splits, out.tree ? out.tree->cell_count() : 1,
-                   std::max<std::size_t>(wanted >> shift, 1024), kCandidates * (wanted >> shift) + (1u << 20));
-        out.points = points.points();
-        out.light = trace_places(parts, out.points, scene.occluded, -1.0,
-                                 [&](double share) { report((round + 0.8 * share) / kRounds); });
+        add(kPointsOfDivision * std::size_t{cells} >> shift);
+        const double share = std::ldexp(1.0, -int(shift)); // of all
+        trace_places(parts, out.points, scene.occluded, out.light, -1.0,
+                     [&](double done) { report(before + 0.8 * (share - before) * done); });
         out.tree = std::make_unique<PlaceCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
         out.splits = out.tree->splits(round + 1 == kRounds ? kBlend : 0.0);
+        report(before = share);
     }
+    add(kPointsOfRow * std::size_t{cells});
 }
 
 } // namespace
@@ -198,7 +205,7 @@ Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& s
 
     Division division;
     division.header = header_of(scene.points, frame);
-    divide(division, coarse, scene, counts.cells, [&](double share) { report(0.6 * share); });
+    divide(division, coarse, scene, counts.cells, [&](double share) { report(kDivisionShare * share); });
     const PlaceCells& tree = *division.tree;
     const std::vector<PlaceCells::Range> regions = tree.regions(counts.regions);
     const std::vector<PlaceShare> shares =
@@ -218,7 +225,7 @@ Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& s
             encode(parts, &told.all[first], &told.factors[first], &rows[cell * width]);
             set_of_row[cell] = static_cast<std::uint16_t>(r);
         }
-        report(0.6 + 0.4 * double(++done) / double(regions.size()));
+        report(kDivisionShare + (1.0 - kDivisionShare) * double(++done) / double(regions.size()));
     });
 
     AcdfPlaces& header = division.header;

@@ -50,12 +50,12 @@ void accumulate(std::vector<PlaceSums>& steps, bool from_below) {
 PlaceCells::PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& points, const Box& low,
                        const Box& high, std::uint32_t cells)
     : light_(light), points_(points) {
-    order_.resize(points.size());
+    order_.resize(light.points());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     Node root;
     root.low = low;
     root.high = high;
-    root.end = static_cast<std::uint32_t>(points.size());
+    root.end = static_cast<std::uint32_t>(order_.size());
     root.factors.assign(light.parts, 0.7f);
     consider(root);
     nodes_.push_back(std::move(root));

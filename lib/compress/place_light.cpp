@@ -47,24 +47,23 @@ double trace_point(const PlaceParts& parts, const PlacePoint& point, std::size_t
 
 } // namespace
 
-PlaceLight trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
-                        double dark, const std::function<void(double)>& progress) {
-    PlaceLight out;
-    out.parts = parts.count();
-    out.given.resize(points.size() * out.parts);
-    std::vector<double> light(points.size(), 0.0);
+void trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
+                  PlaceLight& light, double dark, const std::function<void(double)>& progress) {
+    const std::size_t known = light.points(), more = points.size() - known;
+    light.parts = parts.count();
+    light.given.resize(points.size() * light.parts);
+    light.arrives.resize(points.size(), 0.0);
+    light.scale.resize(points.size(), 1.0);
     std::atomic<std::size_t> done{0};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 64), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(known, points.size(), 64), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-            light[i] = trace_point(parts, points[i], i, occluded, &out.given[i * out.parts]);
-        if (progress) progress(double(done += range.size()) / double(points.size()));
+            light.arrives[i] = trace_point(parts, points[i], i, occluded, &light.given[i * light.parts]);
+        if (progress) progress(double(done += range.size()) / double(more));
     });
     double mean = 0.0;
-    for (const double l : light) mean += l / double(points.size());
-    out.dark = dark < 0.0 ? kDarkest * mean : dark;
-    out.scale.assign(points.size(), 1.0);
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { out.rescale(i, light[i]); });
-    return out;
+    for (const double l : light.arrives) mean += l / double(points.size());
+    light.dark = dark < 0.0 ? kDarkest * mean : dark;
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { light.rescale(i, light.arrives[i]); });
 }
 
 void PlaceLight::rescale(std::size_t point, double light) {

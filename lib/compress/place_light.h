@@ -32,9 +32,10 @@ using Occluded = std::function<bool(const PlacePoint& point, const std::array<fl
 /// what relative variance is made of.
 struct PlaceLight {
     std::size_t parts = 0;
-    std::vector<float> given;  ///< points x parts; negative where the ray does not arrive
-    std::vector<double> scale; ///< one a point: what its light is multiplied with
-    double dark = 0.0;         ///< what is added to the light of each point
+    std::vector<float> given;    ///< points x parts; negative where the ray does not arrive
+    std::vector<double> arrives; ///< one a point: the light that its rays tell
+    std::vector<double> scale;   ///< one a point: what its light is multiplied with
+    double dark = 0.0;           ///< what is added to the light of each point
 
     const float* of(std::size_t point) const { return &given[point * parts]; }
     double all(std::size_t point, std::size_t part) const { return std::fabs(double{given[point * parts + part]}); }
@@ -56,9 +57,10 @@ struct PlaceScene {
     explicit operator bool() const { return points && occluded; }
 };
 
-/// Shoots a ray for each point and part that is above its horizon. `dark`: of other points of the scene; below 0:
-/// as it is found of these. The same for any number of threads.
-PlaceLight trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
-                        double dark = -1.0, const std::function<void(double)>& progress = {});
+/// Shoots a ray for each point and part that is above its horizon, from the points on that `light` does not know
+/// yet. `dark`: of other points of the scene; below 0: as it is found of all these. The same for any number of
+/// threads.
+void trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
+                  PlaceLight& light, double dark = -1.0, const std::function<void(double)>& progress = {});
 
 } // namespace acdf::compress

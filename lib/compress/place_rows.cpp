@@ -155,7 +155,8 @@ PlaceRows place_rows(const PlaceParts& parts, const PlaceCells& tree, const Plac
                      const std::vector<PlaceShare>& shares, const std::vector<PlacePoint>& points,
                      const Occluded& occluded, double dark) {
     Region region = region_of(range, shares, points);
-    PlaceLight light = trace_places(parts, region.points, occluded, dark);
+    PlaceLight light;
+    trace_places(parts, region.points, occluded, light, dark);
     sum_up(region, light, range);
     rescale_by_cells(light, region);
     sum_up(region, light, range);
