@@ -20,6 +20,7 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -173,14 +174,15 @@ Description local_axes(Description d, const std::vector<AxisDescription>& normal
 }
 
 /// Four places, told apart by position and, in the last two, by the normal's z; two of them mixed at each border.
-Chunk places_chunk() {
+/// `regions`: the first and the last tell the first split of tiles apart, those between them the second.
+Chunk places_chunk(bool regions) {
     Chunk chunk{ACDF_CHUNK_PLACES, {}};
     const AcdfPlaces header = {
-        3, 4, 1, 0, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
+        3, 4, 1, regions, {-1, -2, 0}, {3, 2, 4}, {{0, 0, 1, 0.5f}, {1, 0, 0, 0}, {0, 1, 0, 0}}}; // y up, moved
     const AcdfPlaceSplit splits[] = {{1.0f, 0.25f, 0 | ACDF_PLACE_ROW << 3, 1},
                                      {0.5f, 0.5f, 1 | (ACDF_PLACE_ROW | 1) << 3, 2},
                                      {0.25f, 0.125f, 5 | (ACDF_PLACE_ROW | 2) << 3, ACDF_PLACE_ROW | 3}};
-    const std::uint16_t columns[] = {0, ACDF_NO_COLUMN};
+    const std::uint16_t columns[] = {0, ACDF_NO_COLUMN, ACDF_NO_COLUMN, 0}, set_of_row[] = {0, 1, 1, 0};
     const std::uint8_t rows[] = {240, 30,  200, 200, 255, 7,
                                  17,  100, 128, 90,  180, 44}; // mixture, light and odds of each
     const auto add = [&](const void* data, std::size_t size) {
@@ -189,14 +191,15 @@ Chunk places_chunk() {
     };
     add(&header, sizeof header);
     add(splits, sizeof splits);
-    add(columns, sizeof columns);
+    add(columns, regions ? sizeof columns : sizeof columns / 2);
+    if (regions) add(set_of_row, sizeof set_of_row);
     add(rows, sizeof rows);
     return chunk;
 }
 
 /// A local environment with everything that bins can share: tiles with a curve and without, one of them a light;
 /// bin 7 is not stored.
-Golden local(const char* name, AcdfParameterization parameterization, bool places = false) {
+Golden local(const char* name, AcdfParameterization parameterization, const std::optional<Chunk>& places = {}) {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
                               {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
                               {kTheta, {3}, {0.75, 0.25}, {3, -1}, {}},
@@ -217,7 +220,7 @@ Golden local(const char* name, AcdfParameterization parameterization, bool place
                                {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
     d.chunks = shared_chunks(rows);
     d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, 1, {5, 0}, {12, 3}}}));
-    if (places) d.chunks.push_back(places_chunk());
+    if (places) d.chunks.push_back(*places);
     return {name, store(tree, d)};
 }
 
@@ -333,7 +336,8 @@ int main(int argc, char** argv) try {
           local("local", ACDF_PARAM_LATLONG),
           local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
           local_grid(),
-          local("places", ACDF_PARAM_LATLONG, true),
+          local("places", ACDF_PARAM_LATLONG, places_chunk(false)),
+          local("places_regions", ACDF_PARAM_LATLONG, places_chunk(true)),
           brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
           brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
           brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),

@@ -220,7 +220,7 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
         p = point->what == ACDF_LOCAL_BLEND
                 ? acdf_local_blend_sample(local, point, u, range)
                 : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
-        if (!(point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) && local->tables->heights &&
+        if (!(point->what == ACDF_LOCAL_BLEND && local->tables && local->tables->heights &&
               acdf_row_place(acdf_local_heights(local->tables), grid.columns, range, u, p, &out)))
             out = acdf_grid_place(&grid, range, u, p);
     }

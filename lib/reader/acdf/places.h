@@ -86,35 +86,40 @@ ACDF_FN int acdf_place_coordinates(const AcdfPlaceTable* table, const float posi
 ACDF_FN void acdf_place_at(const AcdfPlaceTable* table, uint32_t tile_count, const float position[3],
                            const float normal[3], AcdfPlaceMixture* out) {
     uint32_t node[ACDF_MAX_PLACES_MIXED];
+    size_t width;
     double x[6];
     int i;
     out->count = 0;
     if (!table->header || !acdf_place_coordinates(table, position, normal, x)) return;
+    width = (size_t)1 + table->light_count + table->header->column_count;
     node[0] = table->header->split_count > 0 ? 0 : ACDF_PLACE_ROW;
     out->weight[0] = 1.0;
     out->count = 1;
     for (i = 0; i < out->count; ++i) {
-        while (!(node[i] & ACDF_PLACE_ROW)) {
-            const AcdfPlaceSplit* split = &table->splits[node[i]];
+        uint32_t now = node[i];
+        while (!(now & ACDF_PLACE_ROW)) {
+            const AcdfPlaceSplit* split = &table->splits[now];
             const double above = x[split->lower & 7u] - (double)split->position, blend = (double)split->blend;
-            const uint32_t part[2] = {split->lower >> 3, split->upper};
-            if (above < blend && above > -blend && out->count < ACDF_MAX_PLACES_MIXED) {
+            const uint32_t lower = split->lower >> 3, upper = split->upper;
+            if (!(upper & ACDF_PLACE_ROW)) ACDF_PREFETCH(&table->splits[upper]); /* the lower one is the next */
+            if (fabs(above) < blend && out->count < ACDF_MAX_PLACES_MIXED) {
                 const double share = out->weight[i] * ((above + blend) / (2.0 * blend));
-                node[out->count] = part[1];
+                node[out->count] = upper;
                 out->weight[out->count++] = share;
                 out->weight[i] -= share;
-                node[i] = part[0];
-            } else {
-                node[i] = part[above >= 0.0];
+                now = lower;
+            } else { /* which one is not to be guessed: no branch */
+                now = lower ^ ((lower ^ upper) & (0u - (uint32_t)(above >= 0.0)));
             }
         }
+        node[i] = now & ~ACDF_PLACE_ROW;
+        out->row[i] = table->rows + (size_t)node[i] * width;
+        ACDF_PREFETCH(out->row[i]);
+        ACDF_PREFETCH(out->row[i] + width / 2);
     }
-    for (i = 0; i < out->count; ++i) {
-        const uint32_t row = node[i] & ~ACDF_PLACE_ROW;
-        out->row[i] = table->rows + (size_t)row * (1 + table->light_count + table->header->column_count);
+    for (i = 0; i < out->count; ++i)
         out->columns[i] =
-            table->columns + (table->set_of_row ? (size_t)table->set_of_row[row] * (tile_count - 1) : 0);
-    }
+            table->columns + (table->set_of_row ? (size_t)table->set_of_row[node[i]] * (tile_count - 1) : 0);
 }
 
 /* The odds of a split, out of 65535; below 0 where none of the cells has a column for it. */

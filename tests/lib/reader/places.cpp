@@ -145,8 +145,10 @@ TEST(Places, CellsAreMixedWithoutAJump) {
     }
 }
 
-TEST(Places, GoldenFileDrawsTheSameSamples) {
-    const std::string path = ACDF_TEST_DIR "/golden/v1.0/places";
+class GoldenPlaces : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(GoldenPlaces, DrawTheSameSamples) {
+    const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
     acdf::File file;
     acdf::LoadOptions walked; // what is drawn by runtime tables differs as floats round
     walked.tables = false;
@@ -162,5 +164,8 @@ TEST(Places, GoldenFileDrawsTheSameSamples) {
         EXPECT_EQ(double{s.pdf}, v[11]);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(V1_0, GoldenPlaces, ::testing::Values("places", "places_regions"),
+                         [](const auto& info) { return std::string(info.param); });
 
 } // namespace
