@@ -113,10 +113,7 @@ void EnvConversion::set_knots() {
     }
 }
 
-std::vector<std::string*> EnvConversion::files() {
-    if (scene_.path.empty()) return {&source};
-    return {&source, &scene_.path};
-}
+std::vector<std::string*> EnvConversion::files() { return scene_.files(source); }
 
 void EnvConversion::check_company() const {
     const bool alone = environment_.company.kind == ACDF_COMPANY_NONE;
@@ -143,7 +140,7 @@ void EnvConversion::check() {
 builder::EnvironmentOptions EnvConversion::with_source() const {
     builder::EnvironmentOptions options = environment_;
     options.source.reading = reading_text(input_);
-    if (!scene_.path.empty()) {
+    if (scene_.given()) {
         options.normals = {{}}; // any: only the text tells which
         options.normals_text = scene_.text();
     }
@@ -202,7 +199,7 @@ Converted EnvConversion::convert(const Listener& listener) {
     builder::EnvironmentOptions options = environment_;
     options.source = source_of(loaded.probe, input_);
     options.normals = scene_.read(listener.note);
-    if (!scene_.path.empty()) options.normals_text = scene_.text();
+    if (scene_.given()) options.normals_text = scene_.text();
     builder::Environment result;
     require_built(source, builder::environment(loaded.target, options, result, told(listener.progress)));
     const std::string warning =

@@ -57,7 +57,7 @@ private:
     const Renderer* renderer_ = nullptr;
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
-    bool no_sharing_ = false, places_ = false;
+    bool no_sharing_ = false, places_ = false, volume_ = false;
 };
 
 /// The default budget of a file that tells places apart.
@@ -121,23 +121,23 @@ void LocalConversion::check() {
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
     for (const char* option : {"--no-sharing", "--cosine-share", "--places", "--max-weight"})
         if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+    if (volume_ && !places_) throw CLI::ValidationError("--volume", "is for --places");
     if (!places_) return;
-    if (scene_.path.empty()) throw CLI::ValidationError("--places", "needs --scene MESH");
+    if (!scene_.given()) throw CLI::ValidationError("--places", "needs --scene MESH");
     for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})
         if (given(option)) throw CLI::ValidationError("--places", std::string("goes without ") + option);
     if (!given("--budget")) local_.goal = builder::Goal::of_budget(kPlacesBytes);
 }
 
-std::vector<std::string*> LocalConversion::files() {
-    if (scene_.path.empty()) return {&source};
-    return {&source, &scene_.path};
-}
+std::vector<std::string*> LocalConversion::files() { return scene_.files(source); }
 
-std::string LocalConversion::scene_text() const { return scene_.text() + (places_ ? " --places" : ""); }
+std::string LocalConversion::scene_text() const {
+    return scene_.text() + (places_ ? " --places" : "") + (volume_ ? " --volume" : "");
+}
 
 std::string LocalConversion::option_text() const {
     builder::LocalOptions told = local_;
-    if (!scene_.path.empty()) {
+    if (scene_.given()) {
         told.normals = {{}}; // any: only the text tells which
         told.normals_text = scene_text();
     }
@@ -148,7 +148,7 @@ std::string LocalConversion::option_text() const {
 /// The options with the normals of the scene.
 builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
     builder::LocalOptions local = local_;
-    if (scene_.path.empty()) return local;
+    if (!scene_.given()) return local;
     local.normals = scene_.read(note);
     local.normals_text = scene_text();
     if (places_) {
@@ -157,10 +157,15 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
             const builder::SceneNormal n = local.normals[i];
             local.normals.push_back({{-n.normal[0], -n.normal[1], -n.normal[2]}, n.weight});
         }
-        auto surface =
-            std::make_shared<const input::MeshSurface>(input::read_triangles(scene_.path, scene_.input().up));
-        note(scene_.path + ": places on " + std::to_string(surface->triangles().count()) + " triangles");
-        local.places = places_on(std::move(surface), scene_.input().up);
+        if (volume_) local.normals.clear(); // what hangs in the air has any
+        input::Triangles triangles;
+        for (const std::string& path : scene_.paths) {
+            const input::Triangles own = input::read_triangles(path, scene_.input().up);
+            note(path + ": places on " + std::to_string(own.count()) + " triangles");
+            triangles.corners.insert(triangles.corners.end(), own.corners.begin(), own.corners.end());
+        }
+        local.places =
+            places_on(std::make_shared<const input::MeshSurface>(std::move(triangles)), scene_.input().up, volume_);
     }
     return local;
 }
@@ -256,6 +261,12 @@ void LocalConversion::add_bins(CLI::App& command) {
             "--places", places_,
             "Tell the places of the scene (a mesh) apart: what it hides from a place is not drawn there. Positions "
             "are told in the mesh's own coordinates; three quarters of the budget, by default 4 MiB, are for this")
+        ->group("Normals");
+    command
+        .add_flag(
+            "--volume", volume_,
+            "With --places: also in the air, in the box around the scene, and for all normals. For what has no "
+            "surface there, such as smoke, hair or things that move")
         ->group("Normals");
     command
         .add_option(
@@ -355,6 +366,7 @@ void add_local(CLI::App& program, int& exit_code) {
                      "acdf local probe.exr -o probe.local.acdf\n"
                      "acdf local probe.exr -o small.acdf --budget 128KiB\n"
                      "acdf local probe.exr -o car.acdf --scene car.obj --scene-up y --cosine-share 0.2\n"
+                     "acdf local probe.exr -o room.acdf --scene walls.obj --scene things.ply --places\n"
                      "acdf local probe.exr -o paper.acdf --no-sharing --normals 25x10 --fit cdf --knots 64x64")},
         exit_code);
 }

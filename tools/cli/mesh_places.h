@@ -17,8 +17,9 @@ inline void turn_from_y_up(builder::Places& places) {
     for (int k = 0; k < 3; ++k) std::copy_n(turned[k], 4, places.transform[k]);
 }
 
-/// Points on both sides of a mesh, told by their number, and what the mesh hides from them. `up`: how it was turned
-/// when it was read; positions are those of its file.
-builder::Places places_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up);
+/// Points on both sides of a mesh, told by their number, and what the mesh hides from them; `volume`: half of them
+/// in the air instead, all over its box, with normals all over the sphere. `up`: how it was turned when it was
+/// read; positions are those of its file.
+builder::Places places_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up, bool volume = false);
 
 } // namespace acdf::tools

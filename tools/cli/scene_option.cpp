@@ -9,7 +9,10 @@
 namespace acdf::tools {
 
 void SceneOption::add(CLI::App& command, const std::string& help, const char* group) {
-    command.add_option("--scene", path, help)->type_name("FILE")->group(group);
+    command.add_option("--scene", paths, help + ". May be given several times: all files together")
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->group(group);
     const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
     command
         .add_option(
@@ -24,24 +27,34 @@ void SceneOption::add(CLI::App& command, const std::string& help, const char* gr
         ->group(group);
 }
 
+std::vector<std::string*> SceneOption::files(std::string& source) {
+    std::vector<std::string*> out{&source};
+    for (std::string& path : paths) out.push_back(&path);
+    return out;
+}
+
 void SceneOption::check(const CLI::App& command) const {
     for (const char* option : {"--scene-up", "--scene-rgb"})
-        if (path.empty() && command.get_option(option)->count() > 0)
+        if (!given() && command.get_option(option)->count() > 0)
             throw CLI::ValidationError(option, "is of the file given by --scene");
 }
 
 std::string SceneOption::text() const {
-    return "--scene " + input::file_sha256(path) + (input_.up == input::UpAxis::y ? " --scene-up y" : "") +
+    std::string out;
+    for (const std::string& path : paths)
+        out += (out.empty() ? "--scene " : " --scene ") + input::file_sha256(path);
+    return out + (input_.up == input::UpAxis::y ? " --scene-up y" : "") +
            (input_.rgb_is_normal ? " --scene-rgb" : "");
 }
 
 std::vector<builder::SceneNormal> SceneOption::read(const Note& note) const {
     std::vector<builder::SceneNormal> out;
-    if (path.empty()) return out;
-    const input::SceneNormals scene = input::read_scene_normals(path, input_);
-    for (const input::WeightedNormal& n : scene.normals) out.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
-    note(path + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
-         std::to_string(scene.skipped) + " skipped");
+    for (const std::string& path : paths) {
+        const input::SceneNormals scene = input::read_scene_normals(path, input_);
+        for (const input::WeightedNormal& n : scene.normals) out.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
+        note(path + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
+             std::to_string(scene.skipped) + " skipped");
+    }
     return out;
 }
 

@@ -5,7 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <thread>
 
 namespace acdf::test {
 namespace {
@@ -155,6 +158,68 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
     }
 }
 
+/// A room in two files is one scene: what one of them hides from places on the other is known.
+TEST(MeshPlaces, OfSeveralFilesAreThoseOfAllTogether) {
+    MeshFolder folder;
+    const std::string whole = room(), points = whole.substr(0, whole.find('f')),
+                      faces = whole.substr(points.size());
+    const std::size_t middle = faces.find("f 15");
+    write_text(folder / "walls.obj", points + faces.substr(0, middle));
+    write_text(folder / "box.obj", points + faces.substr(middle));
+    const Result one = folder.local("one.acdf", {"--scene", folder / "room.obj", "--places", "--json"}),
+                 two = folder.local("two.acdf", {"--scene", folder / "walls.obj", "--scene", folder / "box.obj",
+                                                 "--places", "--json"});
+    ASSERT_EQ(one.code, 0) << one.err;
+    ASSERT_EQ(two.code, 0) << two.err;
+    EXPECT_EQ(Json::parse(one.out).at("places"), Json::parse(two.out).at("places"));
+    File a, b;
+    ASSERT_TRUE(File::open((folder / "one.acdf").c_str(), a).ok());
+    ASSERT_TRUE(File::open((folder / "two.acdf").c_str(), b).ok());
+    const AcdfLocal x = a.local().data(), y = b.local().data();
+    ASSERT_EQ(x.places.header->split_count, y.places.header->split_count);
+    for (std::uint32_t i = 0; i < x.places.header->split_count; ++i)
+        EXPECT_EQ(x.places.splits[i].position, y.places.splits[i].position);
+}
+
+/// In the middle of the room light comes from above, for whatever hangs there.
+TEST(MeshPlaces, InTheAirKnowWhatIsHiddenThere) {
+    MeshFolder folder;
+    ASSERT_EQ(folder.local("air.acdf", {"--scene", folder / "room.obj", "--places", "--volume"}).code, 0);
+    File file;
+    ASSERT_TRUE(File::open((folder / "air.acdf").c_str(), file).ok());
+    const std::string options = Json::parse(run_acdf({"info", "--json", folder / "air.acdf"}).out).at("options");
+    EXPECT_NE(options.find("--places --volume"), std::string::npos) << options;
+    const LocalEnvironmentView view = file.local();
+    const float middle[3] = {0.0f, 1.0f, 1.0f}; // below the half that is open
+    double sky = 0.0, alone = 0.0;
+    for (const float side : {-1.0f, 1.0f})
+        for (int i = 0; i < 400; ++i) {
+            const float n[3] = {side, 0.0f, 0.0f};
+            const double u = (i % 20 + 0.5) / 20.0, v = (i / 20 + 0.5) / 20.0;
+            const auto open = [&](const DirectionSample& s) { return s.pdf > 0.0f && s.direction[2] > 0.5f; };
+            sky += open(view.sample(view.at(middle, n), u, v));
+            alone += open(view.sample(view.at(n), u, v));
+        }
+    EXPECT_GT(sky, 1.3 * alone);
+    EXPECT_GT(sky, 500.0);
+}
+
+/// Ended at any moment of the search for places, the program leaves nothing.
+TEST(MeshPlaces, LeaveNothingWhereTheyAreCancelled) {
+    MeshFolder folder;
+    const std::size_t before = folder.entries();
+    for (const int milliseconds : {30, 150, 400}) {
+        const pid_t pid = start_acdf({"local", folder / "probe.exr", "-o", folder / "no.acdf", "--scene",
+                                      folder / "room.obj", "--places", "--budget", "4MB", "--quiet"},
+                                     "/dev/null", "/dev/null", "/dev/null");
+        ASSERT_GT(pid, 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+        kill(pid, SIGINT);
+        EXPECT_NE(wait_for(pid), 0);
+        EXPECT_EQ(folder.entries(), before);
+    }
+}
+
 TEST(MeshPlaces, MistakesAreOneLine) {
     MeshFolder folder;
     write_text(folder / "broken.obj", "v 0 0 0\n");
@@ -167,6 +232,8 @@ TEST(MeshPlaces, MistakesAreOneLine) {
     };
     refused({"--places"}, 2, "--places");
     refused({"--places", "--scene", folder / "room.obj", "--no-sharing"}, 2, "--places");
+    refused({"--volume", "--scene", folder / "room.obj"}, 2, "--volume");
+    refused({"--places", "--scene", folder / "room.obj", "--scene", folder / "none.obj"}, 1, "none.obj");
     refused({"--places", "--scene", folder / "probe.exr"}, 1, "probe.exr");
     refused({"--places", "--scene", folder / "broken.obj"}, 1, "broken.obj");
     write_text(folder / "none.json", mesh_scene("none.obj"));
