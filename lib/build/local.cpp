@@ -268,7 +268,8 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     std::string text = reading + target_text(o.target) + codec_text(o.codec);
     if (o.subdivisions > 0) text += "--normals " + std::to_string(o.subdivisions) + " ";
     if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
-    if (!o.scene.empty()) text += o.scene_text.empty() ? "--scene " : o.scene_text + " ";
+    if (!o.scene_text.empty()) text += o.scene_text + " ";
+    else if (!o.scene.empty()) text += "--scene ";
     text += company_text(o.company);
     if (o.places.scene && o.scene_text.find("--places") == std::string::npos) text += "--places ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";

@@ -233,7 +233,7 @@ TEST(MeshPlaces, MistakesAreOneLine) {
     refused({"--places"}, 2, "--places");
     refused({"--places", "--scene", folder / "room.obj", "--no-sharing"}, 2, "--places");
     refused({"--volume", "--scene", folder / "room.obj"}, 2, "--volume");
-    refused({"--places", "--scene", folder / "room.obj", "--scene", folder / "none.obj"}, 1, "none.obj");
+    refused({"--places", "--scene", folder / "none.obj", "--scene", folder / "room.obj"}, 1, "none.obj");
     refused({"--places", "--scene", folder / "probe.exr"}, 1, "probe.exr");
     refused({"--places", "--scene", folder / "broken.obj"}, 1, "broken.obj");
     write_text(folder / "none.json", mesh_scene("none.obj"));
