@@ -137,11 +137,19 @@ public:
         s.raise.assign(light_.size(), 0.0);
         s.lower.assign(light_.size(), 0.0);
         for (const MixedNormal& normal : normals_.near(bin)) add(normal, bin, s);
+        double before = 0.0, after = 0.0;
         for (std::size_t t = 0; t < out.size(); ++t) {
-            const double part = double{parts_[bin][t]}, own = double{own_[bin][t]};
-            if (!(part > 0.0 && s.lower[t] > 0.0)) continue;
+            const double part = double{parts_[bin][t]};
+            if (part > 0.0 && s.lower[t] > 0.0) s.mixed[t] = part * std::sqrt(s.raise[t] / s.lower[t]);
+            else s.mixed[t] = part;
+            before += double{own_[bin][t]};
+            after += s.mixed[t];
+        }
+        // The sum stays: it tells the irradiance, and weighs the row in mixtures.
+        for (std::size_t t = 0; t < out.size(); ++t) {
+            const double own = double{own_[bin][t]};
             const double least = std::max(kLeastPart * own, std::min(own, least_cosine_ * light_.whole(t)));
-            out[t] = as_part(std::max(part * std::sqrt(s.raise[t] / s.lower[t]), least));
+            if (own > 0.0) out[t] = as_part(std::max(s.mixed[t] * (before / after), least));
         }
     }
 
