@@ -22,6 +22,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 namespace acdf::tools {
@@ -30,6 +31,9 @@ namespace {
 // Peaks beside the program itself, measured on probes of 2^19 to 2^23 pixels with budgets up to 1 MiB: 20 to 35
 // bytes a pixel.
 constexpr std::uint64_t kLocalMemory = 96 << 20, kLocalMemoryOfPixel = 40;
+
+// Places of meshes of up to 120,000 triangles, with budgets up to 4 MB: what their rays have met, and the mesh.
+constexpr std::uint64_t kPlacesMemory = 64 << 20, kPlacesMemoryOfByte = 200, kMeshMemoryOfByte = 32;
 
 class LocalConversion : public Conversion {
 public:
@@ -152,20 +156,9 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
     local.normals = scene_.read(note);
     local.normals_text = scene_text();
     if (places_) {
-        // A mesh may be wound either way, and rooms are seen from inside.
-        for (std::size_t i = 0, count = local.normals.size(); i < count; ++i) {
-            const builder::SceneNormal n = local.normals[i];
-            local.normals.push_back({{-n.normal[0], -n.normal[1], -n.normal[2]}, n.weight});
-        }
+        local.normals = both_sides(std::move(local.normals));
         if (volume_) local.normals.clear(); // what hangs in the air has any
-        input::Triangles triangles;
-        for (const std::string& path : scene_.paths) {
-            const input::Triangles own = input::read_triangles(path, scene_.input().up);
-            note(path + ": places on " + std::to_string(own.count()) + " triangles");
-            triangles.corners.insert(triangles.corners.end(), own.corners.begin(), own.corners.end());
-        }
-        local.places =
-            places_on(std::make_shared<const input::MeshSurface>(std::move(triangles)), scene_.input().up, volume_);
+        local.places = places_on(read_surface(scene_, note), scene_.input().up, volume_);
     }
     return local;
 }
@@ -218,7 +211,15 @@ std::string summary_of(const builder::Local& result) {
 
 std::uint64_t LocalConversion::memory() const {
     const std::uint64_t pixels = input::image_pixels(source);
-    return pixels > 0 ? kLocalMemory + pixels * kLocalMemoryOfPixel : 0;
+    if (pixels == 0) return 0;
+    const std::uint64_t alone = kLocalMemory + pixels * kLocalMemoryOfPixel;
+    if (!places_) return alone;
+    std::error_code error; // a mesh that is not there is told of when it is read
+    std::uint64_t places = kPlacesMemory + kPlacesMemoryOfByte * local_.goal.budget;
+    for (const std::string& path : scene_.paths)
+        if (const std::uintmax_t mesh = std::filesystem::file_size(path, error); !error)
+            places += kMeshMemoryOfByte * mesh;
+    return alone + places;
 }
 
 Converted LocalConversion::convert(const Listener& listener) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # pictures.sh DATA [NAME...]: the pictures of README.md and of the pages, into docs/figures. DATA holds probes/ and brdfs/.
-# Names: noise local_file brdf render sweep plot; all of them without. ACDF names the program (default:
+# Names: noise local_file brdf render sweep plot, which are all of them without; and places, which needs the files that
+# places.sh leaves in RESULTS (default: build/places). ACDF names the program (default:
 # build/release/tools/acdf). Needs oiiotool, jq and, for `sweep`, chromium; tools/packages.txt lists them.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -8,6 +9,7 @@ data=$(cd "${1:?usage: docs/make/pictures.sh DATA [NAME...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 figures=$root/docs/figures
+results=${RESULTS:-$root/build/places}
 work=$(mktemp -d)
 trap 'rm -rf -- "$work"' EXIT
 
@@ -89,6 +91,38 @@ plot() {
         "$acdf" plot "$work/venice_sunset.acdf" -o "$work/$size.png" --width 512 --range 1e-3:30 --force --quiet
     done
     side_by_side plot "$work"/{4KiB,64KiB}.png
+}
+
+# equal_time SCENE SAMPLER...: the first sampler draws 16 samples a pixel, the others as many as they can in its time; what
+# they make anew for a picture takes some of it. A sampler is TEXT=NAME.
+equal_time() {
+    local scene=$1 options=() shown=() one points made drawn budget='' i=0 samples
+    shift
+    local common=(render --scene "$results/$scene.json" --data "$data" --size 240x180 --sequence independent --no-reference --seeds 2
+                  --quiet --force)
+    for one in "$@"; do options+=(--sampler "${one%=*}"); done
+    "$acdf" "${common[@]}" --samples 16 -o "$work/timed" "${options[@]}" > /dev/null
+    points=$(jq .points "$work/timed/render.json")
+    for one in "$@"; do
+        made=$(jq "1e9 * (.samplers[$i].making_seconds // 0) / $points" "$work/timed/render.json") # ns a pixel
+        drawn=$(jq ".samplers[$i].nanoseconds.value - $made" "$work/timed/render.json")
+        budget=${budget:-$drawn}
+        samples=$(awk -v b="$budget" -v m="$made" -v d="$drawn" 'BEGIN { s = int(16 * (b - m) / d + 0.5); print s < 2 ? 2 : s }')
+        "$acdf" "${common[@]}" --samples "$samples" --no-timing -o "$work/lit-$i" --sampler "${one%=*}" > /dev/null
+        panel "$(ls "$work/lit-$i"/*.png | grep -v -e reference -e -variance -e -above)" "$work/panel-$i.png" "${one##*=}" \
+            "$samples samples, variance $(printf %.3g "$(jq '.samplers[0].relative_variance.value' "$work/lit-$i/render.json")")"
+        shown+=("$work/panel-$i.png")
+        i=$((i + 1))
+    done
+    side_by_side "places-$scene" "${shown[@]}"
+}
+
+# A room at equal time, and the cells of its places.
+places() {
+    "$acdf" plot "$results/room-places.acdf" --scene "$results/room.obj" --from=-2.6,-3.4,1.9 --to 1.2,2,0.6 --force --quiet \
+        -o "$figures/places-cells.png"
+    equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility:32x16=visibility \
+        "file:$results/room-places.acdf=places:4MB"
 }
 
 pictures=("$@")

@@ -12,7 +12,7 @@ import sys
 
 class Mesh:
     def __init__(self):
-        self.points, self.faces = [], []
+        self.points, self.faces, self.portals = [], [], []
 
     def face(self, *points):
         first = len(self.points) + 1
@@ -20,13 +20,18 @@ class Mesh:
         self.faces.append(range(first, first + len(points)))
 
     def grid(self, origin, u, v, steps_u, steps_v, holes=()):
-        """A parallelogram of quads, without those whose middle lies in a hole (low u, low v, high u, high v; 0 to 1)."""
+        """A parallelogram of quads without those in holes (low u, low v, high u, high v, in quads).
+
+        Holes are portals: light comes from the side that u x v points to.
+        """
         def at(a, b):
             return tuple(o + a / steps_u * x + b / steps_v * y for o, x, y in zip(origin, u, v))
+        for h in holes:
+            self.portals.append({"corner": at(h[0], h[1]), "across": [(h[2] - h[0]) / steps_u * x for x in u],
+                                 "up": [(h[3] - h[1]) / steps_v * y for y in v]})
         for i in range(steps_u):
             for k in range(steps_v):
-                a, b = (i + 0.5) / steps_u, (k + 0.5) / steps_v
-                if not any(h[0] < a < h[2] and h[1] < b < h[3] for h in holes):
+                if not any(h[0] <= i < h[2] and h[1] <= k < h[3] for h in holes):
                     self.face(at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1))
 
     def box(self, low, high, steps=4):
@@ -60,10 +65,10 @@ def room():
     mesh = Mesh()
     mesh.grid((-3, -4, 0), (6, 0, 0), (0, 8, 0), 24, 32)
     mesh.grid((-3, -4, 3), (0, 8, 0), (6, 0, 0), 32, 24)
-    mesh.grid((3, -4, 0), (0, 8, 0), (0, 0, 3), 40, 30, [(0.15, 0.3, 0.35, 0.8), (0.6, 0.3, 0.85, 0.8)])
+    mesh.grid((3, -4, 0), (0, 8, 0), (0, 0, 3), 40, 30, [(6, 9, 14, 24), (24, 9, 34, 24)])
     mesh.grid((-3, -4, 0), (0, 0, 3), (0, 8, 0), 12, 32)
     mesh.grid((-3, 4, 0), (0, 0, 3), (6, 0, 0), 12, 24)
-    mesh.grid((-3, -4, 0), (6, 0, 0), (0, 0, 3), 30, 30, [(0.4, 0.0, 0.55, 0.7)])
+    mesh.grid((-3, -4, 0), (6, 0, 0), (0, 0, 3), 30, 30, [(12, 0, 16, 21)])
     mesh.box((-1.2, -0.6, 0), (-0.2, 1.0, 0.75))
     mesh.ellipsoid((1.0, 1.8, 0.5), (0.5, 0.5, 0.5), 16)
     return mesh, {"from": [-2.6, -3.4, 1.9], "to": [1.2, 2.0, 0.6], "fov": 62}, "probes/venice_sunset_1k.hdr"
@@ -119,6 +124,8 @@ def main():
                  "light": {"probe": probe},
                  "objects": [{"mesh": {"file": str(folder / f"{name}.obj")}, "brdf": "lambert:albedo=0.6"}],
                  "samples": 16, "samplers": ["local:1MB", "places:4MB", "full-cdf", "cosine", "mis(local:1MB,cosine)"]}
+        if mesh.portals:
+            scene["portals"] = mesh.portals
         (folder / f"{name}.json").write_text(json.dumps(scene, indent=1) + "\n")
         print(name, sum(len(face) - 2 for face in mesh.faces), "triangles")
 

@@ -16,7 +16,7 @@ cp "$root/tools/render/scenes/hidden-grace.json" "$results"
 
 table=$results/table.md
 {
-    echo "| scene | file | bytes | relative variance | less than local | all points, standard errors | each point | beyond 4 | lost |"
+    echo "| scene | sampler | bytes | relative variance | less than local | all points, standard errors | each point | beyond 4 | lost |"
     echo "|---|---|---|---|---|---|---|---|---|"
 } > "$table"
 for scene in $scenes; do
@@ -25,7 +25,10 @@ for scene in $scenes; do
         file=$results/$scene-$name.acdf
         [ -e "$file" ] || "$bench" make "$results/$scene.json" "$data" "$name" "$bytes" "$file"
     done
-    "$bench" measure "$results/$scene.json" "$data" "${POINTS:-1000}" "$results/$scene-local.acdf" "$results/$scene-places.acdf" |
-        sed "s/^/| $scene /" >> "$table"
+    local=file:$results/$scene-local.acdf places=file:$results/$scene-places.acdf
+    samplers=("$local" "$places" "mis($local,cosine)" tiles:32x16 visibility:32x16)
+    grep -q '"portals"' "$results/$scene.json" && samplers+=(portals portals:uniform "mis(portals,cosine)")
+    "$bench" measure "$results/$scene.json" "$data" "${POINTS:-1000}" "${samplers[@]}" |
+        sed "s/^/| $scene /; s|$local|local:1MB|; s|$places|places:4MB|" >> "$table"
 done
 "$root/docs/make/put_table.sh" places < "$table"

@@ -32,6 +32,12 @@ public:
     virtual float recommended_share() const { return 1.0f; }
 };
 
+/// What a sampler has to make anew for each picture, beside what it does at its points.
+struct Making {
+    double seconds = 0.0; ///< of processor time
+    std::uint64_t shadow_rays = 0;
+};
+
 /// Tables that are built once, for all threads; must outlive the PointSamplers that it makes.
 class LightSampler {
 public:
@@ -40,6 +46,7 @@ public:
     virtual std::unique_ptr<PointSampler> point_sampler() const = 0;
     /// Memory that sampling reads.
     virtual std::uint64_t bytes() const = 0;
+    virtual Making making() const { return {}; }
 };
 
 } // namespace acdf::measure

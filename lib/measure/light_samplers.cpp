@@ -71,15 +71,16 @@ private:
 struct LocalFile {
     const File& file;
     LocalEnvironmentView view{file.local()};
-    explicit LocalFile(const File& f) : file(f) {}
+    bool places;
+    LocalFile(const File& f, bool with_places) : file(f), places(with_places && view.has_places()) {}
     std::uint64_t bytes() const { return file.size(); }
 };
 
 class LocalPoint final : public PointSampler {
 public:
-    explicit LocalPoint(const LocalFile& file) : view_(file.view), point_() {}
+    explicit LocalPoint(const LocalFile& file) : view_(file.view), places_(file.places), point_() {}
     void move_to(const ShadingPoint& point) override {
-        point_ = view_.has_places() ? view_.at(point.position, point.n) : view_.at(point.n);
+        point_ = places_ ? view_.at(point.position, point.n) : view_.at(point.n);
         std::copy_n(point.n, 3, normal_);
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return view_.sample(point_, u0, u1); }
@@ -88,6 +89,7 @@ public:
 
 private:
     LocalEnvironmentView view_;
+    bool places_;
     AcdfLocalPoint point_;
     float normal_[3] = {0.0f, 0.0f, 1.0f};
 };
@@ -237,9 +239,14 @@ LightSamplerPtr tabulated_brdf_sampler(const TabulatedBrdf& table) {
 LightSamplerPtr file_sampler(const File& file) {
     if (file.kind() == ACDF_KIND_ENVIRONMENT)
         return std::make_unique<MovedToPoints<EnvironmentFile, EnvironmentPoint>>(file);
-    if (file.kind() == ACDF_KIND_LOCAL) return std::make_unique<MovedToPoints<LocalFile, LocalPoint>>(file);
+    if (file.kind() == ACDF_KIND_LOCAL) return std::make_unique<MovedToPoints<LocalFile, LocalPoint>>(file, true);
     if (file.kind() == ACDF_KIND_BRDF) return std::make_unique<MovedToPoints<BrdfFile, BrdfFilePoint>>(file);
     throw std::invalid_argument("a table does not say what light it samples");
+}
+
+LightSamplerPtr normals_alone_sampler(const File& file) {
+    if (file.kind() != ACDF_KIND_LOCAL) throw std::invalid_argument("is no local environment");
+    return std::make_unique<MovedToPoints<LocalFile, LocalPoint>>(file, false);
 }
 
 } // namespace acdf::measure

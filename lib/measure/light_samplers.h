@@ -14,9 +14,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace acdf::measure {
 
+class ScenePoint;
 using LightSamplerPtr = std::unique_ptr<LightSampler>;
 
 // ---- of the light ----
@@ -36,6 +38,11 @@ LightSamplerPtr hierarchical_sampler(const compress::Target& target);
 /// sampler of the surface; biased on its own.
 LightSamplerPtr compensated_sampler(const compress::Target& target, double s = 1.0);
 
+/// TilingOnTheFly with the visibility of its tiles at cache points (VisibilityCache), made for `points`; its
+/// making() is not 0.
+LightSamplerPtr visibility_sampler(const compress::Target& target, std::uint32_t columns, std::uint32_t rows,
+                                   const std::vector<ScenePoint>& points);
+
 /// IdealRow: light x cosine on all texels, made anew at each point; with `shares` > 0 filled up for as many samples
 /// of ours for one of the cosine.
 LightSamplerPtr ideal_sampler(const compress::Target& target, double shares = 0.0);
@@ -54,5 +61,7 @@ LightSamplerPtr tabulated_brdf_sampler(const TabulatedBrdf& table);
 /// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is the file's
 /// size. BRDFs are turned to the surface's frame (surface_frame); views below the surface draw nothing.
 LightSamplerPtr file_sampler(const File& file);
+/// A local environment by normals alone, also where it tells places apart.
+LightSamplerPtr normals_alone_sampler(const File& file);
 
 } // namespace acdf::measure

@@ -1,24 +1,11 @@
 #include "measure/render_time.h"
 
+#include "measure/stopwatch.h"
+
 #include <algorithm>
-#include <ctime>
 
 namespace acdf::measure {
 namespace {
-
-/// Processor time of this thread: what else runs on the machine does not count, but for the caches it takes.
-class Stopwatch {
-public:
-    double nanoseconds() const { return now() - begin_; }
-
-private:
-    static double now() {
-        timespec time{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-        return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
-    }
-    double begin_ = now();
-};
 
 /// One estimator at work on the same points over and over, as a renderer's thread is.
 class Runner {

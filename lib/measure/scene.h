@@ -72,11 +72,18 @@ struct Camera {
     Ray ray(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const;
 };
 
+/// A rectangle that light comes through, told for samplers of portals alone: nothing is drawn there.
+struct Portal {
+    Vec3 corner{}, across{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}; ///< two sides at right angles; light comes from the
+                                                             ///< side that across x up points to
+};
+
 /// Objects do not light each other: light comes from outside, and reaches what no object hides.
 struct Geometry {
     std::vector<Object> objects;
     /// Its meshes were turned from y up: files are asked for positions in their coordinates, (y, z, x) of these.
     bool turned = false;
+    std::vector<Portal> portals{};
 
     /// What the camera sees along a ray.
     std::optional<Hit> trace(const Ray& ray) const;

@@ -88,13 +88,14 @@ void TilingOnTheFly::largest_cosines(const float n[3], double* across, double* b
     }
 }
 
-void TilingOnTheFly::at(const float n[3], Point& point) const {
+void TilingOnTheFly::at(const float n[3], Point& point, const float* factors) const {
     point.cumulative.resize(tiles() + 1);
     point.across.resize(2 * (columns_.at.size() - 1));
     largest_cosines(n, point.across.data(), point.cumulative.data() + 1);
     point.cumulative[0] = 0.0;
     for (std::size_t t = 0; t < tiles(); ++t)
-        point.cumulative[t + 1] = point.cumulative[t] + point.cumulative[t + 1] * flux_[t];
+        point.cumulative[t + 1] =
+            point.cumulative[t] + point.cumulative[t + 1] * flux_[t] * (factors ? double{factors[t]} : 1.0);
 }
 
 TilingOnTheFly::Point TilingOnTheFly::at(const float n[3]) const {
@@ -113,11 +114,16 @@ AcdfDirectionSample TilingOnTheFly::sample(const Point& point, double u0, double
         static_cast<std::size_t>(std::upper_bound(sums.begin() + 1, sums.end(), scaled) - (sums.begin() + 1));
     const double weight = sums[t + 1] - sums[t];
     const double within = std::min((scaled - sums[t]) / weight, 1.0 - 0x1p-24);
-    FullCdf::Draw draw = tables_[t].sample(static_cast<float>(u0), static_cast<float>(within));
+    AcdfDirectionSample out = sample_tile(t, u0, within);
+    out.pdf = static_cast<float>(double{out.pdf} * (weight / total));
+    return out;
+}
+
+AcdfDirectionSample TilingOnTheFly::sample_tile(std::size_t tile, double u0, double u1) const {
+    FullCdf::Draw draw = tables_[tile].sample(static_cast<float>(u0), static_cast<float>(u1));
     const std::size_t columns = columns_.at.size() - 1;
-    draw.column += columns_.at[t % columns];
-    draw.row += rows_.at[t / columns];
-    draw.pdf *= weight / total;
+    draw.column += columns_.at[tile % columns];
+    draw.row += rows_.at[tile / columns];
     return place_draw(target_.columns, target_.rows, draw);
 }
 

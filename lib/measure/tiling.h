@@ -29,8 +29,11 @@ public:
         std::vector<double> across;     ///< for building
     };
     Point at(const float n[3]) const;
-    /// The same into memory that is there already.
-    void at(const float n[3], Point& point) const;
+    /// The same into memory that is there already. `factors`: of the tiles' weights, one each; null: 1.
+    void at(const float n[3], Point& point, const float* factors = nullptr) const;
+    std::size_t tiles() const { return tables_.size(); }
+    /// A direction of one tile by its light, pdf within the tile; u0 and u1 in [0, 1), rounded to float below 1.
+    AcdfDirectionSample sample_tile(std::size_t tile, double u0, double u1) const;
 
     /// u0 and u1 in [0, 1). Where nothing is lit above the horizon, any tile's direction with pdf 0.
     AcdfDirectionSample sample(const Point& point, double u0, double u1) const;
@@ -55,8 +58,6 @@ private:
     static Borders borders(std::uint32_t texels, std::uint32_t tiles, bool azimuth);
     /// `bound`: one a tile; `across`: room for two numbers a column of tiles.
     void largest_cosines(const float n[3], double* across, double* bound) const;
-    std::size_t tiles() const { return tables_.size(); }
-
     const compress::Target& target_;
     Borders columns_, rows_;
     std::vector<FullCdf> tables_;

@@ -1,14 +1,18 @@
 // Files of places at the points that a camera sees, without the noise of pictures (docs/places.md):
 //
 //   bench_places make SCENE DATA local|places BYTES OUT    a file as `acdf render` makes it for the scene
-//   bench_places measure SCENE DATA POINTS FILE...         rows of a table, the first file is what others are
-//   compared with
+//   bench_places measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are compared
+//                                                          with; samplers as of acdf render: file:/A/FILE, portals,
+//                                                          mis(A,B)
+//   bench_places cost SCENE DATA POINTS FILE...            nanoseconds of a draw
 //
 // Variances are summed over all texels, with a shadow ray to the middle of each. The same sums are what samples are
 // held to: the mean of those of all points, and each point's own, in standard errors.
 #include "build/builder/sources.h"
+#include "measure/point_sums.h"
 #include "measure/surface_points.h"
 #include "tools/render/run.h"
+#include "tools/render/sampler_build.h"
 
 #include <acdf/builder.h>
 #include <acdf/reader.h>
@@ -30,9 +34,8 @@ namespace {
 
 using namespace acdf;
 using measure::ScenePoint;
-using measure::Vec3;
 
-constexpr int kSamples = 256; ///< at each point
+constexpr std::uint32_t kSamples = 256; ///< at each point
 
 std::string contents(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -85,78 +88,51 @@ AcdfLocalPoint at(const File& file, const float position[3], const float normal[
     return view.has_places() ? view.at(position, normal) : view.at(normal);
 }
 
-struct Texel {
-    Vec3 direction;
-    float rounded[3];
-    double solid_angle;
-};
-Texel texel(const measure::ProbeLight& light, std::uint32_t column, std::uint32_t row) {
-    const double above = acdf_row_z(row, light.rows), below = acdf_row_z(row + 1, light.rows);
-    const double z = 0.5 * (above + below), radius = std::sqrt((1.0 - z) * (1.0 + z));
-    double sine, cosine;
-    acdf_sincospi(1.0 - 2.0 * (column + 0.5) / light.columns, &sine, &cosine);
-    Texel out{{radius * cosine, radius * sine, z}, {}, (above - below) * 2.0 * ACDF_PI / light.columns};
-    for (std::size_t k = 0; k < 3; ++k) out.rounded[k] = static_cast<float>(out.direction[k]);
-    return out;
-}
-
-/// What is integrated, told for the middle of a texel.
-double value(const ScenePoint& point, const measure::ProbeLight& light, std::uint32_t column, std::uint32_t row,
-             const Texel& t) {
-    measure::Rgb out = point.reflected(t.direction);
-    const measure::Rgb radiance = light.texel(column, row);
-    for (std::size_t k = 0; k < 3; ++k) out[k] *= radiance[k];
-    const double f = measure::luminance(out);
-    return f > 0.0 && !point.hidden(t.direction) ? f : 0.0;
-}
-
-/// Of one point.
-struct Sums {
-    double mean = 0.0;
-    std::vector<double> square, deviation; ///< one a file; deviation: of the mean of samples
-    std::vector<int> lost;                 ///< texels with light that are never drawn
+/// What is measured.
+struct Measured {
+    tools::SamplerSpec spec;
+    measure::SamplerParts parts;
+    tools::BuiltSampler built;
 };
 
-Sums sums_at(const ScenePoint& point, const measure::ProbeLight& light, const std::vector<File>& files,
-             std::uint64_t seed) {
-    Sums out;
-    out.square.assign(files.size(), 0.0);
-    out.deviation.assign(files.size(), 0.0);
-    out.lost.assign(files.size(), 0);
-    std::vector<AcdfLocalPoint> prepared;
-    for (const File& file : files) prepared.push_back(at(file, point.shading().position, point.shading().n));
-    for (std::uint32_t row = 0; row < light.rows; ++row)
-        for (std::uint32_t column = 0; column < light.columns; ++column) {
-            const Texel t = texel(light, column, row);
-            const double f = value(point, light, column, row, t);
-            if (!(f > 0.0)) continue;
-            out.mean += f * t.solid_angle;
-            for (std::size_t k = 0; k < files.size(); ++k) {
-                const double p = double{files[k].local().pdf(prepared[k], t.rounded)};
-                out.lost[k] += !(p > 0.0);
-                if (p > 0.0) out.square[k] += f * f / p * t.solid_angle;
-            }
-        }
-    std::mt19937_64 random(seed);
-    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-    for (std::size_t k = 0; k < files.size(); ++k) {
-        for (int i = 0; i < kSamples; ++i) {
-            const double u = uniform(), v = uniform();
-            const DirectionSample s = files[k].local().sample(prepared[k], u, v);
-            std::uint32_t square[2];
-            double position;
-            if (!(s.pdf > 0.0f) || !acdf_sphere_square(light.columns, light.rows, s.direction, square, &position))
-                continue;
-            out.deviation[k] +=
-                value(point, light, square[0], square[1], texel(light, square[0], square[1])) / double{s.pdf};
-        }
-        out.deviation[k] = out.deviation[k] / kSamples - out.mean;
+Measured measured(const std::string& text, tools::SamplerBuilder& builder, std::size_t materials) {
+    using tools::SamplerKind;
+    Measured out;
+    out.spec = tools::parse_sampler(text);
+    if (out.spec.kind == SamplerKind::ris || out.spec.kind == SamplerKind::strata || out.spec.power)
+        throw std::runtime_error(text + ": its variance is not summed here");
+    out.built = builder.build(out.spec, kSamples);
+    const bool several = out.spec.kind == SamplerKind::mis;
+    const auto specs = several ? out.spec.parts : std::vector<tools::SamplerSpec>{out.spec};
+    const auto counts = several ? tools::divided(kSamples, out.spec) : std::vector<std::uint32_t>{kSamples};
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+        measure::SamplerParts::Part part{{}, counts[i]};
+        for (std::size_t m = 0; m < materials; ++m)
+            part.of_material.push_back(&builder.single(specs[i], m, counts[i]));
+        out.parts.parts.push_back(std::move(part));
     }
     return out;
 }
 
-/// Directions with light that a file never draws, of 10^5 of a point of the scene, a normal and a direction each.
-int support_violations(const tools::LoadedScene& scene, const File& file) {
+/// Of one point: what is summed, and how far estimates of kSamples samples are off.
+struct Sums {
+    measure::PointSums exact;
+    std::vector<double> deviation;
+};
+Sums sums_of(const ScenePoint& point, const measure::ProbeLight& light, const std::vector<Measured>& samplers,
+             std::uint64_t seed) {
+    std::vector<measure::PartsAtPoint> at;
+    for (const Measured& sampler : samplers) at.emplace_back(sampler.parts, point);
+    Sums out{measure::sums_at(point, light, at), {}};
+    std::mt19937_64 random(seed);
+    for (const measure::PartsAtPoint& one : at)
+        out.deviation.push_back(one.estimate(point, light, random) - out.exact.mean);
+    return out;
+}
+
+/// Directions with light that a sampler never draws, of 10^5 of a point of the scene, a normal and a direction
+/// each.
+int support_violations(const tools::LoadedScene& scene, const Measured& sampler) {
     const compress::PlaceScene places = measure::place_scene(scene.scene.geometry);
     std::mt19937_64 random(11);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -166,6 +142,9 @@ int support_violations(const tools::LoadedScene& scene, const File& file) {
         acdf_sincospi(2.0 * uniform() - 1.0, &sine, &cosine);
         return std::array<float, 3>{float(r * cosine), float(r * sine), float(z)};
     };
+    std::vector<std::unique_ptr<measure::PointSampler>> parts;
+    for (const measure::SamplerParts::Part& part : sampler.parts.parts)
+        parts.push_back(part.of_material[0]->point_sampler());
     int violations = 0, count = 0;
     for (std::uint64_t i = 0; count < 100000 && i < 10000000; ++i) {
         compress::PlacePoint point;
@@ -176,8 +155,16 @@ int support_violations(const tools::LoadedScene& scene, const File& file) {
         const bool lit = cosine > 1e-3 && measure::luminance(scene.scene.light.radiance(d.data())) > 0.0;
         if (!lit) continue;
         ++count;
-        const AcdfLocalPoint prepared = at(file, point.position.data(), n.data());
-        violations += !(file.local().pdf(prepared, d.data()) > 0.0f);
+        measure::ShadingPoint from;
+        std::copy_n(n.begin(), 3, from.n);
+        std::copy_n(n.begin(), 3, from.wo);
+        std::copy_n(point.position.begin(), 3, from.position);
+        bool drawn = false;
+        for (const auto& part : parts) {
+            part->move_to(from);
+            drawn = drawn || part->pdf(d.data()) > 0.0f;
+        }
+        violations += !drawn;
     }
     return violations;
 }
@@ -228,36 +215,61 @@ int time_files(const tools::LoadedScene& scene, std::size_t count, const Files& 
     return 0;
 }
 
-int measure_files(const tools::LoadedScene& scene, std::size_t count, const Files& given) {
-    const std::vector<std::string>& bytes = given.bytes;
-    const std::vector<File>& files = given.files;
+std::string bytes_text(const Measured& one) {
+    std::string out = std::to_string(one.built.bytes);
+    if (one.built.making.seconds > 0.0) {
+        char text[64];
+        std::snprintf(text, sizeof text, ", made in %.2f s", one.built.making.seconds);
+        out += text;
+    }
+    return out;
+}
+
+void print_row(const tools::LoadedScene& scene, const std::vector<Sums>& sums, const Measured& one, std::size_t k,
+               double& baseline) {
+    const double count = double(sums.size());
+    double mean = 0.0;
+    for (const Sums& point : sums) mean += point.exact.mean / count;
+    double noise = 0.0, error = 0.0, variance = 0.0, z_square = 0.0;
+    int lost = 0, far = 0;
+    for (const Sums& point : sums) {
+        const double own = point.exact.variance[k] / kSamples;
+        noise += own * kSamples / (point.exact.mean * point.exact.mean + 0.01 * mean * mean) / count;
+        error += point.deviation[k];
+        variance += own;
+        lost += static_cast<int>(point.exact.lost[k]);
+        if (!(own > 0.0)) continue;
+        z_square += point.deviation[k] * point.deviation[k] / own / count;
+        far += std::fabs(point.deviation[k]) > 4.0 * std::sqrt(own);
+    }
+    if (k == 0) baseline = noise;
+    // Rivals may have to do with what the camera sees alone.
+    if (one.built.ours) lost += support_violations(scene, one);
+    std::printf("| `%s` | %s | %.3g | %.3g |", one.spec.text.c_str(), bytes_text(one).c_str(), noise,
+                baseline / noise);
+    // The border of a portal cuts texels, of which a sum knows the middle alone: samples cannot be held to it.
+    if (one.spec.text.find("portals") != std::string::npos) std::printf(" | | | |\n");
+    else std::printf(" %.2f | %.2f | %d | %d |\n", error / std::sqrt(variance), std::sqrt(z_square), far, lost);
+}
+
+int measure_samplers(const tools::LoadedScene& scene, std::size_t count, const std::vector<std::string>& texts) {
     const std::vector<ScenePoint>& seen = scene.points.points;
     count = std::min(count, seen.size());
+    builder::TargetRows rows(builder::TargetOptions{});
+    rows.begin(scene.probe.width, scene.probe.height);
+    rows.take(0, scene.probe.height, scene.probe.rgb.data());
+    const builder::Target target = rows.finish();
+    std::vector<const input::Brdf*> brdfs;
+    for (const auto& brdf : scene.brdfs) brdfs.push_back(brdf.get());
+    tools::SamplerBuilder builder(target, brdfs, ".", {}, &scene.scene.geometry, &seen);
+    std::vector<Measured> samplers;
+    for (const std::string& text : texts) samplers.push_back(measured(text, builder, brdfs.size()));
     std::vector<Sums> sums(count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        sums[i] = sums_at(seen[i * seen.size() / count], scene.scene.light, files, i);
+        sums[i] = sums_of(seen[i * seen.size() / count], scene.scene.light, samplers, i);
     });
-    double mean = 0.0, baseline = 0.0;
-    for (const Sums& point : sums) mean += point.mean / double(count);
-    for (std::size_t k = 0; k < files.size(); ++k) {
-        double noise = 0.0, error = 0.0, variance = 0.0, z_square = 0.0;
-        int lost = 0, far = 0;
-        for (const Sums& point : sums) {
-            const double own = std::max(point.square[k] - point.mean * point.mean, 0.0) / kSamples;
-            noise += own * kSamples / (point.mean * point.mean + 0.01 * mean * mean) / double(count);
-            error += point.deviation[k];
-            variance += own;
-            lost += point.lost[k];
-            if (!(own > 0.0)) continue;
-            z_square += point.deviation[k] * point.deviation[k] / own / double(count);
-            far += std::fabs(point.deviation[k]) > 4.0 * std::sqrt(own);
-        }
-        if (k == 0) baseline = noise;
-        std::printf("| `%s` | %zu | %.3g | %.3g | %.2f | %.2f | %d | %d |\n",
-                    files[k].local().has_places() ? "places" : "local", bytes[k].size(), noise, baseline / noise,
-                    error / std::sqrt(variance), std::sqrt(z_square), far,
-                    lost + support_violations(scene, files[k]));
-    }
+    double baseline = 0.0;
+    for (std::size_t k = 0; k < samplers.size(); ++k) print_row(scene, sums, samplers[k], k, baseline);
     return 0;
 }
 
@@ -268,14 +280,17 @@ int main(int argc, char** argv) {
         const std::string what = argc > 1 ? argv[1] : "";
         if (what == "make" && argc == 7)
             return make(*scene_of(argv[2], argv[3]), argv[4] == std::string("places"), argv[5], argv[6]);
-        if ((what == "measure" || what == "cost") && argc > 5)
-            return (what == "cost" ? time_files : measure_files)(
-                *scene_of(argv[2], argv[3]), std::strtoull(argv[4], nullptr, 10), Files(argc - 5, argv + 5));
+        const std::size_t points = argc > 5 ? std::strtoull(argv[4], nullptr, 10) : 0;
+        if (what == "measure" && argc > 5)
+            return measure_samplers(*scene_of(argv[2], argv[3]), points, {argv + 5, argv + argc});
+        if (what == "cost" && argc > 5)
+            return time_files(*scene_of(argv[2], argv[3]), points, Files(argc - 5, argv + 5));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;
     }
     std::fprintf(stderr, "usage: bench_places make SCENE DATA local|places BYTES OUT\n"
-                         "       bench_places measure|cost SCENE DATA POINTS FILE...\n");
+                         "       bench_places measure SCENE DATA POINTS SAMPLER...\n"
+                         "       bench_places cost SCENE DATA POINTS FILE...\n");
     return 2;
 }

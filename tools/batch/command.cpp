@@ -57,6 +57,22 @@ void refuse(const std::vector<std::string>& errors) {
 
 // ---- what is asked for -----------------------------------------------------------------------------------
 
+/// With all that go with it wherever it counts: some options need others.
+void check_setting(const BatchSetting& setting, const std::vector<BatchSetting>& all) {
+    BatchDefaults together;
+    for (const BatchSetting& other : all)
+        if (other.kind == setting.kind && (other.pattern.empty() || other.pattern == setting.pattern))
+            together.settings.push_back({"", other.kind, other.option});
+    BatchJob job;
+    job.kind = setting.kind;
+    job.options = together.options(*setting.kind, "");
+    try {
+        const JobConversion checked(job, make_conversion);
+    } catch (const CLI::ParseError& error) {
+        throw CLI::ValidationError(std::string("--set ") + setting.kind->name, error.what());
+    }
+}
+
 BatchDefaults defaults_of(const BatchArguments& options) {
     BatchDefaults defaults;
     if (!options.kinds.empty()) defaults.probe_kinds.clear();
@@ -71,16 +87,8 @@ BatchDefaults defaults_of(const BatchArguments& options) {
         } catch (const std::invalid_argument& error) {
             throw CLI::ValidationError("--set", error.what());
         }
-        const BatchSetting& setting = defaults.settings.back();
-        BatchJob job;
-        job.kind = setting.kind;
-        job.options = {setting.option};
-        try {
-            const JobConversion checked(job, make_conversion);
-        } catch (const CLI::ParseError& error) {
-            throw CLI::ValidationError(std::string("--set ") + setting.kind->name, error.what());
-        }
     }
+    for (const BatchSetting& setting : defaults.settings) check_setting(setting, defaults.settings);
     return defaults;
 }
 

@@ -19,7 +19,8 @@ struct BatchJob {
     std::string output;      ///< below the output folder, normalized
     std::uint64_t bytes = 0; ///< of the source
 
-    double seconds() const { return kind->seconds + kind->seconds_each * double(bytes); }
+    /// To balance shards.
+    double seconds() const;
 };
 
 /// An option for some of the jobs.

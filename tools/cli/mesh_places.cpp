@@ -50,6 +50,24 @@ private:
 
 } // namespace
 
+std::vector<builder::SceneNormal> both_sides(std::vector<builder::SceneNormal> normals) {
+    for (std::size_t i = 0, count = normals.size(); i < count; ++i) {
+        const builder::SceneNormal n = normals[i];
+        normals.push_back({{-n.normal[0], -n.normal[1], -n.normal[2]}, n.weight});
+    }
+    return normals;
+}
+
+std::shared_ptr<const input::MeshSurface> read_surface(const SceneOption& scene, const Note& note) {
+    input::Triangles triangles;
+    for (const std::string& path : scene.paths) {
+        const input::Triangles own = input::read_triangles(path, scene.input().up);
+        note(path + ": places on " + std::to_string(own.count()) + " triangles");
+        triangles.corners.insert(triangles.corners.end(), own.corners.begin(), own.corners.end());
+    }
+    return std::make_shared<const input::MeshSurface>(std::move(triangles));
+}
+
 builder::Places places_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up, bool volume) {
     builder::Places out;
     const double lift = 1e-5 * surface->tree().size(); // floats are told: above what they were rounded to

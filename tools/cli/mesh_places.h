@@ -3,11 +3,13 @@
 
 #include "input/mesh_surface.h"
 #include "input/scene_normals.h"
+#include "tools/cli/scene_option.h"
 
 #include <acdf/builder.h>
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 namespace acdf::tools {
 
@@ -16,6 +18,12 @@ inline void turn_from_y_up(builder::Places& places) {
     constexpr float turned[3][4] = {{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}};
     for (int k = 0; k < 3; ++k) std::copy_n(turned[k], 4, places.transform[k]);
 }
+
+/// The normals of a mesh and their opposites: it may be wound either way, and rooms are seen from inside.
+std::vector<builder::SceneNormal> both_sides(std::vector<builder::SceneNormal> normals);
+
+/// All meshes of a scene as one; how many triangles each has is noted. Throws input::Error.
+std::shared_ptr<const input::MeshSurface> read_surface(const SceneOption& scene, const Note& note);
 
 /// Points on both sides of a mesh, told by their number, and what the mesh hides from them; `volume`: half of them
 /// in the air instead, all over its box, with normals all over the sphere. `up`: how it was turned when it was

@@ -2,6 +2,7 @@
 #include "build/brdf.h"
 #include "build/environment_accuracy.h"
 #include "measure/full_cdf.h"
+#include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -22,6 +23,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 
 namespace acdf::tools {
@@ -30,7 +32,9 @@ namespace {
 struct MeasureArguments {
     std::string file, source, other;
     input::ProbeOptions input;
-    std::uint32_t normals = 256, views = build::kMeasuredViews;
+    std::uint32_t normals = 256, views = build::kMeasuredViews, points = 64;
+    std::string mesh;
+    input::UpAxis up = input::UpAxis::z;
     const CLI::App* command = nullptr;
     bool rivals = false, json = false, quiet = false;
 };
@@ -102,10 +106,14 @@ void refuse_options_of_local_files(const MeasureArguments& options) {
         throw CLI::ValidationError(option, "is for files of local environments");
     };
     if (options.rivals) fail("--rivals");
-    if (options.command->get_option("--normals")->count() > 0) fail("--normals");
+    for (const char* option : {"--normals", "--scene"})
+        if (options.command->get_option(option)->count() > 0) fail(option);
 }
 
 void run(const MeasureArguments& options) {
+    for (const char* option : {"--scene-up", "--points"})
+        if (options.mesh.empty() && options.command->get_option(option)->count() > 0)
+            throw CLI::ValidationError(option, "is of the mesh given by --scene");
     const LoadedFile loaded = load_file(options.file);
     if (loaded.file.kind() != ACDF_KIND_TABLE && !options.other.empty())
         throw CLI::ValidationError("--with", "is for files of tables");
@@ -116,8 +124,9 @@ void run(const MeasureArguments& options) {
     case ACDF_KIND_BRDF:
         return measure_brdf(options.file, loaded.file, options.source, options.views, options.json, options.quiet);
     case ACDF_KIND_LOCAL:
-        return measure_local(loaded.file, {options.file, options.source, options.input, options.normals,
-                                           options.rivals, options.json, options.quiet});
+        return measure_local(loaded.file,
+                             {options.file, options.source, options.input, options.normals, options.mesh,
+                              options.up, options.points, options.rivals, options.json, options.quiet});
     default:
         break;
     }
@@ -167,6 +176,22 @@ void add_measure(CLI::App& program, int& exit_code) {
         .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")
         ->check(CLI::Range(1u, 1u << 20))
         ->option_text("N [256]")
+        ->group("Input");
+    command
+        .add_option(
+            "--scene", options->mesh,
+            "Of a file that tells places apart: the mesh (.obj, .ply) to look from, usually the one it was made "
+            "for; its variance there is told, beside that of its normals alone")
+        ->type_name("FILE")
+        ->group("Input");
+    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    command.add_option("--scene-up", options->up, "Which axis of the scene points up, as in acdf local")
+        ->transform(one_of(axes))
+        ->option_text("y|z [z]")
+        ->group("Input");
+    command.add_option("--points", options->points, "Points on both sides of the mesh to take the mean over")
+        ->check(CLI::Range(1u, 1u << 20))
+        ->option_text("N [64]")
         ->group("Input");
     command.add_option("--views", options->views, "Of a BRDF: random views to take the mean over")
         ->check(CLI::Range(1u, 1u << 20))

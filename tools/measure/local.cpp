@@ -6,17 +6,22 @@
 
 #include "build/cells.h"
 #include "build/local_accuracy.h"
+#include "measure/light_samplers.h"
 #include "measure/local_rivals.h"
+#include "measure/mesh_stage.h"
 #include "measure/tiling.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/probe_source.h"
+#include "tools/commands.h"
 
 #include <nlohmann/json.hpp>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <functional>
+#include <memory>
 
 namespace acdf::tools {
 namespace {
@@ -68,8 +73,59 @@ std::uint64_t count_cells(const File& file) {
     return cells;
 }
 
+/// Over points of a mesh that see any light.
+struct PlacesAccuracy {
+    std::size_t points = 0; ///< 0: not measured
+    double relative_variance = 0.0, worst = 0.0;
+    double normals_alone = 0.0; ///< of the same file, its places not told apart
+    std::uint64_t support_violations = 0;
+};
+
+/// The rivals and points of meshes see texels of a lat-long map: of the source itself, or of what it is resampled
+/// to.
+builder::Target latlong_target(const LocalMeasureOptions& options, const File& file, const ProbeTarget& source) {
+    if (!source.resampled && builder::grid_of(source.target).parameterization == ACDF_PARAM_LATLONG)
+        return source.target;
+    return probe_target(options.source, load_probe(options.source, options.input, true), stored_options(file));
+}
+
+PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& options,
+                              const compress::Target& target) {
+    auto surface = std::make_shared<const input::MeshSurface>(input::read_triangles(options.mesh, options.up));
+    const measure::MeshStage stage(std::move(surface), options.up == input::UpAxis::y, target, options.points);
+    const auto with = measure::file_sampler(file), without = measure::normals_alone_sampler(file);
+    const measure::StageVariances found = measure::variances_on(stage, {with.get(), without.get()});
+    PlacesAccuracy out;
+    out.points = found.of_points[0].size();
+    out.support_violations = found.lost[0];
+    if (out.points == 0) throw Failure(options.mesh + ": no point of it sees any light");
+    for (std::size_t i = 0; i < out.points; ++i) {
+        out.relative_variance += found.of_points[0][i] / double(out.points);
+        out.normals_alone += found.of_points[1][i] / double(out.points);
+        out.worst = std::max(out.worst, found.of_points[0][i]);
+    }
+    return out;
+}
+
+nlohmann::ordered_json places_json(const PlacesAccuracy& p) {
+    return {{"points", p.points},
+            {"relative_variance", p.relative_variance},
+            {"relative_variance_worst", p.worst},
+            {"relative_variance_normals_alone", p.normals_alone},
+            {"gain", p.normals_alone / p.relative_variance},
+            {"support_violations", p.support_violations}};
+}
+
+void print_places(const PlacesAccuracy& p) {
+    std::printf("  at %zu places of the scene, with what it hides\n", p.points);
+    std::printf("    relative variance    %.6g; %.6g at worst\n", p.relative_variance, p.worst);
+    std::printf("    by normals alone     %.6g   %.4g times as much\n", p.normals_alone,
+                p.normals_alone / p.relative_variance);
+    std::printf("    support violations   %" PRIu64 "\n", p.support_violations);
+}
+
 nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
-                              const std::vector<Rival>& rivals) {
+                              const std::vector<Rival>& rivals, const PlacesAccuracy& places) {
     nlohmann::ordered_json out = {
         {"file", options.file},
         {"source", options.source},
@@ -93,11 +149,12 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
     if (a.combined) out["combined"] = true; // of the file and its company
     for (const Rival& rival : rivals)
         out["rivals"][rival.key] = {{"relative_variance", rival.relative_variance}, {"bytes", rival.bytes}};
+    if (places.points > 0) out["places"] = places_json(places);
     return out;
 }
 
 void print_text(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
-                const std::vector<Rival>& rivals) {
+                const std::vector<Rival>& rivals, const PlacesAccuracy& places) {
     std::printf("%s against %s, %u random normals\n", printable(options.file).c_str(),
                 printable(options.source).c_str(), a.lit_normals);
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
@@ -119,28 +176,31 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
     for (const Rival& rival : rivals)
         std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", rival.text, rival.relative_variance,
                     rival.bytes);
-}
-
-/// The rivals draw texels of a lat-long map: of the source itself, or of what it is resampled to.
-builder::Target rival_target(const LocalMeasureOptions& options, const File& file, const ProbeTarget& source) {
-    if (!source.resampled && builder::grid_of(source.target).parameterization == ACDF_PARAM_LATLONG)
-        return source.target;
-    return probe_target(options.source, load_probe(options.source, options.input, true), stored_options(file));
+    if (places.points > 0) print_places(places);
 }
 
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
+    if (!options.mesh.empty() && !file.local().has_places())
+        throw Failure(options.file + ": tells no places apart; leave out --scene");
+    if (!options.mesh.empty() && file.company())
+        throw Failure(options.file + ": is made for a company; leave out --scene");
     const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
     const std::vector<build::Normal> normals = build::random_normals(options.normals);
     const build::LocalAccuracy accuracy =
         build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
-    const std::vector<Rival> rivals =
-        options.rivals ? rivals_of(builder::grid_of(rival_target(options, file, source)), normals)
-                       : std::vector<Rival>{};
-    if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals)).c_str(), stdout);
-    else print_text(file, options, accuracy, rivals);
-    require_support(options.file, file, options.source, source.probe.source_sha256, accuracy.support_violations);
+    std::vector<Rival> rivals;
+    PlacesAccuracy places;
+    if (options.rivals || !options.mesh.empty()) {
+        const builder::Target latlong = latlong_target(options, file, source);
+        if (options.rivals) rivals = rivals_of(builder::grid_of(latlong), normals);
+        if (!options.mesh.empty()) places = measure_places(file, options, builder::grid_of(latlong));
+    }
+    if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals, places)).c_str(), stdout);
+    else print_text(file, options, accuracy, rivals, places);
+    require_support(options.file, file, options.source, source.probe.source_sha256,
+                    accuracy.support_violations + places.support_violations);
 }
 
 } // namespace acdf::tools

@@ -8,6 +8,7 @@
 #include "tools/cli/progress.h"
 #include "tools/commands.h"
 #include "tools/plot/brdf.h"
+#include "tools/plot/cells.h"
 #include "tools/plot/colour.h"
 #include "tools/plot/hemisphere.h"
 #include "tools/plot/image.h"
@@ -20,7 +21,9 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <tuple>
 
 namespace acdf::tools {
 namespace {
@@ -156,8 +159,42 @@ std::vector<std::uint8_t> make_exr(const PlotArguments& options, const Plotted& 
                       {"acdf " ACDF_VERSION, "Density of " + joined(source.title) + ", sr^-1"});
 }
 
+/// The options that only a picture of cells has, and those that it has not.
+void check_mesh(const CLI::App& command, const PlotArguments& options) {
+    const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
+    if (options.mesh.empty())
+        for (const char* option : {"--scene-up", "--from", "--to"})
+            if (given(option)) throw CLI::ValidationError(option, "is of the mesh given by --scene");
+    if (!options.mesh.empty())
+        for (const char* option : {"--place", "--normal", "--view", "--projection", "--range", "--no-knots",
+                                   "--no-legend", "--probe-projection"})
+            if (given(option)) throw CLI::ValidationError(option, "is for a density, not for cells over a mesh");
+}
+
+std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
+    const LoadedFile stored = load_file(options.file);
+    if (stored.file.kind() != ACDF_KIND_LOCAL || !stored.file.local().has_places())
+        throw Failure(options.file + ": tells no places apart; leave out --scene");
+    CellsOptions cells;
+    cells.mesh = options.mesh;
+    cells.up = options.up;
+    if (!options.from.empty()) cells.from = {options.from[0], options.from[1], options.from[2]};
+    if (!options.to.empty()) cells.to = {options.to[0], options.to[1], options.to[2]};
+    if (options.width > 0) cells.width = options.width;
+    cells.height = cells.width * 3 / 4;
+    return encode_png(cells_picture(stored.file.local(), cells),
+                      {"acdf " ACDF_VERSION, "Cells of places, a colour each"});
+}
+
 void run(const PlotArguments& options) {
     const bool exr = is_exr(options.output);
+    if (!options.mesh.empty()) {
+        if (exr) throw CLI::ValidationError("--scene", "makes a .png: cells are no densities");
+        Output output(options.output, options.force, {options.file, options.mesh});
+        const std::vector<std::uint8_t> bytes = make_cells(options);
+        output.write(bytes.data(), bytes.size());
+        return output.commit();
+    }
     if (!options.range.empty() && !parse_range(options.range))
         throw CLI::ValidationError("--range", "needs two densities such as 1e-3:100, 0 < MIN < MAX");
     Output output(options.output, options.force, {options.file}); // refuses early, before the work
@@ -211,6 +248,29 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
         ->group("Picture");
 }
 
+void add_mesh_options(CLI::App& command, PlotArguments& options) {
+    command
+        .add_option("--scene", options.mesh,
+                    "For a file that tells places apart, the mesh (.obj, .ply) that it was made for: its cells are "
+                    "shown over it, not a density")
+        ->type_name("FILE")
+        ->group("Cells over a mesh");
+    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    command.add_option("--scene-up", options.up, "Which axis of the scene points up, as in acdf local")
+        ->transform(one_of(axes))
+        ->option_text("y|z [z]")
+        ->group("Cells over a mesh");
+    for (const auto& [name, target, help] :
+         {std::tuple{"--from", &options.from, "Where the camera is, in the coordinates of the mesh"},
+          std::tuple{"--to", &options.to, "Where it looks at"}})
+        command.add_option(name, *target, help)
+            ->expected(3)
+            ->delimiter(',')
+            ->type_name("")
+            ->option_text("X,Y,Z [all of the mesh is seen]")
+            ->group("Cells over a mesh");
+}
+
 } // namespace
 
 void add_plot(CLI::App& program, int& exit_code) {
@@ -244,6 +304,7 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->type_name("")
         ->option_text("X,Y,Z")
         ->group("Input");
+    add_mesh_options(command, *options);
     add_picture_options(command, *options);
     add_output(command, options->output, options->force,
                "The picture to write: .png, or .exr for the densities themselves as floats, for other programs")
@@ -258,9 +319,11 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "acdf plot local.acdf -o six.png\n"
                     "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
                     "acdf plot room.acdf -o floor.png --place 0.5,1,0 --normal 0,0,1\n"
+                    "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
                     "acdf plot nickel.acdf -o lobe.png --view 60\n"
                     "acdf plot sky.acdf -o sky.exr --width 4096"));
-    command.callback([options, &exit_code] {
+    command.callback([options, &command, &exit_code] {
+        check_mesh(command, *options);
         run(*options);
         exit_code = exit_done;
     });

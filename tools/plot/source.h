@@ -1,6 +1,7 @@
 // What `acdf plot` shows: a stored density, or that of a probe, and the words of its title.
 #pragma once
 
+#include "input/scene_normals.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/probe_options.h"
 #include "tools/plot/brdf.h"
@@ -21,6 +22,9 @@ enum class PlotProjection { automatic, latlong, angular, hemisphere };
 struct PlotArguments {
     std::string file, output, range, view;
     std::vector<float> normal, place;
+    std::string mesh; // the cells over it are shown, not a density
+    input::UpAxis up = input::UpAxis::z;
+    std::vector<double> from, to; // the camera
     input::ProbeOptions input;
     PlotProjection projection = PlotProjection::automatic;
     int width = 0; // 0: by the resolution

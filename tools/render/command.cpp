@@ -188,7 +188,8 @@ RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, s
         const float* n = point.shading().n;
         normals.push_back({{n[0], n[1], n[2]}, 1.0});
     }
-    SamplerBuilder builder(target, brdfs_of(scene), options.data, std::move(normals), &scene.scene.geometry);
+    SamplerBuilder builder(target, brdfs_of(scene), options.data, std::move(normals), &scene.scene.geometry,
+                           &scene.points.points);
     bool occluders = false;
     for (const measure::Object& object : scene.scene.geometry.objects) occluders |= !object.seen;
     std::vector<measure::ScenePoint> open;
@@ -298,7 +299,8 @@ void add_scene_options(CLI::App& command, RenderArguments& options) {
     command
         .add_option("--sampler", options.samplers,
                     "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
-                    "tiles:32x16, env:64KiB, local:1MB, brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
+                    "tiles:32x16, visibility:32x16, portals, portals:uniform, env:64KiB, local:1MB, places:4MB, "
+                    "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
                     "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
                     "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...)")
         ->option_text("TEXT ...")

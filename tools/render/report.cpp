@@ -48,6 +48,7 @@ ordered_json sampler_json(const Compared& one, std::uint32_t samples, bool timed
         out.erase("build_seconds");
         return out;
     }
+    if (one.making.seconds > 0.0) out["making_seconds"] = one.making.seconds; // a picture
     out["nanoseconds"] = interval_json(measure::mean_interval(one.nanoseconds));
     out["equal_time_gain"] = interval_json(one.equal_time);
     return out;

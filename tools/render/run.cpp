@@ -83,7 +83,10 @@ void time_all(Comparison& out, const std::vector<measure::ScenePoint>& points,
     time.numbers = options.render.numbers;
     auto times = measure::time_estimates(points, estimators, time);
     for (std::size_t i = 0; i < times.size(); ++i) {
-        for (double& time : times[i]) time += options.shadow_ray_ns * out.samplers[i].shadow_rays;
+        const measure::Making& making = out.samplers[i].making;
+        const double made = (1e9 * making.seconds + options.shadow_ray_ns * double(making.shadow_rays)) /
+                            static_cast<double>(points.size());
+        for (double& time : times[i]) time += options.shadow_ray_ns * out.samplers[i].shadow_rays + made;
         out.samplers[i].nanoseconds = std::move(times[i]);
     }
 }
@@ -188,6 +191,7 @@ Comparison compare(const measure::Scene& scene, const std::vector<measure::Scene
         one.ours = built[i].ours;
         one.bytes = built[i].bytes;
         one.build_seconds = built[i].build_seconds;
+        one.making = built[i].making;
         one.scales =
             options.render.numbers == measure::Numbers::independent && one.spec.kind != SamplerKind::strata;
         one.rendering = measure::render(points, built[i].of_material, one.spec.text, options.render);

@@ -54,7 +54,8 @@ struct Compared {
     measure::Interval relative_variance; ///< of the above
     double median = 0.0;                 ///< over points, not seeds
     bool scales = true;                  ///< n times the samples have an n-th of the variance
-    std::vector<double> nanoseconds;     ///< of an estimate; one a round
+    std::vector<double> nanoseconds;     ///< of an estimate, with its part of `making`; one a round
+    measure::Making making;              ///< of what has to be made anew for a picture
     std::vector<double> relative_variance_of_points;
     measure::Interval equal_samples{1.0, 1.0, 1.0};
     measure::Interval equal_time{1.0, 1.0, 1.0};

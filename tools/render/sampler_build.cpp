@@ -3,6 +3,7 @@
 #include "build/brdf.h"
 #include "measure/estimators.h"
 #include "measure/light_samplers.h"
+#include "measure/portals.h"
 #include "measure/product_rivals.h"
 #include "measure/product_samplers.h"
 #include "measure/product_warp.h"
@@ -33,6 +34,9 @@ struct SamplerTable {
 namespace {
 
 using Table = SamplerTable;
+
+/// Along each axis of a portal's map: as fine, in its middle, as a probe of 1024 x 512.
+constexpr std::uint32_t kPortalCells = 512;
 
 Table file_table(std::vector<std::uint8_t> bytes) {
     auto loaded = std::make_shared<LoadedFile>();
@@ -113,6 +117,10 @@ Table given_file(const std::string& path) {
     return {loaded, std::move(sampler), file};
 }
 
+[[noreturn]] void fail_without_scene(const SamplerSpec& spec) {
+    throw SpecError("sampler '" + spec.text + "': there is no scene to look from");
+}
+
 bool knows_brdf(const SamplerSpec& spec) {
     if (spec.kind != SamplerKind::mis && !spec.parts.empty()) return knows_brdf(spec.parts.back());
     return spec.kind == SamplerKind::brdf || spec.kind == SamplerKind::brdf_table;
@@ -133,6 +141,7 @@ struct SamplerBuilder::Store {
     std::string data;
     std::vector<builder::SceneNormal> normals;
     const measure::Geometry* geometry;
+    const std::vector<measure::ScenePoint>* points;
     std::map<std::string, SamplerTable> tables; ///< by text, and the material where that matters
     std::map<std::string, std::unique_ptr<const measure::StratifiedMap>> maps;
     std::vector<std::unique_ptr<measure::Estimator>> estimators;
@@ -152,8 +161,16 @@ struct SamplerBuilder::Store {
             return env_table(fitted, spec, normals);
         case SamplerKind::local:
             return local_table(fitted, spec, normals);
+        case SamplerKind::visibility:
+            if (!points) fail_without_scene(spec);
+            return {nullptr, measure::visibility_sampler(target, spec.columns, spec.rows, *points)};
+        case SamplerKind::portals:
+            if (!geometry) fail_without_scene(spec);
+            return {nullptr, spec.uniform ? measure::uniform_portal_sampler(geometry->portals, geometry->turned)
+                                          : measure::windowed_portal_sampler(target, geometry->portals,
+                                                                             geometry->turned, kPortalCells)};
         case SamplerKind::places:
-            if (!geometry) throw SpecError("sampler '" + spec.text + "': there is no scene to look from");
+            if (!geometry) fail_without_scene(spec);
             return places_table(fitted, *geometry, spec.bytes);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
@@ -267,13 +284,15 @@ struct SamplerBuilder::Store {
         return std::make_unique<measure::MisEstimator>(shares, spec.power ? measure::Heuristic::power
                                                                           : measure::Heuristic::balance);
     }
-    /// All tables of a sampler, each once.
-    std::uint64_t bytes(const SamplerSpec& spec) {
+    /// Tells of all tables of a sampler, each once.
+    void sum_up(const SamplerSpec& spec, BuiltSampler& out) {
         std::set<const measure::LightSampler*> used;
         for (std::size_t material = 0; material < brdfs.size(); ++material) gather(spec, material, used);
-        std::uint64_t sum = 0;
-        for (const measure::LightSampler* one : used) sum += one->bytes();
-        return sum;
+        for (const measure::LightSampler* one : used) {
+            out.bytes += one->bytes();
+            out.making.seconds += one->making().seconds;
+            out.making.shadow_rays += one->making().shadow_rays;
+        }
     }
     void gather(const SamplerSpec& spec, std::size_t material, std::set<const measure::LightSampler*>& used) {
         if (spec.parts.empty() || spec.kind == SamplerKind::tiles) used.insert(&sampler(spec, material));
@@ -284,13 +303,14 @@ struct SamplerBuilder::Store {
 
 SamplerBuilder::SamplerBuilder(const builder::Target& target, std::vector<const input::Brdf*> brdfs,
                                std::string data, std::vector<builder::SceneNormal> normals,
-                               const measure::Geometry* geometry)
+                               const measure::Geometry* geometry, const std::vector<measure::ScenePoint>* points)
     : store_(new Store{target,
                        builder::grid_of(target),
                        std::move(brdfs),
                        std::move(data),
                        std::move(normals),
                        geometry,
+                       points,
                        {},
                        {},
                        {}}) {}
@@ -306,7 +326,8 @@ BuiltSampler SamplerBuilder::build(const SamplerSpec& spec, std::uint32_t sample
             store_->estimators.push_back(store_->estimator(spec, material, samples));
             out.of_material.push_back(store_->estimators.back().get());
         }
-        out.bytes = spec.kind == SamplerKind::strata ? out.of_material.front()->bytes() : store_->bytes(spec);
+        if (spec.kind == SamplerKind::strata) out.bytes = out.of_material.front()->bytes();
+        else store_->sum_up(spec, out);
     } catch (const Failure&) {
         throw; // names its file
     } catch (const SpecError&) {
@@ -319,6 +340,11 @@ BuiltSampler SamplerBuilder::build(const SamplerSpec& spec, std::uint32_t sample
     out.build_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     out.ours = is_ours(spec);
     return out;
+}
+
+const measure::LightSampler& SamplerBuilder::single(const SamplerSpec& spec, std::size_t material,
+                                                    std::uint32_t samples) {
+    return store_->single(spec, material, samples);
 }
 
 } // namespace acdf::tools

@@ -33,6 +33,8 @@ constexpr Name names[] = {
     {"full-cdf", SamplerKind::full_cdf, nullptr},
     {"cosine", SamplerKind::cosine, nullptr},
     {"tiles", SamplerKind::tiles, "32x16"},
+    {"visibility", SamplerKind::visibility, "32x16"},
+    {"portals", SamplerKind::portals, "light"},
     {"env", SamplerKind::env, "64KiB"},
     {"local", SamplerKind::local, "1MB"},
     {"places", SamplerKind::places, "4MB"},
@@ -79,8 +81,13 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     case SamplerKind::brdf:
         return read_size(argument, spec);
     case SamplerKind::tiles:
+    case SamplerKind::visibility:
     case SamplerKind::downsampled:
         return read_grid(argument, spec);
+    case SamplerKind::portals:
+        spec.uniform = argument == "uniform";
+        if (!spec.uniform && argument != "light") fail(spec.text, "is portals or portals:uniform");
+        return;
     case SamplerKind::brdf_table:
         spec.centre = argument == "centre";
         if (!spec.centre && argument != "mean") fail(spec.text, "is brdf-table:mean or brdf-table:centre");

@@ -20,6 +20,8 @@ enum class SamplerKind {
     cosine,     ///< cosine: of the hemisphere
     tiles,      ///< tiles:32x16: of the probe, weighed at each point, the full CDF inside; tiles:12x12(brdf:64KiB):
                 ///< weighed by the BRDF, too
+    visibility, ///< visibility:32x16: tiles, weighed by what cache points near see of them, too
+    portals,    ///< portals: the light in the scene's portals; portals:uniform: over their solid angle
     env,        ///< env:64KiB: what `acdf env` makes
     local,      ///< local:1MB: what `acdf local` makes
     places,     ///< places:4MB: what `acdf local --places` makes for the scene
@@ -44,10 +46,11 @@ struct SamplerSpec {
     SamplerKind kind = SamplerKind::full_cdf;
     std::string text;                    ///< as given: its name in tables
     std::uint64_t bytes = 0;             ///< env, local, places, brdf: the budget
-    std::uint32_t columns = 0, rows = 0; ///< tiles, downsampled
+    std::uint32_t columns = 0, rows = 0; ///< tiles, visibility, downsampled
     std::uint32_t candidates = 0;        ///< ris
     double alpha = 0.0;                  ///< ggx
     bool by_radiance = false;            ///< strata: not by solid angle
+    bool uniform = false;                ///< portals: no light
     bool centre = false;                 ///< brdf-table as described
     bool power = false;                  ///< mis: power heuristic
     builder::Company company;            ///< env, local, ideal: that it is made for

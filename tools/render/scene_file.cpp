@@ -15,7 +15,7 @@ using measure::operator-;
 
 constexpr double kFar = 1e6; ///< where shadow rays still begin above their surface
 constexpr std::uint32_t kMostPixels = 4096, kMostSamples = 65536;
-constexpr std::size_t kMostObjects = 1000, kMostSamplers = 64;
+constexpr std::size_t kMostObjects = 1000, kMostSamplers = 64, kMostPortals = 64;
 
 measure::Vec3 point(const JsonValue& value) { return value.triple(-kFar, kFar); }
 
@@ -120,6 +120,17 @@ void read_object(const JsonValue& value, SceneFile& scene) {
     scene.geometry.objects.push_back(out);
 }
 
+measure::Portal read_portal(const JsonValue& value) {
+    JsonObject object(value);
+    const measure::Portal portal{point(object.at("corner")), point(object.at("across")), point(object.at("up"))};
+    object.finish();
+    const double across = std::sqrt(dot(portal.across, portal.across)), up = std::sqrt(dot(portal.up, portal.up));
+    if (!(across >= 1e-3 && up >= 1e-3)) value.fail("has no area");
+    if (!(std::fabs(dot(portal.across, portal.up)) <= 1e-6 * across * up))
+        value.fail("is no rectangle: its sides are not at right angles");
+    return portal;
+}
+
 input::Projection projection(const JsonValue& value) {
     using input::Projection;
     const std::string text = value.text();
@@ -159,6 +170,10 @@ SceneFile parse_scene(const std::string& text) {
     read_light(object.at("light"), scene);
     const JsonValue objects = object.at("objects");
     objects.each(kMostObjects, [&](const JsonValue& value) { read_object(value, scene); });
+    object.if_has("portals", [&](const JsonValue& portals) {
+        portals.each(kMostPortals,
+                     [&](const JsonValue& value) { scene.geometry.portals.push_back(read_portal(value)); });
+    });
     scene.geometry.turned =
         !scene.meshes.empty() && std::all_of(scene.meshes.begin(), scene.meshes.end(),
                                              [](const SceneMesh& mesh) { return mesh.up == input::UpAxis::y; });

@@ -17,13 +17,16 @@
 namespace acdf::tools {
 
 const char* to_string(SweepKind kind) {
-    return kind == SweepKind::environment ? "env" : kind == SweepKind::local ? "local" : "brdf";
+    constexpr const char* names[] = {"env", "local", "places", "brdf"};
+    return names[static_cast<std::size_t>(kind)];
 }
 
 const std::vector<std::string>& fits_of(SweepKind kind) {
     static const std::vector<std::string> environment{"variance", "cascade", "cdf", "pdf", "uniform"},
-        local{"variance", "separate", "cdf"}, brdf{"variance", "separate", "cdf", "uniform"};
-    return kind == SweepKind::environment ? environment : kind == SweepKind::local ? local : brdf;
+        local{"variance", "separate", "cdf"}, places{"places", "variance"},
+        brdf{"variance", "separate", "cdf", "uniform"};
+    const std::vector<std::string>* const fits[] = {&environment, &local, &places, &brdf};
+    return *fits[static_cast<std::size_t>(kind)];
 }
 
 std::vector<std::string> default_fits(SweepKind kind) {
@@ -36,6 +39,8 @@ std::vector<std::uint64_t> default_budgets(SweepKind kind) {
         return {4096, 16384, 65536, 262144, 1000000};
     case SweepKind::local:
         return {16384, 65536, 262144, 1000000, 4000000};
+    case SweepKind::places:
+        return {1000000, 4000000};
     default:
         return {4096, 16384, 65536, 262144};
     }

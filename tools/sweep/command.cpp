@@ -4,12 +4,15 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
+#include "tools/cli/mesh_places.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/scene_option.h"
 #include "tools/cli/sizes.h"
 #include "tools/cli/target_options.h"
 #include "tools/commands.h"
@@ -39,6 +42,7 @@ struct SweepArguments {
     std::vector<std::string> budgets;
     input::ProbeOptions input;
     SweepOptions sweep;
+    SceneOption scene; ///< of places
     const CLI::App* command = nullptr;
     int threads = 0;
     bool no_timing = false, json = false, quiet = false, force = false;
@@ -77,6 +81,9 @@ void check_options(SweepArguments& options, SweepKind kind) {
     if (kind == SweepKind::brdf)
         for (const char* option : {"--projection", "--domain", "--filter", "--bad-pixels", "--on-black"})
             if (options.given(option)) throw CLI::ValidationError(option, "is for environment maps");
+    if ((kind == SweepKind::places) != options.scene.given())
+        throw CLI::ValidationError("--scene", "is for --kind places, and that needs one");
+    options.scene.check(*options.command);
     const builder::TargetOptions& target = options.sweep.target;
     if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
         throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the rivals are defined for");
@@ -89,7 +96,8 @@ void check_options(SweepArguments& options, SweepKind kind) {
 
 /// What has to be said again to the subcommand that makes a file.
 std::string command_of(const SweepArguments& options, SweepKind kind) {
-    std::string text = std::string("acdf ") + to_string(kind) + " " + shell_word(options.source);
+    const char* subcommand = kind == SweepKind::places ? "local" : to_string(kind);
+    std::string text = std::string("acdf ") + subcommand + " " + shell_word(options.source);
     const auto add = [&](const char* option, const std::string& value) {
         if (options.given(option)) text += std::string(" ") + option + " " + value;
     };
@@ -112,7 +120,7 @@ std::string output_of(const std::string& source, SweepKind kind) {
     std::error_code ignored;
     const std::string stem =
         fs::exists(source, ignored) ? fs::path(source).stem().string() : source.substr(0, source.find(':'));
-    return stem + (kind == SweepKind::local ? ".local.acdf" : ".acdf");
+    return stem + (kind == SweepKind::local ? ".local.acdf" : kind == SweepKind::places ? ".places.acdf" : ".acdf");
 }
 
 /// The probe without its pixels, and its target.
@@ -129,14 +137,33 @@ std::pair<input::Probe, builder::Target> sweep_target(const SweepArguments& opti
     return {std::move(probe), std::move(target)};
 }
 
+SweptMesh swept_mesh(const SweepArguments& options) {
+    SweptMesh out;
+    const input::UpAxis up = options.scene.input().up;
+    const Note note = [&](const std::string& text) {
+        if (!options.quiet) say(text);
+    };
+    out.normals = both_sides(options.scene.read(note));
+    out.surface = read_surface(options.scene, note);
+    out.turned = up == input::UpAxis::y;
+    out.places = places_on(out.surface, up);
+    out.text = options.scene.text() + " --places";
+    for (const std::string& path : options.scene.paths)
+        out.options += (out.options.empty() ? "--scene " : " --scene ") + shell_word(path);
+    if (out.turned) out.options += " --scene-up y";
+    return out;
+}
+
 Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
     // The samplers to compare with draw texels: of a lat-long map or, where the density is that of the map as a
     // whole, of an octahedral one.
     const auto [probe, target] = sweep_target(options, kind);
     const builder::Source source = source_of(probe, options.input);
     const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;
-    Sweep sweep = kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
-                                           : sweep_environment(target, source, options.sweep, progress);
+    Sweep sweep = kind == SweepKind::places
+                      ? sweep_places(target, source, swept_mesh(options), options.sweep, progress)
+                  : kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
+                                             : sweep_environment(target, source, options.sweep, progress);
     sweep.description =
         std::to_string(probe.width) + " x " + std::to_string(probe.height) + (square ? " octahedral" : " lat-long");
     if (probe.projection != input::Projection::latlong && !square)
@@ -198,15 +225,19 @@ void run(SweepArguments& options) {
 }
 
 void add_sweep_options(CLI::App& command, SweepArguments& options) {
-    const std::map<std::string, SweepKind> kinds{
-        {"env", SweepKind::environment}, {"local", SweepKind::local}, {"brdf", SweepKind::brdf}};
+    const std::map<std::string, SweepKind> kinds{{"env", SweepKind::environment},
+                                                 {"local", SweepKind::local},
+                                                 {"places", SweepKind::places},
+                                                 {"brdf", SweepKind::brdf}};
     command
         .add_option_function<SweepKind>(
             "--kind", [&options](SweepKind kind) { options.kind = kind; },
-            "Which files are compared: env, local (for every normal) or brdf; as of the subcommands that make them")
+            "Which files are compared: env, local (for every normal), places (of a scene: acdf local --places) or "
+            "brdf")
         ->transform(one_of(kinds))
         ->option_text("NAME [by the source: env or brdf]")
         ->group("Sweep");
+    options.scene.add(command, "For --kind places: the mesh (.obj, .ply) whose places are told apart", "Sweep");
     command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas")
         ->delimiter(',')
         ->type_name("")
@@ -215,7 +246,8 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
     command
         .add_option("--fits", options.sweep.fits,
                     "Fits to try, separated by commas. env: variance, cascade, cdf, pdf, uniform; local: variance, "
-                    "separate (a tree for each normal), cdf (the paper's); brdf: variance, separate, cdf, uniform")
+                    "separate (a tree for each normal), cdf (the paper's); places: places, variance (by normals "
+                    "alone); brdf: variance, separate, cdf, uniform")
         ->delimiter(',')
         ->type_name("")
         ->option_text("NAMES [all of the kind; local: variance,cdf]")
@@ -296,6 +328,7 @@ void add_sweep(CLI::App& program, int& exit_code) {
         "are compared are made in memory.",
         "acdf sweep probe.exr -o out\n"
         "acdf sweep probe.exr -o out --kind local --budgets 64KiB,256KiB,1MB\n"
+        "acdf sweep probe.exr -o out --kind places --scene room.obj --budgets 1MB,4MB\n"
         "acdf sweep nickel.binary -o out --spp 16\n"
         "acdf sweep ggx:alpha=0.1 -o out --fits variance,cdf --no-timing"));
     command.callback([options, &exit_code] {

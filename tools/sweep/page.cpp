@@ -37,7 +37,12 @@ std::string prose(const std::string& text) {
 const char* kind_text(SweepKind kind) {
     return kind == SweepKind::environment ? "environment map"
            : kind == SweepKind::local     ? "environment map for every normal"
+           : kind == SweepKind::places    ? "environment map for the places of a scene"
                                           : "BRDF";
+}
+
+const char* conditions_text(SweepKind kind) {
+    return kind == SweepKind::brdf ? "views" : kind == SweepKind::places ? "places" : "normals";
 }
 
 std::string fact(const std::string& name, const std::string& value, const std::string& small) {
@@ -57,7 +62,7 @@ std::string facts_html(const Sweep& sweep, const Advice& advice) {
                 noise_text(best.shaded(), sweep.visibility.spp),
                 "relative variance of a sample " + short_number(best.shaded()) + where);
     out += fact("Noise at 16, 64, 256 samples", noise_texts(best.shaded()),
-                "median over " + std::string(sweep.kind == SweepKind::brdf ? "views " : "normals ") +
+                "median over " + std::string(conditions_text(sweep.kind)) + " " +
                     noise_texts(pictures ? best.lit[open_alone].median : best.median));
     const double sobol = pictures ? best.lit[open_alone].sobol : best.sobol;
     if (sobol == sobol)
@@ -86,7 +91,9 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     const std::string base = sweep.rows[sweep.baseline].label;
     const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
                        : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
-                                                        : "of what is reflected to a view, mean over views";
+                       : sweep.kind == SweepKind::places
+                           ? "of what the scene reflects, with what it hides, mean over places"
+                           : "of what is reflected to a view, mean over views";
     const bool pictures = sweep.kind == SweepKind::environment;
     std::vector<Chart> out;
     if (pictures)
@@ -265,8 +272,7 @@ std::string method_html(const Sweep& sweep) {
             "named sobol (in sweep.csv) are variance times samples with scrambled Sobol' points, at " +
             std::to_string(sweep.visibility.spp) + " samples, by drawing them.");
     else
-        lines.push_back(std::string("Means are over ") + conditions + " random " +
-                        (sweep.kind == SweepKind::local ? "normals" : "views") +
+        lines.push_back(std::string("Means are over ") + conditions + " random " + conditions_text(sweep.kind) +
                         ", none chosen for what a file stores. With Sobol' points: variance times samples with a "
                         "scrambled Sobol' sequence, at " +
                         std::to_string(sweep.visibility.spp) + " samples, by drawing them.");

@@ -145,6 +145,36 @@ TEST_F(BatchCommand, AChangedSceneIsAnotherOption) {
     EXPECT_EQ(report({manifest})["done"], 1);
 }
 
+/// Places of a scene, told by a manifest or by --set: the bytes of `acdf local`, again where the scene changes.
+TEST_F(BatchCommand, PlacesAreThoseOfTheScene) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    const std::string mesh = folder / "roof.obj",
+                      roof = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 -1 1\nv 1 0 1\nv -1 0 1\n"
+                             "f 1 2 3 4\nf 5 6 7 8\n";
+    write_text(mesh, roof);
+    write_text(manifest, "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"output\": \"a.local.acdf\", "
+                         "\"options\": {\"budget\": \"24KiB\", \"places\": true, \"scene\": \"roof.obj\"}}\n");
+    EXPECT_EQ(report({manifest})["done"], 1);
+    EXPECT_EQ(report({manifest})["up_to_date"], 1);
+    ASSERT_EQ(run_acdf({"local", probes + "/a.pfm", "-o", folder / "alone.acdf", "--budget", "24KiB", "--places",
+                        "--scene", mesh})
+                  .code,
+              0);
+    const std::vector<std::string> set{probes,
+                                       "--kind",
+                                       "local",
+                                       "--set",
+                                       "local.budget=24KiB",
+                                       "--set",
+                                       "local.places",
+                                       "--set",
+                                       "local.scene=" + mesh};
+    EXPECT_EQ(report(set)["up_to_date"], 1); // the same options by another way
+    EXPECT_EQ(read_text(folder / "alone.acdf"), read_text(folder / "out/a.local.acdf"));
+    write_text(mesh, roof + "f 1 2 6 5\n");
+    EXPECT_EQ(report({manifest})["done"], 1);
+}
+
 TEST_F(BatchCommand, GoesOnPastFailures) {
     write_small_probes(probes, 3);
     write_text(probes + "/broken.exr", "no image");

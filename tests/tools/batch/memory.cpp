@@ -107,10 +107,13 @@ TEST_F(BatchMemory, JobsTakeNoMoreThanIsEstimated) {
                                 "--no-sharing --fit cdf --normals 2", "--budget 64KiB --normals 3",
                                 "--budget 64KiB --normals 3 --max-weight 40"})
         jobs.push_back({"local", noise, options});
+    const std::string mesh = folder / "floor.obj";
+    write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 0 1\nf 1 2 3 4\nf 5 6 3\n");
+    jobs.push_back({"local", noise, "--budget 128KiB --places --scene " + mesh});
     for (const char* options : {"--budget 12KiB --views 4", "--fit cdf --views 6", "--cells 40 --views 4",
                                 "--budget 12KiB --views 4 --max-weight 10"})
         jobs.push_back({"brdf", "lambert", options});
-    ASSERT_EQ(jobs.size(), 37u);
+    ASSERT_EQ(jobs.size(), 38u);
     const std::vector<std::uint64_t> estimated = estimates(jobs);
     const std::uint64_t program = peak({"env", tiny, "--cells 2"}); // with the module of images
     for (std::size_t i = 0; i < jobs.size(); ++i) {

@@ -83,6 +83,12 @@ TEST(RenderSceneFile, MistakesAreNamedWithTheirPlace) {
         {"/objects/2/box/low", {9, 0, 0}, "objects[2].box: has a side whose 'low' is not below its 'high'"},
         {"/objects/2/seen", 0, "objects[2].seen: is number, not true or false"},
         {"/objects/2/seen", true, "objects[2]: lacks 'brdf'"},
+        {"/portals", Json::array(), "portals: is empty"},
+        {"/portals/0", Json::parse(R"({"corner": [0, 0, 0], "across": [1, 0, 0], "up": [1, 1, 0]})"),
+         "portals[0]: is no rectangle"},
+        {"/portals/0", Json::parse(R"({"corner": [0, 0, 0], "across": [0, 0, 0], "up": [1, 1, 0]})"),
+         "portals[0]: has no area"},
+        {"/portals/0", Json::parse(R"({"corner": [0, 0, 0], "across": [1, 0, 0]})"), "portals[0]: lacks 'up'"},
         {"/samples", -1, "samples: is -1"},
         {"/samplers", Json::array(), "samplers: is empty"},
         {"/samplers/0", false, "samplers[0]: is boolean, not a string"},
@@ -144,6 +150,9 @@ TEST(RenderSampler, TextsAreUnderstood) {
     EXPECT_EQ(parse_sampler("env").bytes, 65536u);
     EXPECT_EQ(parse_sampler("tiles:64x32").columns, 64u);
     EXPECT_EQ(parse_sampler("tiles").rows, 16u);
+    EXPECT_EQ(parse_sampler("visibility:8x4").columns, 8u);
+    EXPECT_FALSE(parse_sampler("portals").uniform);
+    EXPECT_TRUE(parse_sampler("portals:uniform").uniform);
     EXPECT_EQ(parse_sampler("ris:8").candidates, 8u);
     EXPECT_EQ(parse_sampler("ggx:0.25").alpha, 0.25);
     EXPECT_TRUE(parse_sampler("brdf-table:centre").centre);
@@ -202,6 +211,8 @@ TEST(RenderSampler, MistakesAreNamed) {
         {"local:", "'' is no size"},
         {"cosine:1", "takes no argument"},
         {"tiles:32", "is no grid"},
+        {"visibility:32", "is no grid"},
+        {"portals:x", "is portals or portals:uniform"},
         {"ris:0", "candidates are counted"},
         {"product", "is product(LIGHT,BRDF)"},
         {"product:0(local,brdf)", "parts are counted"},

@@ -15,28 +15,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A room that is open above one half of its floor, and a box in it; with z up, or with y up.
-std::string room(bool y_up = false) {
-    const double points[][3] = {{-2, -2, 0},     {2, -2, 0},      {2, 2, 0},       {-2, 2, 0},     {-2, -2, 2},
-                                {2, -2, 2},      {2, 2, 2},       {-2, 2, 2},      {2, 0, 2},      {-2, 0, 2},
-                                {-0.5, 0.6, 0},  {0.5, 0.6, 0},   {0.5, 1.2, 0},   {-0.5, 1.2, 0}, {-0.5, 0.6, 0.7},
-                                {0.5, 0.6, 0.7}, {0.5, 1.2, 0.7}, {-0.5, 1.2, 0.7}};
-    std::string text;
-    for (const auto& p : points) {
-        text += "v";
-        for (int k = 0; k < 3; ++k) text += " " + std::to_string(p[y_up ? (k + 1) % 3 : k]);
-        text += "\n";
-    }
-    return text + "f 1 2 3 4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 9 10\n" // half a roof
-                  "f 15 16 17 18\nf 11 12 16 15\nf 12 13 17 16\nf 13 14 18 17\nf 14 11 15 18\n";
-}
-
-std::string mesh_scene(const std::string& file, const std::string& more = "") {
-    return R"({"camera": {"from": [-1.7, 1.7, 1.7], "to": [0.6, -0.6, 0.3], "fov": 60}, "image": {"width": 12, "height": 9},
- "light": {"probe": "probe.exr", "projection": "latlong"}, "objects": [{"mesh": {"file": ")" +
-           file + "\"" + more + R"(}, "brdf": "lambert:albedo=0.5"}], "samples": 8, "samplers": ["local:64KiB"]})";
-}
-
 struct MeshFolder : SceneFolder {
     MeshFolder() : SceneFolder(mesh_scene("room.obj")) { write_text(*this / "room.obj", room()); }
 
@@ -69,6 +47,7 @@ TEST(MeshPlaces, AreDrawnFromInPictures) {
     const Json measured =
         Json::parse(run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.exr", "--json"}).out);
     EXPECT_EQ(measured.at("support_violations"), 0);
+    EXPECT_FALSE(measured.contains("places"));
 
     const Result result =
         folder.render("scene.json", "out",
@@ -82,6 +61,39 @@ TEST(MeshPlaces, AreDrawnFromInPictures) {
         EXPECT_GT(one.at("equal_samples_gain").at("value"), 2.0) << one;
         EXPECT_LE(one.at("bytes"), 65536) << one;
     }
+}
+
+/// On the mesh, whichever axis of it points up.
+TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
+    MeshFolder folder;
+    ASSERT_EQ(folder.local("room.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    ASSERT_EQ(folder.local("plain.acdf", {}).code, 0);
+    write_text(folder / "y.obj", room(true));
+    ASSERT_EQ(folder.local("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--places"}).code, 0);
+    const auto measure = [&](const std::string& file, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"measure", folder / file, "--against", folder / "probe.exr", "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_acdf(arguments);
+    };
+    const Result result = measure("room.acdf", {"--scene", folder / "room.obj", "--points", "40"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json places = Json::parse(result.out).at("places");
+    EXPECT_GT(places.at("points"), 10);
+    EXPECT_LE(places.at("points"), 40);
+    EXPECT_GT(places.at("relative_variance"), 0.0);
+    EXPECT_NE(places.at("gain"), 1.0);
+    EXPECT_EQ(places.at("support_violations"), 0);
+    EXPECT_GE(places.at("relative_variance_worst"), places.at("relative_variance"));
+    const Result turned = measure("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--points", "40"});
+    ASSERT_EQ(turned.code, 0) << turned.err;
+    EXPECT_NEAR(Json::parse(turned.out).at("places").at("relative_variance"), places.at("relative_variance"), 1e-3);
+    const Result text = run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.exr", "--scene",
+                                  folder / "room.obj", "--points", "9"});
+    EXPECT_NE(text.out.find("places of the scene"), std::string::npos) << text.out;
+    EXPECT_EQ(measure("plain.acdf", {"--scene", folder / "room.obj"}).code, 1);
+    EXPECT_EQ(measure("room.acdf", {"--scene", folder / "none.obj"}).code, 1);
+    EXPECT_EQ(measure("room.acdf", {"--points", "9"}).code, 2);
+    EXPECT_EQ(measure("room.acdf", {"--scene-up", "y"}).code, 2);
 }
 
 /// What has come and what has gone since the file was made.
@@ -131,6 +143,17 @@ TEST(MeshPlaces, ArePlotted) {
     ASSERT_EQ(plot("room.acdf", "anywhere.exr", {"--normal", "0,0,1"}).code, 0);
     ASSERT_EQ(plot("room.acdf", "six.png", {"--place", "0,-1,0.1"}).code, 0);
     EXPECT_NE(read_text(folder / "here.exr"), read_text(folder / "anywhere.exr"));
+    ASSERT_EQ(plot("room.acdf", "cells.png", {"--scene", folder / "room.obj"}).code, 0);
+    ASSERT_EQ(
+        plot("room.acdf", "inside.png", {"--scene", folder / "room.obj", "--from", "0,-1.5,1.5", "--to=-1,1,0"})
+            .code,
+        0);
+    EXPECT_NE(read_text(folder / "cells.png"), read_text(folder / "inside.png"));
+    EXPECT_EQ(plot("plain.acdf", "no.png", {"--scene", folder / "room.obj"}).code, 1);
+    EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "none.obj"}).code, 1);
+    EXPECT_EQ(plot("room.acdf", "no.exr", {"--scene", folder / "room.obj"}).code, 2);
+    EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "room.obj", "--place", "0,0,0"}).code, 2);
+    EXPECT_EQ(plot("room.acdf", "no.png", {"--from", "0,0,0"}).code, 2);
     for (const auto& [file, place] : {std::pair{"plain.acdf", "0,0,0"}, {"room.acdf", "0,0,9"}}) {
         const Result refused = plot(file, "no.png", {"--place", place});
         EXPECT_EQ(refused.code, 1);
@@ -155,6 +178,26 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
         EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
         if (one.at("sampler") == "local:64KiB") continue;
         EXPECT_GT(one.at("equal_samples_gain").at("value"), 2.0) << one;
+    }
+}
+
+/// What others do in rooms, on the mesh itself and on one with y up.
+TEST(MeshRivals, OfRoomsAreUnbiased) {
+    MeshFolder folder;
+    write_text(folder / "y.obj", room(true));
+    write_text(folder / "y.json", mesh_scene("y.obj", R"(, "up": "y")"));
+    for (const std::string scene : {"scene.json", "y.json"}) {
+        const Result result =
+            folder.render(scene, "out-" + scene,
+                          {"--sampler", "full-cdf", "--sampler", "portals", "--sampler", "portals:uniform",
+                           "--sampler", "mis(portals,cosine)", "--sampler", "visibility:8x4", "--sampler",
+                           "mis(visibility:8x4,cosine)", "--sequence", "independent"});
+        ASSERT_EQ(result.code, 0) << result.err;
+        for (const Json& one : Json::parse(result.out).at("samplers")) {
+            EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
+            if (one.at("sampler") == "full-cdf" || one.at("sampler") == "portals:uniform") continue;
+            EXPECT_GT(one.at("equal_samples_gain").at("value"), 2.0) << one;
+        }
     }
 }
 
@@ -240,6 +283,11 @@ TEST(MeshPlaces, MistakesAreOneLine) {
     const Result missing = folder.render("none.json", "out");
     EXPECT_EQ(missing.code, 1);
     EXPECT_NE(missing.err.find("none.obj"), std::string::npos) << missing.err;
+    write_text(folder / "shut.json", small_scene("\"portals\""));
+    const Result shut = folder.render("shut.json", "out");
+    EXPECT_EQ(shut.code, 1);
+    EXPECT_EQ(lines_in(shut.err), 1u) << shut.err;
+    EXPECT_NE(shut.err.find("tells no portals"), std::string::npos) << shut.err;
 }
 
 } // namespace

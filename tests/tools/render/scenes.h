@@ -38,6 +38,30 @@ inline std::string small_scene(const std::string& samplers) {
            samplers + "]}";
 }
 
+/// A mesh (.obj): a room that is open above one half of its floor, and a box in it; with z up, or with y up.
+inline std::string room(bool y_up = false) {
+    const double points[][3] = {{-2, -2, 0},     {2, -2, 0},      {2, 2, 0},       {-2, 2, 0},     {-2, -2, 2},
+                                {2, -2, 2},      {2, 2, 2},       {-2, 2, 2},      {2, 0, 2},      {-2, 0, 2},
+                                {-0.5, 0.6, 0},  {0.5, 0.6, 0},   {0.5, 1.2, 0},   {-0.5, 1.2, 0}, {-0.5, 0.6, 0.7},
+                                {0.5, 0.6, 0.7}, {0.5, 1.2, 0.7}, {-0.5, 1.2, 0.7}};
+    std::string text;
+    for (const auto& p : points) {
+        text += "v";
+        for (int k = 0; k < 3; ++k) text += " " + std::to_string(p[y_up ? (k + 1) % 3 : k]);
+        text += "\n";
+    }
+    return text + "f 1 2 3 4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 9 10\n" // half a roof
+                  "f 15 16 17 18\nf 11 12 16 15\nf 12 13 17 16\nf 13 14 18 17\nf 14 11 15 18\n";
+}
+
+/// A scene of a room; the opening of its roof is a portal. `more`: of the mesh.
+inline std::string mesh_scene(const std::string& file, const std::string& more = "") {
+    return R"({"camera": {"from": [-1.7, 1.7, 1.7], "to": [0.6, -0.6, 0.3], "fov": 60}, "image": {"width": 12, "height": 9},
+ "light": {"probe": "probe.exr", "projection": "latlong"}, "portals": [{"corner": [-2, 0, 2], "across": [4, 0, 0], "up": [0, 2, 0]}],
+ "objects": [{"mesh": {"file": ")" +
+           file + "\"" + more + R"(}, "brdf": "lambert:albedo=0.5"}], "samples": 8, "samplers": ["local:64KiB"]})";
+}
+
 /// The folder with the probe, and the scene as a file.
 struct SceneFolder : Folder {
     explicit SceneFolder(const std::string& scene = small_scene("\"full-cdf\"")) {

@@ -58,6 +58,39 @@ TEST(SweepCommand, TheCommandMakesTheRecommendedFile) {
     EXPECT_NEAR(variance, row["relative_variance"], 1e-8 * variance);
 }
 
+/// A roof over one half of a floor.
+TEST(SweepCommand, PlacesAreComparedOnTheirScene) {
+    const Folder folder;
+    const std::string probe = tiny_probe(folder), mesh = folder / "roof.obj";
+    write_text(mesh, "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 -1 1\nv 1 0 1\nv -1 0 1\n"
+                     "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\n");
+    const std::vector<std::string> words{"sweep",   probe, "-o",        folder / "out", "--kind", "places",
+                                         "--scene", mesh,  "--budgets", "48KiB",        "--quiet"};
+    const Result made = run_acdf(words);
+    ASSERT_EQ(made.code, 0) << made.err;
+    const auto json = nlohmann::json::parse(read_text(folder / "out/sweep.json"));
+    EXPECT_EQ(json["kind"], "places");
+    EXPECT_GT(json["conditions"], 20);
+    double places = 0.0, alone = 0.0, cdf = 0.0;
+    for (const auto& row : json["rows"]) {
+        const double variance = row["relative_variance"].is_null() ? 0.0 : row["relative_variance"].get<double>();
+        if (row["fit"] == "places") places = variance;
+        if (row["fit"] == "variance") alone = variance;
+        if (row["system"] == "full_cdf") cdf = variance;
+    }
+    EXPECT_GT(places, 0.0);
+    EXPECT_GT(alone, 1.3 * places);
+    EXPECT_GT(cdf, 1.3 * places);
+    const std::string command = json["recommendation"]["command"];
+    EXPECT_EQ(command.compare(0, 11 + probe.size(), "acdf local " + probe), 0) << command;
+    const std::string page = read_text(folder / "out/report.html");
+    EXPECT_NE(page.find("places of a scene"), std::string::npos);
+    EXPECT_NE(page.find("--scene " + mesh + " --places"), std::string::npos);
+    EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "places"}).code, 2);
+    EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--scene", mesh}).code, 2);
+    EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "places", "--scene", probe}).code, 1);
+}
+
 TEST(SweepCommand, RefusesWhatIsThereAndWrongOptions) {
     const Folder folder;
     const std::string probe = tiny_probe(folder);
