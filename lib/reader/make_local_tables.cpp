@@ -5,6 +5,8 @@
 #include "make_tile_tables.h"
 #include "memory.h"
 
+#include <acdf/cut.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -161,6 +163,15 @@ void place_corners(const AcdfLocal& local, AcdfCornerRecord* out) {
             }
 }
 
+// Of each tile the direction of its middle.
+void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float* out) {
+    for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 4) {
+        const AcdfTileRecord& record = *acdf_local_tile(&tables, tile);
+        const u32 box[2][2] = {{record.high[0], record.low[0]}, {record.high[1], record.low[1]}};
+        acdf_cut_middle(&local, box, out);
+    }
+}
+
 } // namespace
 
 AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::size_t most_bytes,
@@ -173,8 +184,12 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     if (!tiles.make()) return nullptr;
     const std::size_t corners = corner_words(local),
                       lights = padded(local.light_count * sizeof(AcdfLightRecord) / 4);
-    std::size_t words = at + tiles.words() + heights + corners + lights;
+    const std::size_t middles = padded(4 * std::size_t{local.blend.tiles->tile_count});
+    std::size_t words = at + tiles.words() + heights + corners + lights + middles;
     if (4 * words > most_bytes) return nullptr;
+    std::size_t hearts = tiles.heart_words();
+    if (hearts > 0 && (4 * (words + hearts) > most_bytes || !tiles.prepare_hearts())) hearts = 0;
+    words += hearts;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
     const bool small = latlong && pieces.make();
     if (small) words += pieces.words();
@@ -203,6 +218,14 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
         tables->heights = static_cast<u32>(at);
         for (u32 i = 0; i <= env.rows; ++i) reinterpret_cast<double*>(out + at)[i] = acdf_row_z(i, env.rows);
         at += heights;
+    }
+    tables->middles = static_cast<u32>(at);
+    place_middles(local, *tables, reinterpret_cast<float*>(out + at));
+    at += middles;
+    if (hearts > 0) {
+        tables->hearts = static_cast<u32>(at);
+        tiles.place_hearts(reinterpret_cast<std::uint16_t*>(out + at));
+        at += hearts;
     }
     if (small) pieces.place(out, at, *tables);
     return tables;

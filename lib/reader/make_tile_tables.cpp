@@ -10,8 +10,8 @@ namespace {
 
 using u32 = std::uint32_t;
 
-constexpr std::size_t kEntriesATile = 8;
-constexpr u32 kMostGridBits = 14;
+constexpr std::size_t kEntriesATile = 16;
+constexpr u32 kMostGridBits = 15;
 constexpr std::size_t kCodes = 256;
 constexpr std::size_t kLine = 64; // bytes
 
@@ -81,8 +81,14 @@ void TileTablesMaker::follow(u32 node, const Box& box, u32 depth) {
         AcdfTileRecord& tile = tiles_[node & ~ACDF_TILE_FLAG];
         std::copy_n(box.low, 2, tile.low);
         std::copy_n(box.high, 2, tile.high);
-        tile.path = static_cast<u32>(paths_.size());
+        tile.root = blend_.roots ? blend_.roots[node & ~ACDF_TILE_FLAG] : ACDF_NO_ROOT;
         tile.depth = static_cast<std::uint16_t>(depth);
+        if (depth <= ACDF_TILE_STEPS) {
+            std::copy_n(way_, depth, tile.step);
+            return;
+        }
+        tile.step[0] = static_cast<std::uint16_t>(paths_.size());
+        tile.step[1] = static_cast<std::uint16_t>(paths_.size() >> 16);
         for (u32 i = 0; i < depth; ++i) paths_.add(way_[i]);
         return;
     }
@@ -177,6 +183,37 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
     out.shift[1] = shift_[1];
     out.bits0 = bits_[0];
     return at;
+}
+
+std::size_t TileTablesMaker::heart_words() const noexcept {
+    return used_ > 0 && 2 * std::size_t{blend_.tiles->tile_count} < 65536
+               ? padded(blend_.tiles->row_count * stride() / 2)
+               : 0;
+}
+
+// Children stand behind their splits, and tiles behind all of them: no branch asks which it is.
+bool TileTablesMaker::prepare_hearts() noexcept {
+    const std::size_t splits = blend_.tiles->tile_count - 1;
+    if (!links_.add(2 * splits, 0) || !hearts_.add(splits + blend_.tiles->tile_count, 0)) return false;
+    for (std::size_t i = 0; i < splits; ++i)
+        for (int k = 0; k < 2; ++k) {
+            const u32 child = blend_.splits[i].child[k], tile = child & ~ACDF_TILE_FLAG;
+            links_[2 * i + static_cast<std::size_t>(k)] =
+                static_cast<std::uint16_t>(child & ACDF_TILE_FLAG ? splits + tile : child);
+        }
+    for (std::size_t tile = 0; tile <= splits; ++tile) hearts_[splits + tile] = static_cast<std::uint16_t>(tile);
+    return true;
+}
+
+void TileTablesMaker::place_hearts(std::uint16_t* out) noexcept {
+    const std::size_t splits = blend_.tiles->tile_count - 1;
+    for (std::size_t row = 0; row < blend_.tiles->row_count; ++row, out += stride()) {
+        const std::uint8_t* const codes = blend_.rows + row * splits;
+        for (std::size_t i = splits; i-- > 0;) {
+            const std::size_t upper = blend_.tiles->codebook[codes[i]] < 32768u;
+            out[numbers_[i]] = hearts_[i] = hearts_[links_[2 * i + upper]];
+        }
+    }
 }
 
 } // namespace acdf

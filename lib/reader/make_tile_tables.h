@@ -20,6 +20,11 @@ public:
     std::size_t words() const noexcept;
     /// Copies the tables to word `at` of all, a multiple of 16; returns what follows.
     std::size_t place(std::uint32_t* words, std::size_t at, AcdfTileTables& out) const noexcept;
+    /// The tiles of each row that are reached from its splits by the brighter halves; 0 words where there is no
+    /// split.
+    std::size_t heart_words() const noexcept;
+    bool prepare_hearts() noexcept; ///< false where memory fails
+    void place_hearts(std::uint16_t* out) noexcept;
 
 private:
     struct Box {
@@ -44,6 +49,7 @@ private:
     Growable<std::uint16_t> numbers_, sizes_, tops_;
     Growable<AcdfTileRecord> tiles_;
     Growable<std::uint16_t> paths_, grid_;
+    Growable<std::uint16_t> links_, hearts_; // of both halves of splits; of the splits of a row, then of tiles
 };
 
 } // namespace acdf

@@ -94,13 +94,18 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
 
 /* ---- finding ---------------------------------------------------------------------------------------- */
 
+/* Whether floats tell a direction, by its x x + y y and the square of its length: 0.9999 to 1.0001 and 2^-40 up, by
+ * their bits, which tell what is not finite, too. */
+ACDF_INLINE int acdf_is_direction(float sin2, float length2) {
+    return acdf_float_bits(length2) - 0x3F7FF972u <= 0x000009D4u && acdf_float_bits(sin2) >= 0x2B800000u;
+}
+
 /* Returns 0 where floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by
  * more than 5e-5 or that are not finite. */
 ACDF_INLINE int acdf_direction_place(const float direction[3], AcdfPlace* place) {
     const float x = direction[0], y = direction[1], z = direction[2];
     const float sin2 = x * x + y * y, length2 = sin2 + z * z;
-    /* 0.9999 to 1.0001 and 2^-40 up, by their bits */
-    if (acdf_float_bits(length2) - 0x3F7FF972u > 0x000009D4u || acdf_float_bits(sin2) < 0x2B800000u) return 0;
+    if (!acdf_is_direction(sin2, length2)) return 0;
     *place = acdf_place_of(x, y, z, sin2, length2);
     return 1;
 }

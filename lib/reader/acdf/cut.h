@@ -19,10 +19,12 @@ enum { ACDF_CUT_MAX_PARTS = 96, ACDF_CUT_MAX_LIGHTS = 64 };
 
 /* A box: what lies below a split or in a tile. */
 typedef struct AcdfCutPart {
-    uint32_t node;                   /* the split, or the tile with its flag */
+    uint16_t node;                   /* the split, or the tile with its flag */
+    uint16_t entry;                  /* the same in runtime tables */
     uint32_t tile;                   /* the first tile in it; they are numbered in the order of the walk */
     uint16_t first_light, end_light; /* which lights lie in it */
     uint16_t owner;                  /* 2 * split of the cut + side; of the whole: not used */
+    uint16_t depth;                  /* how many splits lie above it */
     uint32_t low[2], high[2];
     double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */
     double lights;                      /* weights of the lights in it */
@@ -57,7 +59,9 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     int k;
     cut->count = 1;
     for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_local_light_weight(local, point, i);
-    whole->node = acdf_blend_root(&local->blend);
+    whole->node = (uint16_t)acdf_blend_root(&local->blend);
+    whole->entry = (uint16_t)(local->tables ? local->tables->tiles.root : 0);
+    whole->depth = 0;
     whole->tile = 0;
     whole->first_light = 0;
     whole->end_light = (uint16_t)local->light_count;
@@ -81,31 +85,30 @@ ACDF_FN int acdf_cut_divisible(const AcdfCut* cut, int part) {
 
 /* What each row gives to the halves of a part, `upper` and the part itself; *high becomes the sum of the upper one.
  * Returns that of the lower one. */
-ACDF_INLINE double acdf_cut_share_rows(const AcdfBlend* blend, const AcdfMixture* mix, const int rows,
-                                       AcdfCutPart* part, AcdfCutPart* upper, double* high) {
+ACDF_INLINE double acdf_cut_share_rows(const uint16_t* codebook, const uint8_t* const* row, const int rows,
+                                       uint32_t split, AcdfCutPart* part, AcdfCutPart* upper, double* high) {
     double low = 0.0;
     int i;
     *high = 0.0;
     for (i = 0; i < rows; ++i) {
         const double weight = part->weight[i];
-        const double code = (double)blend->tiles->codebook[mix->row[i][part->node]];
+        const double code = (double)codebook[row[i][split]];
         const double lower = weight * (code * (1.0 / 65535.0));
         low += part->weight[i] = lower;
         *high += upper->weight[i] = weight - lower;
     }
     return low;
 }
-ACDF_FN double acdf_cut_share(const AcdfBlend* blend, const AcdfMixture* mix, AcdfCutPart* part, AcdfCutPart* upper,
-                              double* high) {
-    switch (mix->count) {
-    case 1:
-        return acdf_cut_share_rows(blend, mix, 1, part, upper, high);
-    case 2:
-        return acdf_cut_share_rows(blend, mix, 2, part, upper, high);
+ACDF_FN double acdf_cut_share(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCutPart* part,
+                              AcdfCutPart* upper, double* high) {
+    const uint16_t* codebook = local->blend.tiles->codebook;
+    const uint8_t* const* row = local->tables ? point->codes : point->mix.row;
+    const uint32_t split = local->tables ? part->entry : part->node;
+    switch (point->mix.count) {
     case 3:
-        return acdf_cut_share_rows(blend, mix, 3, part, upper, high);
+        return acdf_cut_share_rows(codebook, row, 3, split, part, upper, high);
     default:
-        return acdf_cut_share_rows(blend, mix, mix->count, part, upper, high);
+        return acdf_cut_share_rows(codebook, row, point->mix.count, split, part, upper, high);
     }
 }
 
@@ -143,7 +146,8 @@ ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point
     const int count = cut->count - 1;
     AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
     const AcdfSplit* split = &local->blend.splits[part->node];
-    const uint32_t axis = split->place & 7u, position = split->place >> 3, child = split->child[1];
+    const uint32_t axis = split->place & 7u, position = split->place >> 3;
+    const uint16_t child = split->child[1];
     double low, high;
     cut->split[count].place = split->place;
     cut->split[count].child[0] = (int16_t)~number;
@@ -155,7 +159,7 @@ ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point
     /* Splits are numbered as the walk meets them, and so are tiles: as many as the splits of the lower half, and
      * one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
-    low = acdf_cut_share(&local->blend, &point->mix, part, upper, &high);
+    low = acdf_cut_share(local, point, part, upper, &high);
     if (point->place.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
     acdf_cut_share_lights(local, cut, part, upper);
     part->sum = low + part->lights;
@@ -165,6 +169,13 @@ ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point
     part->high[axis] = upper->low[axis] = position;
     part->node = split->child[0];
     upper->node = child;
+    if (local->tables) {
+        const AcdfSplit* same =
+            acdf_tile_splits(acdf_local_words(local->tables), &local->tables->tiles) + part->entry;
+        part->entry = same->child[0];
+        upper->entry = same->child[1];
+        upper->depth = ++part->depth;
+    }
 }
 
 /* sin(pi x) and cos(pi x) for x in [-1, 1], to 1e-6. */
@@ -218,6 +229,13 @@ ACDF_FN uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* po
             if (cut->light[k] > cut->light[brightest]) brightest = k;
         for (k = 0; k < 3; ++k) direction[k] = local->lights[brightest].direction[k];
         return local->lights[brightest].tile;
+    }
+    if (local->tables && local->tables->hearts && point->mix.count > 0) {
+        const uint32_t tile = part->node & ACDF_TILE_FLAG
+                                  ? part->node & ~ACDF_TILE_FLAG
+                                  : acdf_local_heart(local->tables, point->codes[cut->nearest], part->entry);
+        for (k = 0; k < 3; ++k) direction[k] = acdf_local_middle(local->tables, tile)[k];
+        return tile;
     }
     for (k = 0; k < 2; ++k) {
         box[k][0] = part->high[k];

@@ -50,8 +50,44 @@ ACDF_FN void acdf_cut_range(const AcdfCutPart* part, AcdfRange range[2]) {
     }
 }
 
-ACDF_FN uint32_t acdf_cut_root(const AcdfLocal* local, uint32_t tile) {
-    return local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
+/* Draws a tile of a part from its mixture; *inside becomes its share of that. */
+ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
+                                      const AcdfMixture* mix, double* u, AcdfRange* range, double* inside) {
+    if (acdf_local_tabled(local, point)) {
+        const uint32_t* words = acdf_local_words(local->tables);
+        const AcdfTileTables* tables = &local->tables->tiles;
+        const double whole = acdf_mixture_sum(mix), from[2] = {u[0] * whole, u[1] * whole};
+        const uint32_t tile = acdf_tile_draw(words, tables, mix, point->codes, part->entry, from, u, inside);
+        acdf_tile_range(acdf_tile_record(words, tables, tile), range);
+        *inside = acdf_positive(*inside / whole);
+        return tile;
+    }
+    if (point->place.count > 0)
+        return acdf_place_sample_below(&local->places, &local->blend, mix, &point->place, part->node, u, range,
+                                       inside);
+    return acdf_blend_sample_below(&local->blend, mix, part->node, u, range, inside);
+}
+
+/* Finds the tile of a square in a part, and its share of the part's mixture. */
+ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
+                                    const AcdfMixture* mix, const uint32_t* square, AcdfRange* range,
+                                    double* inside) {
+    if (acdf_local_tabled(local, point)) {
+        const uint32_t* words = acdf_local_words(local->tables);
+        const AcdfTileTables* tables = &local->tables->tiles;
+        const uint32_t tile = acdf_tile_at(words, tables, square);
+        const AcdfTileRecord* record = acdf_tile_record(words, tables, tile);
+        double given;
+        acdf_local_ahead(local, record);
+        given = acdf_tile_share(words, tables, mix, point->codes, record, part->depth);
+        acdf_tile_range(record, range);
+        *inside = given > 0.0 ? acdf_positive(given / acdf_mixture_sum(mix)) : 0.0;
+        return tile;
+    }
+    if (point->place.count > 0)
+        return acdf_place_find_below(&local->places, &local->blend, mix, &point->place, part->node, square, range,
+                                     inside);
+    return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
 /* Draws a part: u becomes what is left of the random numbers. They are kept as what they are of the probability of
@@ -104,12 +140,10 @@ ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint
         const AcdfMixture mix = acdf_cut_mixture(point, part);
         double inside;
         u[0] = acdf_unit_interval((x - part->lights) / (part->sum - part->lights));
-        tile = point->place.count > 0 ? acdf_place_sample_below(&local->places, &local->blend, &mix, &point->place,
-                                                                part->node, u, range, &inside)
-                                      : acdf_blend_sample_below(&local->blend, &mix, part->node, u, range, &inside);
+        tile = acdf_cut_sample_tile(local, point, part, &mix, u, range, &inside);
         probability = acdf_positive(probability * (acdf_mixture_sum(&mix) / part->sum * inside));
     }
-    root = acdf_cut_root(local, tile);
+    root = acdf_local_tile_root(local, tile);
     if (root == ACDF_NO_ROOT) return probability;
     return acdf_positive(probability *
                          acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
@@ -121,11 +155,7 @@ ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* 
     const AcdfMixture mix = acdf_cut_mixture(point, part);
     double probability, inside;
     uint32_t light = part->first_light, root;
-    const uint32_t tile =
-        point->place.count > 0
-            ? acdf_place_find_below(&local->places, &local->blend, &mix, &point->place, part->node, square, range,
-                                    &probability)
-            : acdf_blend_find_below(&local->blend, &mix, part->node, square, range, 0, &probability);
+    const uint32_t tile = acdf_cut_find_tile(local, point, part, &mix, square, range, &probability);
     if (probability > 0.0) {
         probability = acdf_positive(part->probability * (acdf_mixture_sum(&mix) / part->sum * probability));
     } else { /* no row gives a light any probability */
@@ -133,7 +163,7 @@ ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* 
         if (light == part->end_light || local->lights[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
         probability = acdf_positive(part->probability * (cut->light[light] / part->sum));
     }
-    root = acdf_cut_root(local, tile);
+    root = acdf_local_tile_root(local, tile);
     if (root == ACDF_NO_ROOT) return probability;
     inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
     return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
@@ -144,11 +174,11 @@ ACDF_FN float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, 
                            const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
-    double t[2] = {0.5, 0.5}, position[2], p;
+    double p;
     uint32_t square[2];
     const AcdfCutPart* part;
     int child = cut->count > 1 ? 0 : ~0;
-    if (cut->count == 0 || !acdf_grid_square(&grid, direction, square, position)) return 0.0f;
+    if (cut->count == 0 || !acdf_local_square(&grid, direction, square)) return 0.0f;
     while (child >= 0) {
         const AcdfCutSplit* split = &cut->split[child];
         child = split->child[square[split->place & 7u] >= split->place >> 3];
@@ -157,9 +187,7 @@ ACDF_FN float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, 
     if (!(part->probability > 0.0)) return 0.0f;
     acdf_cut_range(part, range);
     p = acdf_cut_find_part(local, point, cut, part, square, range);
-    if (!(p > 0.0)) return 0.0f;
-    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) acdf_grid_fractions(&grid, direction, position, range, t);
-    return acdf_grid_pdf(&grid, range, t, p);
+    return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
 }
 
 /* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
@@ -177,7 +205,7 @@ ACDF_FN AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLo
     part = acdf_cut_draw(cut, u);
     acdf_cut_range(part, range);
     p = acdf_cut_sample_part(local, point, cut, part, u, range);
-    out = acdf_grid_place(&grid, range, u, p);
+    out = acdf_local_place(local, point, &grid, range, u, p);
     /* A slope makes the density depend on where the rounded direction lies. */
     if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
     return out;

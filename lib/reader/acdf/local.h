@@ -20,6 +20,17 @@ ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* 
     return local->tables && point->place.count == 0;
 }
 
+/* Where the curves of a tile begin; ACDF_NO_ROOT: it is a cell. */
+ACDF_INLINE uint32_t acdf_local_tile_root(const AcdfLocal* local, uint32_t tile) {
+    if (local->tables) return acdf_local_tile(local->tables, tile)->root;
+    return local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
+}
+
+/* Asks for the curves of a tile while something else is done. */
+ACDF_INLINE void acdf_local_ahead(const AcdfLocal* local, const AcdfTileRecord* tile) {
+    if (tile->root != ACDF_NO_ROOT) ACDF_PREFETCH(local->blend.tree + 2 * (size_t)tile->root);
+}
+
 /* A tile of the mixture: by the walk of the normal alone or of normal and place. */
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                         AcdfRange* range, double* probability) {
@@ -35,7 +46,8 @@ ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLoc
     const uint32_t* words = acdf_local_words(local->tables);
     const AcdfTileTables* tables = &local->tables->tiles;
     const double whole = acdf_mixture_sum(&point->mix), from[2] = {u[0] * point->sum - point->lights, u[1] * whole};
-    const uint32_t tile = acdf_tile_draw(words, tables, &point->mix, point->codes, from, u, probability);
+    const uint32_t tile =
+        acdf_tile_draw(words, tables, &point->mix, point->codes, tables->root, from, u, probability);
     acdf_tile_range(acdf_tile_record(words, tables, tile), range);
     *probability = acdf_positive(*probability / whole);
     return tile;
@@ -49,7 +61,9 @@ ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoi
         const AcdfTileTables* tables = &local->tables->tiles;
         const uint32_t tile = acdf_tile_at(words, tables, square);
         const AcdfTileRecord* record = acdf_tile_record(words, tables, tile);
-        const double given = acdf_tile_share(words, tables, &point->mix, point->codes, record);
+        double given;
+        acdf_local_ahead(local, record);
+        given = acdf_tile_share(words, tables, &point->mix, point->codes, record, 0);
         acdf_tile_range(record, range);
         *probability = given > 0.0 ? acdf_positive(given / acdf_mixture_sum(&point->mix)) : 0.0;
         return tile;
@@ -79,7 +93,7 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
                       : acdf_local_sample_tile(local, point, u, range, &probability);
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
-    root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
+    root = acdf_local_tile_root(local, tile);
     if (root == ACDF_NO_ROOT) return probability;
     return acdf_positive(probability *
                          acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
@@ -116,7 +130,7 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
     uint32_t root;
     const uint32_t tile = acdf_local_find_tile(local, point, square, range, &probability);
     probability = acdf_local_tile_probability(local, point, tile, probability);
-    root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
+    root = acdf_local_tile_root(local, tile);
     if (!(probability > 0.0) || root == ACDF_NO_ROOT) return probability;
     inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
     return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
@@ -142,26 +156,53 @@ ACDF_INLINE int acdf_local_table_pdf(const AcdfLocal* local, const AcdfLocalPoin
     return 1;
 }
 
+/* The square of a direction, as acdf_grid_square finds it. */
+ACDF_INLINE int acdf_local_square(const AcdfGrid* grid, const float direction[3], uint32_t square[2]) {
+    double position[2];
+    return (!acdf_grid_is_octahedral(grid) && acdf_row_square(grid->columns, grid->rows, direction, square)) ||
+           acdf_grid_square(grid, direction, square, position);
+}
+
+/* The density of a direction in a cell of probability p. */
+ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const float direction[3],
+                                      const AcdfRange range[2], double p) {
+    double t[2] = {0.5, 0.5}, position[2];
+    uint32_t square[2];
+    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) {
+        if (!acdf_grid_square(grid, direction, square, position)) return 0.0f;
+        acdf_grid_fractions(grid, direction, position, range, t);
+    } else if (local->tables && local->tables->heights)
+        return acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
+    return acdf_grid_pdf(grid, range, t, p);
+}
+
+/* The direction that what is left of the random numbers picks in a cell of probability p. */
+ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                 const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
+                                                 double p) {
+    AcdfDirectionSample out;
+    if (point->what == ACDF_LOCAL_BLEND && local->tables && local->tables->heights &&
+        acdf_row_place(acdf_local_heights(local->tables), grid->columns, range, u, p, &out))
+        return out;
+    return acdf_grid_place(grid, range, u, p);
+}
+
 /* The part of the density that follows the light. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
-    double t[2] = {0.5, 0.5}, position[2], p;
+    double p;
     uint32_t square[2];
     float told;
     if (point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) && local->tables->pieces &&
         acdf_local_table_pdf(local, point, direction, &told))
         return told;
-    if (point->what == ACDF_LOCAL_NOTHING || !acdf_grid_square(&grid, direction, square, position)) return 0.0f;
+    if (point->what == ACDF_LOCAL_NOTHING || !acdf_local_square(&grid, direction, square)) return 0.0f;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_find(local, point, square, range)
             : acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->root, square, range);
-    if (!(p > 0.0)) return 0.0f;
-    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) acdf_grid_fractions(&grid, direction, position, range, t);
-    else if (local->tables && local->tables->heights)
-        return acdf_row_pdf(acdf_local_heights(local->tables), grid.columns, range, p);
-    return acdf_grid_pdf(&grid, range, t, p);
+    return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
 }
 
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
@@ -220,9 +261,7 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
         p = point->what == ACDF_LOCAL_BLEND
                 ? acdf_local_blend_sample(local, point, u, range)
                 : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
-        if (!(point->what == ACDF_LOCAL_BLEND && local->tables && local->tables->heights &&
-              acdf_row_place(acdf_local_heights(local->tables), grid.columns, range, u, p, &out)))
-            out = acdf_grid_place(&grid, range, u, p);
+        out = acdf_local_place(local, point, &grid, range, u, p);
     }
     out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
     return out;

@@ -56,7 +56,7 @@ ACDF_INLINE double acdf_cap_weight(const AcdfLocalPoint* point, double x, double
     radius *= point->length;
     /* The horizon rarely cuts a light, and whether one is above it is not to be guessed: no branch. */
     if (fabs(height) < radius) return share * ((height + radius) * (height + radius) / (4.0 * radius));
-    return share * (height > 0.0 ? height : 0.0);
+    return share * (0.5 * (height + fabs(height))); /* 0 below, exactly the height above */
 }
 ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
     return acdf_cap_weight(point, (double)light->direction[0], (double)light->direction[1],

@@ -47,7 +47,10 @@ typedef struct AcdfLocalTables {
     uint32_t corners;       /* AcdfCornerRecord, in two squares of (2 n + 1)^2, north and south, of x + n and
                                (y + n) (2 n + 1); 0: the octahedron is too large, or there is none */
     uint32_t lights;        /* AcdfLightRecord, one a light */
-    uint32_t reserved[4];
+    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and 0 */
+    uint32_t hearts;        /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
+                               from it by the brighter halves; 0: there is no room */
+    uint32_t reserved[2];
 } AcdfLocalTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalTables) % 64 == 0); /* arrays are aligned */
 
@@ -65,6 +68,15 @@ ACDF_INLINE const AcdfCornerRecord* acdf_local_corners(const AcdfLocalTables* ta
 }
 ACDF_INLINE const AcdfLightRecord* acdf_local_lights(const AcdfLocalTables* tables) {
     return (const AcdfLightRecord*)(const void*)(acdf_local_words(tables) + tables->lights);
+}
+ACDF_INLINE const float* acdf_local_middle(const AcdfLocalTables* tables, uint32_t tile) {
+    return (const float*)(const void*)(acdf_local_words(tables) + tables->middles) + 4 * (size_t)tile;
+}
+/* Of the row whose codes these are. */
+ACDF_INLINE uint32_t acdf_local_heart(const AcdfLocalTables* tables, const uint8_t* codes, uint32_t split) {
+    const uint8_t* rows = (const uint8_t*)(const void*)(acdf_local_words(tables) + tables->tiles.rows);
+    const uint16_t* hearts = (const uint16_t*)(const void*)(acdf_local_words(tables) + tables->hearts);
+    return hearts[(size_t)(codes - rows) + split];
 }
 ACDF_INLINE const AcdfTileRecord* acdf_local_tile(const AcdfLocalTables* tables, uint32_t tile) {
     return acdf_tile_record(acdf_local_words(tables), &tables->tiles, tile);

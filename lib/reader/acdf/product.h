@@ -141,10 +141,9 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::guides(const Point& point) const noexc
         const ProductSample s = lobe_.sample(point.lobe, (i + 0.5) / out.drawn, (reversed + 0.5) / 8.0);
         if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
         float world[3];
-        double position[2];
         Guide& guide = out.guide[out.count];
         point.frame.to_world(s.direction, world);
-        if (!acdf_grid_square(&grid, world, guide.square, position)) continue;
+        if (!acdf_local_square(&grid, world, guide.square)) continue;
         guide.value = bounded(lobe_.value(point.lobe, s.direction, s.pdf));
         guide.pdf = bounded(s.pdf);
         if (!(guide.value > 0.0f && guide.pdf > 0.0f)) continue;

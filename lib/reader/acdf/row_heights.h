@@ -1,9 +1,10 @@
-/* Cells of a lat-long grid by a table of the heights between its rows: directions in floats, as acdf/cells.h draws
- * them, and densities without trigonometry. Cells without tilts. */
+/* Lat-long grids in floats, where these are sure to tell what acdf/sphere.h does: the square of a direction; and by
+ * a table of the heights between rows the directions of cells, as acdf/cells.h draws them, and densities without
+ * trigonometry. Cells without tilts. */
 #ifndef ACDF_ROW_HEIGHTS_H
 #define ACDF_ROW_HEIGHTS_H
 
-#include <acdf/pieces.h>
+#include <acdf/cells.h>
 #include <acdf/sphere.h>
 
 #ifdef __cplusplus
@@ -11,7 +12,37 @@ extern "C" {
 #endif
 
 /* Floats stay this angle (radians) inside a cell: four times ACDF_BORDER. */
-#define ACDF_FLOAT_BORDER 0x1p-20
+#define ACDF_FLOAT_BORDER 0x1p-20f
+
+/* The angle of (x, y) from the x axis in turns, from -1/2 to 1/2; within 2^-21 radians of acdf_atan2pi. */
+ACDF_INLINE float acdf_turn_float(float y, float x) {
+    const float ax = fabsf(x), ay = fabsf(y);
+    /* Signs are multiplied by, as there. */
+    const float level = copysignf(1.0f, ax - ay), east = copysignf(1.0f, x);
+    const float eighth = acdf_atan_float((ay < ax ? ay : ax) / (ay > ax ? ay : ax)) * (float)(0.5 / ACDF_PI);
+    const float quarter = (0.125f - 0.125f * level) + level * eighth;
+    return copysignf((0.25f - 0.25f * east) + east * quarter, y);
+}
+
+/* Whether a place on an axis lies surely in the step that it is rounded down to. */
+ACDF_INLINE int acdf_sure_step(float place, float border, uint32_t* step) {
+    const int32_t whole = (int32_t)place;
+    const float inside = place - (float)whole;
+    *step = (uint32_t)whole;
+    return inside > border && inside < 1.0f - border;
+}
+
+/* acdf_sphere_square without where the direction lies. Returns 0 where floats do not tell: next to the borders of
+ * squares and to the poles, for directions whose length differs from 1 by more than 5e-5 or that are not finite. */
+ACDF_INLINE int acdf_row_square(uint32_t columns, uint32_t rows, const float direction[3], uint32_t square[2]) {
+    const float x = direction[0], y = direction[1], z = direction[2];
+    const float sin2 = x * x + y * y, length2 = sin2 + z * z;
+    const float border = 2.0f * ACDF_FLOAT_BORDER * (float)(0.5 / ACDF_PI);
+    if (!acdf_is_direction(sin2, length2)) return 0;
+    return acdf_sure_step((float)columns * (0.5f - acdf_turn_float(y, x)), (float)columns * border, &square[0]) &
+           acdf_sure_step((float)rows * 2.0f * acdf_turn_float(sqrtf(sin2), z), (float)rows * 2.0f * border,
+                          &square[1]);
+}
 
 /* acdf_grid_pdf of a cell of probability p; z[i] is acdf_row_z of row i. */
 ACDF_INLINE float acdf_row_pdf(const double* z, uint32_t columns, const AcdfRange range[2], double p) {

@@ -14,14 +14,18 @@
 extern "C" {
 #endif
 
-/* A tile: where it lies, and the way to it. */
+enum { ACDF_TILE_STEPS = 20 };
+
+/* A tile, in a cache line: where it lies, and the way to it. */
 typedef struct AcdfTileRecord {
     uint32_t low[2], high[2];
-    uint32_t path;  /* number of the first step to it */
-    uint16_t depth; /* how many steps */
-    uint16_t light; /* the number of its light and 1; 0: it has none */
-    uint32_t reserved[2];
+    uint32_t root;                  /* of its curves; ACDF_NO_ROOT: it is a cell */
+    uint16_t depth;                 /* how many steps lead to it */
+    uint16_t light;                 /* the number of its light and 1; 0: it has none */
+    uint16_t step[ACDF_TILE_STEPS]; /* 2 * split, and 1 where it leads to the upper half; where there are more of
+                                       them, the number of the first one in `paths`, lower half first */
 } AcdfTileRecord;
+ACDF_STATIC_ASSERT(sizeof(AcdfTileRecord) == 64);
 
 /* Offsets are in words, from the start of all tables. Splits are numbered anew: those of the upper levels stand in
  * one cache line of a row, those below them line by line. */
@@ -32,7 +36,7 @@ typedef struct AcdfTileTables {
     uint32_t stride;   /* a multiple of 64 */
     uint32_t root;     /* split 0, or the only tile */
     uint32_t tiles;    /* AcdfTileRecord, one a tile */
-    uint32_t paths;    /* u16 a step: 2 * split, and 1 where it leads to the upper half */
+    uint32_t paths;    /* u16 a step to tiles that are deeper than ACDF_TILE_STEPS */
     uint32_t grid;     /* u16: the split or (with its flag) the tile that holds a part of the square */
     uint32_t shift[2]; /* bits of positions that are finer than the grid */
     uint32_t bits0;    /* the grid has 2^bits0 entries along axis 0, which are next to each other */
@@ -68,6 +72,13 @@ ACDF_INLINE uint32_t acdf_tile_at(const uint32_t* words, const AcdfTileTables* t
     uint32_t node =
         ((const uint16_t*)(const void*)(words + tables->grid))[(square[1] >> tables->shift[1] << tables->bits0) +
                                                                (square[0] >> tables->shift[0])];
+    int i;
+    for (i = 0; i < 2; ++i) { /* which most need at most: nobody guesses how many it is */
+        const AcdfSplit* split = &splits[node & ~(0u - (node >> 15))];
+        const uint32_t place = split->place, first = key0 >= place;
+        const uint32_t next = split->child[first ^ ((first ^ (key1 >= place)) & (place & 7u))];
+        node ^= (node ^ next) & ((node >> 15) - 1u);
+    }
     while (!(node & ACDF_TILE_FLAG)) {
         const uint32_t place = splits[node].place, first = key0 >= place;
         node = splits[node].child[first ^ ((first ^ (key1 >= place)) & (place & 7u))];
@@ -75,16 +86,20 @@ ACDF_INLINE uint32_t acdf_tile_at(const uint32_t* words, const AcdfTileTables* t
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* What a mixture gives to a tile, of all that it gives: the products of acdf_blend_find_rows. */
+/* What a mixture gives to a tile, of all that it gives: the products of acdf_blend_find_rows from step `first` on.
+ */
 ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
-                                        const uint8_t* const* row, const int rows, const AcdfTileRecord* tile) {
+                                        const uint8_t* const* row, const int rows, const AcdfTileRecord* tile,
+                                        uint32_t first) {
     const double* codes = acdf_tile_codes(words, tables);
-    const uint16_t* step = (const uint16_t*)(const void*)(words + tables->paths) + tile->path;
-    const uint16_t* end = step + tile->depth;
+    const uint16_t* step = tile->step;
+    const uint16_t* end;
     double part[ACDF_MAX_ROWS_MIXED];
     int i;
+    if (tile->depth > ACDF_TILE_STEPS)
+        step = (const uint16_t*)(const void*)(words + tables->paths) + (step[0] | (uint32_t)step[1] << 16);
     for (i = 0; i < rows; ++i) part[i] = 1.0;
-    for (; step < end; ++step) {
+    for (end = step + tile->depth, step += first; step < end; ++step) {
         const uint32_t split = *step >> 1;
         const double* side = codes + (*step & 1u);
         for (i = 0; i < rows; ++i) part[i] *= side[2 * row[i][split]];
@@ -92,9 +107,9 @@ ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTab
     return acdf_mixture_of(mix, rows, part);
 }
 
-/* Draws a tile, as acdf_blend_sample_rows does, of random numbers that are told as what x they are of all that the
- * mixture gives; u becomes what is left of them, *given what the mixture gives to the tile. No branch depends on
- * what is drawn but where the way ends. */
+/* Draws a tile below split `node`, as acdf_blend_sample_rows does, of random numbers that are told as what x they
+ * are of all that the mixture gives; u becomes what is left of them, *given what the mixture gives to the tile. No
+ * branch depends on what is drawn but where the way ends. */
 #ifdef ACDF_SQUARES_SSE2
 ACDF_INLINE __m128d acdf_either(__m128d mask, __m128d no, __m128d yes) {
     return _mm_or_pd(_mm_and_pd(mask, yes), _mm_andnot_pd(mask, no));
@@ -103,7 +118,7 @@ ACDF_INLINE __m128d acdf_either(__m128d mask, __m128d no, __m128d yes) {
  */
 ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
                                          const AcdfMixture* mix, const uint8_t* const* row, const int rows,
-                                         const double* from, double* u, double* given) {
+                                         uint32_t node, const double* from, double* u, double* given) {
     const double* codes = acdf_tile_codes(words, tables);
     const uint64_t* splits = (const uint64_t*)(const void*)acdf_tile_splits(words, tables);
     const __m128d one = _mm_set1_pd(1.0), zero = _mm_setzero_pd();
@@ -111,12 +126,11 @@ ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTa
     __m128d chosen = _mm_set1_pd(acdf_mixture_sum(mix)), x = _mm_set_pd(from[1], from[0]);
     size_t byte[ACDF_MAX_ROWS_MIXED];
     double part[ACDF_MAX_ROWS_MIXED];
-    uint64_t split = splits[0];
-    uint32_t node;
+    uint64_t split = splits[node];
     int i;
     for (i = 0; i < rows; ++i) {
         weight[i] = _mm_set_pd(1.0, mix->weight[i]);
-        byte[i] = row[i][0];
+        byte[i] = row[i][node];
     }
     do {
         const int64_t axis = (int64_t)(split & 1u);
@@ -157,11 +171,10 @@ ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTa
 #else
 ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
                                          const AcdfMixture* mix, const uint8_t* const* row, const int rows,
-                                         const double* from, double* u, double* given) {
+                                         uint32_t node, const double* from, double* u, double* given) {
     const double* codes = acdf_tile_codes(words, tables);
     const AcdfSplit* splits = acdf_tile_splits(words, tables);
     double weight[ACDF_MAX_ROWS_MIXED], part[ACDF_MAX_ROWS_MIXED], x[2], chosen = acdf_mixture_sum(mix);
-    uint32_t node = 0;
     int i;
     for (i = 0; i < 2; ++i) x[i] = from[i];
     for (i = 0; i < rows; ++i) {
@@ -194,31 +207,32 @@ ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTa
 }
 #endif
 
-/* The same for any number of rows, and for the only tile. */
+/* The same for any number of rows, and where the node is a tile (with its flag). */
 ACDF_INLINE double acdf_tile_share(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
-                                   const uint8_t* const* row, const AcdfTileRecord* tile) {
+                                   const uint8_t* const* row, const AcdfTileRecord* tile, uint32_t first) {
     switch (mix->count) {
     case 3:
-        return acdf_tile_share_rows(words, tables, mix, row, 3, tile);
+        return acdf_tile_share_rows(words, tables, mix, row, 3, tile, first);
     default:
-        return acdf_tile_share_rows(words, tables, mix, row, mix->count, tile);
+        return acdf_tile_share_rows(words, tables, mix, row, mix->count, tile, first);
     }
 }
 ACDF_INLINE uint32_t acdf_tile_draw(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
-                                    const uint8_t* const* row, const double* from, double* u, double* given) {
+                                    const uint8_t* const* row, uint32_t node, const double* from, double* u,
+                                    double* given) {
     int i;
-    if (tables->root & ACDF_TILE_FLAG) {
+    if (node & ACDF_TILE_FLAG) {
         *given = acdf_mixture_sum(mix);
         for (i = 0; i < 2; ++i) u[i] = acdf_unit_interval(from[i] / *given);
-        return tables->root & ~ACDF_TILE_FLAG;
+        return node & ~ACDF_TILE_FLAG;
     }
     switch (mix->count) {
     case 1:
-        return acdf_tile_draw_rows(words, tables, mix, row, 1, from, u, given);
+        return acdf_tile_draw_rows(words, tables, mix, row, 1, node, from, u, given);
     case 2:
-        return acdf_tile_draw_rows(words, tables, mix, row, 2, from, u, given);
+        return acdf_tile_draw_rows(words, tables, mix, row, 2, node, from, u, given);
     default:
-        return acdf_tile_draw_rows(words, tables, mix, row, 3, from, u, given);
+        return acdf_tile_draw_rows(words, tables, mix, row, 3, node, from, u, given);
     }
 }
 
