@@ -73,15 +73,8 @@ ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint
                                     const AcdfMixture* mix, const uint32_t* square, AcdfRange* range,
                                     double* inside) {
     if (acdf_local_tabled(local, point)) {
-        const uint32_t* words = acdf_local_words(local->tables);
-        const AcdfTileTables* tables = &local->tables->tiles;
-        const uint32_t tile = acdf_tile_at(words, tables, square);
-        const AcdfTileRecord* record = acdf_tile_record(words, tables, tile);
-        double given;
-        acdf_local_ahead(local, record);
-        given = acdf_tile_share(words, tables, mix, point->codes, record, part->depth);
-        acdf_tile_range(record, range);
-        *inside = given > 0.0 ? acdf_positive(given / acdf_mixture_sum(mix)) : 0.0;
+        const uint32_t tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
+        *inside = acdf_local_found_tile(local, point, mix, tile, part->depth, range);
         return tile;
     }
     if (point->place.count > 0)
@@ -118,7 +111,7 @@ ACDF_FN const AcdfCutPart* acdf_cut_draw(const AcdfCut* cut, double u[2]) {
 ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     const AcdfCutPart* part, double* u, AcdfRange* range) {
     double x = u[0] * part->sum, probability = part->probability;
-    uint32_t tile, root;
+    uint32_t tile;
     if (part->lights > 0.0 && (x < part->lights || !(part->sum > part->lights))) {
         uint32_t k = part->first_light, chosen = part->end_light;
         double weight = 0.0;
@@ -143,18 +136,15 @@ ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint
         tile = acdf_cut_sample_tile(local, point, part, &mix, u, range, &inside);
         probability = acdf_positive(probability * (acdf_mixture_sum(&mix) / part->sum * inside));
     }
-    root = acdf_local_tile_root(local, tile);
-    if (root == ACDF_NO_ROOT) return probability;
-    return acdf_positive(probability *
-                         acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
+    return acdf_local_draw_inside(local, tile, probability, u, range);
 }
 
 /* Finds the cell of a grid square in a part. Returns its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                   const AcdfCutPart* part, const uint32_t* square, AcdfRange* range) {
     const AcdfMixture mix = acdf_cut_mixture(point, part);
-    double probability, inside;
-    uint32_t light = part->first_light, root;
+    double probability;
+    uint32_t light = part->first_light;
     const uint32_t tile = acdf_cut_find_tile(local, point, part, &mix, square, range, &probability);
     if (probability > 0.0) {
         probability = acdf_positive(part->probability * (acdf_mixture_sum(&mix) / part->sum * probability));
@@ -163,10 +153,7 @@ ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* 
         if (light == part->end_light || local->lights[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
         probability = acdf_positive(part->probability * (cut->light[light] / part->sum));
     }
-    root = acdf_local_tile_root(local, tile);
-    if (root == ACDF_NO_ROOT) return probability;
-    inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
-    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
+    return acdf_local_find_inside(local, tile, probability, square, range);
 }
 
 /* Density per steradian with which acdf_cut_sample draws `direction` (unit); of cuts that are finished. */

@@ -40,32 +40,51 @@ ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalP
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }
 
-/* The same by tables; u[0] is that of lights and mixture. */
+/* What random numbers of lights and mixture are of all that the mixture gives. */
+ACDF_INLINE void acdf_local_of_mixture(const AcdfLocalPoint* point, const double* u, double from[2]) {
+    from[0] = u[0] * point->sum - point->lights;
+    from[1] = u[1] * acdf_mixture_sum(&point->mix);
+}
+
+/* The range of a tile to which the mixture gives `given` of all; returns that as its share. */
+ACDF_INLINE double acdf_local_drawn_tile(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
+                                         double given, AcdfRange* range) {
+    acdf_tile_range(acdf_local_tile(local->tables, tile), range);
+    return acdf_positive(given / acdf_mixture_sum(&point->mix));
+}
+
+/* acdf_local_sample_tile by tables; u[0] is that of lights and mixture. */
 ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                            AcdfRange* range, double* probability) {
-    const uint32_t* words = acdf_local_words(local->tables);
     const AcdfTileTables* tables = &local->tables->tiles;
-    const double whole = acdf_mixture_sum(&point->mix), from[2] = {u[0] * point->sum - point->lights, u[1] * whole};
-    const uint32_t tile =
-        acdf_tile_draw(words, tables, &point->mix, point->codes, tables->root, from, u, probability);
-    acdf_tile_range(acdf_tile_record(words, tables, tile), range);
-    *probability = acdf_positive(*probability / whole);
+    double from[2], given;
+    uint32_t tile;
+    acdf_local_of_mixture(point, u, from);
+    tile = acdf_tile_draw(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from, u,
+                          &given);
+    *probability = acdf_local_drawn_tile(local, point, tile, given, range);
     return tile;
+}
+
+/* The range of a tile that tables found, and its share of a mixture that `first` splits above it have been taken
+ * from. */
+ACDF_INLINE double acdf_local_found_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                         const AcdfMixture* mix, uint32_t tile, uint32_t first, AcdfRange* range) {
+    const AcdfTileRecord* record = acdf_local_tile(local->tables, tile);
+    double given;
+    acdf_local_ahead(local, record);
+    given =
+        acdf_tile_share(acdf_local_words(local->tables), &local->tables->tiles, mix, point->codes, record, first);
+    acdf_tile_range(record, range);
+    return given > 0.0 ? acdf_positive(given / acdf_mixture_sum(mix)) : 0.0;
 }
 
 /* Finds the tile of a square, with its share of the mixture. */
 ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
                                       AcdfRange* range, double* probability) {
     if (acdf_local_tabled(local, point)) {
-        const uint32_t* words = acdf_local_words(local->tables);
-        const AcdfTileTables* tables = &local->tables->tiles;
-        const uint32_t tile = acdf_tile_at(words, tables, square);
-        const AcdfTileRecord* record = acdf_tile_record(words, tables, tile);
-        double given;
-        acdf_local_ahead(local, record);
-        given = acdf_tile_share(words, tables, &point->mix, point->codes, record, 0);
-        acdf_tile_range(record, range);
-        *probability = given > 0.0 ? acdf_positive(given / acdf_mixture_sum(&point->mix)) : 0.0;
+        const uint32_t tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
+        *probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
         return tile;
     }
     if (point->place.count > 0)
@@ -74,11 +93,20 @@ ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoi
     return acdf_blend_find_tile(&local->blend, &point->mix, square, range, 0, probability);
 }
 
+/* Draws a cell of a tile of a probability; returns that of the cell. */
+ACDF_INLINE double acdf_local_draw_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
+                                          AcdfRange* range) {
+    const uint32_t root = acdf_local_tile_root(local, tile);
+    if (root == ACDF_NO_ROOT) return probability;
+    return acdf_positive(probability *
+                         acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
+}
+
 /* Draws a cell of lights and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                        AcdfRange* range) {
     double probability;
-    uint32_t tile, root, axis;
+    uint32_t tile, axis;
     const int tabled = acdf_local_tabled(local, point) && acdf_local_draws_mixture(point, u[0]);
     const AcdfLight* light = tabled ? 0 : acdf_local_draw_light(local, point, u, &probability);
     if (light) {
@@ -93,10 +121,7 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
                       : acdf_local_sample_tile(local, point, u, range, &probability);
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
-    root = acdf_local_tile_root(local, tile);
-    if (root == ACDF_NO_ROOT) return probability;
-    return acdf_positive(probability *
-                         acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
+    return acdf_local_draw_inside(local, tile, probability, u, range);
 }
 
 /* The light of a tile: its number and 1; 0 where it has none. */
@@ -123,17 +148,23 @@ ACDF_FN double acdf_local_tile_probability(const AcdfLocal* local, const AcdfLoc
     return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 
-/* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
-                                     AcdfRange* range) {
-    double probability, inside;
-    uint32_t root;
-    const uint32_t tile = acdf_local_find_tile(local, point, square, range, &probability);
-    probability = acdf_local_tile_probability(local, point, tile, probability);
-    root = acdf_local_tile_root(local, tile);
+/* Finds the cell of a square in a tile of a probability; returns that of the cell. */
+ACDF_INLINE double acdf_local_find_inside(const AcdfLocal* local, uint32_t tile, double probability,
+                                          const uint32_t* square, AcdfRange* range) {
+    const uint32_t root = acdf_local_tile_root(local, tile);
+    double inside;
     if (!(probability > 0.0) || root == ACDF_NO_ROOT) return probability;
     inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
     return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
+}
+
+/* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
+ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
+                                     AcdfRange* range) {
+    double probability;
+    const uint32_t tile = acdf_local_find_tile(local, point, square, range, &probability);
+    probability = acdf_local_tile_probability(local, point, tile, probability);
+    return acdf_local_find_inside(local, tile, probability, square, range);
 }
 
 /* The part of the density that follows the light, by runtime tables, as the walk finds it. Returns 0 where they do

@@ -107,105 +107,151 @@ ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTab
     return acdf_mixture_of(mix, rows, part);
 }
 
-/* Draws a tile below split `node`, as acdf_blend_sample_rows does, of random numbers that are told as what x they
- * are of all that the mixture gives; u becomes what is left of them, *given what the mixture gives to the tile. No
- * branch depends on what is drawn but where the way ends. */
+/* A walk of the splits on the way to a tile, as acdf_blend_sample_rows has it, of random numbers that are told as
+ * what x they are of all that the mixture gives. No branch depends on what is drawn but where the way ends. Rows
+ * are as many as in all three functions. */
 #ifdef ACDF_SQUARES_SSE2
+typedef struct AcdfTileWalk {
+    __m128d weight[ACDF_MAX_ROWS_MIXED]; /* and part */
+    __m128d x, chosen;
+    size_t byte[ACDF_MAX_ROWS_MIXED];
+    uint64_t split;
+    uint32_t node;
+} AcdfTileWalk;
+
 ACDF_INLINE __m128d acdf_either(__m128d mask, __m128d no, __m128d yes) {
     return _mm_or_pd(_mm_and_pd(mask, yes), _mm_andnot_pd(mask, no));
 }
+ACDF_INLINE void acdf_tile_walk_begin(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
+                                      const uint8_t* const* row, const int rows, uint32_t node, const double* from,
+                                      AcdfTileWalk* walk) {
+    int i;
+    walk->chosen = _mm_set1_pd(acdf_mixture_sum(mix));
+    walk->x = _mm_set_pd(from[1], from[0]);
+    walk->split = ((const uint64_t*)(const void*)acdf_tile_splits(words, tables))[node];
+    walk->node = node;
+    for (i = 0; i < rows; ++i) {
+        walk->weight[i] = _mm_set_pd(1.0, mix->weight[i]);
+        walk->byte[i] = row[i][node];
+    }
+}
 /* Splits and bytes of both halves are loaded before it is known which one is taken: else all wait for each other.
  */
-ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
-                                         const AcdfMixture* mix, const uint8_t* const* row, const int rows,
-                                         uint32_t node, const double* from, double* u, double* given) {
+ACDF_INLINE void acdf_tile_walk_step(const uint32_t* words, const AcdfTileTables* tables, const uint8_t* const* row,
+                                     const int rows, AcdfTileWalk* walk) {
     const double* codes = acdf_tile_codes(words, tables);
     const uint64_t* splits = (const uint64_t*)(const void*)acdf_tile_splits(words, tables);
+    const uint64_t split = walk->split;
     const __m128d one = _mm_set1_pd(1.0), zero = _mm_setzero_pd();
-    __m128d weight[ACDF_MAX_ROWS_MIXED]; /* and part */
-    __m128d chosen = _mm_set1_pd(acdf_mixture_sum(mix)), x = _mm_set_pd(from[1], from[0]);
-    size_t byte[ACDF_MAX_ROWS_MIXED];
-    double part[ACDF_MAX_ROWS_MIXED];
-    uint64_t split = splits[node];
+    const int64_t axis = (int64_t)(split & 1u);
+    const __m128d along = _mm_castsi128_pd(_mm_set_epi64x(-axis, axis - 1));
+    /* Of a tile any other split's, which is not used. */
+    const uint32_t next0 = (uint32_t)(split >> 32) & 0x7FFFu, next1 = (uint32_t)(split >> 48) & 0x7FFFu;
+    const uint64_t split0 = splits[next0], split1 = splits[next1];
+    __m128d half =
+        _mm_mul_pd(_mm_unpacklo_pd(walk->weight[0], walk->weight[0]), _mm_load_pd(codes + 2 * walk->byte[0]));
+    __m128d lower, taken, in_upper;
+    uint64_t mask;
+    size_t upper;
     int i;
+    for (i = 1; i < rows; ++i)
+        half = _mm_add_pd(half, _mm_mul_pd(_mm_unpacklo_pd(walk->weight[i], walk->weight[i]),
+                                           _mm_load_pd(codes + 2 * walk->byte[i])));
+    lower = _mm_unpacklo_pd(half, half);
+    taken = _mm_unpackhi_pd(half, half);
+    in_upper = _mm_and_pd(_mm_and_pd(_mm_cmpnlt_pd(walk->x, lower), _mm_cmplt_pd(zero, taken)), along);
+    in_upper = _mm_or_pd(in_upper, _mm_shuffle_pd(in_upper, in_upper, 1));
+    upper = (size_t)_mm_movemask_pd(in_upper) & 1u;
+    mask = 0 - (uint64_t)upper;
+    taken = acdf_either(in_upper, lower, taken);
     for (i = 0; i < rows; ++i) {
-        weight[i] = _mm_set_pd(1.0, mix->weight[i]);
-        byte[i] = row[i][node];
+        const size_t byte0 = row[i][next0], byte1 = row[i][next1];
+        walk->weight[i] = _mm_mul_pd(walk->weight[i], _mm_set1_pd(codes[2 * walk->byte[i] + upper]));
+        walk->byte[i] = byte0 ^ ((byte0 ^ byte1) & (size_t)mask);
     }
-    do {
-        const int64_t axis = (int64_t)(split & 1u);
-        const __m128d along = _mm_castsi128_pd(_mm_set_epi64x(-axis, axis - 1));
-        /* Of a tile any other split's, which is not used. */
-        const uint32_t next0 = (uint32_t)(split >> 32) & 0x7FFFu, next1 = (uint32_t)(split >> 48) & 0x7FFFu;
-        const uint64_t split0 = splits[next0], split1 = splits[next1];
-        __m128d half = _mm_mul_pd(_mm_unpacklo_pd(weight[0], weight[0]), _mm_load_pd(codes + 2 * byte[0]));
-        __m128d lower, taken, in_upper;
-        uint64_t mask;
-        size_t upper;
-        for (i = 1; i < rows; ++i)
-            half = _mm_add_pd(half,
-                              _mm_mul_pd(_mm_unpacklo_pd(weight[i], weight[i]), _mm_load_pd(codes + 2 * byte[i])));
-        lower = _mm_unpacklo_pd(half, half);
-        taken = _mm_unpackhi_pd(half, half);
-        in_upper = _mm_and_pd(_mm_and_pd(_mm_cmpnlt_pd(x, lower), _mm_cmplt_pd(zero, taken)), along);
-        in_upper = _mm_or_pd(in_upper, _mm_shuffle_pd(in_upper, in_upper, 1));
-        upper = (size_t)_mm_movemask_pd(in_upper) & 1u;
-        mask = 0 - (uint64_t)upper;
-        taken = acdf_either(in_upper, lower, taken);
-        for (i = 0; i < rows; ++i) {
-            const size_t byte0 = row[i][next0], byte1 = row[i][next1];
-            weight[i] = _mm_mul_pd(weight[i], _mm_set1_pd(codes[2 * byte[i] + upper]));
-            byte[i] = byte0 ^ ((byte0 ^ byte1) & (size_t)mask);
-        }
-        x = _mm_sub_pd(x, _mm_and_pd(_mm_and_pd(in_upper, along), lower));
-        x = _mm_mul_pd(x, acdf_either(along, _mm_div_pd(taken, chosen), one));
-        chosen = taken;
-        node = (uint32_t)(split >> (32 + 16 * upper));
-        split = split0 ^ ((split0 ^ split1) & mask);
-    } while (!(node & ACDF_TILE_FLAG));
-    _mm_storeu_pd(u, acdf_either(_mm_cmplt_pd(x, chosen), one, _mm_max_pd(_mm_div_pd(x, chosen), zero)));
-    for (i = 0; i < rows; ++i) _mm_storeh_pd(&part[i], weight[i]);
+    walk->x = _mm_sub_pd(walk->x, _mm_and_pd(_mm_and_pd(in_upper, along), lower));
+    walk->x = _mm_mul_pd(walk->x, acdf_either(along, _mm_div_pd(taken, walk->chosen), one));
+    walk->chosen = taken;
+    walk->node = (uint32_t)(split >> (32 + 16 * upper)) & 0xFFFFu;
+    walk->split = split0 ^ ((split0 ^ split1) & mask);
+}
+/* u becomes what is left of the random numbers, *given what the mixture gives to the tile. Returns its number. */
+ACDF_INLINE uint32_t acdf_tile_walk_end(const AcdfTileWalk* walk, const AcdfMixture* mix, const int rows, double* u,
+                                        double* given) {
+    const __m128d one = _mm_set1_pd(1.0), left = _mm_max_pd(_mm_div_pd(walk->x, walk->chosen), _mm_setzero_pd());
+    double part[ACDF_MAX_ROWS_MIXED];
+    int i;
+    _mm_storeu_pd(u, acdf_either(_mm_cmplt_pd(walk->x, walk->chosen), one, left));
+    for (i = 0; i < rows; ++i) _mm_storeh_pd(&part[i], walk->weight[i]);
     *given = acdf_mixture_of(mix, rows, part);
-    return node & 0x7FFFu;
+    return walk->node & ~ACDF_TILE_FLAG;
 }
 #else
+typedef struct AcdfTileWalk {
+    double weight[ACDF_MAX_ROWS_MIXED], part[ACDF_MAX_ROWS_MIXED], x[2], chosen;
+    uint32_t node;
+} AcdfTileWalk;
+
+ACDF_INLINE void acdf_tile_walk_begin(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
+                                      const uint8_t* const* row, const int rows, uint32_t node, const double* from,
+                                      AcdfTileWalk* walk) {
+    int i;
+    (void)words;
+    (void)tables;
+    (void)row;
+    walk->chosen = acdf_mixture_sum(mix);
+    walk->node = node;
+    for (i = 0; i < 2; ++i) walk->x[i] = from[i];
+    for (i = 0; i < rows; ++i) {
+        walk->weight[i] = mix->weight[i];
+        walk->part[i] = 1.0;
+    }
+}
+ACDF_INLINE void acdf_tile_walk_step(const uint32_t* words, const AcdfTileTables* tables, const uint8_t* const* row,
+                                     const int rows, AcdfTileWalk* walk) {
+    const double* codes = acdf_tile_codes(words, tables);
+    const uint32_t node = walk->node;
+    const AcdfSplit* split = &acdf_tile_splits(words, tables)[node];
+    const uint32_t axis = split->place & 1u;
+    double half[2] = {0.0, 0.0}, below[2] = {0.0, 0.0};
+    uint32_t upper;
+    int i;
+    for (i = 0; i < rows; ++i) {
+        half[0] += walk->weight[i] * codes[2 * row[i][node]];
+        half[1] += walk->weight[i] * codes[2 * row[i][node] + 1];
+    }
+    below[1] = half[0];
+    upper = (uint32_t) !(walk->x[axis] < half[0]) & (uint32_t)(half[1] > 0.0);
+    for (i = 0; i < rows; ++i) {
+        walk->weight[i] *= codes[2 * row[i][node] + upper];
+        walk->part[i] *= codes[2 * row[i][node] + upper];
+    }
+    walk->x[axis] -= below[upper];
+    walk->x[axis ^ 1u] *= half[upper] / walk->chosen;
+    walk->chosen = half[upper];
+    walk->node = split->child[upper];
+}
+ACDF_INLINE uint32_t acdf_tile_walk_end(const AcdfTileWalk* walk, const AcdfMixture* mix, const int rows, double* u,
+                                        double* given) {
+    int i;
+    for (i = 0; i < 2; ++i)
+        u[i] = walk->x[i] < walk->chosen ? (walk->x[i] > 0.0 ? walk->x[i] / walk->chosen : 0.0) : 1.0;
+    *given = acdf_mixture_of(mix, rows, walk->part);
+    return walk->node & ~ACDF_TILE_FLAG;
+}
+#endif
+
+/* Draws a tile below split `node`: u and *given as acdf_tile_walk_end sets them. */
 ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
                                          const AcdfMixture* mix, const uint8_t* const* row, const int rows,
                                          uint32_t node, const double* from, double* u, double* given) {
-    const double* codes = acdf_tile_codes(words, tables);
-    const AcdfSplit* splits = acdf_tile_splits(words, tables);
-    double weight[ACDF_MAX_ROWS_MIXED], part[ACDF_MAX_ROWS_MIXED], x[2], chosen = acdf_mixture_sum(mix);
-    int i;
-    for (i = 0; i < 2; ++i) x[i] = from[i];
-    for (i = 0; i < rows; ++i) {
-        weight[i] = mix->weight[i];
-        part[i] = 1.0;
-    }
+    AcdfTileWalk walk;
+    acdf_tile_walk_begin(words, tables, mix, row, rows, node, from, &walk);
     do {
-        const AcdfSplit* split = &splits[node];
-        const uint32_t axis = split->place & 1u;
-        double half[2] = {0.0, 0.0}, below[2] = {0.0, 0.0};
-        uint32_t upper;
-        for (i = 0; i < rows; ++i) {
-            half[0] += weight[i] * codes[2 * row[i][node]];
-            half[1] += weight[i] * codes[2 * row[i][node] + 1];
-        }
-        below[1] = half[0];
-        upper = (uint32_t) !(x[axis] < half[0]) & (uint32_t)(half[1] > 0.0);
-        for (i = 0; i < rows; ++i) {
-            weight[i] *= codes[2 * row[i][node] + upper];
-            part[i] *= codes[2 * row[i][node] + upper];
-        }
-        x[axis] -= below[upper];
-        x[axis ^ 1u] *= half[upper] / chosen;
-        chosen = half[upper];
-        node = split->child[upper];
-    } while (!(node & ACDF_TILE_FLAG));
-    for (i = 0; i < 2; ++i) u[i] = x[i] < chosen ? (x[i] > 0.0 ? x[i] / chosen : 0.0) : 1.0;
-    *given = acdf_mixture_of(mix, rows, part);
-    return node & ~ACDF_TILE_FLAG;
+        acdf_tile_walk_step(words, tables, row, rows, &walk);
+    } while (!(walk.node & ACDF_TILE_FLAG));
+    return acdf_tile_walk_end(&walk, mix, rows, u, given);
 }
-#endif
 
 /* The same for any number of rows, and where the node is a tile (with its flag). */
 ACDF_INLINE double acdf_tile_share(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,

@@ -1,0 +1,125 @@
+// Local environments many times at once: the same bits as one by one, on frozen and random files of both grids,
+// with and without runtime tables.
+#include "tests/lib/reader/local_loaded.h"
+#include "tests/lib/reader/local_random.h"
+
+#include <acdf/wavefront.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace acdf_test;
+
+/// Normals, numbers and directions: likely ones, and such as are on edges or refused.
+struct LocalWave {
+    std::vector<float> normals, directions;
+    std::vector<double> u;
+
+    explicit LocalWave(std::size_t count) : normals(3 * count), directions(3 * count), u(2 * count) {
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<double> uniform(0.0, 1.0);
+        const auto direction = [&](float* out) {
+            const double z = 2.0 * uniform(random) - 1.0, phi = 6.3 * uniform(random), r = std::sqrt(1.0 - z * z);
+            out[0] = static_cast<float>(r * std::cos(phi));
+            out[1] = static_cast<float>(r * std::sin(phi));
+            out[2] = static_cast<float>(z);
+        };
+        for (std::size_t i = 0; i < count; ++i) {
+            direction(&normals[3 * i]);
+            direction(&directions[3 * i]);
+            for (std::size_t k = 0; k < 2; ++k)
+                u[2 * i + k] = i % 19 == 7 * k ? 1.5 * double(i % 2) : uniform(random);
+            if (i % 11 == 3) normals[3 * i + i % 3] = 0.0f;
+            if (i % 23 == 4) normals[3 * i] = std::nanf("");
+            if (i % 13 == 5) directions[3 * i + i % 3] *= 3.0f;
+        }
+    }
+};
+
+void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t count) {
+    const acdf::LocalWavefront wavefront(view);
+    const LocalWave asked(count);
+    const auto* normals = reinterpret_cast<const float(*)[3]>(asked.normals.data());
+    const auto* directions = reinterpret_cast<const float(*)[3]>(asked.directions.data());
+    const auto* u = reinterpret_cast<const double(*)[2]>(asked.u.data());
+    // One more than is asked for: that must stay what it is.
+    std::vector<acdf::DirectionSample> samples(count + 1, {{7.0f, 7.0f, 7.0f}, 7.0f});
+    std::vector<float> pdfs(count + 1, 7.0f);
+    wavefront.sample(normals, u, count, samples.data());
+    wavefront.pdf(normals, directions, count, pdfs.data());
+    for (std::size_t i = 0; i < count; ++i) {
+        const acdf::DirectionSample s = view.sample(normals[i], u[i][0], u[i][1]);
+        ASSERT_EQ(std::memcmp(&s, &samples[i], sizeof s), 0) << i;
+        const float pdf = view.pdf(normals[i], directions[i]);
+        ASSERT_EQ(std::memcmp(&pdf, &pdfs[i], sizeof pdf), 0) << i;
+    }
+    EXPECT_EQ(samples[count].pdf, 7.0f);
+    EXPECT_EQ(pdfs[count], 7.0f);
+}
+
+/// As large files have them, which leave pieces out: a copy of the tables without those.
+struct NoPieces {
+    struct alignas(64) Line {
+        std::uint32_t word[16];
+    };
+    std::vector<Line> lines;
+    AcdfLocal local;
+
+    explicit NoPieces(const AcdfLocal& from) : lines((from.tables->words + 15) / 16), local(from) {
+        std::memcpy(lines.data(), from.tables, 4 * std::size_t{from.tables->words});
+        reinterpret_cast<AcdfLocalTables*>(lines.data())->pieces = 0;
+        local.tables = reinterpret_cast<const AcdfLocalTables*>(lines.data());
+    }
+};
+
+void expect_all(const acdf::File& file) {
+    const acdf::LocalEnvironmentView view = file.local();
+    for (const std::size_t count : {0, 1, 5, 700}) expect_the_local_view(view, count);
+    if (!view.data().tables) return;
+    const NoPieces large(view.data());
+    expect_the_local_view(acdf::LocalEnvironmentView(large.local), 700);
+}
+
+TEST(LocalWavefront, IsTheViewOnGoldenFiles) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(ACDF_TEST_DIR "/golden/v1.0")) {
+        if (entry.path().extension() != ".acdf") continue;
+        std::ifstream in(entry.path(), std::ios::binary);
+        const Bytes bytes{std::istreambuf_iterator<char>(in), {}};
+        acdf::File file;
+        ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
+        if (file.kind() != ACDF_KIND_LOCAL) continue;
+        SCOPED_TRACE(entry.path().filename());
+        ++files;
+        expect_all(file);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GE(files, 3);
+}
+
+TEST(LocalWavefront, IsTheViewOnRandomFiles) {
+    int with_tables = 0;
+    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+        RandomOptions options;
+        options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 5000;
+        options.rows = seed % 2 == 0 ? 33 : 511;
+        options.octahedral = seed % 5 == 4;
+        SCOPED_TRACE(seed);
+        const LoadedLocal loaded(RandomLocal(seed, options).make());
+        with_tables += loaded.light().tables != nullptr;
+        expect_all(loaded.file);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(with_tables, 15);
+}
+
+} // namespace
