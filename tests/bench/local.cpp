@@ -1,5 +1,5 @@
-// Time of a shading point, a draw and a density of local environment files, with runtime tables and without, beside
-// the full table of an environment of as many columns, which knows nothing of normals.
+// Time of a shading point, a draw and a density of local environment files, with runtime tables and without, and
+// many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
 //   bench_local --count point|draw|pdf FILE N [walk]     N calls and nothing else, for callgrind
@@ -7,13 +7,15 @@
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
-#include <acdf/reader.h>
+#include <acdf/wavefront.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <random>
 
 namespace {
@@ -26,16 +28,19 @@ using acdf_bench::uniform_directions;
 
 constexpr std::size_t kCalls = std::size_t{1} << 18; // before they repeat
 constexpr std::size_t kShared = 16;                  // calls a point, where a point has several
+constexpr std::size_t kWave = 4096;                  // calls at once
 
 /// What is asked: normals, pairs of numbers, directions anywhere and such as are drawn.
 struct Questions {
     Directions normals = uniform_directions(kCalls, 1), anywhere = uniform_directions(kCalls, 2), drawn{kCalls};
     std::vector<std::array<float, 2>> u{kCalls};
+    std::vector<std::array<double, 2>> wide{kCalls}; ///< u
 
     explicit Questions(const LocalEnvironmentView& view) {
         std::mt19937_64 random(3);
         for (std::size_t i = 0; i < kCalls; ++i) {
             for (float& value : u[i]) value = static_cast<float>(random() >> 40) * 0x1p-24f;
+            wide[i] = {u[i][0], u[i][1]};
             const AcdfDirectionSample s = view.sample(normals[i].data(), u[i][0], u[i][1]);
             drawn[i] = {s.direction[0], s.direction[1], s.direction[2]};
         }
@@ -58,17 +63,28 @@ struct Compared {
     const Questions& q;
 };
 
+/// Calls of a wave from one on, into memory of its own.
+using Wave = std::function<void(std::size_t first, std::size_t count)>;
+
 template <class Ask, class Full>
-void report(const char* what, const Compared& all, std::size_t shared, const Ask& ask, const Full& full) {
+void report(const char* what, const Compared& all, std::size_t shared, const Ask& ask, const Full& full,
+            const Wave& wave = nullptr) {
     std::vector<Candidate> rows = {{"",
                                     [&](std::size_t first, std::size_t count) {
                                         for (std::size_t i = first; i < first + count; ++i) full(i);
                                     }},
                                    each(all.plain, all.q, shared, ask),
                                    each(all.fast, all.q, shared, ask)};
+    if (wave)
+        rows.push_back({"", [&](std::size_t first, std::size_t count) {
+                            for (std::size_t i = 0; i < count; i += kWave)
+                                wave(first + i, std::min(kWave, count - i));
+                        }});
     acdf_bench::take_turns(rows, {});
-    std::printf("| %s | %.1f | %.1f (%.2f) | %.1f (%.2f) |\n", what, rows[0].least, rows[1].least,
-                rows[1].least / rows[0].least, rows[2].least, rows[2].least / rows[0].least);
+    std::printf("| %s | %.1f |", what, rows[0].least);
+    for (std::size_t i = 1; i < rows.size(); ++i)
+        std::printf(" %.1f (%.2f) |", rows[i].least, rows[i].least / rows[0].least);
+    std::puts(wave ? "" : " |");
     std::fflush(stdout);
 }
 
@@ -89,7 +105,7 @@ bool run(const char* path) {
     const Questions q(plain);
     std::printf(
         "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
-        "table's) | full table | walked | with tables |\n|---|---|---|---|\n",
+        "table's) | full table | walked | with tables | many at once |\n|---|---|---|---|---|\n",
         static_cast<unsigned long long>(tables.size()), latlong ? "" : ", octahedral",
         static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
     const Compared all = {full, plain, fast, q};
@@ -106,11 +122,25 @@ bool run(const char* path) {
     const auto full_draw = [&](std::size_t i) { keep(full.sample(q.u[i][0], q.u[i][1])); };
     const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
     const auto full_drawn = [&](std::size_t i) { keep(full.pdf(q.drawn[i].data())); };
+    const LocalWavefront wavefront(fast);
+    std::vector<DirectionSample> samples(kWave);
+    std::vector<float> densities(kWave);
+    const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals.data());
+    const Wave draws = [&](std::size_t first, std::size_t n) {
+        wavefront.sample(normals + first, reinterpret_cast<const double(*)[2]>(q.wide.data()) + first, n,
+                         samples.data());
+    };
+    const auto of = [&](const Directions& directions) -> Wave {
+        return [&](std::size_t first, std::size_t n) {
+            wavefront.pdf(normals + first, reinterpret_cast<const float(*)[3]>(directions.data()) + first, n,
+                          densities.data());
+        };
+    };
     report("shading point (full table: a draw)", all, 1, nothing, full_draw);
-    report("shading point and draw", all, 1, draw, full_draw);
+    report("shading point and draw", all, 1, draw, full_draw, draws);
     report("one of 16 draws at a point", all, kShared, draw, full_draw);
-    report("shading point and density of a uniform direction", all, 1, anywhere, full_anywhere);
-    report("shading point and density of a drawn direction", all, 1, drawn, full_drawn);
+    report("shading point and density of a uniform direction", all, 1, anywhere, full_anywhere, of(q.anywhere));
+    report("shading point and density of a drawn direction", all, 1, drawn, full_drawn, of(q.drawn));
     report("one of 16 densities at a point", all, kShared, drawn, full_drawn);
     return true;
 }

@@ -5,7 +5,8 @@
 #   tests/bench/run.sh BUILD [WIDTHS...]      BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON
 #
 # Needs valgrind for the counts, and the measured BRDFs of ACDF_TEST_DATA. Best on a machine that does nothing else. Widths: 1024
-# and 4096; 16384 takes some 6 GiB. Local files are timed by tests/bench/local.sh.
+# and 4096; 16384 takes some 6 GiB. Where the variable ACDF_TEST_DATA names a folder with probes/ and brdfs/, local files and
+# products are timed too (tests/bench/local.sh, tests/bench/product.sh).
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -42,3 +43,8 @@ put=$here/../../docs/make/put_table.sh
             "$(instructions bench_brdf pdf "$work/128" $walk)"
     done
 } | "$put" brdf
+
+if [ -n "${ACDF_TEST_DATA:-}" ]; then
+    "$here/local.sh" "$build" "$ACDF_TEST_DATA"
+    "$here/product.sh" "$build" "$ACDF_TEST_DATA"
+fi
