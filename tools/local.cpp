@@ -29,8 +29,8 @@ namespace acdf::tools {
 namespace {
 
 // Peaks beside the program itself, measured on probes of 2^19 to 2^23 pixels with budgets up to 1 MiB: 20 to 35
-// bytes a pixel.
-constexpr std::uint64_t kLocalMemory = 96 << 20, kLocalMemoryOfPixel = 40;
+// bytes a pixel; with a budget of 8 MiB 38 for each of its bytes.
+constexpr std::uint64_t kLocalMemory = 96 << 20, kLocalMemoryOfPixel = 40, kLocalMemoryOfByte = 40;
 
 // Places of meshes of up to 120,000 triangles, with budgets up to 4 MB: what their rays have met, and the mesh.
 constexpr std::uint64_t kPlacesMemory = 64 << 20, kPlacesMemoryOfByte = 200, kMeshMemoryOfByte = 32;
@@ -213,7 +213,8 @@ std::uint64_t LocalConversion::memory() const {
     const std::uint64_t pixels = input::image_pixels(source);
     if (pixels == 0) return 0;
     const std::uint64_t alone = kLocalMemory + pixels * kLocalMemoryOfPixel;
-    if (!places_) return alone;
+    const bool bounded = local_.goal.kind == builder::Goal::Kind::budget;
+    if (!places_) return alone + (bounded ? local_.goal.budget * kLocalMemoryOfByte : 0);
     std::error_code error; // a mesh that is not there is told of when it is read
     std::uint64_t places = kPlacesMemory + kPlacesMemoryOfByte * local_.goal.budget;
     for (const std::string& path : scene_.paths)
