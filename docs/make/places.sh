@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# places.sh DATA [SCENE...]: writes the table of docs/places.md. DATA holds probes/; scenes: hidden-grace and those of
+# places.sh DATA [SCENE...]: writes the tables of docs/places.md: of sums at points, and of pictures of 16 x 12 pixels. DATA holds probes/; scenes: hidden-grace and those of
 # docs/make/place_scenes.py. BENCH names the program (default: build/release/tests/bench/bench_places, of a build with
 # -DACDF_BUILD_BENCHMARKS=ON); POINTS is how many of those that the camera sees are asked (default: 1000). Files are left in
 # RESULTS (default: build/places), and used where they are there. A file takes minutes, and so do 1000 points.
@@ -32,3 +32,23 @@ for scene in $scenes; do
         sed "s/^/| $scene /; s|$local|local:1MB|; s|$places|places:4MB|" >> "$table"
 done
 "$root/docs/make/put_table.sh" places < "$table"
+
+acdf=${ACDF:-$root/build/release/tools/acdf}
+{
+    echo "| scene | sampler | gain over local, equal samples | equal time | bias/se |"
+    echo "|---|---|---|---|---|"
+    for scene in $scenes; do
+        local=file:$results/$scene-local.acdf places=file:$results/$scene-places.acdf
+        samplers=("$local" "$places" tiles:32x16 visibility:32x16 ris:32 "mis($places,cosine)")
+        grep -q '"portals"' "$results/$scene.json" && samplers+=(portals portals:uniform "mis(portals,cosine)")
+        options=()
+        for sampler in "${samplers[@]}"; do options+=(--sampler "$sampler"); done
+        "$acdf" render --scene "$results/$scene.json" --data "$data" --size 16x12 --samples 16 --seeds 64 --sequence independent --quiet \
+            --force -o "$results/$scene-pictures" "${options[@]}" > /dev/null
+        jq -r --arg scene "$scene" 'def short: tostring | .[0:5]; .samplers[] |
+            "| \($scene) | `\(.sampler)` | \(if .resolved then (.equal_samples_gain.value | short) else "unsure" end) | " +
+            "\(if .resolved then (.equal_time_gain.value | short) else "unsure" end) | \(.bias_standard_errors | short) |"' \
+            "$results/$scene-pictures/render.json" | sed "s|$local|local:1MB|; s|$places|places:4MB|"
+    done
+} > "$results/pictures.md"
+"$root/docs/make/put_table.sh" places_pictures < "$results/pictures.md"
