@@ -187,12 +187,12 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     const std::size_t middles = padded(4 * std::size_t{local.blend.tiles->tile_count});
     std::size_t words = at + tiles.words() + heights + corners + lights + middles;
     if (4 * words > most_bytes) return nullptr;
-    std::size_t hearts = tiles.heart_words();
-    if (hearts > 0 && (4 * (words + hearts) > most_bytes || !tiles.prepare_hearts())) hearts = 0;
-    words += hearts;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
     const bool small = latlong && pieces.make();
     if (small) words += pieces.words();
+    std::size_t hearts = tiles.heart_words();
+    if (hearts > 0 && (4 * (words + hearts) > most_bytes || !tiles.prepare_hearts())) hearts = 0;
+    words += hearts;
     block = take_block(allocator, 4 * words);
     if (!block.data) return nullptr;
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));

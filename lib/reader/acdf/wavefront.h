@@ -43,9 +43,10 @@ private:
     Instructions instructions_ = Instructions::none;
 };
 
-/// The directions and densities of a LocalEnvironmentView, bit for bit, in two thirds of the time: calls of several
-/// normals wait for memory together. Best for files of more than some 300 KiB. A few words by value, no memory of
-/// its own; valid while the File lives. All functions are const, thread-safe, allocate and throw nothing.
+/// The directions and densities of a LocalEnvironmentView, bit for bit. Calls of several normals wait for memory
+/// together: draws take some two thirds of the time, densities up to a quarter less in files of more than some 300
+/// KiB. A few words by value, no memory of its own; valid while the File lives. All functions are const,
+/// thread-safe, allocate and throw nothing.
 class LocalWavefront {
 public:
     LocalWavefront() noexcept = default;
