@@ -2,6 +2,7 @@
 // comes after every path that leads to them because links only go forward.
 #include "checker.h"
 
+#include <bitset>
 #include <cmath>
 #include <cstdlib>
 
@@ -23,12 +24,7 @@ struct Mark {
     u32 a, b;
 };
 
-u32 bits_set(u64 x) {
-    x -= x >> 1 & 0x5555555555555555u;
-    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
-    x = (x + (x >> 4)) & 0x0F0F0F0F0F0F0F0Fu;
-    return static_cast<u32>(x * 0x0101010101010101u >> 56);
-}
+u32 bits_set(u64 x) { return static_cast<u32>(std::bitset<64>(x).count()); }
 
 // Where curves start, as bits, and how many start before each run of 64 units: a curve's index in constant time.
 struct Starts {

@@ -1,13 +1,8 @@
-// acdf batch as a user runs it: resume, failures, refusals, shards, Ninja.
-#include "tests/tools/batch/files.h"
-#include "tests/tools/run.h"
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+// acdf batch as a user runs it: resume, failures, shards, Ninja.
+#include "tests/tools/batch/command.h"
 
 #include <cctype>
 #include <csignal>
-#include <map>
 #include <random>
 #include <thread>
 
@@ -16,48 +11,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-using Files = std::map<std::string, std::string>;
-
-/// All files in a folder and below, by name.
-Files files_in(const std::string& folder) {
-    Files files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file())
-            files[entry.path().lexically_relative(folder).string()] = read_text(entry.path());
-    return files;
-}
-
-class BatchCommand : public testing::Test {
-protected:
-    Folder folder;
-    const std::string probes = folder / "probes", out = folder / "out", manifest = folder / "library.jsonl";
-
-    Result batch(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), "batch");
-        arguments.insert(arguments.end(), {"-o", out});
-        return run_acdf(arguments);
-    }
-
-    json report(std::vector<std::string> arguments, int code = 0) {
-        arguments.push_back("--json");
-        const Result result = batch(arguments);
-        EXPECT_EQ(result.code, code) << result.err;
-        messages = result.err;
-        return json::parse(result.out, nullptr, false);
-    }
-    std::string messages;
-
-    /// A manifest of these lines is refused, with `what` on a line of its own, and nothing is written.
-    void expect_refused(const std::string& lines, const std::string& what) {
-        write_text(manifest, lines);
-        const Result result = batch({manifest});
-        EXPECT_EQ(result.code, 1) << what;
-        EXPECT_NE(result.err.find(what), std::string::npos) << what << " is not in: " << result.err;
-        EXPECT_NE(result.err.find("nothing was started"), std::string::npos) << result.err;
-        EXPECT_FALSE(fs::exists(out));
-    }
-};
 
 TEST_F(BatchCommand, MakesTheSameBytesAsTheSubcommands) {
     write_small_probes(probes + "/sub", 2);
@@ -264,92 +217,6 @@ TEST_F(BatchCommand, FilesAreTheSameForAnyThreadsAndJobs) {
         EXPECT_EQ(messages, "");
         if (expected.empty()) expected = files_in(out);
         else EXPECT_EQ(files_in(out), expected) << threads << " threads, " << jobs << " jobs";
-    }
-}
-
-TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
-    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
-    const std::string good = "{\"source\": \"probes/a.pfm\"}\n", at2 = manifest + ":2: ";
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"colour\": 1}\n", at2 + "has an unknown key 'colour'");
-    expect_refused(good + "{\"source\": []}\n", at2 + "'source' is to be a text");
-    expect_refused(good + good, at2 + "writes a.acdf, as does " + manifest + ":1");
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"./a.acdf\"}\n", at2 + "writes a.acdf");
-    expect_refused(good + "{\"source\": \"probes/b.pfm\"}\n", at2 + "there is no file");
-    expect_refused(good + "{\"source\": \"probes\"}\n", at2);
-    expect_refused(good + "{\"source\": \"\xff\"}\n", at2 + "is not UTF-8");
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"../a.acdf\"}\n", at2);
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"a.acdf/b.acdf\"}\n", at2);
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", \"options\": {\"cell\": 5}}\n",
-                   at2 + "options of env: ");
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", \"options\": {\"threads\": 5}}\n",
-                   at2 + "options of env: ");
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", "
-                          "\"options\": {\"cells\": 5, \"budget\": \"1KiB\"}}\n",
-                   at2 + "options of env: ");
-    expect_refused("\n", "has no jobs");
-}
-
-TEST_F(BatchCommand, TellsTheOneWrongLineOfHundredThousand) {
-    fs::create_directory(probes);
-    write_small_probe(probes + "/a.pfm", 1);
-    std::string text;
-    for (int i = 1; i <= 100000; ++i)
-        text += "{\"source\":\"probes/a.pfm\",\"output\":\"" + std::to_string(i == 99999 ? 5 : i) + ".acdf\"}\n";
-    expect_refused(text, manifest + ":99999: writes 5.acdf, as does " + manifest + ":5");
-}
-
-TEST_F(BatchCommand, OutputsDoNotFollowLinksOut) {
-    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
-    fs::create_directory(out);
-    fs::create_directory(folder / "elsewhere");
-    fs::create_directory_symlink(folder / "elsewhere", out + "/link");
-    fs::create_symlink(folder / "elsewhere/new", out + "/file.acdf");
-    for (const char* name : {"link/a.acdf", "file.acdf"}) {
-        write_text(manifest, std::string("{\"source\": \"probes/a.pfm\", \"output\": \"") + name + "\"}\n");
-        const Result result = batch({manifest});
-        EXPECT_EQ(result.code, 1);
-        EXPECT_NE(result.err.find("symbolic link"), std::string::npos) << result.err;
-    }
-    EXPECT_TRUE(fs::is_empty(folder / "elsewhere"));
-}
-
-TEST_F(BatchCommand, DoesNotReplaceFilesThatAreNotItsOwn) {
-    write_small_probes(probes, 2);
-    fs::create_directory(out);
-    write_text(out + "/probe001.acdf", "my notes");
-    const Result result = batch({probes});
-    EXPECT_EQ(result.code, 1);
-    EXPECT_NE(result.err.find("is no .acdf file"), std::string::npos) << result.err;
-    EXPECT_EQ(files_in(out).size(), 1u);
-    EXPECT_EQ(batch({probes, "--force"}).code, 0);
-    EXPECT_EQ(files_in(out).size(), 2u);
-}
-
-TEST_F(BatchCommand, TwoSourcesOfOneOutputAreRefused) {
-    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
-    fs::copy_file(probes + "/a.pfm", probes + "/a.hdr");
-    const Result result = batch({probes});
-    EXPECT_EQ(result.code, 1);
-    EXPECT_NE(result.err.find("a.pfm: writes a.acdf, as does"), std::string::npos) << result.err;
-    EXPECT_FALSE(fs::exists(out));
-    EXPECT_EQ(batch({probes + "/*.pfm"}).code, 0) << "a glob";
-    EXPECT_EQ(batch({probes + "/*.png"}).code, 1);
-}
-
-TEST_F(BatchCommand, WrongUsageIsTold) {
-    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
-    for (const std::vector<std::string>& wrong : {std::vector<std::string>{probes, "--shard", "0/3"},
-                                                  {probes, "--shard", "slurm"},
-                                                  {probes, "--memory", "much"},
-                                                  {probes, "--set", "env.colour=1"},
-                                                  {probes, "--set", "env"},
-                                                  {probes, "--kind", "brdf"},
-                                                  {probes, "--emit", "make"},
-                                                  {probes, "--emit", "ninja", "--json"},
-                                                  {}}) {
-        const Result result = batch(wrong);
-        EXPECT_EQ(result.code, 2) << result.err;
-        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
     }
 }
 
