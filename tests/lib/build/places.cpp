@@ -159,7 +159,7 @@ double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const
 /// Monte Carlo against summation at `count` points: how far the mean of all deviations, in their standard errors,
 /// is off, and the root of their mean square, which is 1 where both are right.
 void expect_unbiased(const Built& built, const Wall& wall, int count) {
-    constexpr int samples = 100;
+    constexpr int samples = 2000;
     std::mt19937_64 random(3);
     const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
     double sum = 0.0, square = 0.0;

@@ -193,7 +193,8 @@ TEST(MeshRivals, OfRoomsAreUnbiased) {
                            "--sampler", "mis(portals,cosine)", "--sampler", "visibility:8x4", "--sampler",
                            "mis(visibility:8x4,cosine)", "--sequence", "independent"});
         ASSERT_EQ(result.code, 0) << result.err;
-        for (const Json& one : Json::parse(result.out).at("samplers")) {
+        const Json report = Json::parse(result.out);
+        for (const Json& one : report.at("samplers")) {
             EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
             if (one.at("sampler") == "full-cdf" || one.at("sampler") == "portals:uniform") continue;
             EXPECT_GT(one.at("equal_samples_gain").at("value"), 2.0) << one;
