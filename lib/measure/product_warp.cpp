@@ -97,8 +97,7 @@ public:
                                : acdf_tree_find(local_.environment.tree, point_.root, square, range, strata) > 0.0;
         if (!found) return false;
         acdf_grid_fractions(&grid, direction, position, range, t);
-        for (int axis = 0; axis < 2; ++axis)
-            u[axis] = strata[axis].low + strata[axis].width * acdf_tilt_cdf(range[axis].tilt, t[axis]);
+        for (int axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
         return true;
     }
 

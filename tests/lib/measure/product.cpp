@@ -103,7 +103,7 @@ TEST(Product, WarpedNumbersDrawByTheirDensity) {
     const std::vector<ShadingPoint> at = points(12);
     for (std::size_t i = 0; i < all_lights.size(); ++i)
         expect_samples_as_its_density(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
-                                      SphereBins{64, 32, 4}, all_lights[i].name, check);
+                                      SphereBins{64, 32, 12}, all_lights[i].name, check);
 }
 
 /// Reflected light of a point, by summation over the grid of the light.
