@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, draws and evaluates COUNT times on a device, and compares
-# with the reader. DEVICE: c, opencl, webgl, webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
+# with the reader. DEVICE: c, opencl, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
 # on a lat-long grid; or what is walked: local, local_square, square (the octahedral one) and walk (the first one again).
 # PROBE and BUDGET in the environment name another source than the sky of tests, and the size of the file.
 set -euo pipefail
@@ -121,15 +121,23 @@ on_kernels() {
     echo "CUDA and HIP compile for devices, without doubles"
 }
 
-# A page in headless Chromium, whose GPU is software: it fetches what lies in $work and sends the answers back.
+# on_browser PAGE TARGET STEPS [FLAG...]: a page in headless Chromium, whose GPU is software: it fetches what lies in $work and
+# sends the answers back.
 on_browser() {
     need chromium
     need python3
     make_file
     export_sky "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
     cp "$here/$1.html" "$work/index.html"
-    python3 "$here/browser.py" "$work" "index.html${walk:+?walk}" || exit "$?"
+    python3 "$here/browser.py" "$work" "index.html${walk:+?walk}" "${@:4}" || exit "$?"
     check "$3"
+}
+
+# The GLSL by the compiler of a real OpenGL driver.
+on_mesa() {
+    export LIBGL_ALWAYS_SOFTWARE=1 EGL_PLATFORM=surfaceless
+    on_browser webgl glsl 4 --use-angle=gl-egl --ignore-gpu-blocklist
+    grep -q llvmpipe "$work/renderer" || skip "no Mesa with llvmpipe, but $(cat "$work/renderer")"
 }
 
 case $device in
@@ -138,9 +146,10 @@ opencl) on_opencl ;;
 glslang) on_glslang ;;
 kernels) on_kernels ;;
 webgl) on_browser webgl glsl 4 ;;
+mesa) on_mesa ;;
 webgpu) on_browser webgpu wgsl 4 ;;
 *)
-    echo "usage: run.sh c|opencl|glslang|kernels|webgl|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
+    echo "usage: run.sh c|opencl|glslang|kernels|webgl|mesa|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
     exit 2
     ;;
 esac
