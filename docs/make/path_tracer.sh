@@ -15,5 +15,5 @@ cp product.acdf cosine.acdf
 for sampler in cosine environment product; do
     echo "$sampler: $(build/path_tracer $sampler $sampler.acdf sky.pfm $sampler.pfm 16 320)"
 done
-oiiotool cosine.pfm environment.pfm product.pfm --mosaic 3x1 --mulc 0.1 --clamp:min=0:max=1 --powc 0.4545 -d uint8 \
+oiiotool --nosoftwareattrib cosine.pfm environment.pfm product.pfm --mosaic 3x1 --mulc 0.1 --clamp:min=0:max=1 --powc 0.4545 -d uint8 \
     --attrib:type=string Software "" -o "$root/docs/figures/path_tracer.png"

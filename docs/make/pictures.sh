@@ -25,7 +25,7 @@ panel() {
 side_by_side() { # OUT IN...
     local out=$1
     shift
-    oiiotool "$@" --mosaic "$#x1" -d uint8 -o "$figures/$out.png"
+    oiiotool --nosoftwareattrib "$@" --mosaic "$#x1" -d uint8 -o "$figures/$out.png"
 }
 
 # figure_of SAMPLER KEY: a number of render.json, to three digits
