@@ -65,6 +65,10 @@ float end_density(const AcdfLocal& local, const AcdfGrid& grid, const Lane& lane
     return p > 0.0 ? acdf_local_cell_pdf(&local, &grid, direction, range, p) : 0.0f;
 }
 
+void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) acdf_local_ahead(&local, acdf_local_tile(local.tables, lane[k].tile));
+}
+
 } // namespace
 
 void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std::size_t count,
@@ -89,8 +93,7 @@ void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std
             ++used;
         }
         for (std::size_t k = 0; k < used; k += kSideBySide) walk(local_, lane + k, std::min(kSideBySide, used - k));
-        for (std::size_t k = 0; k < used; ++k)
-            acdf_local_ahead(&local_, acdf_local_tile(local_.tables, lane[k].tile));
+        ask_for_curves(local_, lane, used);
         for (std::size_t k = 0; k < used; ++k) out[lane[k].number] = end_draw(local_, grid, lane[k]);
     }
 }
@@ -115,8 +118,7 @@ void LocalWavefront::pdf(const float (*normals)[3], const float (*directions)[3]
             l.number = i;
             ++used;
         }
-        for (std::size_t k = 0; k < used; ++k)
-            acdf_local_ahead(&local_, acdf_local_tile(local_.tables, lane[k].tile));
+        ask_for_curves(local_, lane, used);
         for (std::size_t k = 0; k < used; ++k)
             out[lane[k].number] = end_density(local_, grid, lane[k], directions[lane[k].number]);
     }
