@@ -4,12 +4,15 @@
 The page fetches files of the folder from the server that it came from. It sends: POST /NAME with the bytes of a file,
 which is written to the folder; POST /done with a line that ends the run, "ok", "skipped: why" or what is wrong.
 Ends with 0, 77 or 1."""
+import contextlib
 import http.server
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 FLAGS = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
@@ -38,20 +41,30 @@ class Handler(http.server.SimpleHTTPRequestHandler):
         pass
 
 
+def end_group(leader):
+    """Ends what a program that led a session has left behind, and waits until it is gone."""
+    with contextlib.suppress(ProcessLookupError):
+        for _ in range(100):
+            os.killpg(leader, signal.SIGKILL)
+            time.sleep(0.05)
+
+
 def main(folder, page, *flags):
     server = http.server.ThreadingHTTPServer(
         ("127.0.0.1", 0), lambda *arguments: Handler(*arguments, directory=folder))
     server.answered, server.answer = threading.Event(), "no answer within %.0f s" % LONGEST
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    with tempfile.TemporaryDirectory() as profile:
+    # Helpers of the browser may outlive it for a moment, and write to the profile while it is removed.
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         with open(os.path.join(folder, "browser.log"), "w", encoding="utf-8") as log:
             browser = subprocess.Popen(
                 ["chromium", *FLAGS, *flags, "--enable-logging=stderr", "--user-data-dir=" + profile,
                  "http://127.0.0.1:%d/%s" % (server.server_port, page)],
-                stdout=log, stderr=log, env={**os.environ, "HOME": profile})
+                stdout=log, stderr=log, env={**os.environ, "HOME": profile}, start_new_session=True)
             server.answered.wait(LONGEST)
             browser.terminate()
             browser.wait()
+            end_group(browser.pid)
     server.shutdown()
     print(server.answer)
     if server.answer.startswith("skipped"):

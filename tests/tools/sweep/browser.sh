@@ -9,7 +9,8 @@ if [ -z "$browser" ]; then
     exit 77
 fi
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# Helpers of the browser may outlive it for a moment, and write to the profile while it is removed.
+trap 'rm -rf "$work" || { sleep 2 && rm -rf "$work"; }' EXIT
 export HOME=$work # its profile and caches
 run() {
     timeout 120 "$browser" --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
