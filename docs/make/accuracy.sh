@@ -10,7 +10,7 @@ data=$(cd "${1:?usage: docs/make/accuracy.sh DATA [SECTION...]}" && pwd)
 shift
 acdf=${ACDF:-$root/build/release/tools/acdf}
 results=${RESULTS:-$root/build/accuracy}
-sections=(e1 e1_fits e1_sizes e1_options e1_ratio e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden company company_exact company_draws rivals building summary)
+sections=(e1 e1_fits e1_sizes e1_options e1_ratio octahedral e2 e3 e3_render e4_sizes e4_rivals e4_paper e4_bins e4_tiles e4_grace e4_stpeters e4_beach e5 e6_cook e6_nickel e6_plastic e7_100 e7_16 e7_4 e7_hidden hidden company company_exact company_draws rivals building summary)
 mkdir -p "$results"
 
 # Definitions for jq: rounding to three digits, and a value with its interval.
@@ -49,6 +49,9 @@ e1_sizes() { e1_tables sizes; }
 e1_options() { e1_tables options; }
 e1_ratio() { e1_tables ratio; }
 building() { e1_tables building; }
+octahedral() {
+    ACDF=$acdf PYTHONPATH="$root/build/release/lib/python" "${PYTHON:-/usr/bin/python3}" "$root/docs/make/octahedral_exact.py" "$data"
+}
 
 # ---- E2: rows of it ---------------------------------------------------------------------------------------
 

@@ -22,9 +22,7 @@ CompensatedCdf::CompensatedCdf(const compress::Target& target, double s)
     : grid_(target), cdf_(subtracted(target, s * grid_.flux() / (4.0 * ACDF_PI))) {}
 
 AcdfDirectionSample CompensatedCdf::sample(double u0, double u1) const {
-    const FullCdf::Draw draw = cdf_.sample(static_cast<float>(u0), static_cast<float>(u1));
-    const auto column = static_cast<std::uint32_t>(draw.column), row = static_cast<std::uint32_t>(draw.row);
-    return grid_.place(column, row, draw.column - column, draw.row - row, draw.pdf);
+    return grid_.place(cdf_.sample(static_cast<float>(u0), static_cast<float>(u1)));
 }
 
 float CompensatedCdf::pdf(const float direction[3]) const {

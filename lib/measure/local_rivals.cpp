@@ -3,19 +3,12 @@
 #include "compress/sum.h"
 
 #include <cmath>
-#include <stdexcept>
 
 namespace acdf::measure {
 namespace {
 
 using compress::Sum;
 using compress::Target;
-
-const Target& checked(const Target& target) {
-    if (!target.peaks.empty() || target.columns == 0 || target.rows == 0)
-        throw std::invalid_argument("a sampler of irradiance needs a probe with nearest lookup");
-    return target;
-}
 
 /// Integrals over the hemisphere above n; L of the target.
 struct Hemisphere {
@@ -51,38 +44,24 @@ Hemisphere hemisphere(const Target& target, const build::TexelCosines& cosines, 
 
 } // namespace
 
-AcdfDirectionSample place_draw(std::uint32_t columns, std::uint32_t rows, const FullCdf::Draw& draw) {
-    const auto column = static_cast<std::uint32_t>(draw.column), row = static_cast<std::uint32_t>(draw.row);
-    const AcdfRange range[2] = {{column, column + 1, 0.0}, {row, row + 1, 0.0}};
-    const double within[2] = {draw.column - column, draw.row - row};
-    AcdfDirectionSample out = acdf_sphere_place(columns, rows, range, within, 1.0);
-    out.pdf = static_cast<float>(draw.pdf);
-    return out;
-}
-
-LocalFullCdf::LocalFullCdf(const Target& target)
-    : target_(checked(target)), cdf_(target), cosines_(target), flux_(compress::integral(target)) {
-    if (!(flux_ > 0.0)) throw std::invalid_argument("a black probe has nothing to sample");
-}
+LocalFullCdf::LocalFullCdf(const Target& target) : target_(target), grid_(target), cdf_(target), cosines_(target) {}
 
 AcdfDirectionSample LocalFullCdf::sample(double u0, double u1) const {
-    return place_draw(target_.columns, target_.rows, cdf_.sample(static_cast<float>(u0), static_cast<float>(u1)));
+    return grid_.place(cdf_.sample(static_cast<float>(u0), static_cast<float>(u1)));
 }
 
 float LocalFullCdf::pdf(const float direction[3]) const {
-    std::uint32_t square[2];
-    double column;
-    if (!acdf_sphere_square(target_.columns, target_.rows, direction, square, &column)) return 0.0f;
-    return static_cast<float>(cdf_.pdf(square[0], square[1]));
+    std::uint32_t texel[2];
+    return grid_.find(direction, texel) ? static_cast<float>(cdf_.pdf(texel[0], texel[1])) : 0.0f;
 }
 
 double LocalFullCdf::relative_variance(const float n[3]) const {
     const Hemisphere above = hemisphere(target_, cosines_, n);
-    return above.relative_to_square(flux_ * above.radiance_cosine2);
+    return above.relative_to_square(flux() * above.radiance_cosine2);
 }
 
 double LocalFullCdf::share_above_horizon(const float n[3]) const {
-    return hemisphere(target_, cosines_, n).flux / flux_;
+    return hemisphere(target_, cosines_, n).flux / flux();
 }
 
 AcdfDirectionSample CosineHemisphere::sample(const float n[3], double u0, double u1) {

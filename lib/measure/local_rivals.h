@@ -1,14 +1,16 @@
 // What one can do today to estimate the irradiance E(n), the integral of f = L max(0, n . omega), from a probe: the
 // rivals of a local environment map, each with its exact relative variance.
 //
-// In all of them the target is a lat-long probe with one channel and nearest lookup (g is f: compress::Target); it
-// is referred to, not copied, and must outlive the sampler. Normals are unit. Directions are drawn over whole
-// texels; relative variances take each texel's cosine at its centre (TexelCosines), and are 0 where E(n) is.
+// In all of them the target is a probe, lat-long or octahedral, with one channel and nearest lookup (g is f:
+// compress::Target); it is referred to, not copied, and must outlive the sampler. Normals are unit. Directions are
+// drawn over whole texels; relative variances take each texel's cosine at its centre (TexelCosines), and are 0
+// where E(n) is.
 #pragma once
 
 #include "build/texel_cosines.h"
 #include "compress/target.h"
 #include "measure/full_cdf.h"
+#include "measure/probe_grid.h"
 
 #include <acdf/sample.h>
 
@@ -16,9 +18,6 @@
 #include <cstdint>
 
 namespace acdf::measure {
-
-/// The direction at continuous grid positions of a lat-long grid, `pdf` in sr^-1.
-AcdfDirectionSample place_draw(std::uint32_t columns, std::uint32_t rows, const FullCdf::Draw& draw);
 
 /// The full-resolution CDF of L: samples below the horizon are drawn in vain.
 class LocalFullCdf {
@@ -36,13 +35,13 @@ public:
     double share_above_horizon(const float n[3]) const;
     std::uint64_t bytes() const { return cdf_.bytes(); }
     /// The integral of L over the sphere.
-    double flux() const { return flux_; }
+    double flux() const { return grid_.flux(); }
 
 private:
     const compress::Target& target_;
+    ProbeGrid grid_;
     FullCdf cdf_;
     build::TexelCosines cosines_;
-    double flux_;
 };
 
 /// Resampled importance sampling (Talbot, Cline, Egbert, EGSR 2005): M candidates x_i from the full CDF, one of

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/target.h"
+#include "measure/full_cdf.h"
 
 #include <acdf/sample.h>
 
@@ -38,6 +39,10 @@ public:
     AcdfDirectionSample place(std::uint32_t column, std::uint32_t row, double u0, double u1, double pdf) const {
         const AcdfRange range[2] = {{column, column + 1, 0.0}, {row, row + 1, 0.0}};
         return place(range, u0, u1, pdf);
+    }
+    AcdfDirectionSample place(const FullCdf::Draw& draw) const {
+        const auto column = static_cast<std::uint32_t>(draw.column), row = static_cast<std::uint32_t>(draw.row);
+        return place(column, row, draw.column - column, draw.row - row, draw.pdf);
     }
     /// The texel (column, row) of a direction; false for those that are NaN or not unit.
     bool find(const float direction[3], std::uint32_t texel[2]) const {

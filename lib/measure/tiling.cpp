@@ -1,8 +1,6 @@
 #include "measure/tiling.h"
 
 #include "compress/sum.h"
-#include "measure/local_rivals.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -49,23 +47,28 @@ TilingOnTheFly::Borders TilingOnTheFly::borders(std::uint32_t texels, std::uint3
 }
 
 TilingOnTheFly::TilingOnTheFly(const Target& target, std::uint32_t columns, std::uint32_t rows)
-    : target_(target), columns_(borders(target.columns, columns, true)), rows_(borders(target.rows, rows, false)),
-      cosines_(target) {
+    : target_(target), grid_(target), columns_(borders(target.columns, columns, true)),
+      rows_(borders(target.rows, rows, false)), cosines_(target) {
     for (std::uint32_t r = 0; r < rows; ++r)
         for (std::uint32_t c = 0; c < columns; ++c) {
             const Target tile = part(target, columns_.at[c], columns_.at[c + 1], rows_.at[r], rows_.at[r + 1]);
             tables_.emplace_back(tile);
             flux_.push_back(compress::integral(tile));
+            if (target.parameterization != ACDF_PARAM_OCTAHEDRAL) continue;
+            const double low[2] = {double(columns_.at[c]) / target.columns, double(rows_.at[r]) / target.rows};
+            const double high[2] = {double(columns_.at[c + 1]) / target.columns,
+                                    double(rows_.at[r + 1]) / target.rows};
+            cones_.push_back(SquareCone::around(low, high));
         }
-    if (!(*std::max_element(flux_.begin(), flux_.end()) > 0.0))
-        throw std::invalid_argument("a black probe has nothing to sample");
 }
 
-// The cosine of n with (theta, phi) is n.z cos(theta) + b sin(theta) with b = n.x cos(phi) + n.y sin(phi). As
-// sin(theta) >= 0, the largest b of the tile's azimuths comes first: that of n itself if the tile has it, else at
-// one of the two borders. Then it is a cosine of theta - atan2(b, n.z): at its crest if that lies in the tile, else
-// at a border.
+// On a lat-long grid, the cosine of n with (theta, phi) is n.z cos(theta) + b sin(theta) with b = n.x cos(phi) +
+// n.y sin(phi). As sin(theta) >= 0, the largest b of the tile's azimuths comes first: that of n itself if the tile
+// has it, else at one of the two borders. Then it is a cosine of theta - atan2(b, n.z): at its crest if that lies
+// in the tile, else at a border.
 void TilingOnTheFly::largest_cosines(const float n[3], double* across, double* bound) const {
+    for (std::size_t t = 0; t < cones_.size(); ++t) bound[t] = std::max(cones_[t].largest_cosine(n) + kSlack, 0.0);
+    if (!cones_.empty()) return;
     const std::size_t columns = columns_.at.size() - 1, rows = rows_.at.size() - 1;
     const double x = n[0], y = n[1], z = n[2];
     const double column = target_.columns * (0.5 - 0.5 * acdf_atan2pi(y, x));
@@ -124,13 +127,12 @@ AcdfDirectionSample TilingOnTheFly::sample_tile(std::size_t tile, double u0, dou
     const std::size_t columns = columns_.at.size() - 1;
     draw.column += columns_.at[tile % columns];
     draw.row += rows_.at[tile / columns];
-    return place_draw(target_.columns, target_.rows, draw);
+    return grid_.place(draw);
 }
 
 float TilingOnTheFly::pdf(const Point& point, const float direction[3]) const {
     std::uint32_t square[2];
-    double column;
-    if (!acdf_sphere_square(target_.columns, target_.rows, direction, square, &column)) return 0.0f;
+    if (!grid_.find(direction, square)) return 0.0f;
     const std::size_t tile_column = columns_.tile[square[0]], tile_row = rows_.tile[square[1]];
     const std::size_t t = tile_row * (columns_.at.size() - 1) + tile_column;
     const double weight = point.cumulative[t + 1] - point.cumulative[t];
@@ -163,7 +165,7 @@ double TilingOnTheFly::relative_variance(const float n[3]) const {
 }
 
 std::uint64_t TilingOnTheFly::bytes() const {
-    std::uint64_t sum = flux_.size() * sizeof(double);
+    std::uint64_t sum = flux_.size() * sizeof(double) + cones_.size() * sizeof(SquareCone);
     for (const FullCdf& table : tables_) sum += table.bytes();
     for (const Borders* axis : {&columns_, &rows_})
         sum += axis->at.size() * (sizeof(std::uint32_t) + 2 * sizeof(double)) +

@@ -4,6 +4,8 @@
 #include "build/texel_cosines.h"
 #include "compress/target.h"
 #include "measure/full_cdf.h"
+#include "measure/probe_grid.h"
+#include "measure/square_cone.h"
 
 #include <acdf/sample.h>
 
@@ -12,10 +14,11 @@
 
 namespace acdf::measure {
 
-/// Tiling on the fly, the idea of LuxCore's visibility cache for environment lights: a lat-long probe L in columns
-/// x rows tiles. For a normal, each tile gets the weight flux * (largest cosine that any of its directions has); a
+/// Tiling on the fly, the idea of LuxCore's visibility cache for environment lights: a probe L in columns x rows
+/// tiles. For a normal, each tile gets the weight flux * (largest cosine that any of its directions has); a
 /// tile is drawn by its weight, a direction by the tile's own full-resolution CDF. The largest cosine, never 0
-/// where the tile reaches above the horizon, is what keeps the estimate unbiased.
+/// where the tile reaches above the horizon, is what keeps the estimate unbiased. Tiles of the octahedral square
+/// take that of a cone around them (SquareCone), which is larger.
 ///
 /// Normals are unit. The target (one channel, nearest lookup) is referred to and must outlive the sampler.
 class TilingOnTheFly {
@@ -59,7 +62,9 @@ private:
     /// `bound`: one a tile; `across`: room for two numbers a column of tiles.
     void largest_cosines(const float n[3], double* across, double* bound) const;
     const compress::Target& target_;
+    ProbeGrid grid_;
     Borders columns_, rows_;
+    std::vector<SquareCone> cones_; ///< one a tile of the octahedral square; none on lat-long grids
     std::vector<FullCdf> tables_;
     std::vector<double> flux_;
     build::TexelCosines cosines_;

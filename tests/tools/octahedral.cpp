@@ -128,6 +128,32 @@ TEST_F(OctahedralCommand, LocalFilesLieOnItToo) {
     EXPECT_EQ(plot.code, 0) << plot.err;
 }
 
+// Files and rivals are compared on the map's own texels.
+TEST_F(OctahedralCommand, SweepsDrawItsTexels) {
+    for (const char* kind : {"env", "local"}) {
+        SCOPED_TRACE(kind);
+        const std::string out = folder / kind;
+        const Result result = run_acdf({"sweep", square, "--projection", "octahedral", "--kind", kind, "--budgets",
+                                        "30kB", "--fits", "variance", "--no-timing", "-o", out});
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(result.err.find("resampled"), std::string::npos) << result.err;
+        const json sweep = json::parse(read_text(out + "/sweep.json"));
+        json full;
+        for (const json& row : sweep["rows"])
+            if (row["system"] == "full_cdf") full = row;
+        const json file = made(square, {"--projection", "octahedral", "--budget", "30kB"}, kind);
+        EXPECT_EQ(sweep["rows"][0]["bytes"], file["bytes"]);
+        if (kind == std::string("env")) {
+            EXPECT_LT(full["relative_variance"], 1e-9); // the density is the light itself
+            continue;
+        }
+        const json told = measured(square, {"--projection", "octahedral", "--rivals"});
+        EXPECT_GT(full["relative_variance"], sweep["rows"][0]["relative_variance"]);
+        EXPECT_NEAR(full["relative_variance"], told["rivals"]["full_cdf"]["relative_variance"],
+                    0.1 * full["relative_variance"].get<double>()); // of other normals
+    }
+}
+
 // The table of docs/conventions.md is what the program does.
 TEST_F(OctahedralCommand, PresetsAreDocumented) {
     std::ifstream page(std::string(ACDF_TEST_DIR) + "/../docs/conventions.md");

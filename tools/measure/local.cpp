@@ -81,11 +81,8 @@ struct PlacesAccuracy {
     std::uint64_t support_violations = 0;
 };
 
-/// The rivals and points of meshes see texels of a lat-long map: of the source itself, or of what it is resampled
-/// to.
-builder::Target latlong_target(const LocalMeasureOptions& options, const File& file, const ProbeTarget& source) {
-    if (!source.resampled && builder::grid_of(source.target).parameterization == ACDF_PARAM_LATLONG)
-        return source.target;
+/// A lat-long map that the source is resampled to.
+builder::Target latlong_target(const LocalMeasureOptions& options, const File& file) {
     return probe_target(options.source, load_probe(options.source, options.input, true), stored_options(file));
 }
 
@@ -192,11 +189,15 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
         build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     std::vector<Rival> rivals;
     PlacesAccuracy places;
-    if (options.rivals || !options.mesh.empty()) {
-        const builder::Target latlong = latlong_target(options, file, source);
-        if (options.rivals) rivals = rivals_of(builder::grid_of(latlong), normals);
-        if (!options.mesh.empty()) places = measure_places(file, options, builder::grid_of(latlong));
-    }
+    const bool latlong = builder::grid_of(source.target).parameterization == ACDF_PARAM_LATLONG;
+    // Rivals draw texels, of the source itself or of what it is resampled to; points of meshes see lat-long ones.
+    if (options.rivals)
+        rivals =
+            rivals_of(builder::grid_of(source.resampled ? latlong_target(options, file) : source.target), normals);
+    if (!options.mesh.empty())
+        places = measure_places(
+            file, options,
+            builder::grid_of(source.resampled || !latlong ? latlong_target(options, file) : source.target));
     if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals, places)).c_str(), stdout);
     else print_text(file, options, accuracy, rivals, places);
     require_support(options.file, file, options.source, source.probe.source_sha256,

@@ -125,7 +125,7 @@ std::string output_of(const std::string& source, SweepKind kind) {
 
 /// The probe without its pixels, and its target.
 std::pair<input::Probe, builder::Target> sweep_target(const SweepArguments& options, SweepKind kind) {
-    if (kind == SweepKind::environment && options.input.domain != input::Domain::latlong) {
+    if (kind != SweepKind::places && options.input.domain != input::Domain::latlong) {
         ProbeTarget own =
             load_target(options.source, options.input, options.sweep.target, [](const std::string&) {});
         if (!own.resampled && builder::grid_of(own.target).parameterization == ACDF_PARAM_OCTAHEDRAL)
@@ -155,8 +155,8 @@ SweptMesh swept_mesh(const SweepArguments& options) {
 }
 
 Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
-    // The samplers to compare with draw texels: of a lat-long map or, where the density is that of the map as a
-    // whole, of an octahedral one.
+    // The samplers to compare with draw texels: of a lat-long map or of an octahedral one, on a mesh of a lat-long
+    // one.
     const auto [probe, target] = sweep_target(options, kind);
     const builder::Source source = source_of(probe, options.input);
     const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;

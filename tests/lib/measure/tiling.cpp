@@ -57,6 +57,23 @@ INSTANTIATE_TEST_SUITE_P(All, TilingBounds,
                              return std::to_string(info.param.columns) + "x" + std::to_string(info.param.rows);
                          });
 
+// Cones are wider than tiles, by less the smaller these are.
+TEST(TilingBounds, OfTheSquareHold) {
+    const Target t = octahedral(sphere_target(48, 48, [](double, double) { return 1.0; }));
+    for (const std::uint32_t side : {1u, 2u, 3u, 8u, 48u}) {
+        const TilingOnTheFly tiling(t, side, side);
+        for (const Normal& n : awkward_normals()) {
+            const TilingOnTheFly::Point point = tiling.at(n.data());
+            for_each_direction(t, 3, [&](std::size_t, const double* d, double) {
+                const Normal w{static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])};
+                const double bound = tiling.pdf(point, w.data()) * point.cumulative.back();
+                ASSERT_GE(bound, std::max(dot(n.data(), w.data()), 0.0) - 1e-6);
+                ASSERT_LE(bound, std::max(dot(n.data(), w.data()), 0.0) + 8.0 / side);
+            });
+        }
+    }
+}
+
 class Tiling : public ::testing::TestWithParam<NamedTarget> {
 protected:
     const Target& target() const { return GetParam().target; }
