@@ -93,24 +93,26 @@ def summed(image, file):
 
 
 def main(data):
-    print("| probe | budget | texels | looked up | printed | summed | over its lat-long map's | largest weight, printed |"
-          " summed | light lost |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    columns = ["printed", "summed", "over lat-long", "largest weight, printed", "summed", "light lost"]
+    print("| probe | texels | looked up |", " | ".join(f"{b}: {c}" for b in BUDGETS for c in columns), "|")
+    print("|---|---|---|" + "---|" * (len(columns) * len(BUDGETS)))
     with tempfile.TemporaryDirectory() as work:
         for name in PROBES:
             probe = pixels(f"{data}/probes/{name}")
-            for budget in BUDGETS:
-                own = make(f"{data}/probes/{name}", budget, "latlong", work + "/own.acdf")["relative_variance"]
-                print(f"| {name.split('.')[0]} | {budget} | {probe.shape[1]} × {probe.shape[0]}, lat-long | | {own:.3g} | | 1 | | | |")
-                for n in SIZES:
-                    for how in ("nearest", "bilinear"):
-                        image = octahedral(probe, n, how == "bilinear")
-                        write_pfm(work + "/map.pfm", image)
+            own = [make(f"{data}/probes/{name}", budget, "latlong", work + "/own.acdf") for budget in BUDGETS]
+            print(f"| {name.split('.')[0]} | {probe.shape[1]} × {probe.shape[0]}, lat-long | |",
+                  " | ".join(f"{told['relative_variance']:.3g} | | 1 | {told['max_weight']:.3g} | |" for told in own), "|")
+            for n in SIZES:
+                for how in ("nearest", "bilinear"):
+                    image, row = octahedral(probe, n, how == "bilinear"), f"| | {n}² | {how} |"
+                    write_pfm(work + "/map.pfm", image)
+                    for budget, other in zip(BUDGETS, own):
                         told = make(work + "/map.pfm", budget, "octahedral", work + "/map.acdf")
                         variance, weight, lost = summed(image, work + "/map.acdf")
-                        print(f"| | | {n}² | {how} | {told['relative_variance']:.4g} | {variance:.4g} |"
-                              f" {told['relative_variance'] / own:.2g} | {told['max_weight']:.4g} | {weight:.4g} | {lost:.1g} |",
-                              flush=True)
+                        row += (f" {told['relative_variance']:.3g} | {variance:.3g} |"
+                                f" {told['relative_variance'] / other['relative_variance']:.2g} |"
+                                f" {told['max_weight']:.3g} | {weight:.3g} | {lost:.1g} |")
+                    print(row, flush=True)
 
 
 if __name__ == "__main__":
