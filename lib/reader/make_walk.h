@@ -1,4 +1,4 @@
-// Makes the words of acdf/shader_walk.h.
+// Makes the words of acdf/shader_walk.h and acdf/shader_brdf.h.
 #pragma once
 
 #include <acdf/allocator.h>
@@ -6,9 +6,9 @@
 
 namespace acdf {
 
-/// The words of an environment or a local environment, in `block`, which the caller gives back. False where there
-/// are none: for cells that tilt, for curves that so many share that the cells are more than the file has bytes,
-/// for rows of 4 GiB, and where memory fails.
+/// The words of an environment, a local environment or a BRDF, in `block`, which the caller gives back. False where
+/// there are none: for cells that tilt, for curves that so many share that the cells are more than the file has
+/// bytes, for rows of 4 GiB, and where memory fails.
 bool make_walk(const File& file, AcdfBlock& block) noexcept;
 
 } // namespace acdf

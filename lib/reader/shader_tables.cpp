@@ -50,8 +50,7 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
 
 Status ShaderTables::make_walk(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
-    if (file.kind() != ACDF_KIND_ENVIRONMENT && file.kind() != ACDF_KIND_LOCAL)
-        return none("it is no environment and no local environment");
+    if (file.kind() == ACDF_KIND_TABLE) return none("it is no environment, no local environment and no BRDF");
     if (!acdf::make_walk(file, out.block_))
         return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
     return {};

@@ -39,6 +39,14 @@ ACDF_FIELD(ACDF_F32, y)
 ACDF_FIELD(ACDF_F32, z)
 ACDF_STRUCT_END(AcdfVector)
 
+ACDF_FN3(AcdfVector, acdf_vector, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z) {
+    ACDF_VAR(AcdfVector, d);
+    d.x = x;
+    d.y = y;
+    d.z = z;
+    return d;
+}
+
 /* The direction at a local azimuth in a quarter (0: around +x, then +y, -x, -y) and 1 - |z|; south: 0 or 1. */
 ACDF_FN4(AcdfVector, acdf_piece_direction, ACDF_F32, azimuth, ACDF_F32, cap, ACDF_U32, quarter, ACDF_U32, south) {
     ACDF_LET(ACDF_F32, radius) = ACDF_SQRT(cap * (2.0f - cap)); /* exact near the poles, where z is not */
@@ -70,6 +78,29 @@ ACDF_FIELD(ACDF_U32, key1)  /* `cap` in steps of 2^-24, in the south all bits tu
 ACDF_FIELD(ACDF_F32, slope) /* minor over major coordinate, tangent of the local azimuth */
 ACDF_FIELD(ACDF_F32, cap)   /* 1 - |z| */
 ACDF_STRUCT_END(AcdfPlace)
+
+/* A direction as places are found of it. */
+ACDF_STRUCT_BEGIN(AcdfUnit)
+ACDF_FIELD(ACDF_F32, x) /* of a pole, whose azimuth is all one, 1e-18 */
+ACDF_FIELD(ACDF_F32, y)
+ACDF_FIELD(ACDF_F32, z)
+ACDF_FIELD(ACDF_F32, sin2)    /* x x + y y */
+ACDF_FIELD(ACDF_F32, length2) /* of the direction; 0: it differs from 1 by more than 1e-3, or is not finite */
+ACDF_STRUCT_END(AcdfUnit)
+
+ACDF_FN3(AcdfUnit, acdf_unit_of, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z) {
+    ACDF_LET(ACDF_U32, pole) = ACDF_SELECT(ACDF_ABS(x) + ACDF_ABS(y) < 1e-18f, 1u, 0u);
+    ACDF_VAR(AcdfUnit, d);
+    d.x = ACDF_SELECT(pole != 0u, 1e-18f, x);
+    d.y = ACDF_SELECT(pole != 0u, 0.0f, y);
+    d.z = z;
+    d.sin2 = d.x * d.x + d.y * d.y;
+    d.length2 = d.sin2 + z * z;
+    if (ACDF_BITS(d.length2) - 0x3F7FBE7Bu > 0x0000624Cu) { /* 0.9995^2 to 1.0005^2, by their bits */
+        d.length2 = 0.0f;
+    }
+    return d;
+}
 
 #define ACDF_DIRECTION_BITS 25u
 #define ACDF_DIRECTION_MASK 0x01FFFFFFu

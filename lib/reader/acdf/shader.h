@@ -114,16 +114,11 @@ ACDF_FN3(AcdfShaderSample, acdf_shader_sample, ACDF_TABLES, tables, ACDF_U32, n0
 /* Density per steradian with which acdf_shader_sample draws a direction (unit). 0 where none falls, and for
  * directions whose length differs from 1 by more than 5e-4 or that are not finite. */
 ACDF_FN4(ACDF_F32, acdf_shader_pdf, ACDF_TABLES, tables, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z) {
-    ACDF_LET(ACDF_U32, pole) =
-        ACDF_SELECT(ACDF_ABS(x) + ACDF_ABS(y) < 1e-18f, 1u, 0u); /* which azimuth is all one */
-    ACDF_LET(ACDF_F32, a) = ACDF_SELECT(pole != 0u, 1e-18f, x);
-    ACDF_LET(ACDF_F32, b) = ACDF_SELECT(pole != 0u, 0.0f, y);
-    ACDF_LET(ACDF_F32, sin2) = a * a + b * b;
-    ACDF_LET(ACDF_F32, length2) = sin2 + z * z;
-    if (ACDF_BITS(length2) - 0x3F7FBE7Bu > 0x0000624Cu) { /* 0.9995^2 to 1.0005^2, by their bits */
+    ACDF_LET(AcdfUnit, d) = acdf_unit_of(x, y, z);
+    if (d.length2 == 0.0f) {
         return 0.0f;
     }
-    ACDF_LET(AcdfPlace, place) = acdf_place_of(a, b, z, sin2, length2);
+    ACDF_LET(AcdfPlace, place) = acdf_place_of(d.x, d.y, d.z, d.sin2, d.length2);
     ACDF_LET(ACDF_F32, slope) = ACDF_SELECT(place.slope < 1.0f, place.slope, -1.0f); /* the next quarter's */
     ACDF_LET(ACDF_U32, entry) = acdf_squares_entry(tables, ACDF_CELLS_DIRECTIONS, place.key0, place.key1);
     ACDF_VAR(ACDF_U32, mask) = acdf_block_mask(tables, ACDF_CELLS_DIRECTIONS, entry, place.key0, place.key1);

@@ -1,60 +1,21 @@
 /* Shading points of a local environment for shaders: what serves a normal, as acdf/local_point.h says, in floats,
- * over the words of acdf/shader_walk.h. One text for processors and for shaders of every language (acdf/dialect.h).
+ * over the words of acdf/shader_tree.h. One text for processors and for shaders of every language (acdf/dialect.h).
  */
 #ifndef ACDF_SHADER_POINT_H
 #define ACDF_SHADER_POINT_H
 
-#include <acdf/shader_square.h>
+#include <acdf/shader_tree.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* ---- tables ----------------------------------------------------------------------------------------- */
-
-/* Words of the header; `link` is a node, or a leaf with its flag. Places are words from the start of the tables. */
-#define ACDF_WALK_SIZE 0u        /* of all, in words */
-#define ACDF_WALK_OCTAHEDRAL 1u  /* 1: positions lie on the octahedral square, 0: on a lat-long grid */
-#define ACDF_WALK_ENVIRONMENT 2u /* link of the tree of all normals */
-#define ACDF_WALK_MIXTURE 3u     /* link of what bins share; ACDF_WALK_NONE: each bin has a tree of its own */
-#define ACDF_WALK_NODES 4u  /* 4 words each: axis (bit 31) and key, link of the lower part, of the upper, chance */
-#define ACDF_WALK_LEAVES 5u /* ACDF_LEAF_WORDS each */
-#define ACDF_WALK_SUBDIVISIONS 6u /* of the octahedron of normals; 0: normals lie on a lat-long grid */
-#define ACDF_WALK_COLUMNS 7u      /* of that grid */
-#define ACDF_WALK_ROWS 8u
-#define ACDF_WALK_BINS 9u       /* 2 words each: row (link, where bins have trees) and share, f32 */
-#define ACDF_WALK_BIN_COUNT 10u /* 0: the file knows no normals */
-#define ACDF_WALK_CODES                                                                                            \
-    11u /* f32, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
-#define ACDF_WALK_CODE_ROWS 12u /* bytes, a code a split: `stride` of them a row */
-#define ACDF_WALK_STRIDE 13u
-#define ACDF_WALK_LIGHTS 14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
-#define ACDF_WALK_LIGHT_COUNT 15u
-#define ACDF_WALK_COSINE 16u /* f32: share of a cosine lobe about the normal */
-#define ACDF_WALK_HEADER_WORDS 32u
-
-#define ACDF_WALK_NONE 0xFFFFFFFFu
-#define ACDF_WALK_LEAF 0x80000000u /* of a link: it is a leaf */
-#define ACDF_WALK_SPLIT                                                                                            \
-    0x40000000u /* of a node's chance: rows tell it, as their code of the split of that number */
-
-/* Word i as a float. */
-ACDF_FN2(ACDF_F32, acdf_word_as_float, ACDF_TABLES, tables, ACDF_U32, i) {
-    return ACDF_FLOAT(ACDF_WORD(tables, i));
-}
-
 /* ---- what serves a normal --------------------------------------------------------------------------- */
 
 /* Made once for a shading point, it serves all samples there. Up to three rows are mixed. */
 ACDF_STRUCT_BEGIN(AcdfShaderPoint)
-ACDF_FIELD(ACDF_U32, root)   /* where walks begin; ACDF_WALK_NONE: nothing serves the normal */
-ACDF_FIELD(ACDF_U32, lights) /* how many */
-ACDF_FIELD(ACDF_U32, row0)
-ACDF_FIELD(ACDF_U32, row1)
-ACDF_FIELD(ACDF_U32, row2)
-ACDF_FIELD(ACDF_F32, weight0)
-ACDF_FIELD(ACDF_F32, weight1)
-ACDF_FIELD(ACDF_F32, weight2)
+ACDF_FIELD(AcdfWalkMixture, mix)
+ACDF_FIELD(ACDF_U32, lights)    /* how many */
 ACDF_FIELD(ACDF_F32, light_sum) /* of their weights */
 ACDF_FIELD(ACDF_F32, sum)       /* of all weights */
 ACDF_FIELD(ACDF_F32, cosine)    /* share of the cosine lobe */
@@ -67,14 +28,8 @@ ACDF_STRUCT_END(AcdfShaderPoint)
 /* What draws from the whole tree at a link. */
 ACDF_FN1(AcdfShaderPoint, acdf_point_of_tree, ACDF_U32, root) {
     ACDF_VAR(AcdfShaderPoint, here);
-    here.root = root;
+    here.mix = acdf_mixture_below(root, 1.0f);
     here.lights = 0u;
-    here.row0 = 0u;
-    here.row1 = 0u;
-    here.row2 = 0u;
-    here.weight0 = 1.0f;
-    here.weight1 = 0.0f;
-    here.weight2 = 0.0f;
     here.light_sum = 0.0f;
     here.sum = 1.0f;
     here.cosine = 0.0f;
@@ -125,19 +80,9 @@ ACDF_FN4(AcdfShaderPoint, acdf_point_with, ACDF_TABLES, tables, AcdfShaderPoint,
     ACDF_LET(ACDF_U32, row) = ACDF_WORD(tables, at);
     ACDF_LET(ACDF_F32, part) = weight * acdf_word_as_float(tables, at + 1u);
     if (row == ACDF_WALK_NONE) {
-        here.root = ACDF_WORD(tables, ACDF_WALK_ENVIRONMENT);
-    }
-    if (row != ACDF_WALK_NONE && part > 0.0f) {
-        if (here.weight0 == 0.0f) {
-            here.row0 = row;
-            here.weight0 = part;
-        } else if (here.weight1 == 0.0f) {
-            here.row1 = row;
-            here.weight1 = part;
-        } else {
-            here.row2 = row;
-            here.weight2 = part;
-        }
+        here.mix.root = ACDF_WORD(tables, ACDF_WALK_ENVIRONMENT);
+    } else {
+        here.mix = acdf_mixture_with(here.mix, row, part);
     }
     return here;
 }
@@ -232,7 +177,7 @@ ACDF_FN5(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBin
     ACDF_LET(ACDF_U32, n) = ACDF_WORD(tables, ACDF_WALK_SUBDIVISIONS);
     ACDF_LET(ACDF_U32, root) = ACDF_WORD(tables, ACDF_WALK_MIXTURE);
     ACDF_VAR(AcdfShaderPoint, here) = acdf_point_of_tree(root);
-    here.weight0 = 0.0f;
+    here.mix.weight0 = 0.0f;
     here.x = x;
     here.y = y;
     here.z = z;
@@ -246,17 +191,17 @@ ACDF_FN5(AcdfShaderPoint, acdf_point_of_rows, ACDF_TABLES, tables, AcdfShaderBin
     if (bins.weight2 > 0.0f) {
         here = acdf_point_with(tables, here, bins.bin2, bins.weight2);
     }
-    if (here.root != root) { /* one of them is not stored */
-        return acdf_point_of_tree(here.root);
+    if (here.mix.root != root) { /* one of them is not stored */
+        return acdf_point_of_tree(here.mix.root);
     }
     here.lights = ACDF_WORD(tables, ACDF_WALK_LIGHT_COUNT);
     ACDF_VAR(ACDF_U32, k) = 0u;
     for (k = 0u; k < here.lights; k = k + 1u) {
         here.light_sum = here.light_sum + acdf_point_light(tables, here, k);
     }
-    here.sum = here.light_sum + (here.weight0 + here.weight1 + here.weight2);
+    here.sum = here.light_sum + acdf_mixture_weight(here.mix);
     if (!(here.sum > 0.0f)) {
-        here.root = ACDF_WALK_NONE;
+        here.mix.root = ACDF_WALK_NONE;
     }
     return here;
 }

@@ -23,6 +23,17 @@ ACDF_FN2(ACDF_F32, acdf_half_turns, ACDF_F32, y, ACDF_F32, x) {
     return ACDF_SELECT(x < 0.0f, 1.0f - turn, turn);
 }
 
+/* Cosine (x) and sine (y) of 2 pi u - pi, for u in [0, 1]. */
+ACDF_FN1(AcdfVector, acdf_turn, ACDF_F32, u) {
+    ACDF_LET(ACDF_U32, quarter) = ACDF_TO_U32(4.0f * u + 0.5f);
+    ACDF_LET(ACDF_F32, angle) = (4.0f * u - ACDF_TO_F32(quarter)) * 1.5707963f;
+    ACDF_LET(ACDF_F32, s) = acdf_sine_float(angle);
+    ACDF_LET(ACDF_F32, c) = acdf_cosine_float(angle);
+    ACDF_LET(ACDF_F32, sign) = ACDF_SELECT((quarter & 2u) != 0u, -1.0f, 1.0f);
+    return acdf_vector(ACDF_SELECT((quarter & 1u) != 0u, s, -c) * sign,
+                       ACDF_SELECT((quarter & 1u) != 0u, -c, -s) * sign, 0.0f);
+}
+
 /* The unit direction shown at (u, v), both in [0, 1]. */
 ACDF_FN2(AcdfVector, acdf_square_direction, ACDF_F32, u, ACDF_F32, v) {
     ACDF_LET(ACDF_F32, a) = ACDF_ABS(2.0f * u - 1.0f);

@@ -1,10 +1,10 @@
-// Words for a shader's buffer or texture, from which acdf/shader.h and acdf/shader_walk.h draw; `acdf export`
-// writes them, too.
+// Words for a shader's buffer or texture, from which acdf/shader.h, acdf/shader_walk.h and acdf/shader_brdf.h draw;
+// `acdf export` writes them, too.
 #pragma once
 
 #include <acdf/reader.h>
 #include <acdf/shader.h>
-#include <acdf/shader_walk.h>
+#include <acdf/shader_brdf.h>
 
 namespace acdf {
 
@@ -26,9 +26,9 @@ public:
     static Status make(const File& file, ShaderTables& out) noexcept;
 
     /// Makes the tables of acdf/shader_walk.h of a file that is not empty: of environments and local environments,
-    /// on either grid. `unsupported` where there are none: for BRDFs and tables, and for cells that tilt (--fit
-    /// pdf). `out` then is empty. Work and memory are in proportion to the cells, some 60 bytes each, and rows.
-    /// Places are left out: what serves a normal anywhere serves it at each of them.
+    /// on either grid; and those of acdf/shader_brdf.h of BRDFs. `unsupported` where there are none: for tables,
+    /// and for cells that tilt (--fit pdf). `out` then is empty. Work and memory are in proportion to the cells,
+    /// some 60 bytes each, and rows. Places are left out: what serves a normal anywhere serves it at each of them.
     static Status make_walk(const File& file, ShaderTables& out) noexcept;
 
     /// Little-endian, as a GPU takes them.
