@@ -1,4 +1,4 @@
-// acdf export: draws and densities of an environment or a local environment for shaders: functions in their
+// acdf export: draws and densities of an environment, a local environment or a BRDF for shaders: functions in their
 // languages, and tables.
 #include "shader/texts.h"
 #include "tools/cli/choice.h"
@@ -31,7 +31,7 @@ struct ExportArguments {
 
 /// Which functions, and the tables that they read.
 struct Exported {
-    bool walk; // acdf/shader_walk.h; else acdf/shader.h
+    bool walk; // acdf/shader_walk.h and acdf/shader_brdf.h; else acdf/shader.h
     ShaderTables tables;
 };
 
@@ -136,11 +136,11 @@ void add_export(CLI::App& program, int& exit_code) {
                                                           {"wgsl", Target::wgsl},
                                                           {"json", Target::json}};
     auto options = std::make_shared<ExportArguments>();
-    CLI::App* command = program.add_subcommand(
-        "export",
-        "Write an environment or a local environment for shaders: functions that draw and evaluate, and tables");
+    CLI::App* command = program.add_subcommand("export", "Write an environment, a local environment or a BRDF for "
+                                                         "shaders: functions that draw and evaluate, and tables");
     command
-        ->add_option("FILE", options->file, "The .acdf file of an environment or a local environment (- is stdin)")
+        ->add_option("FILE", options->file,
+                     "The .acdf file of an environment, a local environment or a BRDF (- is stdin)")
         ->required()
         ->type_name("");
     command
@@ -165,18 +165,19 @@ void add_export(CLI::App& program, int& exit_code) {
         ->add_flag(
             "--walk", options->walk,
             "Walk a tree, also of an environment on a lat-long grid, for which there are faster functions: its "
-            "tables are smaller by half, and the functions are those of local environments")
+            "tables are smaller by half, and the functions are those of local environments and BRDFs")
         ->group("Output");
     add_output(*command, options->output, options->force, "The text to write, stdout by default");
-    command->footer(
-        help_footer("Draws and densities are those of the reader, of 32-bit words and floats alone: some 130 bytes "
-                    "a cell, or 60 where "
-                    "trees are walked. "
-                    "docs/shaders.md tells how to bind the tables, and how nearly results agree.",
-                    "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
-                    "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"
-                    "acdf export sky.acdf --target c -o sky.h               # functions and tables in one header\n"
-                    "acdf export sky.acdf --target json --tables sky.bin    # how large the texture is"));
+    command->footer(help_footer(
+        "Draws and densities are those of the reader, of 32-bit words and floats alone: some 130 bytes "
+        "a cell, or 60 where "
+        "trees are walked. "
+        "docs/shaders.md tells how to bind the tables, and how nearly results agree.",
+        "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
+        "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"
+        "acdf export sky.acdf --target c -o sky.h               # functions and tables in one header\n"
+        "acdf export nickel.acdf --target glsl --tables nickel.bin > walk.glsl   # also serves local files\n"
+        "acdf export sky.acdf --target json --tables sky.bin    # how large the texture is"));
     command->callback([options, &exit_code] {
         run(*options);
         exit_code = exit_done;

@@ -230,7 +230,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_SUBDIVISIONS] = local_.subdivisions;
     out[ACDF_WALK_COLUMNS] = local_.columns;
     out[ACDF_WALK_ROWS] = local_.rows;
-    out[ACDF_WALK_BIN_COUNT] = static_cast<u32>(bins_.size() / 2);
+    out[ACDF_WALK_BIN_COUNT] = brdf() ? 0 : static_cast<u32>(bins_.size() / 2);
     out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
     out[ACDF_WALK_LIGHT_COUNT] = local_.light_count;
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);

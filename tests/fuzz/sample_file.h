@@ -191,6 +191,25 @@ inline void sample_in_c(const void* bytes, std::size_t size, const acdf::File& f
     acdf_close(c);
 }
 
+/// As shaders do. What is made for a BRDF answers as one, too, of the words of any other file.
+inline void sample_brdf_walk(const acdf::ShaderTables& tables, bool brdf, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        float wo[3], any[3];
+        if (n % 4 == 3) random.any_vector(wo);
+        else random.unit_vector(wo, true);
+        random.any_vector(any);
+        const std::uint32_t* words = tables.words();
+        const AcdfShaderView view = acdf_brdf_view_of(words, wo[0], wo[1], wo[2]);
+        const auto n0 = static_cast<std::uint32_t>(random.next()), n1 = static_cast<std::uint32_t>(random.next());
+        const AcdfWalkSample s = acdf_brdf_walk_sample(words, view, n0, n1);
+        require(std::isfinite(acdf_brdf_walk_pdf(words, view, any[0], any[1], any[2])));
+        require(std::isfinite(s.pdf) && s.pdf >= 0.0f && (brdf || s.pdf == 0.0f));
+        if (s.pdf == 0.0f) continue;
+        const float own = acdf_brdf_walk_pdf(words, view, s.x, s.y, s.z); // wi is as long as wo
+        require(own == s.pdf || (own == 0.0f && s.pdf < 1.2e-38f));
+    }
+}
+
 /// As shaders do, of whatever files have tables for them.
 inline void sample_walk(const acdf::File& file, FuzzRandom& random) {
     acdf::ShaderTables tables;
@@ -209,6 +228,7 @@ inline void sample_walk(const acdf::File& file, FuzzRandom& random) {
         const float d[3] = {s.x, s.y, s.z};
         require(is_unit(d) && acdf_walk_pdf(words, point, s.x, s.y, s.z) == s.pdf);
     }
+    sample_brdf_walk(tables, file.kind() == ACDF_KIND_BRDF, random);
 }
 
 inline void sample_everything(const acdf::File& file, const void* bytes, std::size_t size) {

@@ -25,7 +25,8 @@ namespace {
 
 using namespace acdf_test;
 
-void write_inputs(std::size_t count, const std::string& folder) {
+// Normals, which of a BRDF are views: above the surface.
+void write_inputs(const acdf::File& file, std::size_t count, const std::string& folder) {
     std::mt19937 random(7);
     std::vector<std::uint32_t> words;
     std::vector<float> directions, normals;
@@ -40,7 +41,10 @@ void write_inputs(std::size_t count, const std::string& folder) {
         for (int axis = 0; axis < 2; ++axis) words.push_back(static_cast<std::uint32_t>(random()));
         add_direction(directions);
     }
-    for (std::size_t i = 0; i < count; ++i) add_direction(normals);
+    for (std::size_t i = 0; i < count; ++i) {
+        add_direction(normals);
+        if (file.kind() == ACDF_KIND_BRDF) normals[4 * i + 2] = std::max(std::fabs(normals[4 * i + 2]), 1e-6f);
+    }
     write_all(folder + "/words.bin", words);
     write_all(folder + "/directions.bin", directions);
     write_all(folder + "/normals.bin", normals);
@@ -111,7 +115,7 @@ int main(int argc, char** argv) {
     const auto count = static_cast<std::size_t>(std::strtoul(argv[3], nullptr, 10));
     if (walk) return check_walk(file, count, argv[4], std::strtod(argv[5], nullptr));
     if (what == "inputs") {
-        write_inputs(count, argv[4]);
+        write_inputs(file, count, argv[4]);
         return 0;
     }
     if (file.kind() != ACDF_KIND_ENVIRONMENT || !file.environment().data().cells) {

@@ -1,5 +1,6 @@
 #include "tests/shaders/compare_walk.h"
 
+#include "tests/lib/reader/half_vectors.h"
 #include "tests/shaders/answers.h"
 
 #include <algorithm>
@@ -26,20 +27,32 @@ double relative(double a, double b) { return a == b ? 0.0 : std::fabs(a - b) / s
 class Reader {
 public:
     explicit Reader(const acdf::File& file) : file_(file) {}
-    void at(const float normal[3]) {
-        if (file_.kind() == ACDF_KIND_LOCAL) point_ = file_.local().at(normal);
+    /// A normal, or of a BRDF a direction of view.
+    void at(const float given[3]) {
+        if (file_.kind() == ACDF_KIND_LOCAL) point_ = file_.local().at(given);
+        std::copy_n(given, 3, wo_);
     }
     acdf::DirectionSample sample(double u0, double u1) const {
+        if (brdf()) return file_.brdf().sample(wo_, u0, u1);
         return file_.kind() == ACDF_KIND_LOCAL ? file_.local().sample(point_, u0, u1)
                                                : file_.environment().sample(u0, u1);
     }
     float pdf(const float d[3]) const {
+        if (brdf()) return file_.brdf().pdf(wo_, d);
         return file_.kind() == ACDF_KIND_LOCAL ? file_.local().pdf(point_, d) : file_.environment().pdf(d);
     }
 
+    /// Of a density: what floats round.
+    double near(const float d[3]) const { return brdf() ? Halves(wo_, d).rounded() : kNear; }
+    /// Beyond this it is another cell's.
+    double same(const float d[3]) const { return brdf() ? kSame + Halves(wo_, d).moved() : kSame; }
+
 private:
+    bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
+
     const acdf::File& file_;
     AcdfLocalPoint point_ = {};
+    float wo_[3] = {};
 };
 
 void compare_draw(const Reader& reader, const std::uint32_t* words, const float* draw, double own,
@@ -53,9 +66,9 @@ void compare_draw(const Reader& reader, const std::uint32_t* words, const float*
     ++found.drawn;
     found.own = std::max(found.own, relative(pdf, own));
     const double of_reader = relative(pdf, reader.pdf(draw));
-    found.not_told += !(of_reader <= kSame);
-    found.rounded += !(of_reader <= kNear);
-    if (!(relative(pdf, told.pdf) <= kSame)) {
+    found.not_told += !(of_reader <= reader.same(draw));
+    found.rounded += !(of_reader <= reader.near(draw));
+    if (!(relative(pdf, told.pdf) <= reader.same(draw))) {
         ++found.other_cells;
         return;
     }
@@ -76,12 +89,14 @@ int check_walk(const acdf::File& file, std::size_t count, const std::string& fol
     for (std::size_t i = 0; i < count; ++i) {
         reader.at(&normals[4 * i]);
         compare_draw(reader, &words[2 * i], &draws[4 * i], densities[2 * i + 1], found);
-        found.other_densities += !(relative(reader.pdf(&directions[4 * i]), densities[2 * i]) <= kSame);
+        const float* direction = &directions[4 * i];
+        found.other_densities += !(relative(reader.pdf(direction), densities[2 * i]) <= reader.same(direction));
     }
     const double own = found.own * 0x1p24;
     std::printf(
         "%zu draws: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not tell, "
-        "%zu by more than 1e-5; own density off by %.1f steps of 2^-24\n%zu directions: %zu of another density\n",
+        "%zu by more than is rounded; own density off by %.1f steps of 2^-24\n%zu directions: %zu of another "
+        "density\n",
         found.drawn, found.other_cells, found.farthest, found.not_told, found.rounded, own, count,
         found.other_densities);
     const double most = kMostOthers * static_cast<double>(count);

@@ -1,6 +1,19 @@
-/* The exported C on this processor: answers to words.bin and directions.bin (WALK: and normals.bin) in FOLDER.
+/* The exported C on this processor: answers to words.bin and directions.bin (WALK: and normals.bin; BRDF: which are
+ * views) in FOLDER.
  * TABLES_FILE: by tables.bin, else by those in the header. */
 #include "exported.h"
+
+#ifdef BRDF
+#define AT acdf_view
+#define POINT AcdfShaderView
+#define SAMPLE acdf_sample_brdf
+#define PDF acdf_pdf_brdf
+#else
+#define AT acdf_at
+#define POINT AcdfShaderPoint
+#define SAMPLE acdf_sample
+#define PDF acdf_pdf
+#endif
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,9 +58,9 @@ int main(int argc, char** argv) {
         const float* d = directions + 4 * i;
 #ifdef WALK
         const float* n = normals + 4 * i;
-        const AcdfShaderPoint at = acdf_at(tables, n[0], n[1], n[2]);
-        const AcdfWalkSample s = acdf_sample(tables, at, words[2 * i], words[2 * i + 1]);
-        const float two[2] = {acdf_pdf(tables, at, d[0], d[1], d[2]), acdf_pdf(tables, at, s.x, s.y, s.z)};
+        const POINT at = AT(tables, n[0], n[1], n[2]);
+        const AcdfWalkSample s = SAMPLE(tables, at, words[2 * i], words[2 * i + 1]);
+        const float two[2] = {PDF(tables, at, d[0], d[1], d[2]), PDF(tables, at, s.x, s.y, s.z)};
 #else
         const AcdfShaderSample s = acdf_sample(tables, words[2 * i], words[2 * i + 1]);
         const float two[2] = {acdf_pdf(tables, d[0], d[1], d[2]), acdf_pdf(tables, s.x, s.y, s.z)};

@@ -11,7 +11,13 @@
 
 #include "exported.h"
 
-#ifdef WALK
+#ifdef BRDF
+#define AT acdf_view(tables, directions[3], directions[4], directions[5]),
+#define acdf_sample acdf_sample_brdf
+#define acdf_sample_float acdf_sample_brdf_float
+#define acdf_pdf acdf_pdf_brdf
+typedef AcdfWalkSample Sample;
+#elif defined(WALK)
 #define AT acdf_at(tables, directions[3], directions[4], directions[5]),
 typedef AcdfWalkSample Sample;
 #else

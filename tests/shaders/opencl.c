@@ -1,5 +1,6 @@
 /* The exported C as OpenCL: answers to words.bin, directions.bin and normals.bin in FOLDER by the first device
- * there is. Any second argument: the functions walk. */
+ * there is. A second argument: the functions walk, "brdf" those
+ * of a BRDF, whose normals are views. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -8,7 +9,12 @@
 #include <string.h>
 
 static const char kernel_source[] =
-    "#ifdef WALK\n"
+    "#ifdef BRDF\n"
+    "#define AT acdf_view(tables, normals[i].x, normals[i].y, normals[i].z),\n"
+    "#define SAMPLE AcdfWalkSample\n"
+    "#define acdf_sample acdf_sample_brdf\n"
+    "#define acdf_pdf acdf_pdf_brdf\n"
+    "#elif defined(WALK)\n"
     "#define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),\n"
     "#define SAMPLE AcdfWalkSample\n"
     "#else\n"
@@ -63,8 +69,7 @@ int main(int argc, char** argv) {
     const char* folder = argc > 1 ? argv[1] : ".";
     const char* names[4] = {"tables.bin", "words.bin", "directions.bin", "normals.bin"};
     const char* sources[2];
-    const char* options = argc > 2 ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DWALK"
-                                   : "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
+    char options[128] = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
     char* exported;
     size_t size = 0, count = 0;
     cl_platform_id platform;
@@ -76,6 +81,7 @@ int main(int argc, char** argv) {
     cl_mem buffers[6];
     cl_uint i;
     cl_int error;
+    if (argc > 2) strcat(options, strcmp(argv[2], "brdf") == 0 ? " -DBRDF" : " -DWALK");
     if (clGetPlatformIDs(1, &platform, NULL) != CL_SUCCESS ||
         clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL) != CL_SUCCESS) {
         fprintf(stderr, "skipped: there is no OpenCL device (pocl-opencl-icd makes one of the processor)\n");

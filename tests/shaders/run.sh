@@ -1,12 +1,17 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, draws and evaluates COUNT times on a device, and compares
 # with the reader. DEVICE: c, opencl, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
-# on a lat-long grid; or what is walked: local, local_square, square (the octahedral one) and walk (the first one again).
-# PROBE and BUDGET in the environment name another source than the sky of tests, and the size of the file.
+# on a lat-long grid; or what is walked: local, local_square, square (the octahedral one), walk (the first one again), brdf
+# and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment name another source than that of tests, the size of the
+# file, and the share of a BRDF that follows the cosine.
 set -euo pipefail
 device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5 form=${6:-cells}
 walk=
-[ "$form" = cells ] || walk=1
+case $form in
+cells) ;;
+brdf*) walk=brdf ;;
+*) walk=walk ;;
+esac
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -19,6 +24,13 @@ need() { command -v "$1" >/dev/null || skip "no $1"; }
 
 make_file() {
     local probe=${PROBE:-$work/sky.exr} domain=latlong kind=env
+    if [ "$walk" = brdf ]; then
+        local model=cook-torrance:m=0.2
+        [ "$form" = brdf ] || model=ggx:alpha=0.1,0.3
+        "$acdf" brdf "${BRDF:-$model}" --budget "${BUDGET:-16KiB}" --diffuse-floor "${FLOOR:-0.1}" -o "$work/sky.acdf" --quiet
+        "$compare" inputs "$work/sky.acdf" "$count" "$work"
+        return
+    fi
     [ -n "${PROBE-}" ] || "$make_sky" "$probe"
     case $form in *square) domain=octahedral ;; esac
     case $form in local*) kind=local ;; esac
@@ -33,6 +45,9 @@ export_sky() {
     "$acdf" export "$work/sky.acdf" --force --target "$@" "${flags[@]}"
 }
 
+defines=${walk:+-DWALK}
+[ "$walk" != brdf ] || defines="-DWALK -DBRDF"
+
 # Steps of 2^-24 by which coordinates may be off, or of walks the density that is told of a draw. Where floats are IEEE's,
 # and sums of products are not fused: none.
 check() { "$compare" "check${walk:+_walk}" "$work/sky.acdf" "$count" "$work" "$1"; }
@@ -40,12 +55,12 @@ check() { "$compare" "check${walk:+_walk}" "$work/sky.acdf" "$count" "$work" "$1
 on_c() {
     make_file
     export_sky c -o "$work/exported.h"
-    "${CC:-cc}" -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -ffp-contract=off ${walk:+-DWALK} -I"$work" "$here/device.c" \
+    "${CC:-cc}" -std=c99 -O2 -Wall -Wextra -Wconversion -Werror -ffp-contract=off $defines -I"$work" "$here/device.c" \
         -o "$work/device" -lm
     "$work/device" "$work"
     check 0
     export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
-    "${CC:-cc}" -std=c99 -O2 -Werror -ffp-contract=off ${walk:+-DWALK} -DTABLES_FILE -I"$work" "$here/device.c" -o "$work/device" -lm
+    "${CC:-cc}" -std=c99 -O2 -Werror -ffp-contract=off $defines -DTABLES_FILE -I"$work" "$here/device.c" -o "$work/device" -lm
     rm "$work/draws.bin" "$work/densities.bin"
     "$work/device" "$work"
     check 0
@@ -58,7 +73,7 @@ on_opencl() {
     make_file
     export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
     status=0
-    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" ${walk:+walk} || status=$?
+    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" $walk || status=$?
     [ "$status" != 77 ] || exit 77
     [ "$status" = 0 ]
     check 0
@@ -70,8 +85,11 @@ on_glslang() {
     make_file
     export_sky glsl -o "$work/sky.glsl"
     export_sky hlsl -o "$work/sky.hlsl"
-    local at=${walk:+acdf_at(vec3(0.0, 1.0, 0.0)), }
-    local main="void main() { answer = acdf_sample(${at}uvec2(1u, 2u)) + acdf_sample(${at}vec2(0.5)) * acdf_pdf(${at}vec3(0.0, 0.0, 1.0)); }"
+    local at=${walk:+acdf_at(vec3(0.0, 1.0, 0.0)), } of=
+    if [ "$walk" = brdf ]; then
+        at='acdf_view(vec3(0.0, 0.6, 0.8)), ' of=_brdf
+    fi
+    local main="void main() { answer = acdf_sample$of(${at}uvec2(1u, 2u)) + acdf_sample$of(${at}vec2(0.5)) * acdf_pdf$of(${at}vec3(0.0, 0.0, 1.0)); }"
     for version in '300 es' '330' '430'; do
         {
             printf '#version %s\nprecision highp float;\nprecision highp int;\n' "$version"
@@ -95,7 +113,8 @@ on_glslang() {
         printf 'RWStructuredBuffer<float4> answers : register(u0);\n[numthreads(64, 1, 1)]\n'
         printf 'void main(uint3 id : SV_DispatchThreadID) {\n'
         at=${at/vec3/float3}
-        printf '    answers[id.x] = acdf_sample(%sid.xy) + acdf_sample(%sfloat2(0.5, 0.5)) * acdf_pdf(%sfloat3(0.0, 0.0, 1.0));\n}\n' "$at" "$at" "$at"
+        printf '    answers[id.x] = acdf_sample%s(%sid.xy) + acdf_sample%s(%sfloat2(0.5, 0.5)) * acdf_pdf%s(%sfloat3(0.0, 0.0, 1.0));\n}\n' \
+            "$of" "$at" "$of" "$at" "$of" "$at"
     } >"$work/shader.hlsl"
     glslangValidator -D -V -S comp -e main "$work/shader.hlsl" -o "$work/hlsl.spv"
     echo "GLSL, GLSL with buffers, SPIR-V and HLSL compile"
@@ -111,7 +130,7 @@ on_kernels() {
     local cuda=(-x cuda --cuda-gpu-arch=sm_70 -nocudainc -nocudalib) hip=(-x hip --offload-arch=gfx906 -nogpuinc -nogpulib)
     for language in cuda hip; do
         local -n target=$language
-        clang++ "${flags[@]}" ${walk:+-DWALK} "${target[@]}" "$work/kernel.cu" -o "$work/kernel.ll"
+        clang++ "${flags[@]}" $defines "${target[@]}" "$work/kernel.cu" -o "$work/kernel.ll"
         grep -q 'define.*answer' "$work/kernel.ll" || { echo "$language: no kernel" >&2; exit 1; }
         if grep -q '\bdouble\b' "$work/kernel.ll"; then
             echo "$language: the kernel computes in doubles" >&2
@@ -129,7 +148,7 @@ on_browser() {
     make_file
     export_sky "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
     cp "$here/$1.html" "$work/index.html"
-    python3 "$here/browser.py" "$work" "index.html${walk:+?walk}" "${@:4}" || exit "$?"
+    python3 "$here/browser.py" "$work" "index.html${walk:+?$walk}" "${@:4}" || exit "$?"
     check "$3"
 }
 

@@ -74,16 +74,18 @@ TEST_F(Export, WithoutTablesCAndJsonHoldThem) {
               std::string::npos);
 }
 
-// Local environments and the octahedral square are walked, other environments where it is asked for.
+// Local environments, the octahedral square and BRDFs are walked, other environments where it is asked for.
 TEST_F(Export, WalksWhatHasNoCells) {
     const std::string golden = std::string(ACDF_TEST_DIR) + "/golden/v1.0/";
-    for (const char* name : {"local.acdf", "local_grid.acdf", "octahedral.acdf", "places.acdf", "zlib.acdf"}) {
+    for (const char* name :
+         {"local.acdf", "local_grid.acdf", "octahedral.acdf", "places.acdf", "brdf_mirrored.acdf", "zlib.acdf"}) {
         const bool cells = std::string(name) == "zlib.acdf";
         std::vector<std::string> command = {"export", golden + name, "--target", "glsl", "--tables", tables, "-f"};
         if (cells) command.emplace_back("--walk");
         const Result result = run_acdf(command);
         ASSERT_EQ(result.code, 0) << result.err;
-        EXPECT_NE(result.out.find("AcdfShaderPoint acdf_at(vec3 normal)"), std::string::npos) << name;
+        for (const char* function : {"AcdfShaderPoint acdf_at(vec3 normal)", "AcdfShaderView acdf_view(vec3 wo)"})
+            EXPECT_NE(result.out.find(function), std::string::npos) << name;
         File opened;
         ShaderTables made;
         ASSERT_TRUE(File::open((golden + name).c_str(), opened).ok());
@@ -127,8 +129,10 @@ TEST_F(Export, RefusesWhatHasNoTables) {
         if (entry.path().extension() != ".acdf") continue;
         File opened;
         ASSERT_TRUE(File::open(entry.path().c_str(), opened).ok());
+        ShaderTables made;
         if (opened.kind() == ACDF_KIND_ENVIRONMENT || opened.kind() == ACDF_KIND_LOCAL) continue;
-        expect_failure({"export", entry.path(), "--target", "c"}, 1, "no environment");
+        if (ShaderTables::make_walk(opened, made).ok()) continue; // of a BRDF without tilts
+        expect_failure({"export", entry.path(), "--target", "c"}, 1, "no tables for shaders");
     }
 }
 

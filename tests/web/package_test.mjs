@@ -80,6 +80,8 @@ test("words that are walked are those of acdf export", () => {
     assert.deepEqual(Buffer.from(words.buffer), readFileSync("walk.bin"));
     assert.equal(wgslWalk, readFileSync("walk.wgsl", "utf8"));
     assert.match(glslWalk, /AcdfShaderPoint acdf_at\(vec3 normal\)/);
+    assert.match(glslWalk, /AcdfShaderView acdf_view\(vec3 wo\)/);
+    assert.ok(reader.open(goldenBytes("brdf_mirrored.acdf")).shaderTables({walk: true}).length > 32);
     const sky = reader.open(readFileSync("sky.acdf"));
     assert.ok(sky.shaderTables({walk: true}).length < sky.shaderTables().length);
 });

@@ -112,7 +112,7 @@ ACDF_FN4(AcdfShaderView, acdf_brdf_view_of, ACDF_TABLES, tables, ACDF_F32, x, AC
     view.z = z;
     view.turn_x = 1.0f;
     view.turn_y = 0.0f;
-    if (unit.length2 == 0.0f || !(z > 0.0f)) {
+    if (unit.length2 == 0.0f || !(z > 0.0f) || columns == 0u) { /* 0: the file is no BRDF */
         view.mix.root = ACDF_WALK_NONE;
         view.diffuse = 1.0f;
         return view;
@@ -230,6 +230,13 @@ ACDF_FN3(ACDF_U32, acdf_leaf_holds, ACDF_TABLES, tables, ACDF_U32, leaf, AcdfSha
     return ACDF_SELECT(place.spread > 0.0f, inside0 & inside1, 0u);
 }
 
+/* A direction as it is returned: rounded, whatever a compiler would make of wo + (d - wo). */
+ACDF_FN2(AcdfVector, acdf_as_returned, ACDF_TABLES, tables, AcdfVector, d) {
+    ACDF_LET(ACDF_U32, zero) = ACDF_WORD(tables, ACDF_WALK_ZERO);
+    return acdf_vector(ACDF_FLOAT(ACDF_BITS(d.x) | zero), ACDF_FLOAT(ACDF_BITS(d.y) | zero),
+                       ACDF_FLOAT(ACDF_BITS(d.z) | zero));
+}
+
 /* Places a direction in the cell where a walk ended. Near its border rounding may carry it over: then it moves
  * towards the middle, so that its density is that of the cell. */
 ACDF_FN4(AcdfWalkSample, acdf_draw_in_cell, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
@@ -239,9 +246,11 @@ ACDF_FN4(AcdfWalkSample, acdf_draw_in_cell, ACDF_TABLES, tables, AcdfShaderView,
     ACDF_VAR(AcdfVector, d) = acdf_vector(0.0f, 0.0f, 0.0f);
     ACDF_VAR(ACDF_U32, k) = 0u;
     for (k = 0u; k < 32u; k = k + 1u) {
-        d = acdf_reflected(
-            view, acdf_word_as_float(tables, end.leaf + 2u) + part0 * acdf_word_as_float(tables, end.leaf + 3u),
-            acdf_word_as_float(tables, end.leaf + 6u) + part1 * acdf_word_as_float(tables, end.leaf + 7u), side);
+        ACDF_LET(ACDF_F32, azimuth) =
+            acdf_word_as_float(tables, end.leaf + 2u) + part0 * acdf_word_as_float(tables, end.leaf + 3u);
+        ACDF_LET(ACDF_F32, cap) =
+            acdf_word_as_float(tables, end.leaf + 6u) + part1 * acdf_word_as_float(tables, end.leaf + 7u);
+        d = acdf_as_returned(tables, acdf_reflected(view, azimuth, cap, side));
         ACDF_LET(AcdfShaderHalf, place) = acdf_half_of(view, d.x, d.y, d.z);
         if (acdf_leaf_holds(tables, end.leaf, place) != 0u) {
             return acdf_walk_drawn(d, acdf_brdf_density_at(tables, view, end, place.spread, d.z));

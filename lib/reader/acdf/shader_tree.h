@@ -37,9 +37,10 @@ extern "C" {
 #define ACDF_WALK_LIGHT_COUNT 15u
 #define ACDF_WALK_COSINE 16u     /* f32: share of a cosine lobe about the normal */
 #define ACDF_WALK_VIEWS 17u      /* of BRDFs, 4 words each (acdf/shader_brdf.h) */
-#define ACDF_WALK_VIEW_COUNT 18u /* elevations; 0: the file is no BRDF */
-#define ACDF_WALK_AZIMUTHS 19u   /* of each of them; bins are numbered elevation by elevation */
+#define ACDF_WALK_VIEW_COUNT 18u /* elevations */
+#define ACDF_WALK_AZIMUTHS 19u   /* of each of them; bins are numbered elevation by elevation; 0: no BRDF */
 #define ACDF_WALK_MIRRORED 20u   /* 1: azimuths of half-vectors are folded */
+#define ACDF_WALK_ZERO 31u       /* is 0, which no compiler knows */
 #define ACDF_WALK_HEADER_WORDS 32u
 
 #define ACDF_WALK_NONE 0xFFFFFFFFu

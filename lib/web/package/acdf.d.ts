@@ -55,7 +55,7 @@ export interface AcdfFile {
     recommendedShare(at?: At): number;
     /**
      * Words for the functions of "acdf/shaders": for glsl and wgsl those of an environment on a lat-long grid; with
-     * walk for glslWalk and wgslWalk those of any environment or local environment. Throws AcdfError.
+     * walk for glslWalk and wgslWalk those of any environment, local environment or BRDF. Throws AcdfError.
      */
     shaderTables(options?: { walk?: boolean }): Uint32Array;
     /** Gives the memory back. What is called then throws. */

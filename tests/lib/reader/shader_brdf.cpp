@@ -1,6 +1,7 @@
 // BRDFs for shaders beside the reader's: each draw has the density that both tell of its direction, draws are the
 // reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/lib/reader/brdf_forms.h"
+#include "tests/lib/reader/half_vectors.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/wavefront.h"
 
@@ -31,24 +32,6 @@ struct BrdfFile {
         EXPECT_TRUE(loaded.ok()) << loaded.message;
         if (loaded.ok()) status = acdf::ShaderTables::make_walk(file, tables);
     }
-};
-
-/// |wo . (wo + wi)|, and |wo + wi|.
-struct Halves {
-    double dot = 0.0, length = 0.0;
-    Halves(const float wo[3], const float wi[3]) {
-        for (int k = 0; k < 3; ++k) {
-            const double h = double{wo[k]} + wi[k];
-            dot += wo[k] * h;
-            length += h * h;
-        }
-        dot = std::fabs(dot);
-        length = std::sqrt(length);
-    }
-    /// What floats round of a density, of it.
-    double rounded() const { return 1e-5 + 1e-6 * length / dot; }
-    /// What rounding directions changes of it.
-    double moved() const { return 1e-6 / dot; }
 };
 
 bool nearly(double a, double b, double most) { return a == b || std::fabs(a - b) <= most * std::max(a, b) + 1e-30; }
