@@ -153,6 +153,7 @@ ACDF_FIELD(ACDF_U32, key1)
 ACDF_FIELD(ACDF_F32, spread) /* |wo + wi| / |wo . (wo + wi)|; 0: the direction has no half-vector */
 ACDF_STRUCT_END(AcdfShaderHalf)
 
+/* That of wi for a view. */
 ACDF_FN4(AcdfShaderHalf, acdf_half_of, AcdfShaderView, view, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z) {
     ACDF_LET(ACDF_F32, hx) = view.x + x;
     ACDF_LET(ACDF_F32, hy) = view.y + y;

@@ -83,6 +83,7 @@ ACDF_FN2(AcdfWalkMixture, acdf_mixture_below, ACDF_U32, root, ACDF_F32, weight) 
     return mix;
 }
 
+/* The sum of the weights. */
 ACDF_FN1(ACDF_F32, acdf_mixture_weight, AcdfWalkMixture, mix) {
     return mix.weight0 + mix.weight1 + mix.weight2 + mix.weight3;
 }
@@ -147,6 +148,7 @@ ACDF_FIELD(ACDF_F32, z)
 ACDF_FIELD(ACDF_F32, pdf) /* sr^-1; 0: nothing was drawn */
 ACDF_STRUCT_END(AcdfWalkSample)
 
+/* A direction with its density. */
 ACDF_FN2(AcdfWalkSample, acdf_walk_drawn, AcdfVector, d, ACDF_F32, pdf) {
     ACDF_VAR(AcdfWalkSample, drawn);
     drawn.x = d.x;

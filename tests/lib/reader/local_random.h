@@ -8,6 +8,22 @@
 
 namespace acdf_test {
 
+/// Grids in turns, those of more columns than tables have steps among them.
+inline RandomOptions varied_local_options(std::uint32_t seed) {
+    RandomOptions options;
+    options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 5000;
+    options.rows = seed % 2 == 0 ? 33 : 511;
+    return options;
+}
+
+/// A normal on an edge or a corner of the octahedron that bins divide, of any length; all of it may be 0.
+template <class Random>
+std::array<float, 3> edge_normal(Random& random) {
+    std::array<float, 3> normal;
+    for (float& n : normal) n = static_cast<float>(static_cast<int>(random() % 9) - 4);
+    return normal;
+}
+
 class RandomLocal {
 public:
     RandomLocal(std::uint32_t seed, const RandomOptions& options)

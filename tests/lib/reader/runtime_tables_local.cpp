@@ -2,6 +2,7 @@
 // direction and normal, and the same draws but for rounding, on golden files, random ones, those that break their
 // luck, and a fitted one.
 #include "tests/inputs/local_maps.h"
+#include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/local_builder.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/tables_pair.h"
@@ -13,10 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -104,8 +104,7 @@ LocalServed expect_agreement(const LocalPair& pair, int normals) {
     LocalServed served, edges;
     for (int i = 0; i < normals && !testing::Test::HasFatalFailure(); ++i) {
         Normal normal = random_direction(random);
-        if (i % 4 == 0) // on edges and corners of the octahedron, of any length
-            for (float& n : normal) n = static_cast<float>(static_cast<int>(random() % 7) - 3);
+        if (i % 4 == 0) normal = edge_normal(random);
         expect_same(pair, normal.data(), random, served, edges);
     }
     return served;
@@ -113,17 +112,13 @@ LocalServed expect_agreement(const LocalPair& pair, int normals) {
 
 TEST(LocalRuntimeTables, AgreeOnGoldenFiles) {
     int files = 0, with_tables = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(ACDF_TEST_DIR "/golden/v1.0")) {
-        if (entry.path().extension() != ".acdf") continue;
-        std::ifstream in(entry.path(), std::ios::binary);
-        LocalPair pair({std::istreambuf_iterator<char>(in), {}});
-        if (pair.plain.kind() != ACDF_KIND_LOCAL) continue;
-        SCOPED_TRACE(entry.path().filename());
+    each_golden_file([&](std::vector<std::uint8_t> bytes) {
+        LocalPair pair(std::move(bytes));
+        if (pair.plain.kind() != ACDF_KIND_LOCAL) return;
         ++files;
         with_tables += pair.tables() != nullptr;
         expect_agreement(pair, 300);
-        if (HasFatalFailure()) return;
-    }
+    });
     EXPECT_GE(files, 3);
     EXPECT_GE(with_tables, 1);
 }
@@ -132,9 +127,7 @@ TEST(LocalRuntimeTables, AgreeOnGoldenFiles) {
 TEST(LocalRuntimeTables, AgreeOnRandomFiles) {
     int with_tables = 0;
     for (std::uint32_t seed = 0; seed < 120; ++seed) {
-        RandomOptions options;
-        options.columns = seed % 3 == 0 ? 64 : seed % 3 == 1 ? 37 : 5000;
-        options.rows = seed % 2 == 0 ? 33 : 511;
+        RandomOptions options = varied_local_options(seed);
         options.depth = 3 + static_cast<int>(seed % 3);
         options.tilts = seed % 8 == 0;
         options.long_curves = false;
@@ -160,8 +153,7 @@ TEST(LocalRuntimeTables, MakeTheSamePoints) {
     std::mt19937_64 random(8);
     for (int i = 0; i < 3000; ++i) {
         Normal normal = random_direction(random);
-        if (i % 3 == 0)
-            for (float& n : normal) n = static_cast<float>(static_cast<int>(random() % 9) - 4);
+        if (i % 3 == 0) normal = edge_normal(random);
         if (i % 5 == 0) normal[random() % 3] = i % 2 == 0 ? 0.0f : -0.0f;
         const AcdfLocalPoint a = pair.fast.local().at(normal.data()), b = pair.plain.local().at(normal.data());
         ASSERT_EQ(a.what, b.what);

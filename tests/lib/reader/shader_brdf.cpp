@@ -1,6 +1,7 @@
 // BRDFs for shaders beside the reader's: each draw has the density that both tell of its direction, draws are the
 // reader's, and so are densities, but for the rounding of floats and directions next to a border.
 #include "tests/lib/reader/brdf_forms.h"
+#include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/half_vectors.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/wavefront.h"
@@ -12,9 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace {
 
@@ -135,16 +133,12 @@ void expect_few(const BrdfCounted& all) {
 TEST(ShaderBrdf, AnswersAsTheReaderOnGoldenFiles) {
     BrdfCounted all;
     int files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(ACDF_TEST_DIR "/golden/v1.0")) {
-        if (entry.path().extension() != ".acdf" || entry.path().filename().string().rfind("brdf", 0) != 0) continue;
-        std::ifstream in(entry.path(), std::ios::binary);
-        const BrdfFile file({std::istreambuf_iterator<char>(in), {}});
-        SCOPED_TRACE(entry.path().filename());
-        if (!file.status.ok()) continue;
+    each_golden_file([&](std::vector<std::uint8_t> bytes) {
+        const BrdfFile file(std::move(bytes));
+        if (!file.status.ok() || file.file.kind() != ACDF_KIND_BRDF) return;
         ++files;
         all += compare_brdf(file, 4000);
-        if (HasFatalFailure()) return;
-    }
+    });
     EXPECT_GE(files, 3);
     expect_few(all);
 }
