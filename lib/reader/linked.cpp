@@ -43,6 +43,25 @@ void for_each_item(std::size_t count, std::size_t each, Serve&& serve) {
         count, each, [](std::size_t) {}, serve);
 }
 
+// Draws `count` directions by draw(first, n, drawn), some of them at once.
+template <class Draw>
+void draw_in_waves(std::size_t count, float* directions, float* pdfs, Draw&& draw) {
+    DirectionSample drawn[kWave];
+    for (std::size_t first = 0; first < count; first += kWave) {
+        const std::size_t n = count - first < kWave ? count - first : kWave;
+        draw(first, n, drawn);
+        for (std::size_t i = 0; i < n; ++i) put(drawn[i], first + i, directions, pdfs);
+    }
+}
+
+// Arrays of vectors and of pairs of numbers, from item i on.
+const float (*vectors_at(const float* array, std::size_t i))[3] {
+    return reinterpret_cast<const float(*)[3]>(array + 3 * i);
+}
+const double (*pairs_at(const double* array, std::size_t i))[2] {
+    return reinterpret_cast<const double(*)[2]>(array + 2 * i);
+}
+
 void put_numbers(bool found, int axes, double* u) {
     for (int axis = 0; axis < axes && !found; ++axis) u[axis] = kNoNumber;
 }
@@ -62,19 +81,15 @@ int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t co
                                 float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
     const acdf::EnvironmentWavefront wavefront(file->file.environment());
-    DirectionSample drawn[kWave];
-    for (size_t first = 0; first < count; first += kWave) {
-        const size_t n = count - first < kWave ? count - first : kWave;
-        wavefront.sample(reinterpret_cast<const double(*)[2]>(u + 2 * first), n, drawn);
-        for (size_t i = 0; i < n; ++i) put(drawn[i], first + i, directions, pdfs);
-    }
+    draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
+        wavefront.sample(pairs_at(u, first), n, drawn);
+    });
     return 1;
 }
 
 int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    acdf::EnvironmentWavefront(file->file.environment())
-        .pdf(reinterpret_cast<const float(*)[3]>(directions), count, pdfs);
+    acdf::EnvironmentWavefront(file->file.environment()).pdf(vectors_at(directions, 0), count, pdfs);
     return 1;
 }
 
@@ -97,7 +112,14 @@ float acdf_density_local(const AcdfFile* file, const float normal[3], const floa
 int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
                           float* directions, float* pdfs) {
     if (file->file.kind() != ACDF_KIND_LOCAL) return 0;
-    AcdfLocalPoint point;
+    if (each == 1) {
+        const acdf::LocalWavefront wavefront(file->file.local());
+        draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
+            wavefront.sample(vectors_at(normals, first), pairs_at(u, first), n, drawn);
+        });
+        return 1;
+    }
+    AcdfLocalPoint point; // looked up once, it serves several
     for_each_item(
         count, each, [&](size_t j) { acdf_local_at(&file->local, normals + 3 * j, &point); },
         [&](size_t, size_t i) {
@@ -109,6 +131,11 @@ int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t eac
 int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
                              size_t count, float* pdfs) {
     if (file->file.kind() != ACDF_KIND_LOCAL) return 0;
+    if (each == 1) {
+        acdf::LocalWavefront(file->file.local())
+            .pdf(vectors_at(normals, 0), vectors_at(directions, 0), count, pdfs);
+        return 1;
+    }
     AcdfLocalPoint point;
     for_each_item(
         count, each, [&](size_t j) { acdf_local_at(&file->local, normals + 3 * j, &point); },
@@ -175,7 +202,7 @@ namespace {
 
 // The views of items first to first + n - 1.
 const float (*views_of(const float* wo, size_t each, size_t first, size_t n, float (&room)[kWave][3]))[3] {
-    if (each == 1) return reinterpret_cast<const float(*)[3]>(wo + 3 * first);
+    if (each == 1) return vectors_at(wo, first);
     for (size_t i = 0; i < n; ++i) std::memcpy(room[i], wo + 3 * ((first + i) / each), sizeof room[i]);
     return room;
 }
@@ -203,13 +230,9 @@ AcdfBrdfWaves* acdf_brdf_waves(const AcdfFile* file, AcdfError* error) {
 void acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,
                           float* wi, float* pdfs) {
     float room[kWave][3];
-    DirectionSample drawn[kWave];
-    for (size_t first = 0; first < count; first += kWave) {
-        const size_t n = count - first < kWave ? count - first : kWave;
-        waves->wavefront.sample(views_of(wo, each, first, n, room),
-                                reinterpret_cast<const double(*)[2]>(u + 2 * first), n, drawn);
-        for (size_t i = 0; i < n; ++i) put(drawn[i], first + i, wi, pdfs);
-    }
+    draw_in_waves(count, wi, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
+        waves->wavefront.sample(views_of(wo, each, first, n, room), pairs_at(u, first), n, drawn);
+    });
 }
 
 void acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t each, const float* wi,
@@ -217,8 +240,7 @@ void acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t
     float room[kWave][3];
     for (size_t first = 0; first < count; first += kWave) {
         const size_t n = count - first < kWave ? count - first : kWave;
-        waves->wavefront.pdf(views_of(wo, each, first, n, room),
-                             reinterpret_cast<const float(*)[3]>(wi + 3 * first), n, pdfs + first);
+        waves->wavefront.pdf(views_of(wo, each, first, n, room), vectors_at(wi, first), n, pdfs + first);
     }
 }
 

@@ -49,3 +49,6 @@ for _ in range(2):
 for name in calls:
     theirs, ours, new = (have[name] for have in least)
     print(f"| {name} | {theirs:.1f} | {ours:.1f} | {new:.1f} | {ours / theirs:.2f} |")
+slow = [name for name in calls if least[0][name] < 0.8 * least[1][name]]
+if slow:
+    raise SystemExit(f"{', '.join(slow)}: Python has less than 0.8 of the speed of C++")

@@ -1,4 +1,4 @@
-// The loops that tests/bench/python.py is compared with: nanoseconds a call of C++, a million calls over arrays.
+// The waves that tests/bench/python.py is compared with: nanoseconds a call of C++, a million calls over arrays.
 #include <acdf/reader.h>
 #include <acdf/wavefront.h>
 
@@ -30,8 +30,8 @@ int main(int argc, char** argv) {
     acdf::File files[3];
     for (int i = 0; i < 3; ++i)
         if (argc != 4 || !acdf::File::open(argv[i + 1], files[i]).ok()) return std::fprintf(stderr, "no file\n"), 1;
-    const acdf::EnvironmentView sky = files[0].environment();
-    const acdf::LocalEnvironmentView local = files[1].local();
+    const acdf::EnvironmentWavefront sky(files[0].environment());
+    const acdf::LocalWavefront local(files[1].local());
     acdf::BrdfWavefront brdf;
     if (!acdf::BrdfWavefront::prepare(files[2].brdf(), brdf).ok()) return 1;
 
@@ -56,24 +56,14 @@ int main(int argc, char** argv) {
     };
     const auto views = reinterpret_cast<const float(*)[3]>(normals.data());
     const auto numbers = reinterpret_cast<const double(*)[2]>(u.data());
-    std::printf("environment.sample %.1f\n", nanoseconds([&] {
-                    for (std::size_t i = 0; i < kCalls; ++i) drawn[i] = sky.sample(u[2 * i], u[2 * i + 1]);
-                }));
+    const auto towards = reinterpret_cast<const float(*)[3]>(directions.data());
+    std::printf("environment.sample %.1f\n", nanoseconds([&] { sky.sample(numbers, kCalls, drawn.data()); }));
     keep();
-    std::printf("environment.pdf %.1f\n", nanoseconds([&] {
-                    for (std::size_t i = 0; i < kCalls; ++i) pdf[i] = sky.pdf(directions[i].v);
-                }));
-    std::printf("local.sample %.1f\n", nanoseconds([&] {
-                    for (std::size_t i = 0; i < kCalls; ++i)
-                        drawn[i] = local.sample(normals[i].v, u[2 * i], u[2 * i + 1]);
-                }));
+    std::printf("environment.pdf %.1f\n", nanoseconds([&] { sky.pdf(towards, kCalls, pdf.data()); }));
+    std::printf("local.sample %.1f\n", nanoseconds([&] { local.sample(views, numbers, kCalls, drawn.data()); }));
     keep();
-    std::printf("local.pdf %.1f\n", nanoseconds([&] {
-                    for (std::size_t i = 0; i < kCalls; ++i) pdf[i] = local.pdf(normals[i].v, directions[i].v);
-                }));
+    std::printf("local.pdf %.1f\n", nanoseconds([&] { local.pdf(views, towards, kCalls, pdf.data()); }));
     std::printf("brdf.sample %.1f\n", nanoseconds([&] { brdf.sample(views, numbers, kCalls, drawn.data()); }));
     keep();
-    std::printf("brdf.pdf %.1f\n", nanoseconds([&] {
-                    brdf.pdf(views, reinterpret_cast<const float(*)[3]>(directions.data()), kCalls, pdf.data());
-                }));
+    std::printf("brdf.pdf %.1f\n", nanoseconds([&] { brdf.pdf(views, towards, kCalls, pdf.data()); }));
 }

@@ -84,30 +84,34 @@ TEST(Linked, environments) {
     }
 }
 
-TEST(Linked, localEnvironmentsServeSeveralSamplesANormal) {
+// Several samples a normal, and one: then they are drawn in waves.
+void expect_local_arrays(std::size_t each) {
     Both both(golden("local"));
     const acdf::LocalEnvironmentView sky = both.file.local();
     const AcdfFile* file = both.handle.get();
-    const std::vector<float> normals = Both::directions(kCount / kEach + 1, -1.0);
+    const std::vector<float> normals = Both::directions(kCount / each + 1, -1.0);
     ASSERT_EQ(
-        acdf_draw_local_array(file, normals.data(), kEach, both.u.data(), kCount, both.w.data(), both.p.data()), 1);
+        acdf_draw_local_array(file, normals.data(), each, both.u.data(), kCount, both.w.data(), both.p.data()), 1);
     std::vector<float> again(kCount);
-    ASSERT_EQ(acdf_density_local_array(file, normals.data(), kEach, both.w.data(), kCount, again.data()), 1);
-    std::vector<double> lit(kCount / kEach);
+    ASSERT_EQ(acdf_density_local_array(file, normals.data(), each, both.w.data(), kCount, again.data()), 1);
+    std::vector<double> lit(kCount / each);
     ASSERT_EQ(acdf_irradiance_local_array(file, normals.data(), lit.size(), lit.data()), 1);
     for (std::size_t i = 0; i < kCount; ++i) {
-        const float* normal = &normals[3 * (i / kEach)];
+        const float* normal = &normals[3 * (i / each)];
         float one[3] = {0.0f, 0.0f, 0.0f};
         expect_same(sky.sample(normal, both.u[2 * i], both.u[2 * i + 1]), &both.w[3 * i], both.p[i], i);
         EXPECT_EQ(acdf_draw_local(file, normal, both.u[2 * i], both.u[2 * i + 1], one), both.p[i]);
         EXPECT_EQ(std::memcmp(one, &both.w[3 * i], sizeof one), 0);
         EXPECT_EQ(again[i], sky.pdf(normal, &both.w[3 * i]));
         EXPECT_EQ(again[i], acdf_density_local(file, normal, &both.w[3 * i]));
-        if (i / kEach < lit.size()) {
-            EXPECT_EQ(lit[i / kEach], sky.irradiance(normal));
+        if (i / each < lit.size()) {
+            EXPECT_EQ(lit[i / each], sky.irradiance(normal));
         }
     }
 }
+
+TEST(Linked, localEnvironmentsServeSeveralSamplesANormal) { expect_local_arrays(kEach); }
+TEST(Linked, localEnvironmentsServeANormalASample) { expect_local_arrays(1); }
 
 TEST(Linked, brdfsAloneAndInWaves) {
     for (const char* name : {"brdf", "brdf_anisotropic"}) {
