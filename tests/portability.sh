@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# portability.sh: the reader for other systems, as far as one machine can tell. Not a part of tests/run.sh. Of Debian 12 it needs
+# portability.sh: reader and builder for other systems, as far as one machine can tell. Not a part of tests/run.sh. The builder is
+# compiled and no more: Debian has oneTBB's headers, but for no other system its library. Of Debian 12 it needs
+#   libtbb-dev                                  the builder
 #   g++-mingw-w64-x86-64 wine64                 Windows: cross-compiled, and run
 #   g++-aarch64-linux-gnu qemu-user             64-bit ARM: cross-compiled, and run
 #   g++-s390x-linux-gnu                         big-endian: refused with a message
@@ -56,6 +58,21 @@ build() {
     "$cxx" $flags -static tests/packaging/consumer/consumer.cpp "${objects[@]}" -o "$work/$name/consumer_cpp.exe"
 }
 
+# compile_builder NAME CXX: its sources alone, with headers of oneTBB that are the same for all systems.
+compile_builder() {
+    local name=$1 cxx=$2 source count=0
+    [[ -e /usr/include/oneapi/tbb.h ]] || { echo "left out: the builder for $name (no libtbb-dev)"; left_out=$((left_out + 1)); return; }
+    mkdir -p "$work/tbb"
+    ln -sfn /usr/include/oneapi "$work/tbb/oneapi"
+    ln -sfn /usr/include/tbb "$work/tbb/tbb"
+    for source in lib/compress/*.cpp lib/build/*.cpp lib/build/builder/*.cpp; do
+        "$cxx" -std=c++17 -Wall -Wextra -Werror -Wno-psabi -DACDF_VERSION='"0"' -fsyntax-only -Iformat -Ilib/reader -Ilib -Ilib/build \
+            -isystem "$work/tbb" "$source"
+        count=$((count + 1))
+    done
+    echo "$name: the builder's $count sources compile"
+}
+
 # same NAME RUN...: its samples are those of the compiler here, for every environment of the golden files; a missing file is a
 # message.
 same() {
@@ -87,6 +104,7 @@ else
     fi
     if ! missing x86_64-w64-mingw32-g++ "Windows"; then
         build windows x86_64-w64-mingw32-gcc x86_64-w64-mingw32-g++
+        compile_builder windows "$(command -v x86_64-w64-mingw32-g++-posix || echo x86_64-w64-mingw32-g++)"
         wine=$(command -v wine64 || command -v wine || ls /usr/lib/wine/wine64 2>/dev/null || true)
         if [[ -n $wine ]]; then
             export WINEDEBUG=-all WINEPREFIX=$work/wine
@@ -99,6 +117,7 @@ else
     if ! missing aarch64-linux-gnu-g++ "64-bit ARM" && ! missing qemu-aarch64 "64-bit ARM"; then
         build aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-g++
         same aarch64 qemu-aarch64
+        compile_builder aarch64 aarch64-linux-gnu-g++
     fi
 fi
 if ! missing s390x-linux-gnu-g++ "big-endian"; then
