@@ -91,7 +91,7 @@ def check_pyproject(root, cmake, work, version):
 def check_wheel(cmake, work, build, project):
     backend, contents = project["tool"]["scikit-build"], f"{work}/contents"
     for target in backend["cmake"]["targets"]:
-        subprocess.run([cmake, "--build", build, "--target", target, "--parallel"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([cmake, "--build", build, "--target", target, "--parallel", str(os.cpu_count() or 1)], check=True, stdout=subprocess.DEVNULL)
     for component in backend["install"]["components"]:
         subprocess.run([cmake, "--install", build, "--prefix", contents, "--component", component], check=True,
                        stdout=subprocess.DEVNULL)
