@@ -158,8 +158,8 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
 }
 
 TEST_F(LocalCommand, GoalsOutOfReachAreToldAndLeaveNothing) {
-    for (const std::vector<std::string>& goal :
-         std::vector<std::vector<std::string>>{{"--budget", "1kB"}, {"--target-variance", "1e-7"}}) {
+    for (const std::vector<std::string>& goal : std::vector<std::vector<std::string>>{
+             {"--budget", "1kB"}, {"--target-variance", "1e-7", "--normals", "2"}}) {
         std::vector<std::string> words{"local", probe, "-o", output, "-q"};
         words.insert(words.end(), goal.begin(), goal.end());
         const Result result = run_acdf(words);

@@ -148,13 +148,13 @@ TEST(BuilderBrdf, MakesWhatTheProgramMakes) {
         EXPECT_EQ(brdf_bytes(given, options), program_bytes(arguments, folder / "b.acdf")) << text;
     };
     BrdfOptions options;
-    options.goal = Goal::of_budget(20 << 10);
-    expect_same("ggx:alpha=0.2", options, {"--budget", "20KiB"});
+    options.goal = Goal::of_budget(6 << 10);
+    expect_same("ggx:alpha=0.2", options, {"--budget", "6KiB"});
     options.channels = {ACDF_CHANNELS_LARGEST, {1.0, 1.0, 1.0}};
     options.diffuse_share = 0.1f;
-    options.theta_views = 6, options.phi_views = 4;
+    options.theta_views = 5, options.phi_views = 4;
     expect_same("ggx:alpha=0.2,0.5,f0=0.9", options,
-                {"--budget", "20KiB", "--channel", "max", "--diffuse-floor", "0.1", "--views", "6x4"});
+                {"--budget", "6KiB", "--channel", "max", "--diffuse-floor", "0.1", "--views", "5x4"});
     options = {};
     options.fit = ACDF_FIT_CDF;
     options.theta_views = 8;
@@ -195,6 +195,7 @@ TEST(BuilderBrdf, Misuse) {
     BrdfFile made;
     BrdfOptions options;
     options.goal = Goal::of_budget(12 << 10);
+    options.theta_views = 4;
     Brdf given;
     EXPECT_EQ(brdf(given, options, made).code, ErrorCode::invalid_argument);
     const auto answers = [&](double r) {
@@ -221,7 +222,7 @@ TEST(BuilderBrdf, Misuse) {
     };
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.theta_views = 1; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.theta_views = 8, o.phi_views = 2; }));
-    EXPECT_TRUE(refused([](BrdfOptions& o) { o.phi_views = 8; }));
+    EXPECT_TRUE(refused([](BrdfOptions& o) { o.theta_views = 0, o.phi_views = 8; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.diffuse_share = NAN; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = 0.5; }));
     EXPECT_TRUE(refused([](BrdfOptions& o) { o.max_weight = kNan; }));

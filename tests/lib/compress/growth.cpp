@@ -1,5 +1,6 @@
 // Growing partitions for a goal: what is forgotten changes no tree, what is kept is bounded by what the goal can
 // use, and the size of a tree is known before it is made.
+#include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 
 #include "compress/fit_tree.h"
@@ -206,7 +207,7 @@ TEST(TreeSizer, TellsTheBytesThatEncodingMakes) {
         Bins bins(targets, 1e-7);
         TreeSizer sizer(3, most_ratio);
         SizedTree last;
-        for (double price = 1e-2; price > 4e-8; price *= 0.7) {
+        for (double price = 1e-2; price > 4e-8; price *= acdf_test::kSanitized ? 0.3 : 0.7) {
             SCOPED_TRACE(price);
             const std::vector<PrunedBin> pruned = bins.at(price);
             const SizedTree tree = sizer.tree(pruned, price, {&last});
@@ -226,6 +227,7 @@ TEST(TreeSizer, TellsTheBytesThatEncodingMakes) {
 TEST(TreeSizer, CountingFindsTheTreeThatMakingFinds) {
     const Target target = lights();
     for (const std::uint64_t budget : {500u, 3000u, 20000u, 100000u}) {
+        if (acdf_test::kSanitized && budget > 20000) continue;
         FitOptions options;
         options.goal.kind = Goal::Kind::budget;
         options.goal.budget = budget;

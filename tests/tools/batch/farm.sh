@@ -60,7 +60,7 @@ expect_same() {
     [[ -z $(find "$1" -name '.acdf-*') ]] || fail "temporary files are left in $1"
 }
 
-options=(--kind "env,local" --set local.budget=64KiB --set env.cells=100)
+options=(--kind "env,local" --set local.budget=16KiB --set env.cells=100)
 
 test_ninja() {
     need ninja

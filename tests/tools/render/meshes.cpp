@@ -1,4 +1,5 @@
 // Scenes of triangles: `acdf local --scene MESH --places` makes a file, `acdf render` looks from the same mesh.
+#include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
 
 #include <acdf/reader.h>
@@ -24,7 +25,7 @@ struct MeshFolder : SceneFolder {
         return run_acdf(arguments);
     }
     Result render(const std::string& scene, const std::string& output, std::vector<std::string> more = {},
-                  const std::string& seeds = "150") {
+                  const std::string& seeds = acdf_test::kSanitized ? "40" : "150") {
         std::vector<std::string> arguments{"render", "--scene",     *this / scene,  "--data",
                                            data(),   "-o",          *this / output, "--seeds",
                                            seeds,    "--no-timing", "--json",       "--no-reference"};
