@@ -1,7 +1,7 @@
 // From the texts of samplers to estimators, all tables built once.
 #pragma once
 
-#include "build/builder/sources.h"
+#include "build/own_terms.h"
 #include "input/brdf.h"
 #include "measure/estimator.h"
 #include "measure/scene_points.h"

@@ -1,6 +1,6 @@
 // The sweep of BRDF files.
 #include "build/brdf.h"
-#include "build/builder/sources.h"
+#include "build/own_terms.h"
 #include "input/rgl_brdf.h"
 #include "measure/brdf_table.h"
 #include "measure/light_samplers.h"
@@ -191,8 +191,9 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
     sweep.kind = SweepKind::brdf;
     take_options(sweep, options);
     const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
+    const builder::Channels& channels = options.target.channels;
     const compress::Reflected reflected =
-        build::reflected_light(brdf, options.target.channels.mode, builder::internal(options.target).weights);
+        build::reflected_light(brdf, channels.mode, {channels.weights.r, channels.weights.g, channels.weights.b});
     sweep.conditions = build::kMeasuredViews;
     std::vector<Candidate> candidates;
     build_all(

@@ -1,6 +1,6 @@
 // The sweep of environment files.
-#include "build/builder/sources.h"
 #include "build/local_accuracy.h"
+#include "build/own_terms.h"
 #include "measure/full_cdf.h"
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"

@@ -1,6 +1,6 @@
 // The sweep of local environment files.
 #include "tools/plot/local.h"
-#include "build/builder/sources.h"
+#include "build/own_terms.h"
 #include "build/texel_cosines.h"
 #include "compress/sum.h"
 #include "tools/cli/built.h"

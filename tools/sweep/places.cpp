@@ -1,5 +1,5 @@
 // The sweep of files of places: on a mesh, with what it hides.
-#include "build/builder/sources.h"
+#include "build/own_terms.h"
 #include "measure/mesh_stage.h"
 #include "tools/cli/built.h"
 #include "tools/commands.h"

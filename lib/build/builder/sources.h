@@ -2,13 +2,10 @@
 #pragma once
 
 #include "build/array.h"
+#include "build/own_terms.h"
 #include "build/probe_rows.h"
 #include "build/progress.h"
-#include "build/reflectance.h"
 #include "build/source_target.h"
-#include "compress/target.h"
-
-#include <acdf/builder.h>
 
 #include <optional>
 #include <string>
@@ -32,12 +29,6 @@ struct Target::Data {
         return !own || !(*own == grid_of());
     }
 };
-
-/// The function that is fitted. `target` is not empty, and the reference lives as long as a copy of it.
-const compress::Target& grid_of(const Target& target);
-
-/// A target in the library's terms. Throws build::NoEnergy.
-Target target_of(compress::Target grid, const TargetOptions& options);
 
 compress::TargetOptions internal(const TargetOptions& options);
 
@@ -67,9 +58,6 @@ private:
     std::optional<compress::EnvironmentTarget> own_; ///< of a lat-long map on its own
     build::SourceTarget made_;
 };
-
-/// `brdf` must outlive what is made.
-Brdf described(const build::Brdf& brdf);
 
 /// The table of numbers that are floats already; `bad` says what they were.
 Status table(const build::Array& array, const BadNumbers& bad, const TableOptions& options, Table& result,

@@ -1,6 +1,6 @@
 // What a sweep recommends and writes, on made-up rows and on a tiny probe.
-#include "build/builder/sources.h"
 #include "build/environment.h"
+#include "build/own_terms.h"
 #include "measure/full_cdf.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/advice.h"

@@ -1,5 +1,5 @@
 // Rows of sweeps of local and BRDF files.
-#include "build/builder/sources.h"
+#include "build/own_terms.h"
 #include "input/brdf.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/sweep.h"
