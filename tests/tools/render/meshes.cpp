@@ -24,6 +24,22 @@ struct MeshFolder : SceneFolder {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     }
+    /// A file of the places of room(), which is made once a process.
+    void room_file(const std::string& output, bool y_up = false) {
+        static std::string made[2];
+        std::string& bytes = made[y_up];
+        if (bytes.empty()) {
+            const std::string mesh = y_up ? "y.obj" : "room.obj";
+            write_text(*this / mesh, room(y_up));
+            std::vector<std::string> more{"--scene", *this / mesh, "--places"};
+            if (y_up) more.insert(more.end(), {"--scene-up", "y"});
+            const Result result = local(output, more);
+            EXPECT_EQ(result.code, 0) << result.err;
+            bytes = read_text(*this / output);
+        } else {
+            write_text(*this / output, bytes);
+        }
+    }
     Result render(const std::string& scene, const std::string& output, std::vector<std::string> more = {},
                   const std::string& seeds = acdf_test::kSanitized ? "40" : "150") {
         std::vector<std::string> arguments{"render", "--scene",     *this / scene,  "--data",
@@ -67,10 +83,10 @@ TEST(MeshPlaces, AreDrawnFromInPictures) {
 /// On the mesh, whichever axis of it points up.
 TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
     MeshFolder folder;
-    ASSERT_EQ(folder.local("room.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    folder.room_file("room.acdf");
     ASSERT_EQ(folder.local("plain.acdf", {}).code, 0);
     write_text(folder / "y.obj", room(true));
-    ASSERT_EQ(folder.local("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--places"}).code, 0);
+    folder.room_file("y.acdf", true);
     const auto measure = [&](const std::string& file, std::vector<std::string> more) {
         std::vector<std::string> arguments{"measure", folder / file, "--against", folder / "probe.exr", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -100,7 +116,7 @@ TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
 /// What has come and what has gone since the file was made.
 TEST(MeshPlaces, OfAnotherSceneAreUnbiased) {
     MeshFolder folder;
-    ASSERT_EQ(folder.local("room.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    folder.room_file("room.acdf");
     std::string changed = room();
     changed.replace(changed.find("f 5 6 9 10"), 10, "f 7 8 10 9");               // the other half of the roof
     write_text(folder / "changed.obj", changed.substr(0, changed.find("f 15"))); // no box
@@ -113,8 +129,8 @@ TEST(MeshPlaces, OfAnotherSceneAreUnbiased) {
 TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
     MeshFolder folder;
     write_text(folder / "y.obj", room(true));
-    ASSERT_EQ(folder.local("z.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
-    ASSERT_EQ(folder.local("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--places"}).code, 0);
+    folder.room_file("z.acdf");
+    folder.room_file("y.acdf", true);
     File z, y;
     ASSERT_TRUE(File::open((folder / "z.acdf").c_str(), z).ok());
     ASSERT_TRUE(File::open((folder / "y.acdf").c_str(), y).ok());
@@ -133,7 +149,7 @@ TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
 /// Under the roof the sky above the open half is drawn, and what the roof hides is not.
 TEST(MeshPlaces, ArePlotted) {
     MeshFolder folder;
-    ASSERT_EQ(folder.local("room.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    folder.room_file("room.acdf");
     ASSERT_EQ(folder.local("plain.acdf", {}).code, 0);
     const auto plot = [&](const std::string& file, const std::string& output, std::vector<std::string> more) {
         std::vector<std::string> arguments{"plot", folder / file, "-o", folder / output, "--width", "64"};
@@ -167,7 +183,7 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
     MeshFolder folder;
     write_text(folder / "y.obj", room(true));
     write_text(folder / "y.json", mesh_scene("y.obj", R"(, "up": "y")"));
-    ASSERT_EQ(folder.local("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--places"}).code, 0);
+    folder.room_file("y.acdf", true);
     const Result result =
         folder.render("y.json", "out",
                       {"--sampler", "local:64KiB", "--sampler", "file:y.acdf", "--sampler", "places:64KiB",
