@@ -46,7 +46,8 @@ TEST(BrdfCommand, fileIsValidAndTellsWhatItIs) {
 TEST(BrdfCommand, compressedFilesFillTheirBudget) {
     const Folder folder;
     const std::string path = folder / "a.acdf";
-    const Result made = run_acdf({"brdf", "ggx:alpha=0.4", "-o", path, "--views", "8", "--budget", "9000", "--compress", "zlib"});
+    const Result made =
+        run_acdf({"brdf", "ggx:alpha=0.4", "-o", path, "--views", "8", "--budget", "9000", "--compress", "zlib"});
     ASSERT_EQ(made.code, 0) << made.err;
     const auto bytes = std::filesystem::file_size(path);
     EXPECT_LE(bytes, 9000u);
