@@ -1,31 +1,32 @@
-"""What it takes to fit pixels that a program holds: after_decoding.py WIDTH [BUDGET]
+"""What it takes to fit pixels that a program holds: after_decoding.py PROBE WIDTH [BUDGET]
 
-Makes a noisy sky with three suns, WIDTH columns of half floats in memory, gives it to acdf.build_environment, and prints a
-row of the table in docs/performance.md: the processor seconds of all threads, of that call alone, and the peak memory of
-all, the pixels included. PYTHONPATH names the folder of the package.
+Reads a lat-long probe (Debian's python3-openimageio), enlarges it to WIDTH columns of half floats in memory, gives it to
+acdf.build_environment, and prints a row of a table in docs/performance.md: the processor seconds of all threads, of that
+call alone, and the peak memory of all, the pixels included. PYTHONPATH names the folder of the package acdf.
 """
 
 import resource
 import sys
 import time
+from pathlib import Path
 
 import acdf
 import numpy as np
+import OpenImageIO as oiio
 
-width, budget = int(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "64KiB"
-height = width // 2
-random = np.random.default_rng(1)
-pixels = np.empty((height, width, 3), np.float16)
-for row in range(height):
-    z = np.cos(np.pi * (row + 0.5) / height)
-    pixels[row] = ((0.6 + 0.4 * z) * (0.8 + 0.4 * random.random(width, np.float32)))[:, None] * (0.7, 0.9, 1.0)
-for u, v, radius in ((0.3, 0.2, 0.002), (0.55, 0.45, 0.004), (0.8, 0.3, 0.001)):
-    x, y, r = int(u * width), int(v * height), max(1, int(radius * width))
-    pixels[y - r : y + r, x - r : x + r] = 3e4
+path, width, budget = sys.argv[1], int(sys.argv[2]), sys.argv[3] if len(sys.argv) > 3 else "64KiB"
+image = oiio.ImageBuf(path)
+columns, rows = image.spec().width, image.spec().height
+if width != columns: # smooth, as photographs of that size are
+    larger = oiio.ImageBuf(oiio.ImageSpec(width, width // 2, 3, "half"))
+    assert oiio.ImageBufAlgo.resize(larger, oiio.ImageBufAlgo.channels(image, (0, 1, 2)), filtername="triangle")
+    image = larger
+pixels = np.maximum(image.get_pixels("half")[:, :, :3], 0.0)
+del image
 
 begin = time.process_time()
 made = acdf.build_environment(pixels, budget=budget)
 seconds = time.process_time() - begin
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
-print(f"| {width}×{height} half floats in memory | `{budget}` | {seconds:.2f} | {memory} MiB |")
+print(f"| {Path(path).stem}, {width}×{width // 2}, half floats | {budget} | {seconds:.2f} | {memory} MiB |")
 assert made.size > 0
