@@ -208,8 +208,7 @@ void File::make_tables() noexcept {
     const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
-    // On the octahedral square a walk needs no trigonometry; its cells are not pieces of azimuth and height.
-    if (kind() == ACDF_KIND_ENVIRONMENT && description_->parameterization == ACDF_PARAM_LATLONG)
+    if (kind() == ACDF_KIND_ENVIRONMENT)
         cells_ = make_cells(environment().data(), tree_units_, most, allocator_, owned_[2]);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);

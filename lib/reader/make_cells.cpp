@@ -28,7 +28,7 @@ class CellsMaker {
 public:
     /// total: tables that answer always.
     CellsMaker(const AcdfEnvironment& environment, u32 tree_units, bool total)
-        : environment_(environment), sides_(environment.columns, environment.rows),
+        : environment_(environment), sides_(acdf_environment_grid(&environment)),
           most_steps_(2 * std::size_t{tree_units} + 64), total_(total) {}
 
     /// False where there can be no tables.
@@ -222,7 +222,7 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
     const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
     SquaresMaker numbers, directions;
     if (!numbers.make(numbers_.data(), count, kNumberBits, work) ||
-        !directions.make(keys_.data(), count, ACDF_DIRECTION_BITS, work))
+        !directions.make(keys_.data(), count, sides_.key_bits(), work))
         return nullptr;
     if (total_ && !(numbers.complete() && directions.complete())) return nullptr;
     std::size_t words = padded(sizeof(AcdfCells) / 4) + numbers.words() + directions.words();
@@ -241,6 +241,7 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
     };
     cells->words = static_cast<u32>(words);
     cells->count = static_cast<u32>(count);
+    cells->octahedral = environment_.parameterization == ACDF_PARAM_OCTAHEDRAL;
     cells->pieces = copy(pieces_);
     cells->densities = copy(densities_);
     if (total_) cells->ends = copy(ends_);

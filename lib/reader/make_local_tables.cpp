@@ -32,7 +32,7 @@ public:
         : local_(local), most_bytes_(std::min(most_bytes, kMostBytes)),
           most_cells_(2 * std::size_t{tree_units} + local.blend.tiles->tile_count),
           most_pieces_(std::min(kMostPieces, most_bytes_ / (2 * sizeof(AcdfTilePiece)))),
-          sides_(local.environment.columns, local.environment.rows) {}
+          sides_(acdf_environment_grid(&local.environment)) {}
 
     /// False where there can be none.
     bool make();
@@ -62,8 +62,7 @@ bool PiecesMaker::gather() {
     if (sizeof(double) * tiles.row_count * tiles.tile_count > most_bytes_) return false;
     const Cell whole = {1.0, {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {env.columns, env.rows}, false, false};
     return sides_.remember(most_cells_) && gather(acdf_blend_root(&local_.blend), whole) &&
-           !(pieces_.failed() || keys_.failed()) &&
-           directions_.make(keys_.data(), keys_.size(), ACDF_DIRECTION_BITS);
+           !(pieces_.failed() || keys_.failed()) && directions_.make(keys_.data(), keys_.size(), sides_.key_bits());
 }
 
 // The cells of all tiles below a node. A path passes at most 48 splits.
@@ -188,7 +187,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     std::size_t words = at + tiles.words() + heights + corners + lights + middles;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
-    const bool small = latlong && pieces.make();
+    const bool small = pieces.make();
     if (small) words += pieces.words();
     std::size_t hearts = tiles.heart_words();
     if (hearts > 0 && (4 * (words + hearts) > most_bytes || !tiles.prepare_hearts())) hearts = 0;
@@ -198,6 +197,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
     AcdfLocalTables* const tables = new (block.data) AcdfLocalTables();
     tables->words = static_cast<u32>(words);
+    tables->octahedral = !latlong;
     at = tiles.place(out, at, tables->tiles);
     for (u32 i = 0; i < local.light_count; ++i)
         reinterpret_cast<AcdfTileRecord*>(out + tables->tiles.tiles)[local.lights[i].tile].light =

@@ -35,7 +35,14 @@ Sides::Row Sides::row_of(u32 row, u32 rows) {
 }
 Sides::Row Sides::row(u32 row) const { return row < heights_.size() ? heights_[row] : row_of(row, rows_); }
 
+double Sides::height(const Cell& cell) const {
+    if (!octahedral()) return row(cell.first[1]).z - row(cell.last[1]).z;
+    const AcdfRange rows = {cell.first[1], cell.last[1], 0.0};
+    return acdf_grid_height(&grid_, &rows);
+}
+
 bool Sides::remember(std::size_t most) {
+    if (octahedral()) return true;
     if (columns_ <= most && tangents_.reserve(columns_ + 1))
         for (u32 i = 0; i <= columns_; ++i) tangents_.add(tangent_of(i, columns_));
     if (rows_ <= most && heights_.reserve(rows_ + 1))
@@ -43,7 +50,23 @@ bool Sides::remember(std::size_t most) {
     return !(tangents_.failed() || heights_.failed());
 }
 
+// The margin is at least kMargin as an angle: ACDF_OCTAHEDRAL_LEAST_SPEED.
+int Sides::square_side(const Cell& cell, int axis, Side& out) const {
+    const double count = axis == 0 ? columns_ : rows_, sign = axis == 0 ? -2.0 : 2.0;
+    const double ends[2] = {cell.first[axis] / count, cell.last[axis] / count};
+    out = {};
+    out.low = cell.low[axis];
+    out.high = cell.high[axis];
+    for (int i = 0; i < 2; ++i) {
+        out.local[i] = sign * (ends[i] - 0.5);
+        out.margin[i] = kMargin;
+        out.key[i] = ends[i] * static_cast<double>(ACDF_SQUARE_STEPS);
+    }
+    return 1;
+}
+
 int Sides::azimuths(const Cell& cell, Side* out) const {
+    if (octahedral()) return square_side(cell, 0, out[0]);
     static const struct {
         double end; // of the piece, as a part of the columns
         double middle;
@@ -76,6 +99,7 @@ int Sides::azimuths(const Cell& cell, Side* out) const {
 }
 
 int Sides::heights(const Cell& cell, Side* out) const {
+    if (octahedral()) return square_side(cell, 1, out[0]);
     const Row ends[2] = {row(cell.first[1]), row(cell.last[1])};
     const Row equator = {0.0, 1.0, kMargin};
     const double number = (cell.high[1] - cell.low[1]) / (ends[0].z - ends[1].z); // of z

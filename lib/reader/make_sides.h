@@ -1,9 +1,10 @@
-// Cells of trees on a lat-long grid as parts of the eight pieces of the sphere (acdf/cells.h).
+// Cells of trees as parts of the eight pieces of the sphere, or as boxes of the octahedral square (acdf/cells.h).
 #pragma once
 
 #include "growable.h"
 
 #include <acdf/cells.h>
+#include <acdf/grid.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -47,27 +48,29 @@ bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, co
 
 /// The part of a cell's side that lies in one piece of the sphere: from low to high random numbers.
 struct Side {
-    std::uint32_t piece; ///< quarter, or whether it is south
+    std::uint32_t piece; ///< quarter, or whether it is south; 0 on the square
     double low, high;    ///< random numbers
-    double local[2];     ///< at low and high: local azimuth, or 1 - |z|
+    double local[2];     ///< at low and high: local azimuth, 1 - |z|, or 1 - 2 u, 2 v - 1
     double margin[2];    ///< of `local`, in which nothing is sure
-    double key[2];       ///< of acdf_place_of: the lesser, and the greater
-    double ends[2];      ///< tangents of azimuth or 1 - |z|: the lesser, and the greater
+    double key[2];       ///< of acdf_direction_place: the lesser, and the greater
+    double ends[2];      ///< tangents of azimuth or 1 - |z|: the lesser, and the greater; not on the square
 };
 
 /// Cuts cells of a grid.
 class Sides {
 public:
-    Sides(std::uint32_t columns, std::uint32_t rows) : columns_(columns), rows_(rows) {}
+    explicit Sides(const AcdfGrid& grid) : grid_(grid), columns_(grid.columns), rows_(grid.rows) {}
 
     /// Trigonometry of each column and row once, unless they are more than `most`. False where memory fails.
     bool remember(std::size_t most);
-    /// Into out[5]; returns how many.
+    /// Of axis 0 into out[5]; returns how many.
     int azimuths(const Cell& cell, Side* out) const;
-    /// Into out[2]; returns how many.
+    /// Of axis 1 into out[2]; returns how many.
     int heights(const Cell& cell, Side* out) const;
-    /// Difference of z between the rows of a cell.
-    double height(const Cell& cell) const { return row(cell.first[1]).z - row(cell.last[1]).z; }
+    /// acdf_grid_height of a cell.
+    double height(const Cell& cell) const;
+    /// Bits of a key.
+    std::uint32_t key_bits() const { return octahedral() ? ACDF_SQUARE_BITS : ACDF_DIRECTION_BITS; }
     /// Density of a cell without tilts, sr^-1; 0 for a dark one.
     float density(const Cell& cell) const;
 
@@ -77,10 +80,13 @@ private:
         double z, cap; ///< cosine, 1 - |cosine|
         double margin; ///< of the angle, as a difference of z
     };
+    bool octahedral() const { return acdf_grid_is_octahedral(&grid_) != 0; }
+    int square_side(const Cell& cell, int axis, Side& out) const;
     double tangent(std::uint32_t column) const;
     Row row(std::uint32_t row) const;
     static Row row_of(std::uint32_t row, std::uint32_t rows);
 
+    AcdfGrid grid_;
     std::uint32_t columns_, rows_;
     Growable<double> tangents_;
     Growable<Row> heights_;

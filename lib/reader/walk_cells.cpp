@@ -45,7 +45,8 @@ u32 WalkParts::add(const WalkLeaf& leaf) noexcept {
     return ACDF_WALK_LEAF | static_cast<u32>(leaves.size() - 1);
 }
 
-WalkCells::WalkCells(u32 parameterization, u32 columns, u32 rows) noexcept : sides_(columns, rows) {
+WalkCells::WalkCells(u32 parameterization, u32 columns, u32 rows) noexcept
+    : sides_({columns, rows, parameterization}) {
     grid_.parameterization = parameterization;
     grid_.columns = columns;
     grid_.rows = rows;

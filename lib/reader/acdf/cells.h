@@ -6,11 +6,13 @@
  * cell's borders than all roundings together; else it says so, and the caller walks. So every draw and every
  * density is that of the walk; only where in its cell a draw lies differs, by the rounding of floats.
  *
- * Cells are cut where the pieces of the sphere are (acdf/pieces.h). */
+ * On lat-long grids cells are cut where the pieces of the sphere are (acdf/pieces.h). Those of the octahedral
+ * square (acdf/shader_square.h) are one piece each, which lies in it as it is. */
 #ifndef ACDF_CELLS_H
 #define ACDF_CELLS_H
 
 #include <acdf/pieces.h>
+#include <acdf/shader_square.h>
 #include <acdf/sphere.h>
 #include <acdf/squares.h>
 
@@ -23,20 +25,22 @@ typedef struct AcdfCells {
     uint32_t words;         /* of all */
     uint32_t count;         /* of pieces of cells */
     AcdfSquares numbers;    /* keys: u in steps of 2^-31 */
-    AcdfSquares directions; /* keys: acdf_direction_keys */
+    AcdfSquares directions; /* keys: acdf_direction_place */
     uint32_t pieces;        /* AcdfPiece, `count` of them */
     uint32_t densities;     /* f32, sr^-1; 0: no sample falls there */
     uint32_t ends;          /* AcdfPieceEnds, `count` of them, of tables for shaders (acdf/shader.h); else 0 */
-    uint32_t reserved[3];
+    uint32_t octahedral;    /* whether they lie on that square: then axes are 1 - 2 u and 2 v - 1 */
+    uint32_t reserved[2];
 } AcdfCells;
 
 /* The random numbers of an axis that surely lead into a piece, and where they lead. They begin at low, in steps of
- * 2^-31; d steps of 2^-52 above it, 0 <= d < width, the local azimuth (radians) or 1 - |z| is origin + d * slope.
+ * 2^-31; d steps of 2^-52 above it, 0 <= d < width, the local azimuth (radians), 1 - |z| or the place on an axis of
+ * the square is origin + d * slope.
  * In the south `low` is the upper end, at the pole, and -width < d < 0. Directions from origin to there surely lie
  * in the piece; where numbers do not tell (they may be too few, or none) only that is meant. */
 typedef struct AcdfPieceAxis {
     uint32_t low;
-    float width; /* its lowest bits: of azimuth two, the quarter; of height one, whether it is south */
+    float width; /* its lowest bits: of azimuth two, the quarter; of height one, whether it is south; else 0 */
     float origin, slope;
 } AcdfPieceAxis;
 typedef struct AcdfPiece {
@@ -66,6 +70,7 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
     const uint16_t* found;
     uint64_t n[2];
     AcdfVector drawn;
+    float along, height;
     uint32_t mask;
     memcpy(n, shifted, sizeof n);
     n[0] ^= 0x3FF0000000000000u;
@@ -81,8 +86,10 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
                        width1 = acdf_float_bits(piece->height.width);
         /* 0 <= d < width by their bits; in the south for -d */
         if (!(acdf_float_bits(d0) < width0 && (acdf_float_bits(d1) ^ width1 << 31) < width1)) continue;
-        drawn = acdf_piece_direction(piece->azimuth.origin + d0 * piece->azimuth.slope,
-                                     piece->height.origin + d1 * piece->height.slope, width0 & 3u, width1 & 1u);
+        along = piece->azimuth.origin + d0 * piece->azimuth.slope;
+        height = piece->height.origin + d1 * piece->height.slope;
+        drawn = cells->octahedral ? acdf_square_direction(along, height)
+                                  : acdf_piece_direction(along, height, width0 & 3u, width1 & 1u);
         out->direction[0] = drawn.x;
         out->direction[1] = drawn.y;
         out->direction[2] = drawn.z;
@@ -100,13 +107,19 @@ ACDF_INLINE int acdf_is_direction(float sin2, float length2) {
     return acdf_float_bits(length2) - 0x3F7FF972u <= 0x000009D4u && acdf_float_bits(sin2) >= 0x2B800000u;
 }
 
-/* Returns 0 where floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by
- * more than 5e-5 or that are not finite. */
-ACDF_INLINE int acdf_direction_place(const float direction[3], AcdfPlace* place) {
+/* Where a direction lies: in place->slope not the tangent of the local azimuth but that itself. Returns 0 where
+ * floats do not tell: within 2^-20 of a pole, and for directions whose length differs from 1 by more than 5e-5 or
+ * that are not finite. */
+ACDF_INLINE int acdf_direction_place(uint32_t octahedral, const float direction[3], AcdfPlace* place) {
     const float x = direction[0], y = direction[1], z = direction[2];
     const float sin2 = x * x + y * y, length2 = sin2 + z * z;
     if (!acdf_is_direction(sin2, length2)) return 0;
-    *place = acdf_place_of(x, y, z, sin2, length2);
+    if (octahedral) {
+        *place = acdf_square_place(x, y, z, sin2, length2);
+    } else {
+        *place = acdf_place_of(x, y, z, sin2, length2);
+        place->slope = acdf_atan_float(place->slope);
+    }
     return 1;
 }
 
@@ -117,15 +130,13 @@ ACDF_INLINE int acdf_cells_pdf(const AcdfCells* cells, const float direction[3],
     const uint16_t* found;
     AcdfPlace place;
     uint32_t mask;
-    float azimuth;
-    if (!acdf_direction_place(direction, &place)) return 0;
+    if (!acdf_direction_place(cells->octahedral, direction, &place)) return 0;
     mask = acdf_squares_find(tables, &cells->directions, place.key0, place.key1, &found);
-    azimuth = acdf_atan_float(place.slope);
     for (; mask; mask &= mask - 1) {
         const uint32_t cell = found[acdf_lowest_bit(mask)];
         const AcdfPiece* piece = (const AcdfPiece*)(const void*)(tables + cells->pieces) + cell;
         /* How far it is from `origin`, in the direction of growing cap and falling azimuth. */
-        const float d0 = piece->azimuth.origin - azimuth, d1 = place.cap - piece->height.origin;
+        const float d0 = piece->azimuth.origin - place.slope, d1 = place.cap - piece->height.origin;
         const float width0 = -(piece->azimuth.width * piece->azimuth.slope);
         const float width1 = fabsf(piece->height.width * piece->height.slope);
         /* 0 <= d < width by their bits */

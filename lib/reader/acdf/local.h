@@ -190,7 +190,8 @@ ACDF_INLINE int acdf_local_table_pdf(const AcdfLocal* local, const AcdfLocalPoin
 /* The square of a direction, as acdf_grid_square finds it. */
 ACDF_INLINE int acdf_local_square(const AcdfGrid* grid, const float direction[3], uint32_t square[2]) {
     double position[2];
-    return (!acdf_grid_is_octahedral(grid) && acdf_row_square(grid->columns, grid->rows, direction, square)) ||
+    return (acdf_grid_is_octahedral(grid) ? acdf_fold_square(grid->columns, grid->rows, direction, square)
+                                          : acdf_row_square(grid->columns, grid->rows, direction, square)) ||
            acdf_grid_square(grid, direction, square, position);
 }
 
@@ -212,8 +213,10 @@ ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const A
                                                  const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
                                                  double p) {
     AcdfDirectionSample out;
-    if (point->what == ACDF_LOCAL_BLEND && local->tables && local->tables->heights &&
-        acdf_row_place(acdf_local_heights(local->tables), grid->columns, range, u, p, &out))
+    if (point->what == ACDF_LOCAL_BLEND && local->tables &&
+        (local->tables->octahedral
+             ? acdf_fold_place(grid, range, u, p, &out)
+             : acdf_row_place(acdf_local_heights(local->tables), grid->columns, range, u, p, &out)))
         return out;
     return acdf_grid_place(grid, range, u, p);
 }

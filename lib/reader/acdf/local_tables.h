@@ -1,6 +1,6 @@
-/* Runtime tables of a local environment whose bins share tiles: its tiles (acdf/tile_tables.h) and, of small files
- * on lat-long grids, which cell of which tile holds a direction, and what each row gives to each tile. Made once at
- * load (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
+/* Runtime tables of a local environment whose bins share tiles: its tiles (acdf/tile_tables.h) and, of small files,
+ * which cell of which tile holds a direction, and what each row gives to each tile. Made once at load
+ * (acdf/reader.h); flat words without pointers, which a GPU takes as they lie.
  *
  * As those of an environment (acdf/cells.h) pieces only answer where it is sure that the walk finds the same cell,
  * and what they tell is the walk's to the bit. */
@@ -15,12 +15,13 @@ extern "C" {
 
 /* A part of a cell in one piece of the sphere. */
 typedef struct AcdfTilePiece {
-    float origin[2]; /* the greatest local azimuth (radians) and the least 1 - |z| that surely lie in it */
-    float width[2];  /* from there, azimuths falling */
+    float origin[2]; /* the greatest local azimuth (radians) and the least 1 - |z| that surely lie in it; on the
+                        octahedral square 1 - 2 u and 2 v - 1 */
+    float width[2];  /* from there, the first ones falling */
     uint32_t tile;
     uint32_t reserved;
     double probability; /* of the cell in its tile; 0: no sample falls there */
-    double area;        /* 2 pi times the cell's columns times its difference of z */
+    double area;        /* 2 pi times the cell's columns times its acdf_grid_height */
 } AcdfTilePiece;
 
 /* A corner of the octahedron of normals (acdf/normals.h). */
@@ -50,7 +51,8 @@ typedef struct AcdfLocalTables {
     uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and 0 */
     uint32_t hearts;        /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
                                from it by the brighter halves; 0: there is no room */
-    uint32_t reserved[2];
+    uint32_t octahedral;    /* whether cells lie on the octahedral square */
+    uint32_t reserved;
 } AcdfLocalTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalTables) % 64 == 0); /* arrays are aligned */
 
@@ -88,14 +90,12 @@ ACDF_INLINE const AcdfTilePiece* acdf_local_find_piece(const AcdfLocalTables* ta
     const uint16_t* found;
     AcdfPlace place;
     uint32_t mask;
-    float azimuth;
-    if (!acdf_direction_place(direction, &place)) return 0;
+    if (!acdf_direction_place(tables->octahedral, direction, &place)) return 0;
     mask = acdf_squares_find(words, &tables->directions, place.key0, place.key1, &found);
-    azimuth = acdf_atan_float(place.slope);
     for (; mask; mask &= mask - 1) {
         const AcdfTilePiece* piece =
             (const AcdfTilePiece*)(const void*)(words + tables->pieces) + found[acdf_lowest_bit(mask)];
-        const float d0 = piece->origin[0] - azimuth, d1 = place.cap - piece->origin[1];
+        const float d0 = piece->origin[0] - place.slope, d1 = place.cap - piece->origin[1];
         /* 0 <= d < width by their bits */
         if (acdf_float_bits(d0) < acdf_float_bits(piece->width[0]) &&
             acdf_float_bits(d1) < acdf_float_bits(piece->width[1]))

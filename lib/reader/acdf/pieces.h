@@ -107,15 +107,20 @@ ACDF_FN3(AcdfUnit, acdf_unit_of, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z) {
 #define ACDF_SLOPE_STEPS 4194304.0f
 #define ACDF_CAP_STEPS 16777215.0f
 
+/* 1 - |z| of a direction of nearly unit length, exact near the poles; sin2 is x x + y y, length2 that and z z. */
+ACDF_FN3(ACDF_F32, acdf_cap_of, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32, length2) {
+    ACDF_LET(ACDF_F32, cap) = sin2 * (2.0f - length2) / (1.0f + ACDF_ABS(z) * (1.5f - 0.5f * length2));
+    return ACDF_MIN(cap, 1.0f);
+}
+
 /* Of a direction of nearly unit length that is not a pole; sin2 is x x + y y, length2 that and z z. */
 ACDF_FN5(AcdfPlace, acdf_place_of, ACDF_F32, x, ACDF_F32, y, ACDF_F32, z, ACDF_F32, sin2, ACDF_F32, length2) {
     ACDF_LET(ACDF_U32, steep) = ACDF_SELECT(ACDF_ABS(y) > ACDF_ABS(x), 1u, 0u);
     ACDF_LET(ACDF_F32, minor) = ACDF_SELECT(steep != 0u, -x, y);
     ACDF_LET(ACDF_F32, major) = ACDF_SELECT(steep != 0u, y, x);
-    ACDF_LET(ACDF_F32, cap) = sin2 * (2.0f - length2) / (1.0f + ACDF_ABS(z) * (1.5f - 0.5f * length2));
     ACDF_VAR(AcdfPlace, place);
     place.slope = ACDF_RATIO(minor, major);
-    place.cap = ACDF_MIN(cap, 1.0f); /* exact near the poles */
+    place.cap = acdf_cap_of(z, sin2, length2);
     place.key0 = ((steep | ((ACDF_BITS(major) >> 30u) & 2u)) << 23u) +
                  ACDF_TO_U32(place.slope * ACDF_SLOPE_STEPS + ACDF_SLOPE_STEPS);
     place.key0 = place.key0 & ACDF_DIRECTION_MASK; /* the last quarter's end is the first one's beginning */

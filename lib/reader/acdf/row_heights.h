@@ -1,11 +1,11 @@
-/* Lat-long grids in floats, where these are sure to tell what acdf/sphere.h does: the square of a direction; and by
- * a table of the heights between rows the directions of cells, as acdf/cells.h draws them, and densities without
- * trigonometry. Cells without tilts. */
+/* Grids in floats, where these are sure to tell what acdf/grid.h does: the square of a direction, and the
+ * directions of cells, as acdf/cells.h draws them; on lat-long grids (acdf_row_...) by a table of the heights
+ * between rows, and densities without trigonometry. Cells without tilts. */
 #ifndef ACDF_ROW_HEIGHTS_H
 #define ACDF_ROW_HEIGHTS_H
 
 #include <acdf/cells.h>
-#include <acdf/sphere.h>
+#include <acdf/grid.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -72,6 +72,40 @@ ACDF_INLINE int acdf_row_place(const double* z, uint32_t columns, const AcdfRang
     out->direction[1] = d.y;
     out->direction[2] = d.z;
     out->pdf = acdf_row_pdf(z, columns, range, p);
+    return 1;
+}
+
+/* ---- the octahedral square -------------------------------------------------------------------------- */
+
+/* The part of the square's side that is at least ACDF_FLOAT_BORDER: ACDF_OCTAHEDRAL_LEAST_SPEED. */
+#define ACDF_FOLD_BORDER (0.5f * ACDF_FLOAT_BORDER)
+
+/* As acdf_row_square. */
+ACDF_INLINE int acdf_fold_square(uint32_t columns, uint32_t rows, const float direction[3], uint32_t square[2]) {
+    AcdfPlace place;
+    if (!acdf_direction_place(1, direction, &place)) return 0;
+    return acdf_sure_step((float)columns * (0.5f - 0.5f * place.slope), (float)columns * 2.0f * ACDF_FOLD_BORDER,
+                          &square[0]) &
+           acdf_sure_step((float)rows * (0.5f + 0.5f * place.cap), (float)rows * 2.0f * ACDF_FOLD_BORDER,
+                          &square[1]);
+}
+
+/* As acdf_row_place; poles are no borders. */
+ACDF_INLINE int acdf_fold_place(const AcdfGrid* grid, const AcdfRange range[2], const double u[2], double p,
+                                AcdfDirectionSample* out) {
+    const double width[2] = {(double)(range[0].high - range[0].low), (double)(range[1].high - range[1].low)};
+    const double from[2] = {u[0] * width[0], u[1] * width[1]}, half[2] = {0.5, 0.5};
+    const double border[2] = {(double)grid->columns * ACDF_FOLD_BORDER, (double)grid->rows * ACDF_FOLD_BORDER};
+    AcdfVector d;
+    if (from[0] < border[0] || width[0] - from[0] < border[0] || from[1] < border[1] ||
+        width[1] - from[1] < border[1] || range[0].tilt != 0.0 || range[1].tilt != 0.0)
+        return 0;
+    d = acdf_square_direction((float)(1.0 - 2.0 * ((double)range[0].low + from[0]) / (double)grid->columns),
+                              (float)(2.0 * ((double)range[1].low + from[1]) / (double)grid->rows - 1.0));
+    out->direction[0] = d.x;
+    out->direction[1] = d.y;
+    out->direction[2] = d.z;
+    out->pdf = acdf_grid_pdf(grid, range, half, p);
     return 1;
 }
 

@@ -88,7 +88,7 @@ ACDF_FN2(AcdfVector, acdf_walk_direction, ACDF_TABLES, tables, AcdfWalkEnd, end)
         acdf_walk_along(tables, end.leaf + 2u, acdf_walk_part(end.numbers.at0, end.numbers.width0));
     ACDF_LET(ACDF_F32, height) = acdf_walk_along(tables, end.leaf + 6u, acdf_walk_part(up, end.numbers.width1));
     if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
-        return acdf_square_direction(along, height);
+        return acdf_square_direction(1.0f - 2.0f * along, 2.0f * height - 1.0f);
     }
     return acdf_piece_direction(along, height, flags & 3u, south);
 }

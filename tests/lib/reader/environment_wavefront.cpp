@@ -92,6 +92,7 @@ TEST(EnvironmentWavefront, IsTheViewOnRandomTrees) {
     for (std::uint32_t seed = 0; seed < 40; ++seed) {
         RandomOptions options = varied_options(seed);
         options.tilts = seed % 10 == 0;
+        options.octahedral = seed % 3 == 1;
         SCOPED_TRACE(seed);
         expect_the_view(RandomTree(seed, options).make().encode(), 500);
         if (HasFatalFailure()) return;

@@ -73,6 +73,22 @@ void direction_of(double phi, double z, float out[3]) {
     out[2] = static_cast<float>(z);
 }
 
+/// A direction on a border between columns or rows, or `off` (radians) beside it; `free` says where along it.
+void direction_at_border(const AcdfGrid& grid, int axis, std::uint32_t step, double off, double free,
+                         float out[3]) {
+    const double part = static_cast<double>(step) / (axis == 0 ? grid.columns : grid.rows);
+    if (acdf_grid_is_octahedral(&grid)) {
+        const double at = part + off / ACDF_OCTAHEDRAL_LEAST_SPEED;
+        double d[3];
+        acdf_octahedral_direction(axis == 0 ? at : free, axis == 0 ? free : at, d);
+        for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(d[i]);
+    } else if (axis == 0) {
+        direction_of(M_PI * (1.0 - 2.0 * part) + off, 1.0 - 2.0 * free, out);
+    } else {
+        direction_of(2.0 * M_PI * free, std::cos(M_PI * part + off), out);
+    }
+}
+
 Served expect_agreement(const Pair& pair, int count) {
     Served served, edges;
     std::mt19937_64 random(5);
@@ -95,14 +111,15 @@ Served expect_agreement(const Pair& pair, int count) {
     }
     // Exactly on the borders of cells, of the grids, and beside them.
     const AcdfEnvironment data = pair.plain.environment().data();
+    const AcdfGrid grid = acdf_environment_grid(&data);
     for (int i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
         float direction[3];
-        const double column = static_cast<double>(random() % data.columns),
-                     row = static_cast<double>(random() % data.rows);
+        const auto column = static_cast<std::uint32_t>(random() % data.columns),
+                   row = static_cast<std::uint32_t>(random() % data.rows);
         const double off = (uniform(random) - 0.5) * std::exp2(-20.0 - 10.0 * uniform(random));
-        direction_of(M_PI * (1.0 - 2.0 * column / data.columns) + off, 1.0 - 2.0 * uniform(random), direction);
+        direction_at_border(grid, 0, column, off, uniform(random), direction);
         expect_same_density(pair, direction, edges);
-        direction_of(2.0 * M_PI * uniform(random), std::cos(M_PI * row / data.rows + off), direction);
+        direction_at_border(grid, 1, row, off, uniform(random), direction);
         expect_same_density(pair, direction, edges);
         const double u[2] = {static_cast<double>(random() % 256) / 256.0,
                              static_cast<double>(random() % 65536) / 65535.0};
@@ -119,7 +136,8 @@ void expect_nearly_all(const Served& served) {
 }
 
 std::vector<std::uint8_t> stored(const acdf::compress::Target& target, const acdf::compress::FitOptions& options) {
-    auto description = acdf::compress::environment_description(target.columns, target.rows);
+    auto description =
+        acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
     description.fit = options.fit;
     description.total = acdf::compress::integral(target);
     return acdf::compress::store(acdf::compress::fit(target, options).tree, description);
@@ -146,6 +164,7 @@ TEST(RuntimeTables, AgreeOnRandomTrees) {
     for (std::uint32_t seed = 0; seed < 150; ++seed) {
         RandomOptions options = varied_options(seed);
         options.tilts = seed % 10 == 0;
+        options.octahedral = seed % 7 < 3;
         SCOPED_TRACE(seed);
         Pair pair(RandomTree(seed, options).make().encode());
         with_tables += pair.cells() != nullptr;
@@ -167,6 +186,8 @@ TEST_P(RuntimeTablesOf, EveryFitAgree) {
 }
 INSTANTIATE_TEST_SUITE_P(Probes, RuntimeTablesOf, testing::ValuesIn(extreme_targets()),
                          [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Octahedral, RuntimeTablesOf, testing::ValuesIn(octahedral_extremes()),
+                         [](const auto& info) { return info.param.name; });
 
 // As many cells as files in use have: nearly all that is asked is told by the tables, in bounded memory.
 TEST(RuntimeTables, ServeNearlyAllOfUsualFiles) {
@@ -180,18 +201,20 @@ TEST(RuntimeTables, ServeNearlyAllOfUsualFiles) {
     for (const std::uint32_t cells : {500u, 4000u, 16000u}) {
         acdf::compress::FitOptions options;
         options.goal.cells = cells;
-        Pair pair(stored(sky, options));
-        ASSERT_NE(pair.cells(), nullptr);
-        expect_nearly_all(expect_agreement(pair, 20000));
+        for (const auto& target : {sky, octahedral(sky)}) {
+            Pair pair(stored(target, options));
+            ASSERT_NE(pair.cells(), nullptr);
+            expect_nearly_all(expect_agreement(pair, 20000));
+        }
     }
 }
 
 // The cells of a stratum of numbers are those of the walk, and within a cell directions are in the order of
 // numbers.
-TEST(RuntimeTables, AreMonotoneWithinACell) {
+void expect_monotone(const acdf::compress::Target& target) {
     acdf::compress::FitOptions options;
     options.goal.cells = 300;
-    Pair pair(stored(noise_target(64, 32, 9), options));
+    Pair pair(stored(target, options));
     const acdf::EnvironmentView view = pair.fast.environment();
     for (int line = 0; line < 40; ++line) {
         const double fixed = (line + 0.5) / 40.0;
@@ -202,20 +225,27 @@ TEST(RuntimeTables, AreMonotoneWithinACell) {
                 double u[2] = {fixed, fixed};
                 u[axis] = (i + 0.5) / 4000.0;
                 const auto s = view.sample(u[0], u[1]);
-                const double place =
-                    axis == 0 ? -std::atan2(s.direction[1], s.direction[0]) : -double{s.direction[2]};
+                double place[2] = {-std::atan2(s.direction[1], s.direction[0]), -double{s.direction[2]}};
+                if (target.parameterization == ACDF_PARAM_OCTAHEDRAL) {
+                    const double d[3] = {s.direction[0], s.direction[1], s.direction[2]};
+                    acdf_octahedral_point(d, &place[0], &place[1]);
+                }
                 AcdfRange range[2];
                 acdf_sphere_ranges(64, 32, range);
                 acdf_tree_sample(view.data().tree, view.data().root, u, range);
                 const bool same = i > 0 && range[0].low == before[0].low && range[1].low == before[1].low;
                 if (same) {
-                    ASSERT_GE(place, last - 3e-7) << fixed << " " << i;
+                    ASSERT_GE(place[axis], last - 3e-7) << fixed << " " << i;
                 }
                 std::copy(range, range + 2, before);
-                last = place;
+                last = place[axis];
             }
         }
     }
+}
+TEST(RuntimeTables, AreMonotoneWithinACell) {
+    expect_monotone(noise_target(64, 32, 9));
+    expect_monotone(octahedral(noise_target(64, 32, 9)));
 }
 
 TEST(RuntimeTables, AreLeftOutWhereAsked) {
