@@ -2,45 +2,25 @@
 // of GCC and Clang. Included by one source a set of instructions, compiled for it; nothing here may be inline with
 // external linkage, lest the linker picks code that the processor does not have.
 //
-// Each function is that of the same name in acdf/pieces.h and acdf/cells.h, a lane an element, operation by
-// operation: results agree bit for bit. What searches is done lane by lane, and the loads of all lanes at a time:
-// they do not wait for each other. Lanes that tables do not answer are left to the functions of acdf/sample.h.
+// Each function is that of the same name in acdf/pieces.h, acdf/shader_square.h and acdf/cells.h, a lane an
+// element, operation by operation: results agree bit for bit. The boxes of a block are compared lane by lane, all
+// else is done for all lanes at a time. Of the cells that may hold a point only the first is looked at: what lies
+// in another, some two lanes in a hundred, or is not answered by tables, is left to the functions of acdf/sample.h.
 #pragma once
 
+#include "environment_vectors.h"
 #include "environment_wavefront.h"
 
-#include <immintrin.h>
-
-#include <algorithm>
-#include <cstdint>
 #include <cstring>
 
 namespace {
 
-constexpr std::size_t kLanes = 2 * ACDF_WIDTH, kBlock = 32;
-
-typedef float Floats __attribute__((vector_size(8 * ACDF_WIDTH)));
-typedef std::int32_t Signed __attribute__((vector_size(8 * ACDF_WIDTH))); // also masks: all ones or 0
-typedef std::uint32_t Words __attribute__((vector_size(8 * ACDF_WIDTH)));
-
-#define ACDF_LANE static inline __attribute__((always_inline))
-
-ACDF_LANE Floats root(Floats x) {
-#if ACDF_WIDTH == 8
-    return (Floats)_mm512_sqrt_ps((__m512)x);
-#else
-    return (Floats)_mm256_sqrt_ps((__m256)x);
-#endif
-}
-ACDF_LANE Floats select(Signed mask, Floats yes, Floats no) {
-    return (Floats)(((Signed)yes & mask) | ((Signed)no & ~mask));
-}
-ACDF_LANE Floats absolute(Floats x) { return (Floats)((Words)x & 0x7FFFFFFFu); }
+constexpr std::size_t kBlock = 32; // points that are searched for at a time: loads do not wait for each other
 
 /// The grids and cells of one kind of key.
 struct Search {
-    const std::uint32_t *tables, *grid, *boxes;
-    const std::uint16_t* cells;
+    const std::uint32_t *tables, *grid;
+    const char *boxes, *cells;
     std::uint32_t at, shift0, shift1, bits0;
 };
 
@@ -48,138 +28,140 @@ ACDF_LANE Search search_of(const AcdfCells* cells, const AcdfSquares& squares) {
     const auto* const tables = (const std::uint32_t*)(const void*)cells;
     return {tables,
             tables + squares.grid,
-            tables + squares.boxes,
-            (const std::uint16_t*)(const void*)(tables + squares.cells),
+            (const char*)(tables + squares.boxes),
+            (const char*)(tables + squares.cells),
             (std::uint32_t)((const std::uint32_t*)(const void*)&squares - tables),
             squares.shift0,
             squares.shift1,
             squares.bits0};
 }
 
-/// Of the lanes of a block: keys, and the cells that may hold them.
+/// Of the lanes of a block: the number of a block of boxes, where in it a point lies (bytes that turn comparisons
+/// with all four kinds of sides into "greater"), and the first cell that may hold it.
 struct Sought {
-    std::uint32_t key[2][kBlock], entry[kBlock], mask[kBlock];
+    alignas(64) std::uint32_t block[kBlock], bytes[kBlock], cell[kBlock];
 };
 
-/* acdf_squares_find, of all lanes. */
-ACDF_LANE void find(const Search& s, Sought* sought) {
-    for (std::size_t i = 0; i < kBlock; ++i)
-        sought->entry[i] = s.grid[((sought->key[1][i] >> s.shift1) << s.bits0) + (sought->key[0][i] >> s.shift0)];
-    for (std::size_t i = 0; i < kBlock; ++i)
-        if (sought->entry[i] & ACDF_SQUARES_FINER)
-            sought->entry[i] = acdf_squares_entry(s.tables, s.at, sought->key[0][i], sought->key[1][i]);
-    for (std::size_t i = 0; i < kBlock; ++i) {
-        const std::uint32_t entry = sought->entry[i], block = entry & ACDF_SQUARES_BLOCK_MASK;
-        __builtin_prefetch(s.cells + 16 * std::size_t{block});
-        sought->mask[i] =
-            acdf_squares_candidates(s.boxes + 16 * std::size_t{block}, sought->key[0][i] >> (entry >> 26) & 0xFFu,
-                                    sought->key[1][i] >> (entry >> 21 & 31u) & 0xFFu);
+/* acdf_squares_entry of lanes, and what is to be compared. */
+ACDF_LANE void find_blocks(const Search& s, Words key0, Words key1, Sought* sought, std::size_t first) {
+    Words entry = gathered(s.grid, ((key1 >> s.shift1) << s.bits0) + (key0 >> s.shift0));
+    std::uint32_t finer = bits((Signed)entry < 0);
+    for (; __builtin_expect(finer != 0, 0); finer &= finer - 1) {
+        const std::uint32_t i = acdf_lowest_bit(finer);
+        entry[i] = acdf_squares_entry(s.tables, s.at, key0[i], key1[i]);
     }
+    const Words byte0 = (shifted_right(key0, entry >> 26) & 0xFFu) ^ 0x80u;
+    const Words byte1 = (shifted_right(key1, entry >> 21 & 31u) & 0xFFu) ^ 0x80u;
+    *(Words*)&sought->block[first] = entry & ACDF_SQUARES_BLOCK_MASK;
+    *(Words*)&sought->bytes[first] = (byte0 | byte0 << 8 | byte1 << 16 | byte1 << 24) ^ 0xFF00FF00u;
 }
 
-ACDF_LANE std::uint32_t first_cell(const Search& s, const Sought& sought, std::size_t i, std::uint32_t mask) {
-    return s.cells[16 * std::size_t{sought.entry[i] & ACDF_SQUARES_BLOCK_MASK} + acdf_lowest_bit(mask)];
+/* acdf_squares_candidates, of each lane; the first one, or any where there is none. */
+ACDF_LANE void find_cells(const Search& s, Sought* sought) {
+    const __m256i axis0 = _mm256_set_m128i(_mm_set1_epi8(1), _mm_set1_epi8(0));
+    const __m256i axis1 = _mm256_set_m128i(_mm_set1_epi8(3), _mm_set1_epi8(2));
+    const __m256i turned = _mm256_set_m128i(_mm_set1_epi8(-1), _mm_setzero_si128());
+    for (std::size_t i = 0; i < kBlock; ++i) {
+        const std::size_t block = sought->block[i];
+        const auto* const box = (const __m256i*)(const void*)(s.boxes + 64 * block);
+        const __m256i at = _mm256_set1_epi32((std::int32_t)sought->bytes[i]);
+        const __m256i out0 =
+            _mm256_cmpgt_epi8(_mm256_xor_si256(_mm256_load_si256(box), turned), _mm256_shuffle_epi8(at, axis0));
+        const __m256i out1 =
+            _mm256_cmpgt_epi8(_mm256_xor_si256(_mm256_load_si256(box + 1), turned), _mm256_shuffle_epi8(at, axis1));
+        const __m256i out = _mm256_or_si256(out0, out1);
+        const __m128i either = _mm_or_si128(_mm256_castsi256_si128(out), _mm256_extracti128_si256(out, 1));
+        const std::uint32_t mask = ((std::uint32_t)_mm_movemask_epi8(either) ^ 0xFFFFu) | 0x8000u;
+        sought->cell[i] = ((const std::uint16_t*)(const void*)(s.cells + 32 * block))[acdf_lowest_bit(mask)];
+    }
 }
 
 // ---- drawing ---------------------------------------------------------------------------------------------------
 
-struct Drawn {
-    alignas(64) float azimuth[kBlock], cap[kBlock], pdf[kBlock];
-    alignas(64) std::uint32_t quarter[kBlock], south[kBlock]; // in their lowest bits
-};
+ACDF_LANE Floats sine(Floats y) {
+    const Floats q = y * y;
+    return y + y * q * (-0.16666651f + q * (0.0083320351f + q * -0.00019503819f));
+}
+ACDF_LANE Floats cosine(Floats y) {
+    const Floats q = y * y;
+    return 1.0f + q * (-0.5f + q * (0.041666616f + q * (-0.0013886617f + q * 2.4379725e-5f)));
+}
 
-ACDF_LANE void piece_directions(const Drawn& drawn, std::size_t first, Floats out[3]) {
-    const Floats y = *(const Floats*)&drawn.azimuth[first], cap = *(const Floats*)&drawn.cap[first];
-    const Words quarter = *(const Words*)&drawn.quarter[first] & 3u;
-    const Words south = *(const Words*)&drawn.south[first];
-    const Floats q = y * y, radius = root(cap * (2.0f - cap));
-    const Floats sine = y + y * q * (-0.16666651f + q * (0.0083320351f + q * -0.00019503819f));
-    const Floats cosine = 1.0f + q * (-0.5f + q * (0.041666616f + q * (-0.0013886617f + q * 2.4379725e-5f)));
-    const Words major = (Words)(radius * cosine), minor = (Words)(radius * sine);
+ACDF_LANE void piece_direction(Floats azimuth, Floats cap, Words quarter, Words south, Floats out[3]) {
+    const Floats radius = root(cap * (2.0f - cap));
+    const Words major = (Words)(radius * cosine(azimuth)), minor = (Words)(radius * sine(azimuth));
     const Words swapped = (major ^ minor) & (0u - (quarter & 1u));
     out[0] = (Floats)((major ^ swapped) ^ (((quarter + 1u) & 2u) << 30));
     out[1] = (Floats)((minor ^ swapped) ^ ((quarter & 2u) << 30));
     out[2] = (Floats)((Words)(1.0f - cap) ^ (south << 31));
 }
 
-/* Lanes that are not to be searched for. */
-ACDF_LANE void drop(std::uint32_t lanes, Sought* sought) {
-    for (; lanes; lanes &= lanes - 1) sought->mask[acdf_lowest_bit(lanes)] = 0;
+ACDF_LANE void square_direction(Floats across, Floats along, Floats out[3]) {
+    const Floats a = absolute(across), b = absolute(along), beyond = (a - 0.5f) + (b - 0.5f);
+    const Floats r = most(select(beyond > 0.0f, (1.0f - a) + (1.0f - b), a + b), Floats{} + 1e-30f);
+    const Floats radius = r * root(1.0f - 0.5f * r * r), turn = (b - a) / r * 0.78539816f;
+    const Floats s = sine(turn), c = cosine(turn);
+    out[0] = (Floats)((Words)(radius * (c - s)) ^ ((Words)across & 0x80000000u));
+    out[1] = (Floats)((Words)(radius * (c + s)) ^ ((Words)along & 0x80000000u));
+    out[2] = -beyond * (1.0f + r);
 }
 
-/* Finds the pieces that numbers lead to, in steps of 2^-52, and where in them. Returns the lanes without one. */
-ACDF_LANE std::uint32_t draw_pieces(const AcdfCells* cells, const Search& s, const Sought& sought,
-                                    const std::uint64_t (*n)[2], Drawn* drawn) {
+/// Random numbers of a block, and 1.
+struct Numbers {
+    Doubles shifted[kBlock / ACDF_WIDTH][2];
+};
+
+/* acdf_draw_distance of lanes: exact in doubles, then rounded once. */
+ACDF_LANE Floats draw_distance(const Numbers& n, std::size_t first, int axis, Words low) {
+    Doubles d[2];
+    for (int half = 0; half < 2; ++half)
+        d[half] = (n.shifted[first / ACDF_WIDTH + (std::size_t)half][axis] - 1.0) * 0x1p52 -
+                  to_doubles((Signed)low, half) * 0x1p21;
+    return to_floats(d[0], d[1]);
+}
+
+/* acdf_cells_sample of lanes by the cells that were found. Returns those that it does not answer. */
+ACDF_LANE std::uint32_t draw(const AcdfCells* cells, const Search& s, const Sought& sought, const Numbers& n,
+                             std::size_t first, AcdfDirectionSample* out) {
     const auto* const pieces = (const AcdfPiece*)(const void*)(s.tables + cells->pieces);
-    const auto* const densities = (const float*)(const void*)(s.tables + cells->densities);
-    std::uint32_t lost = 0;
-    for (std::size_t i = 0; i < kBlock; ++i) {
-        std::uint32_t mask = sought.mask[i];
-        for (; mask; mask &= mask - 1) {
-            const std::uint32_t cell = first_cell(s, sought, i, mask);
-            const AcdfPiece& piece = pieces[cell];
-            const float d0 = acdf_draw_distance(n[i][0], piece.azimuth.low);
-            const float d1 = acdf_draw_distance(n[i][1], piece.height.low);
-            const std::uint32_t width0 = acdf_float_bits(piece.azimuth.width),
-                                width1 = acdf_float_bits(piece.height.width);
-            if (!(acdf_float_bits(d0) < width0 && (acdf_float_bits(d1) ^ width1 << 31) < width1)) continue;
-            drawn->azimuth[i] = piece.azimuth.origin + d0 * piece.azimuth.slope;
-            drawn->cap[i] = piece.height.origin + d1 * piece.height.slope;
-            drawn->pdf[i] = densities[cell];
-            drawn->quarter[i] = width0;
-            drawn->south[i] = width1;
-            break;
-        }
-        if (__builtin_expect(mask != 0, 1)) continue;
-        drawn->azimuth[i] = drawn->cap[i] = drawn->pdf[i] = 0.0f;
-        drawn->quarter[i] = drawn->south[i] = 0;
-        lost |= 1u << i;
-    }
-    return lost;
+    Floats piece[8], direction[3];
+    load_pieces(pieces, &sought.cell[first], piece);
+    const Floats d0 = draw_distance(n, first, 0, (Words)piece[0]), d1 = draw_distance(n, first, 1, (Words)piece[4]);
+    const Words width0 = (Words)piece[1], width1 = (Words)piece[5];
+    const Signed held = ((Words)d0 < width0) & (((Words)d1 ^ width1 << 31) < width1);
+    const Floats along = piece[2] + d0 * piece[3], height = piece[6] + d1 * piece[7];
+    if (cells->octahedral) square_direction(along, height, direction);
+    else piece_direction(along, height, width0 & 3u, width1 & 1u, direction);
+    store_samples(direction, (Floats)gathered(s.tables + cells->densities, *(const Words*)&sought.cell[first]),
+                  out + first);
+    return bits(~held) << first;
 }
 
-ACDF_LANE void store(const Floats direction[3], const float* pdf, AcdfDirectionSample* out) {
-    alignas(64) float to[3][kLanes];
-    for (int k = 0; k < 3; ++k) *(Floats*)to[k] = direction[k];
-    for (std::size_t i = 0; i < kLanes; i += 4) {
-        __m128 a = _mm_load_ps(&to[0][i]), b = _mm_load_ps(&to[1][i]), c = _mm_load_ps(&to[2][i]);
-        __m128 d = _mm_load_ps(&pdf[i]);
-        _MM_TRANSPOSE4_PS(a, b, c, d);
-        _mm_storeu_ps((float*)&out[i], a);
-        _mm_storeu_ps((float*)&out[i + 1], b);
-        _mm_storeu_ps((float*)&out[i + 2], c);
-        _mm_storeu_ps((float*)&out[i + 3], d);
-    }
-}
-
-/* acdf_cells_sample of a block, or the walk. */
+/* acdf_environment_sample of a block. */
 ACDF_LANE void sample_block(const AcdfEnvironment& env, const Search& s, const double (*u)[2],
                             AcdfDirectionSample* out) {
-    alignas(16) std::uint64_t n[kBlock][2];
     Sought sought;
-    Drawn drawn;
+    Numbers n;
     std::uint32_t lost = 0;
-    __m128i high = _mm_setzero_si128();
-    for (std::size_t i = 0; i < kBlock; ++i) {
-        const __m128d shifted = _mm_add_pd(_mm_loadu_pd(u[i]), _mm_set1_pd(1.0));
-        const __m128i number = _mm_xor_si128(_mm_castpd_si128(shifted), _mm_set1_epi64x(0x3FF0000000000000));
-        const __m128i key = _mm_and_si128(_mm_srli_epi64(number, 21), _mm_set1_epi64x(0x7FFFFFFF));
-        _mm_store_si128((__m128i*)n[i], number);
-        high = _mm_or_si128(high, number);
-        sought.key[0][i] = (std::uint32_t)_mm_cvtsi128_si32(key);
-        sought.key[1][i] = (std::uint32_t)_mm_extract_epi32(key, 2);
-    }
-    find(s, &sought);
-    if (!_mm_testz_si128(high, _mm_set1_epi64x((long long)0xFFF0000000000000u))) { // numbers outside of [0, 1)
-        for (std::size_t i = 0; i < kBlock; ++i) lost |= (std::uint32_t)((n[i][0] | n[i][1]) >> 52 != 0) << i;
-        drop(lost, &sought);
-    }
-    lost = draw_pieces(env.cells, s, sought, n, &drawn);
     for (std::size_t first = 0; first < kBlock; first += kLanes) {
-        Floats direction[3];
-        piece_directions(drawn, first, direction);
-        store(direction, &drawn.pdf[first], out + first);
+        Words key[2];
+        Longs number[2][2]; /* of each half and axis */
+        for (std::size_t half = 0; half < 2; ++half) {
+            Doubles* const shifted = n.shifted[first / ACDF_WIDTH + half];
+            load_pairs(u + first + ACDF_WIDTH * half, shifted);
+            for (int axis = 0; axis < 2; ++axis) {
+                shifted[axis] = shifted[axis] + 1.0;
+                number[half][axis] = (Longs)shifted[axis] ^ 0x3FF0000000000000u;
+            }
+        }
+        for (int axis = 0; axis < 2; ++axis)
+            key[axis] = low_words(number[0][axis] >> 21, number[1][axis] >> 21) & 0x7FFFFFFFu;
+        const Words high = low_words((number[0][0] | number[0][1]) >> 52, (number[1][0] | number[1][1]) >> 52);
+        lost |= bits(high != 0u) << first;
+        find_blocks(s, key[0], key[1], &sought, first);
     }
+    find_cells(s, &sought);
+    for (std::size_t first = 0; first < kBlock; first += kLanes) lost |= draw(env.cells, s, sought, n, first, out);
     for (; lost; lost &= lost - 1) {
         const std::uint32_t i = acdf_lowest_bit(lost);
         out[i] = acdf_environment_sample(&env, u[i][0], u[i][1]);
@@ -188,65 +170,88 @@ ACDF_LANE void sample_block(const AcdfEnvironment& env, const Search& s, const d
 
 // ---- finding ---------------------------------------------------------------------------------------------------
 
-struct Places {
-    alignas(64) float azimuth[kBlock], cap[kBlock];
-};
-
-/* acdf_direction_place and acdf_atan_float. Returns the lanes of which floats do not tell. */
-ACDF_LANE std::uint32_t place(const float (*w)[3], std::size_t first, Places* places, Sought* sought) {
-    Floats x, y, z;
-    for (std::size_t i = 0; i < kLanes; ++i) x[i] = w[first + i][0], y[i] = w[first + i][1], z[i] = w[first + i][2];
-    const Floats sin2 = x * x + y * y, length2 = sin2 + z * z;
-    const Signed refused = ((Words)length2 - 0x3F7FF972u > 0x000009D4u) | ((Words)sin2 < 0x2B800000u);
-    const Signed steep = absolute(y) > absolute(x);
-    const Floats minor = select(steep, -x, y), major = select(steep, y, x);
-    Floats cap = sin2 * (2.0f - length2) / (1.0f + absolute(z) * (1.5f - 0.5f * length2));
-    const Floats slope = minor / major;
-    cap = select(cap < 1.0f, cap, Floats{} + 1.0f);
-    const Floats step0 = select(refused, Floats{}, slope * ACDF_SLOPE_STEPS + ACDF_SLOPE_STEPS);
-    const Floats step1 = select(refused, Floats{}, cap * ACDF_CAP_STEPS);
-    const Words quarter = ((Words)steep & 1u) | (((Words)major >> 30) & 2u);
-    const Words key0 = ((quarter << 23) + (Words) __builtin_convertvector(step0, Signed)) & ACDF_DIRECTION_MASK;
-    const Words key1 =
-        ((Words) __builtin_convertvector(step1, Signed) ^ (0u - ((Words)z >> 31))) & ACDF_DIRECTION_MASK;
-    const Floats q = slope * slope, q2 = q * q;
+ACDF_LANE Floats arc_tangent(Floats t) {
+    const Floats q = t * t, q2 = q * q;
     const Floats low = (0.99999988f + q * -0.33331813f) + q2 * (0.19966962f + q * -0.14003290f);
     const Floats high = (0.098688655f + q * -0.058829753f) + q2 * (0.023780519f + q * -0.0045597920f);
-    *(Floats*)&places->azimuth[first] = slope * (low + q2 * q2 * high);
-    *(Floats*)&places->cap[first] = cap;
-    std::memcpy(&sought->key[0][first], &key0, sizeof key0);
-    std::memcpy(&sought->key[1][first], &key1, sizeof key1);
-#if ACDF_WIDTH == 8
-    return (std::uint32_t)_mm512_movepi32_mask((__m512i)refused) << first;
-#else
-    return (std::uint32_t)_mm256_movemask_ps((__m256)refused) << first;
-#endif
+    return t * (low + q2 * q2 * high);
 }
 
-/* acdf_cells_pdf of a block, or the walk. */
+/// Where directions lie: an AcdfPlace a lane.
+struct Places {
+    Floats along[kBlock / kLanes], cap[kBlock / kLanes];
+};
+
+ACDF_LANE Words whole(Floats x) { return (Words) __builtin_convertvector(x, Signed); }
+
+ACDF_LANE void place_of(const Floats w[3], Floats cap, Signed refused, Floats* along, Words key[2]) {
+    const Signed steep = absolute(w[1]) > absolute(w[0]);
+    const Floats minor = select(steep, -w[0], w[1]), major = select(steep, w[1], w[0]), slope = minor / major;
+    const Words quarter = ((Words)steep & 1u) | (((Words)major >> 30) & 2u);
+    const Floats step = select(refused, Floats{}, slope * ACDF_SLOPE_STEPS + ACDF_SLOPE_STEPS);
+    key[0] = ((quarter << 23) + whole(step)) & ACDF_DIRECTION_MASK;
+    key[1] =
+        (whole(select(refused, Floats{}, cap * ACDF_CAP_STEPS)) ^ (0u - ((Words)w[2] >> 31))) & ACDF_DIRECTION_MASK;
+    *along = arc_tangent(slope);
+}
+
+ACDF_LANE void square_place(const Floats w[3], Floats* cap, Signed refused, Floats* along, Words key[2]) {
+    const Floats r = root(*cap), ax = absolute(w[0]), ay = absolute(w[1]);
+    const Floats minor = 0.63661977f * arc_tangent(least(ax, ay) / most(ax, ay)) * r, major = r - minor;
+    const Signed south = w[2]<0.0f, steep = ay> ax;
+    const Floats more = select(south, 1.0f - minor, major), less = select(south, 1.0f - major, minor);
+    *along = (Floats)((Words)select(steep, less, more) | ((Words)w[0] & 0x80000000u));
+    *cap = (Floats)((Words)select(steep, more, less) | ((Words)w[1] & 0x80000000u));
+    const Floats last = Floats{} + ACDF_SQUARE_LAST;
+    key[0] = whole(select(refused, Floats{}, least((1.0f - *along) * ACDF_SQUARE_HALF, last)));
+    key[1] = whole(select(refused, Floats{}, least((1.0f + *cap) * ACDF_SQUARE_HALF, last)));
+}
+
+/* acdf_direction_place. Returns the lanes of which floats do not tell. */
+ACDF_LANE std::uint32_t direction_place(const AcdfCells* cells, const Search& s, const float (*directions)[3],
+                                        std::size_t first, Places* places, Sought* sought) {
+    Floats w[3], along;
+    Words key[2];
+    load_vectors(directions + first, w);
+    const Floats sin2 = w[0] * w[0] + w[1] * w[1], length2 = sin2 + w[2] * w[2];
+    const Signed refused = ((Words)length2 - 0x3F7FF972u > 0x000009D4u) | ((Words)sin2 < 0x2B800000u);
+    Floats cap = sin2 * (2.0f - length2) / (1.0f + absolute(w[2]) * (1.5f - 0.5f * length2));
+    cap = least(cap, Floats{} + 1.0f);
+    if (cells->octahedral) square_place(w, &cap, refused, &along, key);
+    else place_of(w, cap, refused, &along, key);
+    places->along[first / kLanes] = along;
+    places->cap[first / kLanes] = cap;
+    find_blocks(s, key[0], key[1], sought, first);
+    return bits(refused) << first;
+}
+
+/* acdf_cells_pdf of lanes by the cells that were found. Returns those that it does not answer. */
+ACDF_LANE std::uint32_t densities(const AcdfCells* cells, const Search& s, const Sought& sought,
+                                  const Places& places, std::size_t first, float* out) {
+    const auto* const pieces = (const AcdfPiece*)(const void*)(s.tables + cells->pieces);
+    Floats piece[8];
+    load_pieces(pieces, &sought.cell[first], piece);
+    const Floats d0 = piece[2] - places.along[first / kLanes], d1 = places.cap[first / kLanes] - piece[6];
+    const Floats width0 = -(piece[1] * piece[3]), width1 = absolute(piece[5] * piece[7]);
+    const Signed held = ((Words)d0 < (Words)width0) & ((Words)d1 < (Words)width1);
+    const Words pdf = gathered(s.tables + cells->densities, *(const Words*)&sought.cell[first]);
+    std::memcpy(out + first, &pdf, sizeof pdf);
+    return bits(~held) << first;
+}
+
+/* acdf_environment_pdf of a block. */
 ACDF_LANE void pdf_block(const AcdfEnvironment& env, const Search& s, const float (*w)[3], float* out) {
-    const auto* const pieces = (const AcdfPiece*)(const void*)(s.tables + env.cells->pieces);
-    const auto* const densities = (const float*)(const void*)(s.tables + env.cells->densities);
     Sought sought;
     Places places;
     std::uint32_t lost = 0;
-    for (std::size_t first = 0; first < kBlock; first += kLanes) lost |= place(w, first, &places, &sought);
-    find(s, &sought);
-    drop(lost, &sought);
-    for (std::size_t i = 0; i < kBlock; ++i) {
-        std::uint32_t mask = sought.mask[i];
-        for (; mask; mask &= mask - 1) {
-            const std::uint32_t cell = first_cell(s, sought, i, mask);
-            const AcdfPiece& piece = pieces[cell];
-            const float d0 = piece.azimuth.origin - places.azimuth[i], d1 = places.cap[i] - piece.height.origin;
-            const float width0 = -(piece.azimuth.width * piece.azimuth.slope);
-            const float width1 = fabsf(piece.height.width * piece.height.slope);
-            if (!(acdf_float_bits(d0) < acdf_float_bits(width0) && acdf_float_bits(d1) < acdf_float_bits(width1)))
-                continue;
-            out[i] = densities[cell];
-            break;
-        }
-        if (__builtin_expect(mask == 0, 0)) out[i] = acdf_environment_pdf(&env, w[i]);
+    for (std::size_t first = 0; first < kBlock; first += kLanes)
+        lost |= direction_place(env.cells, s, w, first, &places, &sought);
+    find_cells(s, &sought);
+    for (std::size_t first = 0; first < kBlock; first += kLanes)
+        lost |= densities(env.cells, s, sought, places, first, out);
+    for (; lost; lost &= lost - 1) {
+        const std::uint32_t i = acdf_lowest_bit(lost);
+        out[i] = acdf_environment_pdf(&env, w[i]);
     }
 }
 
