@@ -1,7 +1,7 @@
 // Time of a draw and of a density of environment files, beside samplers of all texels of the same map.
 //
 //   bench_environment [COLUMNS...]            tables in Markdown; 1024 and 4096 by default
-//   bench_environment --write FILE BYTES              the file of 1024 x 512 texels
+//   bench_environment --write FILE BYTES [octahedral] the file of 1024 x 512 texels, or of 1024 x 1024
 //   bench_environment --count draw|pdf FILE N [walk]  N calls and nothing else, for callgrind
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
@@ -43,7 +43,8 @@ struct Built {
         compress::FitOptions options;
         options.goal.kind = compress::Goal::Kind::budget;
         options.goal.budget = budget - 832; // what is beside the tree
-        compress::Description description = compress::environment_description(target.columns, target.rows);
+        compress::Description description =
+            compress::environment_description(target.columns, target.rows, target.parameterization);
         description.total = compress::integral(target);
         bytes = compress::store(compress::fit(target, options).tree, description);
         open(bytes, tables, plain);
@@ -137,8 +138,7 @@ void report(const std::string& what, std::vector<Candidate> candidates, bool evi
     std::fflush(stdout);
 }
 
-void run(std::uint32_t columns) {
-    const compress::Target target = sky(columns);
+void run(const compress::Target& target) {
     const Built large(target, 64 << 10), small(target, 4 << 10);
     const FullTable full(target);
     const measure::AliasTable alias(target);
@@ -146,9 +146,9 @@ void run(std::uint32_t columns) {
     const EnvironmentView fast = large.tables.environment(), walk = large.plain.environment();
     const EnvironmentView fast_small = small.tables.environment();
     std::printf(
-        "\n%u x %u texels; files of %zu and %zu bytes, with tables of %llu and %llu bytes; full table %llu\n\n",
-        columns, columns / 2, large.bytes.size(), small.bytes.size(),
-        static_cast<unsigned long long>(large.tables.table_bytes()),
+        "\n%u x %u texels%s; files of %zu and %zu bytes, with tables of %llu and %llu bytes; full table %llu\n\n",
+        target.columns, target.rows, full.octahedral ? " of the octahedral square" : "", large.bytes.size(),
+        small.bytes.size(), static_cast<unsigned long long>(large.tables.table_bytes()),
         static_cast<unsigned long long>(small.tables.table_bytes()),
         static_cast<unsigned long long>(full.cdf.bytes()));
     std::printf("| ns a call (of the full table's) | full table | alias table | hierarchical warp | 64 KiB | 4 KiB "
@@ -195,8 +195,8 @@ int count(const char* what, const char* path, std::size_t calls, bool walk) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc == 4 && std::strcmp(argv[1], "--write") == 0) {
-        const Built built(sky(1024), std::strtoul(argv[3], nullptr, 10));
+    if (argc >= 4 && std::strcmp(argv[1], "--write") == 0) {
+        const Built built(sky(1024, argc > 4), std::strtoul(argv[3], nullptr, 10));
         std::ofstream(argv[2], std::ios::binary)
             .write(reinterpret_cast<const char*>(built.bytes.data()),
                    static_cast<std::streamsize>(built.bytes.size()));
@@ -207,5 +207,6 @@ int main(int argc, char** argv) {
     std::vector<std::uint32_t> widths;
     for (int i = 1; i < argc; ++i) widths.push_back(static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)));
     if (widths.empty()) widths = {1024, 4096};
-    for (const std::uint32_t columns : widths) run(columns);
+    for (const std::uint32_t columns : widths)
+        for (const bool octahedral : {false, true}) run(sky(columns, octahedral));
 }
