@@ -98,7 +98,7 @@ ACDF_LANE void piece_direction(Floats azimuth, Floats cap, Words quarter, Words 
 
 ACDF_LANE void square_direction(Floats across, Floats along, Floats out[3]) {
     const Floats a = absolute(across), b = absolute(along), beyond = (a - 0.5f) + (b - 0.5f);
-    const Floats r = most(select(beyond > 0.0f, (1.0f - a) + (1.0f - b), a + b), Floats{} + 1e-30f);
+    const Floats r = most(least(a + b, (1.0f - a) + (1.0f - b)), Floats{} + 1e-30f);
     const Floats radius = r * root(1.0f - 0.5f * r * r), turn = (b - a) / r * 0.78539816f;
     const Floats s = sine(turn), c = cosine(turn);
     out[0] = (Floats)((Words)(radius * (c - s)) ^ ((Words)across & 0x80000000u));

@@ -15,8 +15,7 @@ Instructions instructions_of_this_processor() noexcept {
 
 EnvironmentWavefront::EnvironmentWavefront(const EnvironmentView& view, Instructions most) noexcept
     : environment_(view.data()) {
-    if (environment_.cells && !environment_.cells->octahedral)
-        instructions_ = std::min(most, instructions_of_this_processor());
+    if (environment_.cells) instructions_ = std::min(most, instructions_of_this_processor());
 }
 
 void EnvironmentWavefront::sample(const double (*u)[2], std::size_t count, DirectionSample* out) const noexcept {

@@ -43,7 +43,7 @@ ACDF_FN2(AcdfVector, acdf_square_direction, ACDF_F32, across, ACDF_F32, along) {
     ACDF_LET(ACDF_F32, b) = ACDF_ABS(along);
     ACDF_LET(ACDF_F32, beyond) = (a - 0.5f) + (b - 0.5f); /* the equator */
     /* Exact near the poles, so that |b - a| <= r. */
-    ACDF_LET(ACDF_F32, r) = ACDF_MAX(ACDF_SELECT(beyond > 0.0f, (1.0f - a) + (1.0f - b), a + b), 1e-30f);
+    ACDF_LET(ACDF_F32, r) = ACDF_MAX(ACDF_MIN(a + b, (1.0f - a) + (1.0f - b)), 1e-30f);
     ACDF_LET(ACDF_F32, sine) = r * ACDF_SQRT(1.0f - 0.5f * r * r); /* over sqrt(2) */
     ACDF_LET(ACDF_F32, turn) = ACDF_RATIO(b - a, r) * 0.78539816f;
     ACDF_LET(ACDF_F32, s) = acdf_sine_float(turn);

@@ -27,11 +27,11 @@ public:
     ACDF_METHOD bool empty() const noexcept { return data_.columns == 0; }
 
     /// Draws a direction; u0 (azimuth) and u1 (elevation) in [0, 1]. pdf in sr^-1, finite, > 0.
-    ACDF_METHOD DirectionSample sample(double u0, double u1) const noexcept {
+    ACDF_INLINE_METHOD DirectionSample sample(double u0, double u1) const noexcept {
         return acdf_environment_sample(&data_, u0, u1);
     }
     /// Density in sr^-1 of a unit direction; 0 where none falls, for NaN and for non-unit directions.
-    ACDF_METHOD float pdf(const float direction[3]) const noexcept {
+    ACDF_INLINE_METHOD float pdf(const float direction[3]) const noexcept {
         return acdf_environment_pdf(&data_, direction);
     }
     /// The random numbers that draw `direction`; false where the density is 0.

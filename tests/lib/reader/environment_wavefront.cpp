@@ -99,9 +99,10 @@ TEST(EnvironmentWavefront, IsTheViewOnRandomTrees) {
     }
 }
 
-TEST(EnvironmentWavefront, ServesByVectorsWhatHasTables) {
+void expect_vectors(bool octahedral) {
     RandomOptions options;
     options.tilts = false;
+    options.octahedral = octahedral;
     const auto bytes = RandomTree(1, options).make().encode();
     acdf::LoadOptions plain;
     plain.tables = false;
@@ -115,6 +116,10 @@ TEST(EnvironmentWavefront, ServesByVectorsWhatHasTables) {
     EXPECT_EQ(acdf::EnvironmentWavefront(file.environment()).instructions() != acdf::Instructions::none,
               __builtin_cpu_supports("avx2") != 0);
 #endif
+}
+TEST(EnvironmentWavefront, ServesByVectorsWhatHasTables) {
+    expect_vectors(false);
+    expect_vectors(true);
 }
 
 } // namespace
