@@ -1,10 +1,11 @@
 // Time of a sample and of a pdf of measured BRDFs: files of ours, one call at a time and in waves, beside the
-// sampler that the authors of the RGL database publish, the full table, a GGX lobe and the cosine. Each call has
-// another view, another direction and other random numbers.
+// sampler that the authors of the RGL database publish, the full table, an alias table and a hierarchical warp of
+// tabulated slices, and a GGX lobe. Each call has another view, another direction and other random numbers.
 //
 //   bench_brdf [KIB...]                            tables in Markdown; 64 and 128 by default
 //   bench_brdf --write FILE KIB                    a file of the first BRDF
 //   bench_brdf --count sample|pdf FILE N [walk]    N calls and nothing else, for callgrind
+#include "tests/bench/brdf_rivals.h"
 #include "tests/bench/turns.h"
 
 #include "build/brdf.h"
@@ -134,6 +135,11 @@ Sampler in_doubles(const char* name, const S& sampler) {
                 return sampler.pdf(d.wo, d.wi);
             })};
 }
+template <class S>
+Sampler in_floats(const char* name, const S& sampler) {
+    return {name, each([&sampler](const Query& q) { return sampler.sample(q.wo, q.u); }),
+            each([&sampler](const Query& q) { return sampler.pdf(q.wo, q.wi); })};
+}
 Sampler of_view(const std::string& name, const BrdfView& view) {
     return {name, each([view](const Query& q) { return view.sample(q.wo, q.u[0], q.u[1]); }),
             each([view](const Query& q) { return view.pdf(q.wo, q.wi); })};
@@ -192,26 +198,31 @@ std::vector<double> times(const std::vector<Sampler>& samplers, bool of_pdfs, bo
 
 /// A row a sampler: ns and the ratio to the first one.
 void report(const std::vector<Sampler>& samplers) {
-    std::printf("| | ns a sample | of %s | ns a pdf | of it | a sample, caches evicted | of it |\n"
-                "|---|---|---|---|---|---|---|\n",
+    std::printf("| | ns a sample | of %s | ns a pdf | of it | a sample, caches evicted | of it | a pdf, caches "
+                "evicted | of it |\n|---|---|---|---|---|---|---|---|---|\n",
                 samplers[0].name.c_str());
     const std::vector<double> sample = times(samplers, false, false), pdf = times(samplers, true, false),
-                              cold = times(samplers, false, true);
+                              cold = times(samplers, false, true), cold_pdf = times(samplers, true, true);
     for (std::size_t i = 0; i < samplers.size(); ++i)
-        std::printf("| %s | %.0f | %.2f | %.0f | %.2f | %.0f | %.2f |\n", samplers[i].name.c_str(), sample[i],
-                    sample[i] / sample[0], pdf[i], pdf[i] / pdf[0], cold[i], cold[i] / cold[0]);
+        std::printf("| %s | %.0f | %.2f | %.0f | %.2f | %.0f | %.2f | %.0f | %.2f |\n", samplers[i].name.c_str(),
+                    sample[i], sample[i] / sample[0], pdf[i], pdf[i] / pdf[0], cold[i], cold[i] / cold[0],
+                    cold_pdf[i], cold_pdf[i] / cold_pdf[0]);
     std::fflush(stdout);
 }
 
 void run(const std::string& source, const std::vector<std::uint64_t>& sizes) {
     const auto brdf = open_source(source);
     const build::BrdfFileOptions options;
-    const measure::TabulatedBrdf table(build::reflected_light(*brdf, options.channels, options.weights), true,
-                                       measure::BrdfTableKind::centre);
+    const auto reflected = build::reflected_light(*brdf, options.channels, options.weights);
+    const measure::TabulatedBrdf table(reflected, true, measure::BrdfTableKind::centre);
+    const acdf_bench::AliasSlices alias(reflected);
+    const acdf_bench::WarpSlices warp(reflected);
     const measure::GgxSampler ggx(0.3);
     std::vector<Sampler> samplers;
     if (rgl_sampler()) samplers.push_back(in_doubles("RGL sampler", *rgl_sampler()));
     samplers.push_back(in_doubles("full table", table));
+    samplers.push_back(in_floats("alias table", alias));
+    samplers.push_back(in_floats("hierarchical warp", warp));
     samplers.push_back(in_doubles("GGX lobe", ggx));
     std::vector<std::unique_ptr<Built>> built;
     std::vector<std::unique_ptr<BrdfWavefront>> wavefronts;
