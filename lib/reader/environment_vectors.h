@@ -120,7 +120,8 @@ ACDF_LANE Floats most(Floats a, Floats b) { return select(a > b, a, b); }  /* AC
 
 /* x, y and z of each lane's vector. */
 ACDF_LANE void load_vectors(const float (*w)[3], Floats out[3]) {
-    const Floats a = load_fours(w[0], 12), b = load_fours(w[0] + 4, 12), c = load_fours(w[0] + 8, 12);
+    const auto* const all = (const float*)w;
+    const Floats a = load_fours(all, 12), b = load_fours(all + 4, 12), c = load_fours(all + 8, 12);
     const Floats xy = shuffled<_MM_SHUFFLE(2, 1, 3, 2)>(b, c), yz = shuffled<_MM_SHUFFLE(1, 0, 2, 1)>(a, b);
     out[0] = shuffled<_MM_SHUFFLE(2, 0, 3, 0)>(a, xy);
     out[1] = shuffled<_MM_SHUFFLE(3, 1, 2, 0)>(yz, xy);
