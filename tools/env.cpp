@@ -194,11 +194,16 @@ std::uint64_t EnvConversion::memory() const {
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
-    if (renderer_) listener.note(axes_text(*renderer_));
+    if (renderer_) scene_.note_axes(*command_, *renderer_, listener.note);
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     builder::EnvironmentOptions options = environment_;
     options.source = source_of(loaded.probe, input_);
     options.normals = scene_.read(listener.note);
+    const auto company = options.company.kind;
+    if (!scene_.given() && (company == ACDF_COMPANY_COSINE || company == ACDF_COMPANY_BRDF))
+        listener.note(
+            "made for all normals alike; where most of what is seen faces the sky, --scene with its normals, or "
+            "else --with mean, has less noise");
     if (scene_.given()) options.normals_text = scene_.text();
     builder::Environment result;
     require_built(source, builder::environment(loaded.target, options, result, told(listener.progress)));
@@ -307,6 +312,7 @@ void EnvConversion::add_options(CLI::App& command) {
         "The normals that the company lights: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals "
         "(.txt, x y z [weight] a line)",
         "Company");
+    scene_.add_axes(command, "Company");
     add_target_options(command, environment_.target);
     add_codec(command, environment_.codec);
 }

@@ -159,6 +159,7 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
         local.normals = both_sides(std::move(local.normals));
         if (volume_) local.normals.clear(); // what hangs in the air has any
         local.places = places_on(read_surface(scene_, note), scene_.input().up, volume_);
+        if (!scene_.axes().ours()) scene_.axes().tell(local.places);
     }
     return local;
 }
@@ -225,7 +226,7 @@ std::uint64_t LocalConversion::memory() const {
 
 Converted LocalConversion::convert(const Listener& listener) {
     builder::LocalOptions local = read_scene(listener.note);
-    if (renderer_) listener.note(axes_text(*renderer_));
+    if (renderer_) scene_.note_axes(*command_, *renderer_, listener.note);
     const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
     local.source = source_of(loaded.probe, input_);
     builder::Local result;
@@ -258,6 +259,7 @@ void LocalConversion::add_bins(CLI::App& command) {
                "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
                "whole environment, unbiased but noisier",
                "Normals");
+    scene_.add_axes(command, "Normals");
     command
         .add_flag(
             "--places", places_,

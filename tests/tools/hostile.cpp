@@ -117,8 +117,34 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
     expect_failure({"measure", file, "--against", probe, "--rivals"}, 2, "--rivals");
     expect_failure({"measure", file, "--against", probe, "--normals", "7"}, 2, "--normals");
-    for (const char* kind : {"env", "local"})
-        expect_failure({kind, probe, "--scene-up", "y", "-o", folder / "l.acdf"}, 2, "--scene-up");
+    for (const char* kind : {"env", "local"}) {
+        const std::string out = folder / "l.acdf";
+        expect_failure({kind, probe, "--scene-up", "y", "-o", out}, 2, "--scene-up");
+        expect_failure({kind, probe, "--scene-axes", "(y,z,x)", "-o", out}, 2, "--scene-axes");
+        for (const char* axes : {"", "(x,y)", "(x,y,y)", "(x,y,z,x)", "(x,y,-)", "x y z", "(--x,y,z)", "(x,y,w)"})
+            expect_failure({kind, probe, "--scene", folder / "none.obj", "--scene-axes", axes, "-o", out}, 2,
+                           "--scene-axes");
+        expect_failure(
+            {kind, probe, "--scene", folder / "none.obj", "--scene-axes", "(y,z,x)", "--scene-up", "y", "-o", out},
+            2, "--scene-");
+    }
+}
+
+// A company of all normals is seldom that of a picture.
+TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
+    const std::string normals = folder / "normals.txt";
+    write_text(normals, "0 0 1\n0 0 -1\n0 1 0\n0 -1 0\n1 0 0\n-1 0 0\n");
+    const auto advised = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments{"env", probe, "-o", file, "--force", "--cells", "64"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result result = run_acdf(arguments);
+        EXPECT_EQ(result.code, 0) << result.err;
+        return result.err.find("--with mean") != std::string::npos;
+    };
+    EXPECT_TRUE(advised({"--with", "cosine"}));
+    EXPECT_FALSE(advised({"--with", "mean"}));
+    EXPECT_FALSE(advised({"--with", "cosine", "--scene", normals}));
+    EXPECT_FALSE(advised({}));
 }
 
 // A file is measured against any source, which is told; where it has no density for the light, that is an error.

@@ -65,6 +65,7 @@ std::shared_ptr<const input::MeshSurface> read_surface(const SceneOption& scene,
         note(path + ": places on " + std::to_string(own.count()) + " triangles");
         triangles.corners.insert(triangles.corners.end(), own.corners.begin(), own.corners.end());
     }
+    scene.axes().turn(triangles);
     return std::make_shared<const input::MeshSurface>(std::move(triangles));
 }
 

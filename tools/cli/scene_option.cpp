@@ -1,6 +1,7 @@
 #include "tools/cli/scene_option.h"
 
 #include "tools/cli/choice.h"
+#include "tools/cli/renderer.h"
 
 #include "input/image.h"
 
@@ -27,15 +28,36 @@ void SceneOption::add(CLI::App& command, const std::string& help, const char* gr
         ->group(group);
 }
 
+void SceneOption::add_axes(CLI::App& command, const char* group) {
+    command
+        .add_option_function<std::string>(
+            "--scene-axes", [this](const std::string& text) { axes_ = SceneAxes::of(text); },
+            "Which of the scene's axes are our x, y and z, any of them negated: (-x,y,z) where it is in the frame "
+            "of "
+            "pbrt. What --for tells of its (X, Y, Z) can be given as it stands")
+        ->option_text("AXES [(x,y,z)]")
+        ->excludes("--scene-up")
+        ->group(group);
+}
+
 std::vector<std::string*> SceneOption::files(std::string& source) {
     std::vector<std::string*> out{&source};
     for (std::string& path : paths) out.push_back(&path);
     return out;
 }
 
+void SceneOption::note_axes(const CLI::App& command, const Renderer& renderer, const Note& note) const {
+    note(axes_text(renderer));
+    if (!given() || SceneAxes::of(renderer.back).ours()) return;
+    for (const char* option : {"--scene-up", "--scene-axes"})
+        if (command.get_option(option)->count() > 0) return;
+    note(std::string("the scene is taken as it is in our own frame; if it is in that of ") + renderer.name +
+         ", add --scene-axes \"" + renderer.back + "\"");
+}
+
 void SceneOption::check(const CLI::App& command) const {
-    for (const char* option : {"--scene-up", "--scene-rgb"})
-        if (!given() && command.get_option(option)->count() > 0)
+    for (const char* option : {"--scene-up", "--scene-axes", "--scene-rgb"})
+        if (const CLI::Option* found = command.get_option_no_throw(option); found && !given() && found->count() > 0)
             throw CLI::ValidationError(option, "is of the file given by --scene");
 }
 
@@ -44,14 +66,17 @@ std::string SceneOption::text() const {
     for (const std::string& path : paths)
         out += (out.empty() ? "--scene " : " --scene ") + input::file_sha256(path);
     return out + (input_.up == input::UpAxis::y ? " --scene-up y" : "") +
-           (input_.rgb_is_normal ? " --scene-rgb" : "");
+           (axes_.ours() ? "" : " --scene-axes " + axes_.text()) + (input_.rgb_is_normal ? " --scene-rgb" : "");
 }
 
 std::vector<builder::SceneNormal> SceneOption::read(const Note& note) const {
     std::vector<builder::SceneNormal> out;
     for (const std::string& path : paths) {
         const input::SceneNormals scene = input::read_scene_normals(path, input_);
-        for (const input::WeightedNormal& n : scene.normals) out.push_back({{n.n[0], n.n[1], n.n[2]}, n.weight});
+        for (const input::WeightedNormal& given : scene.normals) {
+            const std::array<float, 3> n = axes_.turned(given.n);
+            out.push_back({{n[0], n[1], n[2]}, given.weight});
+        }
         note(path + ": a " + scene.kind + " with " + std::to_string(scene.normals.size()) + " different normals, " +
              std::to_string(scene.skipped) + " skipped");
     }

@@ -3,6 +3,7 @@
 
 #include "input/scene_normals.h"
 #include "tools/cli/conversion.h"
+#include "tools/cli/scene_axes.h"
 
 #include <acdf/builder.h>
 
@@ -13,6 +14,8 @@
 
 namespace acdf::tools {
 
+struct Renderer;
+
 struct SceneOption {
     std::vector<std::string> paths; ///< none: all normals
 
@@ -22,6 +25,11 @@ struct SceneOption {
 
     /// `help`: what the normals of the scene are for.
     void add(CLI::App& command, const std::string& help, const char* group);
+    /// --scene-axes, too, of commands that make files.
+    void add_axes(CLI::App& command, const char* group);
+    /// What the caller must do with directions, and with a scene in the renderer's frame of whose axes nothing was
+    /// said.
+    void note_axes(const CLI::App& command, const Renderer& renderer, const Note& note) const;
     /// Throws CLI::ValidationError where there is an option of the scene, but no scene.
     void check(const CLI::App& command) const;
     /// The option in one spelling, with the SHA-256 of each file. Throws input::Error.
@@ -29,9 +37,12 @@ struct SceneOption {
     /// Empty where no scene was given; what was read is noted.
     std::vector<builder::SceneNormal> read(const Note& note) const;
     const input::SceneOptions& input() const { return input_; }
+    /// What is left to turn after reading.
+    const SceneAxes& axes() const { return axes_; }
 
 private:
     input::SceneOptions input_;
+    SceneAxes axes_;
 };
 
 } // namespace acdf::tools

@@ -6,9 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <sstream>
 #include <thread>
 
 namespace acdf::test {
@@ -143,6 +145,51 @@ TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
         const DirectionSample s = z.local().sample(a, i / 200.0, 0.3), t = y.local().sample(b, i / 200.0, 0.3);
         EXPECT_EQ(s.pdf, t.pdf);
         for (int k = 0; k < 3; ++k) EXPECT_EQ(s.direction[k], t.direction[k]);
+    }
+}
+
+/// The mesh of room() in pbrt's frame: x negated, and triangles wound so that their normals are mirrored ones.
+std::string mirrored_room() {
+    std::istringstream in(room());
+    std::ostringstream out;
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream words(line.substr(std::min<std::size_t>(2, line.size())));
+        if (line.rfind("v ", 0) == 0) {
+            double x = 0, y = 0, z = 0;
+            words >> x >> y >> z;
+            out << "v " << 0 - x << ' ' << y << ' ' << z << '\n';
+        } else if (line.rfind("f ", 0) == 0) {
+            std::vector<int> corners;
+            for (int c; words >> c;) corners.push_back(c);
+            for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+                out << "f " << corners[0] << ' ' << corners[i + 1] << ' ' << corners[i] << '\n';
+        }
+    }
+    return out.str();
+}
+
+TEST(MeshPlaces, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
+    MeshFolder folder;
+    write_text(folder / "pbrt.obj", mirrored_room());
+    ASSERT_EQ(folder.local("z.acdf", {"--scene", folder / "room.obj", "--places"}).code, 0);
+    const Result told = folder.local("as-is.acdf", {"--scene", folder / "pbrt.obj", "--for", "luxcore"});
+    EXPECT_NE(told.err.find("--scene-axes \"(-X, Y, Z)\""), std::string::npos) << told.err;
+    const Result made =
+        folder.local("x.acdf", {"--scene", folder / "pbrt.obj", "--scene-axes", "(-X, Y, Z)", "--places"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Json info = Json::parse(run_acdf({"info", "--json", folder / "x.acdf"}).out);
+    EXPECT_NE(std::string(info.at("options")).find(" --scene-axes (-x,y,z) --places"), std::string::npos);
+    File z, x;
+    ASSERT_TRUE(File::open((folder / "z.acdf").c_str(), z).ok());
+    ASSERT_TRUE(File::open((folder / "x.acdf").c_str(), x).ok());
+    const float n[3] = {0, 0, 1};
+    for (int i = 0; i < 200; ++i) {
+        const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
+                    there[3] = {-p[0], p[1], p[2]};
+        const AcdfLocalPoint a = z.local().at(p, n), b = x.local().at(there, n);
+        ASSERT_GT(b.place.count, 0);
+        const DirectionSample s = z.local().sample(a, i / 200.0, 0.3);
+        EXPECT_NEAR(x.local().pdf(b, s.direction), s.pdf, 0.01 * s.pdf); // normals are summed in another order
     }
 }
 
