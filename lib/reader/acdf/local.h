@@ -93,10 +93,11 @@ ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoi
     return acdf_blend_find_tile(&local->blend, &point->mix, square, range, 0, probability);
 }
 
-/* Draws a cell of a tile of a probability; returns that of the cell. */
+/* Draws a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
+ * records, which not all draws have asked for. */
 ACDF_INLINE double acdf_local_draw_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
                                           AcdfRange* range) {
-    const uint32_t root = acdf_local_tile_root(local, tile);
+    const uint32_t root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return probability;
     return acdf_positive(probability *
                          acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));

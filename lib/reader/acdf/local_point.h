@@ -131,7 +131,20 @@ ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal
     return 1;
 }
 
-/* Finds what serves a normal, without the weights of lights. Returns 0 where lights and mixture do not. */
+/* No place. */
+ACDF_INLINE void acdf_local_nowhere(AcdfPlaceMixture* place) {
+    int i;
+    place->count = 0;
+    place->alike = 1;
+    for (i = 0; i < ACDF_MAX_PLACES_MIXED; ++i) {
+        place->row[i] = 0;
+        place->columns[i] = 0;
+        place->weight[i] = 0.0;
+    }
+}
+
+/* Finds what serves a normal, without the weights of lights and the place. Returns 0 where lights and mixture do
+ * not. */
 ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     int i;
@@ -139,17 +152,12 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     out->root = 0;
     acdf_as_given(normal, out->surface);
     out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
-    out->mix.count = out->place.count = 0;
+    out->mix.count = 0;
     for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
         out->mix.row[i] = 0;
         out->mix.weight[i] = 0.0;
         out->codes[i] = 0;
         out->parts[i] = 0;
-    }
-    for (i = 0; i < ACDF_MAX_PLACES_MIXED; ++i) {
-        out->place.row[i] = 0;
-        out->place.columns[i] = 0;
-        out->place.weight[i] = 0.0;
     }
     if (local->tables && local->tables->corners && acdf_local_table_rows(local, out->surface, out)) {
         acdf_local_normal(local, out->surface, out);
@@ -192,6 +200,7 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    acdf_local_nowhere(&out->place);
     if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
 }
 
@@ -201,8 +210,15 @@ ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3]
                                  AcdfLocalPoint* out) {
     double visible, of_light[ACDF_MAX_LIGHTS];
     int i;
-    if (!acdf_local_begin(local, normal, out)) return;
-    acdf_place_at(&local->places, local->blend.tiles->tile_count, position, out->surface, &out->place);
+    acdf_local_nowhere(&out->place);
+    acdf_as_given(normal, out->surface);
+    /* First of all: rows of places are far away, and come while the normal's are found. */
+    if (local->blend.tiles)
+        acdf_place_at(&local->places, local->blend.tiles->tile_count, position, out->surface, &out->place);
+    if (!acdf_local_begin(local, normal, out)) {
+        out->place.count = 0;
+        return;
+    }
     if (out->place.count == 0) {
         acdf_local_sum(local, 0, out);
         return;

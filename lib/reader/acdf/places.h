@@ -32,6 +32,7 @@ typedef struct AcdfPlaceMixture {
     const uint16_t* columns[ACDF_MAX_PLACES_MIXED]; /* of the row */
     double weight[ACDF_MAX_PLACES_MIXED];
     int count;
+    int alike; /* all have the same columns, as cells of one region have */
 } AcdfPlaceMixture;
 
 /* The visibility that a byte stands for: 31/32 to 2^-16, in steps of 1/16 to 1/31. Its upper half is the exponent,
@@ -117,9 +118,12 @@ ACDF_FN void acdf_place_at(const AcdfPlaceTable* table, uint32_t tile_count, con
         ACDF_PREFETCH(out->row[i]);
         ACDF_PREFETCH(out->row[i] + width / 2);
     }
-    for (i = 0; i < out->count; ++i)
+    out->alike = 1;
+    for (i = 0; i < out->count; ++i) {
         out->columns[i] =
             table->columns + (table->set_of_row ? (size_t)table->set_of_row[node[i]] * (tile_count - 1) : 0);
+        out->alike &= out->columns[i] == out->columns[0];
+    }
 }
 
 /* The odds of a split, out of 65535; below 0 where none of the cells has a column for it. */
@@ -128,7 +132,7 @@ ACDF_INLINE double acdf_place_odds(const AcdfPlaceTable* table, const uint16_t* 
     const uint32_t first = 1 + table->light_count;
     double odds = 0.0;
     int i, known = 0;
-    if (!table->set_of_row) {
+    if (place->alike) {
         const uint32_t column = place->columns[0][node];
         if (column == ACDF_NO_COLUMN) return -1.0;
         for (i = 0; i < places; ++i) odds += place->weight[i] * (double)codebook[place->row[i][first + column]];
