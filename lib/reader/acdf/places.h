@@ -233,6 +233,8 @@ ACDF_INLINE uint32_t acdf_place_find_rows(const AcdfPlaceTable* table, const Acd
     ACDF_PLACE_WALK(3, 2);                                                                                         \
     ACDF_PLACE_WALK(3, 4);                                                                                         \
     ACDF_PLACE_WALK(1, 1);                                                                                         \
+    ACDF_PLACE_WALK(1, 2);                                                                                         \
+    ACDF_PLACE_WALK(1, 4);                                                                                         \
     return ACDF_PLACE_CALL(mix->count, place->count)
 
 /* Draws a tile, as acdf_blend_sample_below does, of a mixture as a place sees it (which has a row at least). */
