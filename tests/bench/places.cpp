@@ -8,7 +8,7 @@
 //
 // Variances are summed over all texels, with a shadow ray to the middle of each. The same sums are what samples are
 // held to: the mean of those of all points, and each point's own, in standard errors.
-#include "build/own_terms.h"
+#include "build/builder/sources.h"
 #include "measure/point_sums.h"
 #include "measure/surface_points.h"
 #include "tools/render/run.h"
