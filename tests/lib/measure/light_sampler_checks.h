@@ -4,6 +4,7 @@
 
 #include "tests/inputs/synthetic.h"
 #include "tests/lib/compress/chi_square.h"
+#include "tests/lib/measure/square_texels.h"
 
 #include "measure/light_sampler.h"
 
@@ -23,12 +24,15 @@ inline acdf::measure::ShadingPoint shading_point(const float n[3], const float w
     return point;
 }
 
-/// Bins of a lat-long grid, each summed over fine x fine directions evenly in phi and z.
+/// Bins of a lat-long grid, each summed over fine x fine directions evenly in phi and z; or of the octahedral
+/// square, evenly in u and v.
 struct SphereBins {
     std::uint32_t columns, rows, fine = 1;
+    bool square = false;
 
     std::size_t count() const { return std::size_t{columns} * rows; }
     std::size_t operator()(const float w[3]) const {
+        if (square) return square_texel(columns, rows, w);
         const double x = w[0], y = w[1], z = w[2];
         const double column = columns * (0.5 - std::atan2(y, x) / (2.0 * kPi));
         const double row = rows * std::atan2(std::hypot(x, y), z) / kPi;
@@ -36,6 +40,13 @@ struct SphereBins {
     }
     template <class Visit> // visit(bin, direction, solid angle)
     void for_each(const Visit& visit) const {
+        if (square)
+            return for_each_square_direction(
+                columns, rows, fine, [&](std::size_t bin, const double* d, double omega) {
+                    const float w[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
+                                        static_cast<float>(d[2])};
+                    visit(bin, w, omega);
+                });
         for (std::uint32_t r = 0; r < rows; ++r) {
             const double top = std::cos(kPi * r / rows), foot = std::cos(kPi * (r + 1.0) / rows);
             const double omega = (top - foot) * 2.0 * kPi / columns / (double(fine) * fine);

@@ -46,8 +46,8 @@ TEST_P(TexelSamplers, DrawByTheirDensity) {
             const auto point = each.sampler->point_sampler();
             point->move_to(facing(normals[i]));
             const bool drawn = point->sample(0.5, 0.5).pdf > 0.0f; // else tiles see no light
-            expect_samples_as_its_density(*each.sampler, facing(normals[i]), {t.columns, t.rows}, each.name, {},
-                                          drawn ? 1.0 : 0.0);
+            expect_samples_as_its_density(*each.sampler, facing(normals[i]), {t.columns, t.rows, 1, is_square(t)},
+                                          each.name, {}, drawn ? 1.0 : 0.0);
         }
 }
 

@@ -3,8 +3,8 @@
 
 #include "tests/inputs/synthetic.h"
 #include "tests/lib/compress/chi_square.h"
+#include "tests/lib/measure/square_texels.h"
 
-#include <acdf/octahedral.h>
 #include <acdf/sample.h>
 
 #include <gtest/gtest.h>
@@ -63,13 +63,7 @@ inline bool is_square(const acdf::compress::Target& t) { return t.parameterizati
 
 /// The texel of a direction, by atan2 and acos; on the square by Clarberg's map.
 inline std::size_t texel_of(const acdf::compress::Target& t, const float* d) {
-    if (is_square(t)) {
-        const double w[3] = {d[0], d[1], d[2]};
-        double u, v;
-        acdf_octahedral_point(w, &u, &v);
-        return std::size_t{std::min(static_cast<std::uint32_t>(v * t.rows), t.rows - 1)} * t.columns +
-               std::min(static_cast<std::uint32_t>(u * t.columns), t.columns - 1);
-    }
+    if (is_square(t)) return square_texel(t.columns, t.rows, d);
     const double length = std::sqrt(dot(d, d));
     const auto c = static_cast<int>(t.columns * (0.5 - std::atan2(d[1], d[0]) / (2.0 * kPi)));
     const auto r = static_cast<int>(t.rows * std::acos(d[2] / length) / kPi);
@@ -77,22 +71,11 @@ inline std::size_t texel_of(const acdf::compress::Target& t, const float* d) {
            static_cast<std::size_t>(std::min<int>(c, static_cast<int>(t.columns) - 1));
 }
 
-template <class Visit>
-void for_each_square_direction(const acdf::compress::Target& t, std::uint32_t points, const Visit& visit) {
-    const double side = points, omega = 4.0 * kPi / (side * side * t.columns * t.rows);
-    for (std::uint32_t i = 0; i < t.rows * points; ++i)
-        for (std::uint32_t j = 0; j < t.columns * points; ++j) {
-            double d[3];
-            acdf_octahedral_direction((j + 0.5) / (side * t.columns), (i + 0.5) / (side * t.rows), d);
-            visit(std::size_t{i / points} * t.columns + j / points, d, omega);
-        }
-}
-
 /// Calls visit(texel, direction, solid angle) for points x points directions of each texel, evenly in phi and z or
 /// in u and v.
 template <class Visit>
 void for_each_direction(const acdf::compress::Target& t, std::uint32_t points, const Visit& visit) {
-    if (is_square(t)) return for_each_square_direction(t, points, visit);
+    if (is_square(t)) return for_each_square_direction(t.columns, t.rows, points, visit);
     std::vector<double> cosine, sine; // of azimuths
     for (std::uint32_t i = 0; i < t.columns * points; ++i) {
         const double phi = kPi - 2.0 * kPi * (i + 0.5) / (double(t.columns) * points);

@@ -53,12 +53,14 @@ TEST(EnvironmentView, agreesWithTheSlowDecoder) {
         spec.zlib = seed % 7 == 0;
         const auto env = loaded(spec);
         const Environment reference(env->bytes);
+        const double rounded_in_floats = spec.octahedral ? 4e-7 : 2e-7; // by tables
         std::mt19937_64 rng(seed);
         for (int n = 0; n < 300; ++n) {
             const double u0 = unit(rng), u1 = unit(rng);
             const auto a = env->view.sample(u0, u1);
             const auto b = reference.sample(u0, u1);
-            for (int i = 0; i < 3; ++i) ASSERT_NEAR(a.direction[i], b.direction[i], 2e-7) << seed << ' ' << n;
+            for (int i = 0; i < 3; ++i)
+                ASSERT_NEAR(a.direction[i], b.direction[i], rounded_in_floats) << seed << ' ' << n;
             ASSERT_NEAR(a.pdf / b.pdf, 1.0, 1e-6) << seed << ' ' << n;
         }
         for (int n = 0; n < 300; ++n) { // directions anywhere, dark ones too

@@ -50,8 +50,10 @@ public:
     double rounds(const float d[3]) const { return Halves(wo_, d).rounded(); }
     double moves(const float d[3]) const { return Halves(wo_, d).moved(); }
 
-    /// Whether the reader has this density for directions that floats hardly tell from these.
+    /// Whether the reader has this density for directions that floats hardly tell from these, or less and more of
+    /// it, a hundredth apart: next to the azimuth of a view the share of the other view is known to few digits.
     bool told_near(const float d[3], float pdf) const {
+        bool less = false, more = false;
         for (int k = 0; k < 54; ++k) {
             float wo[3], wi[3];
             for (int axis = 0, rest = k % 27; axis < 3; ++axis, rest /= 3) {
@@ -59,9 +61,12 @@ public:
                 wo[axis] = wo_[axis] + (k < 27 ? 0.0f : step);
                 wi[axis] = d[axis] + (k < 27 ? step : 0.0f);
             }
-            if (nearly(pdf, file_.file.brdf().pdf(wo, wi), 1e-4 + Halves(wo, wi).moved())) return true;
+            const float told = file_.file.brdf().pdf(wo, wi);
+            if (nearly(pdf, told, 1e-4 + Halves(wo, wi).moved())) return true;
+            less |= told < pdf && told > 0.995f * pdf;
+            more |= told > pdf && told < 1.005f * pdf;
         }
-        return false;
+        return less && more;
     }
 
 private:
