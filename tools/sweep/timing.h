@@ -33,7 +33,8 @@ struct Timed {
 constexpr std::uint32_t kSamplesAPoint = 16;
 
 /// One thread. In each round every sampler runs once, in an order that changes from round to round: whatever slows
-/// the machine for a while slows all of them. A round before the first is thrown away.
+/// the machine for a while slows all of them. A round before the first is thrown away, and so are as many samples
+/// before each that are timed.
 std::vector<SweepTimes> time_samplers(const std::vector<Timed>& samplers,
                                       const std::vector<measure::ShadingPoint>& points, std::uint32_t rounds,
                                       const build::Progress& progress = {});
