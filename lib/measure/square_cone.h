@@ -1,4 +1,5 @@
-// The cone around a box of the octahedral square: what a tile there sees of a normal.
+// The cone around a box of the octahedral square: what a tile there sees of a normal, in a few operations.
+// compress::largest_octahedral_cosine is nearer, and looks at points of the box for each normal.
 #pragma once
 
 #include <acdf/octahedral.h>

@@ -1,6 +1,7 @@
 #include "measure/tiling.h"
 
 #include "compress/sum.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>

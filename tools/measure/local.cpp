@@ -189,15 +189,14 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
         build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     std::vector<Rival> rivals;
     PlacesAccuracy places;
-    const bool latlong = builder::grid_of(source.target).parameterization == ACDF_PARAM_LATLONG;
     // Rivals draw texels, of the source itself or of what it is resampled to; points of meshes see lat-long ones.
-    if (options.rivals)
-        rivals =
-            rivals_of(builder::grid_of(source.resampled ? latlong_target(options, file) : source.target), normals);
-    if (!options.mesh.empty())
-        places = measure_places(
-            file, options,
-            builder::grid_of(source.resampled || !latlong ? latlong_target(options, file) : source.target));
+    const bool mesh = !options.mesh.empty();
+    const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
+    const bool other_texels = source.resampled, other_light = source.resampled || square;
+    builder::Target latlong;
+    if ((options.rivals && other_texels) || (mesh && other_light)) latlong = latlong_target(options, file);
+    if (options.rivals) rivals = rivals_of(builder::grid_of(other_texels ? latlong : source.target), normals);
+    if (mesh) places = measure_places(file, options, builder::grid_of(other_light ? latlong : source.target));
     if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals, places)).c_str(), stdout);
     else print_text(file, options, accuracy, rivals, places);
     require_support(options.file, file, options.source, source.probe.source_sha256,

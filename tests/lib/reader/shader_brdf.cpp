@@ -4,9 +4,8 @@
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/half_vectors.h"
 #include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/walked_file.h"
 #include "tests/lib/reader/wavefront.h"
-
-#include <acdf/shader_tables.h>
 
 #include <gtest/gtest.h>
 
@@ -18,26 +17,12 @@ namespace {
 
 using namespace acdf_test;
 
-struct BrdfFile {
-    std::vector<std::uint8_t> bytes;
-    acdf::File file;
-    acdf::ShaderTables tables;
-    acdf::Status status;
-    explicit BrdfFile(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
-        acdf::LoadOptions options;
-        options.tables = false;
-        const acdf::Status loaded = acdf::File::from_memory(bytes.data(), bytes.size(), file, options);
-        EXPECT_TRUE(loaded.ok()) << loaded.message;
-        if (loaded.ok()) status = acdf::ShaderTables::make_walk(file, tables);
-    }
-};
-
 bool nearly(double a, double b, double most) { return a == b || std::fabs(a - b) <= most * std::max(a, b) + 1e-30; }
 
 /// A view by both.
 class BrdfPoint {
 public:
-    BrdfPoint(const BrdfFile& given, const float o[3])
+    BrdfPoint(const WalkedFile& given, const float o[3])
         : file_(given), wo_{o[0], o[1], o[2]}, shader_(acdf_brdf_view_of(given.tables.words(), o[0], o[1], o[2])) {}
     AcdfWalkSample sample(std::uint32_t n0, std::uint32_t n1) const {
         return acdf_brdf_walk_sample(file_.tables.words(), shader_, n0, n1);
@@ -70,7 +55,7 @@ public:
     }
 
 private:
-    const BrdfFile& file_;
+    const WalkedFile& file_;
     float wo_[3];
     AcdfShaderView shader_;
 };
@@ -110,7 +95,7 @@ void compare_brdf_draw(const BrdfPoint& point, std::uint32_t n0, std::uint32_t n
     counted.other_cells += !nearly(s.pdf, told.pdf, 1e-3 + point.moves(d));
 }
 
-BrdfCounted compare_brdf(const BrdfFile& file, std::size_t count) {
+BrdfCounted compare_brdf(const WalkedFile& file, std::size_t count) {
     const Wave wave(file.file.brdf(), count);
     BrdfCounted counted, ends;
     for (std::size_t i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
@@ -139,7 +124,7 @@ TEST(ShaderBrdf, AnswersAsTheReaderOnGoldenFiles) {
     BrdfCounted all;
     int files = 0;
     each_golden_file([&](std::vector<std::uint8_t> bytes) {
-        const BrdfFile file(std::move(bytes));
+        const WalkedFile file(std::move(bytes));
         if (!file.status.ok() || file.file.kind() != ACDF_KIND_BRDF) return;
         ++files;
         all += compare_brdf(file, 4000);
@@ -152,7 +137,7 @@ TEST(ShaderBrdf, AnswersAsTheReaderOnEveryForm) {
     BrdfCounted all;
     for (auto& [name, spec] : brdf_forms()) {
         SCOPED_TRACE(name);
-        const BrdfFile file(spec.encode());
+        const WalkedFile file(spec.encode());
         if (name == "trees of their own") continue; // they tilt
         ASSERT_TRUE(file.status.ok()) << file.status.message;
         all += compare_brdf(file, 2000);
@@ -193,7 +178,7 @@ TEST(ShaderBrdf, AnswersAsTheReaderOnRandomFiles) {
     BrdfCounted all;
     for (std::uint32_t seed = 0; seed < 100; ++seed) {
         SCOPED_TRACE(seed);
-        const BrdfFile file(random_brdf(seed).encode());
+        const WalkedFile file(random_brdf(seed).encode());
         ASSERT_TRUE(file.status.ok()) << file.status.message;
         all += compare_brdf(file, 400);
         if (HasFatalFailure()) return;
@@ -202,7 +187,7 @@ TEST(ShaderBrdf, AnswersAsTheReaderOnRandomFiles) {
 }
 
 TEST(ShaderBrdf, NothingIsReflectedBelowTheSurface) {
-    const BrdfFile file(shared_brdf().encode());
+    const WalkedFile file(shared_brdf().encode());
     const float up[3] = {0.0f, 0.0f, 1.0f}, nan = std::nanf("");
     for (const float bad : {0.0f, -1.0f, 2.0f, 0.99f, 1.01f, nan, INFINITY, 1e-30f, 3e38f}) {
         const float direction[3] = {0.0f, 0.0f, bad};

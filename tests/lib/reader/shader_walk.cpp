@@ -4,8 +4,7 @@
 #include "tests/lib/reader/local_builder.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/random.h"
-
-#include <acdf/shader_tables.h>
+#include "tests/lib/reader/walked_file.h"
 
 #include <gtest/gtest.h>
 
@@ -38,25 +37,10 @@ Vector anywhere(std::mt19937_64& random) {
     return towards(phi, 2.0 * uniform(random) - 1.0);
 }
 
-struct WalkFile {
-    std::vector<std::uint8_t> bytes;
-    acdf::File file;
-    acdf::ShaderTables tables;
-    acdf::Status status;
-    explicit WalkFile(std::vector<std::uint8_t> given) : bytes(std::move(given)) {
-        acdf::LoadOptions options;
-        options.tables = false;
-        EXPECT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, options).ok());
-        status = acdf::ShaderTables::make_walk(file, tables);
-        EXPECT_EQ(status.ok(), tables.size() > 0) << status.message;
-    }
-    bool local() const { return file.kind() == ACDF_KIND_LOCAL; }
-};
-
 /// One normal by both.
 class WalkPoint {
 public:
-    WalkPoint(const WalkFile& given, const float n[3])
+    WalkPoint(const WalkedFile& given, const float n[3])
         : file_(given), normal_{n[0], n[1], n[2]}, shader_(acdf_point_at(given.tables.words(), n[0], n[1], n[2])) {
         if (given.local()) reader_ = given.file.local().at(n);
     }
@@ -104,7 +88,7 @@ public:
     }
 
 private:
-    const WalkFile& file_;
+    const WalkedFile& file_;
     Vector normal_;
     AcdfShaderPoint shader_;
     AcdfLocalPoint reader_ = {};
@@ -169,7 +153,7 @@ void compare_walk_density(const WalkPoint& point, const float d[3], WalkCounted&
     counted.other_densities += !nearly(point, pdf, point.read_pdf(d));
 }
 
-WalkCounted compare_walk(const WalkFile& file, int normals, int each) {
+WalkCounted compare_walk(const WalkedFile& file, int normals, int each) {
     std::mt19937_64 random(9);
     WalkCounted counted, edges;
     for (int i = 0; i < normals && !testing::Test::HasFatalFailure(); ++i) {
@@ -197,7 +181,7 @@ WalkCounted compare_walk(const WalkFile& file, int normals, int each) {
 TEST(ShaderWalk, AnswersAsTheReaderOnGoldenFiles) {
     int files = 0;
     each_golden_file([&](std::vector<std::uint8_t> bytes) {
-        const WalkFile file(std::move(bytes));
+        const WalkedFile file(std::move(bytes));
         if (!file.status.ok() || file.file.kind() == ACDF_KIND_BRDF) return;
         ++files;
         compare_walk(file, file.local() ? 200 : 1, file.local() ? 10 : 2000);
@@ -214,7 +198,7 @@ TEST(ShaderWalk, AnswersAsTheReaderOnRandomLocalFiles) {
         options.tilts = false;
         options.octahedral = seed % 2 == 1;
         SCOPED_TRACE(seed);
-        const WalkFile file(RandomLocal(seed, options).make().encode());
+        const WalkedFile file(RandomLocal(seed, options).make().encode());
         if (!file.status.ok()) continue;
         ++files;
         all += compare_walk(file, 40, 8);
@@ -234,7 +218,7 @@ TEST(ShaderWalk, AnswersAsTheReaderOnRandomEnvironments) {
         options.tilts = false;
         options.octahedral = seed % 2 == 1;
         SCOPED_TRACE(seed);
-        const WalkFile file(RandomTree(seed, options).make().encode());
+        const WalkedFile file(RandomTree(seed, options).make().encode());
         if (!file.status.ok()) continue;
         ++files;
         all += compare_walk(file, 1, 400);
@@ -248,7 +232,7 @@ TEST(ShaderWalk, AnswersAsTheReaderOnRandomEnvironments) {
 TEST(ShaderWalk, NothingServesWhatIsNoNormal) {
     RandomOptions options;
     options.tilts = false;
-    const WalkFile file(RandomLocal(3, options).make().encode());
+    const WalkedFile file(RandomLocal(3, options).make().encode());
     ASSERT_TRUE(file.status.ok());
     const float nan = std::nanf(""), up[3] = {0.0f, 0.0f, 1.0f};
     for (const float bad : {0.0f, nan, INFINITY, -INFINITY}) {
@@ -265,7 +249,7 @@ TEST(ShaderWalk, NothingServesWhatIsNoNormal) {
 
 TEST(ShaderWalk, TiltedCellsAreRefusedWithAReason) {
     std::ifstream in(ACDF_TEST_DIR "/golden/v1.0/tilted.acdf", std::ios::binary);
-    const WalkFile file({std::istreambuf_iterator<char>(in), {}});
+    const WalkedFile file({std::istreambuf_iterator<char>(in), {}});
     EXPECT_EQ(file.status.code, acdf::ErrorCode::unsupported);
     EXPECT_NE(std::string(file.status.message).find("--fit pdf"), std::string::npos) << file.status.message;
 }
