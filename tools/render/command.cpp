@@ -1,5 +1,4 @@
 // acdf render: direct lighting of a scene with several samplers.
-#include "build/errors.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -164,14 +163,16 @@ std::vector<const input::Brdf*> brdfs_of(const LoadedScene& scene) {
 }
 
 builder::Target light_target(const RenderArguments& options, const input::Probe& probe) {
-    try {
-        builder::TargetRows rows(builder::TargetOptions{});
-        rows.begin(probe.width, probe.height);
-        rows.take(0, probe.height, probe.rgb.data());
-        return rows.finish();
-    } catch (const build::NoEnergy&) {
+    builder::Pixels pixels;
+    pixels.data = probe.rgb.data();
+    pixels.width = static_cast<std::uint32_t>(probe.width);
+    pixels.height = static_cast<std::uint32_t>(probe.height);
+    builder::Target target;
+    const builder::Status status = builder::Target::from(pixels, {}, target);
+    if (status.code == builder::ErrorCode::no_energy)
         throw Failure(options.scene + ": light: the probe is black");
-    }
+    if (!status.ok()) throw Failure(options.scene + ": light: " + status.message);
+    return target;
 }
 
 RenderRun render_all(const RenderArguments& options, const LoadedScene& scene, std::vector<SamplerSpec> samplers) {
