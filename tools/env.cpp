@@ -307,11 +307,11 @@ void EnvConversion::add_options(CLI::App& command) {
     add_repairs(command, input_);
     add_fit_options(command);
     add_company(command, environment_.company, true);
-    scene_.add(
-        command,
-        "The normals that the company lights: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals "
-        "(.txt, x y z [weight] a line)",
-        "Company");
+    scene_.add(command,
+               "The normals that the company lights: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a "
+               "list of normals "
+               "(.txt, x y z [weight] a line)",
+               "Company");
     scene_.add_axes(command, "Company");
     add_target_options(command, environment_.target);
     add_codec(command, environment_.codec);

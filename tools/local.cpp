@@ -2,6 +2,7 @@
 #include "build/format_names.h"
 #include "input/image.h"
 #include "input/image_header.h"
+#include "input/instances.h"
 #include "input/mesh_surface.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
@@ -216,11 +217,8 @@ std::uint64_t LocalConversion::memory() const {
     const std::uint64_t alone = kLocalMemory + pixels * kLocalMemoryOfPixel;
     const bool bounded = local_.goal.kind == builder::Goal::Kind::budget;
     if (!places_) return alone + (bounded ? local_.goal.budget * kLocalMemoryOfByte : 0);
-    std::error_code error; // a mesh that is not there is told of when it is read
     std::uint64_t places = kPlacesMemory + kPlacesMemoryOfByte * local_.goal.budget;
-    for (const std::string& path : scene_.paths)
-        if (const std::uintmax_t mesh = std::filesystem::file_size(path, error); !error)
-            places += kMeshMemoryOfByte * mesh;
+    for (const std::string& path : scene_.paths) places += kMeshMemoryOfByte * input::scene_bytes(path);
     return alone + places;
 }
 
@@ -255,7 +253,8 @@ void LocalConversion::add_bins(CLI::App& command) {
         ->option_text("N|AxB [as suits the size]")
         ->group("Normals");
     scene_.add(command,
-               "Only what a scene requires: a mesh (.obj, .ply), a normal pass (.exr) or a list of normals (.txt, "
+               "Only what a scene requires: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a list of "
+               "normals (.txt, "
                "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
                "whole environment, unbiased but noisier",
                "Normals");

@@ -21,6 +21,13 @@ std::string file_name(const std::string& path) {
     return out;
 }
 
+std::string lower_extension(const std::string& path) {
+    std::string text = std::filesystem::path(path).extension().string();
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
 void require_regular_file(const std::string& path, const char* give) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "input/probe.h"
+#include "input/sha256.h"
 
 #include <functional>
 #include <string>
@@ -30,9 +31,6 @@ using TakeRows = std::function<void(int first, int count, float* rgb)>;
 /// bands, and the image stays without them. Memory is then that of a band.
 Image read_image(const std::string& path, int threads,
                  const std::function<TakeRows(const Image& image)>& stream = {});
-
-/// SHA-256 of the file's bytes, 64 hex digits. Throws Error.
-std::string file_sha256(const std::string& path);
 
 /// "path: what", newlines flattened.
 Error input_error(const std::string& path, const std::string& what);

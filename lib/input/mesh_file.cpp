@@ -1,6 +1,8 @@
 #include "input/mesh_file.h"
 
+#include "input/file_name.h"
 #include "input/image.h"
+#include "input/instances.h"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -48,16 +50,36 @@ void check_ply_counts(const std::string& path) {
     throw input_error(path, "its header does not end; it is cut short or damaged");
 }
 
-} // namespace
-
-const aiScene* read_mesh(Assimp::Importer& importer, const std::string& path, bool ply) {
-    if (ply) check_ply_counts(path);
+const aiScene* read_mesh(Assimp::Importer& importer, const std::string& path) {
+    if (lower_extension(path) == ".ply") check_ply_counts(path);
     importer.SetIOHandler(new OneFile(path)); // owned by the importer
     const aiScene* scene = importer.ReadFile(path, 0);
     if (!scene)
         throw input_error(path, std::string("no mesh that can be read (") + importer.GetErrorString() +
                                     "); give triangles or polygons as .obj or .ply");
     return scene;
+}
+
+std::vector<Instances> instances_of(const std::string& path) {
+    if (is_instances(path)) return read_instances(path);
+    return {{path, {Placement{}}}};
+}
+
+} // namespace
+
+bool is_mesh(const std::string& path) {
+    const std::string end = lower_extension(path);
+    return end == ".obj" || end == ".ply" || is_instances(path);
+}
+
+void for_each_mesh(const std::string& path, const std::function<void(const aiMesh&, const Placement&)>& take) {
+    for (const Instances& instances : instances_of(path)) {
+        require_regular_file(instances.mesh, "a mesh");
+        Assimp::Importer importer; // logs nowhere but where a program asks it to
+        const aiScene* scene = read_mesh(importer, instances.mesh);
+        for (const Placement& place : instances.places)
+            for (unsigned m = 0; m < scene->mNumMeshes; ++m) take(*scene->mMeshes[m], place);
+    }
 }
 
 } // namespace acdf::input

@@ -1,8 +1,7 @@
 #include "input/mesh_file.h"
 #include "input/scene_sources.h"
 
-#include <assimp/Importer.hpp>
-#include <assimp/scene.h>
+#include <assimp/mesh.h>
 
 #include <algorithm>
 #include <array>
@@ -46,44 +45,62 @@ void add_smooth_triangle(const aiVector3D normal[3], double area, NormalHistogra
     add(0.0, 0.0, 1.0, 1.0 / 20.0);
 }
 
-bool corners_exist(const aiMesh& mesh, const aiFace& face) {
-    return std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
-                       [&](unsigned corner) { return corner < mesh.mNumVertices; });
-}
+/// A mesh where it stands.
+class Placed {
+public:
+    Placed(const aiMesh& mesh, const Placement& place)
+        : mesh_(mesh), place_(place), side_(place.determinant() < 0.0 ? -1.0 : 1.0) {}
+
+    bool has_normals() const { return mesh_.mNormals != nullptr; }
+    /// -1 where it is mirrored: triangles are wound the other way round.
+    double side() const { return side_; }
+    aiVector3D vertex(unsigned i) const { return of(place_.position(of(mesh_.mVertices[i]))); }
+    aiVector3D normal(unsigned i) const { return of(place_.normal(of(mesh_.mNormals[i]))); }
+    bool has_corners(const aiFace& face) const {
+        return std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
+                           [&](unsigned corner) { return corner < mesh_.mNumVertices; });
+    }
+
+private:
+    static std::array<float, 3> of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+    static aiVector3D of(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+    const aiMesh& mesh_;
+    const Placement& place_;
+    double side_;
+};
 
 /// A polygon of three corners or more as a fan of triangles. The sum of their areas, as vectors, is exact for a
 /// flat polygon of any shape (Newell's method); smooth polygons are taken to be convex.
-void add_polygon(const aiMesh& mesh, const aiFace& face, NormalHistogram& histogram) {
-    if (!corners_exist(mesh, face)) return histogram.skip();
+void add_polygon(const Placed& mesh, const aiFace& face, NormalHistogram& histogram) {
+    if (!mesh.has_corners(face)) return histogram.skip();
     const unsigned* corner = face.mIndices;
-    bool smooth = mesh.mNormals != nullptr;
-    for (unsigned i = 0; smooth && i < face.mNumIndices; ++i) smooth = has_direction(mesh.mNormals[corner[i]]);
+    bool smooth = mesh.has_normals();
+    for (unsigned i = 0; smooth && i < face.mNumIndices; ++i) smooth = has_direction(mesh.normal(corner[i]));
     Vector sum;
     for (unsigned i = 1; i + 1 < face.mNumIndices; ++i) {
-        const Vector area =
-            area_of(mesh.mVertices[corner[0]], mesh.mVertices[corner[i]], mesh.mVertices[corner[i + 1]]);
+        const Vector area = area_of(mesh.vertex(corner[0]), mesh.vertex(corner[i]), mesh.vertex(corner[i + 1]));
         sum = {sum.x + area.x, sum.y + area.y, sum.z + area.z};
         const double size = length_of(area);
         if (!smooth || !(size > 0.0 && std::isfinite(size))) continue;
-        aiVector3D normal[3] = {mesh.mNormals[corner[0]], mesh.mNormals[corner[i]], mesh.mNormals[corner[i + 1]]};
+        aiVector3D normal[3] = {mesh.normal(corner[0]), mesh.normal(corner[i]), mesh.normal(corner[i + 1])};
         for (aiVector3D& n : normal) n.NormalizeSafe();
         add_smooth_triangle(normal, size, histogram);
     }
     const double size = length_of(sum);
     if (!(size > 0.0 && std::isfinite(size))) return histogram.skip();
-    if (!smooth) histogram.add(sum.x, sum.y, sum.z, size);
+    const double side = mesh.side();
+    if (!smooth) histogram.add(side * sum.x, side * sum.y, side * sum.z, size);
 }
 
 } // namespace
 
-void add_mesh_normals(const std::string& path, bool ply, NormalHistogram& histogram) {
-    Assimp::Importer importer; // logs nowhere but where a program asks it to
-    const aiScene* scene = read_mesh(importer, path, ply);
-    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-        const aiMesh& mesh = *scene->mMeshes[m];
+void add_mesh_normals(const std::string& path, NormalHistogram& histogram) {
+    for_each_mesh(path, [&](const aiMesh& mesh, const Placement& place) {
+        const Placed placed(mesh, place);
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) // lines and points have no normal
-            if (mesh.mFaces[f].mNumIndices >= 3) add_polygon(mesh, mesh.mFaces[f], histogram);
-    }
+            if (mesh.mFaces[f].mNumIndices >= 3) add_polygon(placed, mesh.mFaces[f], histogram);
+    });
 }
 
 } // namespace acdf::input

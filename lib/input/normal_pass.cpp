@@ -60,7 +60,7 @@ public:
     explicit PassReader(const std::string& path) : path_(path), file_(path, 1) {
         if (!file_.is_open())
             fail(
-                "neither a mesh (.obj, .ply), nor a list of normals (.txt, .csv), nor an image that can be read (" +
+                "neither a mesh (.obj, .ply, .instances), nor a list of normals (.txt, .csv), nor an image that can be read (" +
                 file_.error() + ")");
     }
 

@@ -2,6 +2,8 @@
 
 #include "input/file_name.h"
 #include "input/image.h"
+#include "input/instances.h"
+#include "input/mesh_file.h"
 #include "input/normal_histogram.h"
 #include "input/scene_sources.h"
 
@@ -11,13 +13,6 @@
 
 namespace acdf::input {
 namespace {
-
-std::string extension_of(const std::string& path) {
-    std::string text = std::filesystem::path(path).extension().string();
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
 
 void check_file(const std::string& path) {
     require_regular_file(path, "a mesh, a normal pass or a list");
@@ -29,14 +24,13 @@ void check_file(const std::string& path) {
 
 SceneNormals read_scene_normals(const std::string& path, const SceneOptions& options) {
     check_file(path);
-    const std::string extension = extension_of(path);
     SceneNormals out;
     try {
         NormalHistogram histogram(options.up);
-        if (extension == ".obj" || extension == ".ply") {
-            out.kind = "mesh";
-            add_mesh_normals(path, extension == ".ply", histogram);
-        } else if (extension == ".txt" || extension == ".csv") {
+        if (is_mesh(path)) {
+            out.kind = is_instances(path) ? "list of instances" : "mesh";
+            add_mesh_normals(path, histogram);
+        } else if (const std::string end = lower_extension(path); end == ".txt" || end == ".csv") {
             out.kind = "list";
             add_listed_normals(path, histogram);
         } else {

@@ -31,13 +31,13 @@ struct SceneOptions {
 
 /// Reads, by the file's extension:
 ///
-/// | file | normals | weight |
-/// |---|---|---|
-/// | mesh: .obj, .ply | of the vertices, interpolated over each polygon; else of the face, as it is wound | area |
-/// | list: .txt, .csv | one a line, `x y z [weight]`, blanks or commas between; # starts a comment | 1, or as given
-/// | | any other: an image of a normal in each pixel, not encoded: components from -1 to 1 (floating point) |
-/// channels
-///   N.X, N.Y, N.Z of any layer; also Nx, normal.X, normal.R, ... | 1 a pixel |
+/// - a mesh, .obj or .ply: normals of the vertices, interpolated over each polygon; else of the face, as it is
+/// wound;
+///   weighted by area. .instances: meshes and where they stand (instances.h);
+/// - a list, .txt or .csv: one a line, `x y z [weight]`, blanks or commas between; # starts a comment;
+/// - any other: an image of a normal in each pixel, floating-point components from -1 to 1: channels N.X, N.Y, N.Z
+/// of any
+///   layer, also Nx, normal.X, normal.R, ...; weighted by pixels.
 ///
 /// Normals need not be unit; antialiased pixels are not. Those that agree to about 0.1 degree are merged into their
 /// weighted mean, so that memory does not grow with the scene (but for meshes). Throws Error (a

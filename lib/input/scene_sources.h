@@ -7,8 +7,8 @@
 
 namespace acdf::input {
 
-/// OBJ or (`ply`) PLY, through the Open Asset Import Library.
-void add_mesh_normals(const std::string& path, bool ply, NormalHistogram& histogram);
+/// A mesh or a list of instances (mesh_file.h).
+void add_mesh_normals(const std::string& path, NormalHistogram& histogram);
 
 /// An image with a normal in each pixel; `rgb`: take R, G, B where no channel is named as a normal.
 void add_pixel_normals(const std::string& path, bool rgb, NormalHistogram& histogram);

@@ -1,6 +1,7 @@
 #include "tools/batch/ninja.h"
 
 #include "input/brdf_models.h"
+#include "input/instances.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -56,9 +57,12 @@ std::string edge(const PlannedJob& planned, bool large, const std::string& folde
     std::string text = "build " + path_text(job.output) + ": convert" + (model ? "" : " " + path_text(source));
     // Paths among the options are relative to their manifest.
     const std::vector<std::string*> files = conversion->files();
-    std::string output = job.output, at;
+    std::string output = job.output, at, between = " | ";
     for (std::size_t i = 1; i < files.size(); ++i) {
-        text += (i == 1 ? " | " : " ") + path_text(absolute(*files[i]));
+        for (const std::string& file : input::scene_files(*files[i])) {
+            text += between + path_text(absolute(file));
+            between = " ";
+        }
         output = absolute((fs::path(folder) / job.output).string());
         at = "  at = cd " + value(shell_quoted(absolute(job.base.empty() ? "." : job.base))) + " &&\n";
     }

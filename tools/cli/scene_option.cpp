@@ -3,7 +3,7 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/renderer.h"
 
-#include "input/image.h"
+#include "input/instances.h"
 
 #include <map>
 
@@ -63,7 +63,7 @@ void SceneOption::check(const CLI::App& command) const {
 std::string SceneOption::text() const {
     std::string out;
     for (const std::string& path : paths)
-        out += (out.empty() ? "--scene " : " --scene ") + input::file_sha256(path);
+        out += (out.empty() ? "--scene " : " --scene ") + input::scene_sha256(path);
     return out + (input_.up == input::UpAxis::y ? " --scene-up y" : "") +
            (axes_.ours() ? "" : " --scene-axes " + axes_.text()) + (input_.rgb_is_normal ? " --scene-rgb" : "");
 }

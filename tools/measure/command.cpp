@@ -178,10 +178,10 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->option_text("N [256]")
         ->group("Input");
     command
-        .add_option(
-            "--scene", options->mesh,
-            "Of a file that tells places apart: the mesh (.obj, .ply) to look from, usually the one it was made "
-            "for; its variance there is told, beside that of its normals alone")
+        .add_option("--scene", options->mesh,
+                    "Of a file that tells places apart: the mesh (.obj, .ply, .instances) to look from, usually "
+                    "the one it was made "
+                    "for; its variance there is told, beside that of its normals alone")
         ->type_name("FILE")
         ->group("Input");
     const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};

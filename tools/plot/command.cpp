@@ -251,7 +251,8 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
 void add_mesh_options(CLI::App& command, PlotArguments& options) {
     command
         .add_option("--scene", options.mesh,
-                    "For a file that tells places apart, the mesh (.obj, .ply) that it was made for: its cells are "
+                    "For a file that tells places apart, the mesh (.obj, .ply, .instances) that it was made for: "
+                    "its cells are "
                     "shown over it, not a density")
         ->type_name("FILE")
         ->group("Cells over a mesh");

@@ -237,7 +237,8 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         ->transform(one_of(kinds))
         ->option_text("NAME [by the source: env or brdf]")
         ->group("Sweep");
-    options.scene.add(command, "For --kind places: the mesh (.obj, .ply) whose places are told apart", "Sweep");
+    options.scene.add(command, "For --kind places: the mesh (.obj, .ply, .instances) whose places are told apart",
+                      "Sweep");
     command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas")
         ->delimiter(',')
         ->type_name("")
