@@ -105,12 +105,15 @@ TEST_F(BatchCommand, PlacesAreThoseOfTheScene) {
                       roof = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 1\nv 1 -1 1\nv 1 0 1\nv -1 0 1\n"
                              "f 1 2 3 4\nf 5 6 7 8\n";
     write_text(mesh, roof);
-    write_text(manifest, "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"output\": \"a.local.acdf\", "
-                         "\"options\": {\"budget\": \"24KiB\", \"places\": true, \"scene\": \"roof.obj\"}}\n");
+    const std::string scene = folder / "roofs.instances"; // one of them elsewhere
+    write_text(scene, "1 0 0 0 0 1 0 0 0 0 1 0 roof.obj\n-1 0 0 5 0 1 0 0 0 0 1 0 roof.obj\n");
+    write_text(manifest,
+               "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"output\": \"a.local.acdf\", "
+               "\"options\": {\"budget\": \"24KiB\", \"places\": true, \"scene\": \"roofs.instances\"}}\n");
     EXPECT_EQ(report({manifest})["done"], 1);
     EXPECT_EQ(report({manifest})["up_to_date"], 1);
     ASSERT_EQ(run_acdf({"local", probes + "/a.pfm", "-o", folder / "alone.acdf", "--budget", "24KiB", "--places",
-                        "--scene", mesh})
+                        "--scene", scene})
                   .code,
               0);
     const std::vector<std::string> set{probes,
@@ -121,7 +124,7 @@ TEST_F(BatchCommand, PlacesAreThoseOfTheScene) {
                                        "--set",
                                        "local.places",
                                        "--set",
-                                       "local.scene=" + mesh};
+                                       "local.scene=" + scene};
     EXPECT_EQ(report(set)["up_to_date"], 1); // the same options by another way
     EXPECT_EQ(read_text(folder / "alone.acdf"), read_text(folder / "out/a.local.acdf"));
     write_text(mesh, roof + "f 1 2 6 5\n");
