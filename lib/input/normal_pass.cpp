@@ -59,9 +59,9 @@ class PassReader {
 public:
     explicit PassReader(const std::string& path) : path_(path), file_(path, 1) {
         if (!file_.is_open())
-            fail(
-                "neither a mesh (.obj, .ply, .instances), nor a list of normals (.txt, .csv), nor an image that can be read (" +
-                file_.error() + ")");
+            fail("neither a mesh (.obj, .ply, .instances), nor a list of normals (.txt, .csv), nor an image that "
+                 "can be read (" +
+                 file_.error() + ")");
     }
 
     void add(bool rgb, NormalHistogram& histogram) {
