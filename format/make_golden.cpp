@@ -20,7 +20,6 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -197,9 +196,34 @@ Chunk places_chunk(bool regions) {
     return chunk;
 }
 
+/// Two portals that face two ways, in pieces, beside places_chunk. The last place draws by rows alone.
+Chunk portals_chunk() {
+    Chunk chunk{ACDF_CHUNK_PORTALS, {}};
+    const AcdfPortals header = {2, 2, 3, 2};
+    const AcdfPortal portals[] = {{{4, -1, 0.5f}, {2, 2.5f}, 0}, {{1, 4, 1}, {1.5f, 1}, 1}};
+    const AcdfPortalMap maps[] = {{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, 0.0078125f},
+                                  {{{-0.8f, 0.6f, 0}, {0, 0, 1}, {0.6f, 0.8f, 0}}, 0.015625f}};
+    const std::uint32_t sums[] = {0, 0, 0, 0, 0, 3, 4, 9,  0, 5, 21, 27, 0, 8, 25, 40,  // of the first map
+                                  0, 0, 0, 0, 0, 1, 9, 10, 0, 2, 12, 18, 0, 7, 19, 26}; // of the second
+    const std::uint8_t rows[] = {12,  250, 240, 200, 255, 30,  90,  180, 251,           //
+                                 99,  100, 250, 251, 252, 200, 210, 220, 230,           //
+                                 3,   255, 255, 255, 255, 17,  255, 255, 255,           //
+                                 255, 1,   2,   3,   4,   5,   6,   7,   8};
+    const auto add = [&](const void* data, std::size_t size) {
+        const auto* first = static_cast<const std::uint8_t*>(data);
+        chunk.bytes.insert(chunk.bytes.end(), first, first + size);
+    };
+    add(&header, sizeof header);
+    add(portals, sizeof portals);
+    add(maps, sizeof maps);
+    add(sums, sizeof sums);
+    add(rows, sizeof rows);
+    return chunk;
+}
+
 /// A local environment with everything that bins can share: tiles with a curve and without, one of them a light;
 /// bin 7 is not stored.
-Golden local(const char* name, AcdfParameterization parameterization, const std::optional<Chunk>& places = {}) {
+Golden local(const char* name, AcdfParameterization parameterization, const std::vector<Chunk>& places = {}) {
     const Cascade cascade = {{{kPhi, {5}, {0.375, 0.625}, {1, 2}, {}},
                               {kTheta, {2, 6}, {0.25, 0.5, 0.25}, {}, {}},
                               {kTheta, {3}, {0.75, 0.25}, {3, -1}, {}},
@@ -220,7 +244,7 @@ Golden local(const char* name, AcdfParameterization parameterization, const std:
                                {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
     d.chunks = shared_chunks(rows);
     d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, 1, {5, 0}, {12, 3}}}));
-    if (places) d.chunks.push_back(*places);
+    d.chunks.insert(d.chunks.end(), places.begin(), places.end());
     return {name, store(tree, d)};
 }
 
@@ -336,8 +360,9 @@ int main(int argc, char** argv) try {
           local("local", ACDF_PARAM_LATLONG),
           local("octahedral_local", ACDF_PARAM_OCTAHEDRAL),
           local_grid(),
-          local("places", ACDF_PARAM_LATLONG, places_chunk(false)),
-          local("places_regions", ACDF_PARAM_LATLONG, places_chunk(true)),
+          local("places", ACDF_PARAM_LATLONG, {places_chunk(false)}),
+          local("places_regions", ACDF_PARAM_LATLONG, {places_chunk(true)}),
+          local("portals", ACDF_PARAM_LATLONG, {places_chunk(false), portals_chunk()}),
           brdf("brdf", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, 0, 0.0f),
           brdf("brdf_mirrored", {0.0f, 0.375f, 0.75f, 0.9375f}, 1, ACDF_VIEWS_MIRRORED, 0.0f),
           brdf("brdf_anisotropic", {0.125f, 0.5f, 0.875f}, 4, 0, 0.0f),

@@ -40,6 +40,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_queue.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/pieces.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/places.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/portals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h

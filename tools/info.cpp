@@ -139,6 +139,11 @@ Json local_json(const File& file) {
                             {"columns", places->column_count},
                             {"low", places->low},
                             {"high", places->high}};
+    if (const AcdfPortals* portals = local.portals.header)
+        report["portals"] = {{"count", portals->portal_count},
+                             {"maps", portals->map_count},
+                             {"cells", portals->size},
+                             {"pieces", portals->pieces}};
     return report;
 }
 
@@ -228,7 +233,12 @@ std::string local_text(const Json& local) {
                                    ? "; " + text_of(local["places"]["cells"]) + " places from " +
                                          text_of(local["places"]["low"]) + " to " + text_of(local["places"]["high"])
                                    : "";
-    return bins + shared + "; cosine share " + number(local["cosine_share"]) + places;
+    const std::string portals =
+        local.contains("portals")
+            ? "; " + text_of(local["portals"]["count"]) + " portals, " + text_of(local["portals"]["maps"]) +
+                  " maps of " + text_of(local["portals"]["cells"]) + " x " + text_of(local["portals"]["cells"])
+            : "";
+    return bins + shared + "; cosine share " + number(local["cosine_share"]) + places + portals;
 }
 
 std::string company_text(const Json& company) {

@@ -13,6 +13,7 @@
 #include "tools/cli/mesh_places.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
+#include "tools/cli/portal_option.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/renderer.h"
 #include "tools/cli/scene_option.h"
@@ -58,6 +59,7 @@ private:
 
     std::string normals_, budget_, knots_;
     SceneOption scene_;
+    PortalOption portals_;
     input::ProbeOptions input_;
     const Renderer* renderer_ = nullptr;
     builder::LocalOptions local_;
@@ -126,6 +128,7 @@ void LocalConversion::check() {
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
     for (const char* option : {"--no-sharing", "--cosine-share", "--places", "--max-weight"})
         if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+    if (portals_.given() && !places_) throw CLI::ValidationError("--portal", "is for --places");
     if (volume_ && !places_) throw CLI::ValidationError("--volume", "is for --places");
     if (!places_) return;
     if (!scene_.given()) throw CLI::ValidationError("--places", "needs --scene MESH");
@@ -134,10 +137,14 @@ void LocalConversion::check() {
     if (!given("--budget")) local_.goal = builder::Goal::of_budget(kPlacesBytes);
 }
 
-std::vector<std::string*> LocalConversion::files() { return scene_.files(source); }
+std::vector<std::string*> LocalConversion::files() {
+    std::vector<std::string*> out = scene_.files(source);
+    if (!portals_.path.empty()) out.push_back(&portals_.path);
+    return out;
+}
 
 std::string LocalConversion::scene_text() const {
-    return scene_.text() + (places_ ? " --places" : "") + (volume_ ? " --volume" : "");
+    return scene_.text() + (places_ ? " --places" : "") + (volume_ ? " --volume" : "") + portals_.text();
 }
 
 std::string LocalConversion::option_text() const {
@@ -161,6 +168,7 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
         if (volume_) local.normals.clear(); // what hangs in the air has any
         local.places = places_on(read_surface(scene_, note), scene_.input().up, volume_);
         if (!scene_.axes().ours()) scene_.axes().tell(local.places);
+        portals_.tell(local.places);
     }
     return local;
 }
@@ -271,6 +279,7 @@ void LocalConversion::add_bins(CLI::App& command) {
             "With --places: also in the air, in the box around the scene, and for all normals. For what has no "
             "surface there, such as smoke, hair or things that move")
         ->group("Normals");
+    portals_.add(command, "Normals");
     command
         .add_option(
             "--cosine-share", local.cosine_share,

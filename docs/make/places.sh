@@ -27,9 +27,16 @@ for scene in $scenes; do
     done
     local=file:$results/$scene-local.acdf places=file:$results/$scene-places.acdf
     samplers=("$local" "$places" "mis($local,cosine)" tiles:32x16 visibility:32x16)
-    grep -q '"portals"' "$results/$scene.json" && samplers+=(portals portals:uniform "mis(portals,cosine)")
+    if grep -q '"portals"' "$results/$scene.json"; then
+        for bytes in 1 4; do
+            file=$results/$scene-portals$bytes.acdf
+            [ -e "$file" ] || "$bench" make "$results/$scene.json" "$data" portals "${bytes}000000" "$file"
+            samplers+=("file:$file")
+        done
+        samplers+=(portals portals:uniform "mis(portals,cosine)")
+    fi
     "$bench" measure "$results/$scene.json" "$data" "${POINTS:-1000}" "${samplers[@]}" |
-        sed "s/^/| $scene /; s|$local|local:1MB|; s|$places|places:4MB|" >> "$table"
+        sed "s/^/| $scene /; s|$local|local:1MB|; s|$places|places:4MB|; s|file:.*-portals\([14]\).acdf|places-portals:\1MB|" >> "$table"
 done
 "$root/docs/make/put_table.sh" places < "$table"
 
@@ -40,7 +47,8 @@ acdf=${ACDF:-$root/build/release/tools/acdf}
     for scene in $scenes; do
         local=file:$results/$scene-local.acdf places=file:$results/$scene-places.acdf
         samplers=("$local" "$places" tiles:32x16 visibility:32x16 ris:32 "mis($places,cosine)")
-        grep -q '"portals"' "$results/$scene.json" && samplers+=(portals portals:uniform "mis(portals,cosine)")
+        grep -q '"portals"' "$results/$scene.json" &&
+            samplers+=("file:$results/$scene-portals4.acdf" portals portals:uniform "mis(portals,cosine)")
         options=()
         for sampler in "${samplers[@]}"; do options+=(--sampler "$sampler"); done
         "$acdf" render --scene "$results/$scene.json" --data "$data" --size 16x12 --samples 16 --seeds 64 --sequence independent --quiet \
@@ -48,7 +56,8 @@ acdf=${ACDF:-$root/build/release/tools/acdf}
         jq -r --arg scene "$scene" 'def short: tostring | .[0:5]; .samplers[] |
             "| \($scene) | `\(.sampler)` | \(if .resolved then (.equal_samples_gain.value | short) else "unsure" end) | " +
             "\(if .resolved then (.equal_time_gain.value | short) else "unsure" end) | \(.bias_standard_errors | short) |"' \
-            "$results/$scene-pictures/render.json" | sed "s|$local|local:1MB|; s|$places|places:4MB|"
+            "$results/$scene-pictures/render.json" |
+            sed "s|$local|local:1MB|; s|$places|places:4MB|; s|file:.*-portals4.acdf|places-portals:4MB|"
     done
 } > "$results/pictures.md"
 "$root/docs/make/put_table.sh" places_pictures < "$results/pictures.md"

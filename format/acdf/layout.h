@@ -88,6 +88,7 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_COMPANY ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
 #define ACDF_CHUNK_PLACES ACDF_FOURCC('P', 'L', 'A', 'C')
+#define ACDF_CHUNK_PORTALS ACDF_FOURCC('P', 'O', 'R', 'T')
 
 #define ACDF_CHUNK_FLAG_CRITICAL 1u
 
@@ -253,6 +254,35 @@ typedef struct AcdfPlaceSplit {
 #define ACDF_PLACE_ROW 0x10000000u
 #define ACDF_MAX_PLACE_SPLITS_DEEP 64u /* on a path */
 
+/* Chunk PORT, of local environments with PLAC: rectangles that light comes through (SPEC.md §5.10). This, then
+ * `portal_count` portals, then `map_count` maps, then for each map (`size` + 1)^2 uint32, its light below and left
+ * of each corner of its cells, then for each row of PLAC 1 + `portal_count` * `pieces`^2 bytes: the share of the
+ * row itself, and codes of visibility of the pieces of each portal. */
+typedef struct AcdfPortals {
+    uint32_t portal_count; /* 1 to ACDF_MAX_PORTALS */
+    uint32_t map_count;    /* 1 to `portal_count` */
+    uint32_t size;         /* cells along each axis of a map, 1 to ACDF_MAX_PORTAL_CELLS */
+    uint32_t pieces;       /* that a portal is divided into along each side, 1 to ACDF_MAX_PORTAL_PIECES */
+} AcdfPortals;
+
+/* A rectangle among the cells of places. */
+typedef struct AcdfPortal {
+    float corner[3];
+    float sides[2]; /* lengths, along axes 0 and 1 of the map */
+    uint32_t map;
+} AcdfPortal;
+
+/* The light of the hemisphere that portals face: all that have the same axes. */
+typedef struct AcdfPortalMap {
+    float axis[3]
+              [3]; /* unit, at right angles: along the sides of a portal, and out of it, where light comes from */
+    float unit;    /* > 0: of the light, what 1 in the map is; the same unit for all maps */
+} AcdfPortalMap;
+
+#define ACDF_MAX_PORTALS 8u
+#define ACDF_MAX_PORTAL_CELLS 4096u
+#define ACDF_MAX_PORTAL_PIECES 4u
+
 #define ACDF_NO_ROOT 0xFFFFFFFFu /* of a tile: it is a cell; of a bin: it is not stored */
 #define ACDF_TILE_FLAG 0x8000u
 #define ACDF_MAX_TILES 32768u
@@ -295,5 +325,8 @@ ACDF_STATIC_ASSERT(sizeof(AcdfCompany) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfCompanyRecord) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfPlaces) == 88);
 ACDF_STATIC_ASSERT(sizeof(AcdfPlaceSplit) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfPortals) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfPortal) == 24);
+ACDF_STATIC_ASSERT(sizeof(AcdfPortalMap) == 40);
 
 #endif

@@ -32,7 +32,8 @@ def sampler_of(container, d):
     if kind == ENVIRONMENT:
         return Environment(tree, d.bins[0][0], grid_of(d))
     if kind == LOCAL:
-        return Local(tree, d, tiles, chunks.get(b"LOCL"), chunks.get(b"PLAC"))
+        return Local(tree, d, tiles, chunks.get(b"LOCL"), chunks.get(b"PLAC"),
+                     chunks.get(b"PORT"))
     if kind == BRDF:
         return Brdf(tree, d, tiles, chunks.get(b"VIEW"))
     return Table(tree, d.axes, d.bins)

@@ -7,6 +7,7 @@ from .refused import require
 from .sphere import (NOTHING, Environment, Sphere, clamp, direction_of, f32, of_unit_length, random_number,
                      sin_cos)
 from .places import Places
+from .portals import Portals
 from .square import grid_of
 from .tiles import sum_of
 from .tree import LEAST
@@ -95,10 +96,11 @@ class Point:
 
     tree = mixture = None
     cells = ()  # of its position
+    windows = None
 
 
 class Local:
-    def __init__(self, tree, d, tiles, chunk, places=None):
+    def __init__(self, tree, d, tiles, chunk, places=None, portals=None):
         check_sphere_axes(d)
         self.N, self.grid = read_normals(d.axes, d.bin_count)
         self.sigma, self.lights = read_local_chunk(chunk, tiles, d.bins)
@@ -106,6 +108,7 @@ class Local:
         self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
         self.places = None if places is None else Places(places, tiles, len(self.lights))
+        self.portals = None if portals is None else Portals(portals, self.places)
 
     def point(self, normal, position=None):
         out, n = Point(), direction_of(normal)
@@ -125,6 +128,8 @@ class Local:
         self.weigh(out, [(row, w) for row, w in mixture if w > 0])
         if position is not None and self.places is not None and out.mixture is not None:
             self.look_from(out, self.places.cells(position, n))
+            if self.portals is not None and out.cells:
+                out.windows = self.portals.windows(out.cells, self.places.coordinates(position, n))
         return out
 
     def look_from(self, out, cells):
@@ -189,7 +194,12 @@ class Local:
         return self.tiles.find_within(self.tree, tile, p, square, box, s)
 
     def light_pdf(self, point, v):
-        """p_L: steps 1 and 2 of the density of a direction."""
+        """p_L: of rows, and of windows where the position sees any."""
+        row = self.row_pdf(point, v)
+        return row if point.windows is None else point.windows.density(v, row)
+
+    def row_pdf(self, point, v):
+        """Steps 1 and 2 of the density of a direction."""
         if not of_unit_length(v):
             return 0.0
         box, s = self.sphere.whole()
@@ -219,11 +229,25 @@ class Local:
         else:
             if self.sigma > 0:
                 u[0] = (u[0] - self.sigma) / (1 - self.sigma)
-            box, s = self.sphere.whole()
-            p = (self.draw(point, u, box, s) if point.mixture is not None else
-                 self.tree.draw(point.tree, u, box, s))
-            *v, light = self.sphere.place(box, u, s, p)
+            *v, light = self.draw_light(point, u)
         return (*v, self.density(point, v, light))
+
+    def draw_light(self, point, u):
+        """By rows or through windows: a direction and its p_L."""
+        if point.windows is None:
+            return self.draw_row(point, u)
+        share = point.windows.share
+        if u[0] < share:
+            v = self.draw_row(point, [clamp(u[0] / share, 0, 1), u[1]])[:3]
+        else:
+            v = point.windows.draw([clamp((u[0] - share) / (1 - share), 0, 1), u[1]])
+        return (*v, self.light_pdf(point, v))
+
+    def draw_row(self, point, u):
+        box, s = self.sphere.whole()
+        p = (self.draw(point, u, box, s) if point.mixture is not None else
+             self.tree.draw(point.tree, u, box, s))
+        return self.sphere.place(box, u, s, p)
 
     @staticmethod
     def around(n, v, u1):

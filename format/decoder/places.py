@@ -64,16 +64,22 @@ class Places:
             waiting += [(part, depth + 1) for part in reversed(self.splits[node].part)]
         require(due == len(self.splits), 7011)
 
-    def cells(self, position, normal):
-        """Pairs of a row and its weight; none outside."""
+    def coordinates(self, position, normal):
+        """Among the cells, of the position and the normal; None outside."""
         p, t = direction_of(position), self.transform
         if p is None:
-            return []
+            return None
         x = [t[4 * k] * p[0] + t[4 * k + 1] * p[1] + t[4 * k + 2] * p[2] + t[4 * k + 3] for k in range(3)]
         if not all(low <= at <= high for low, at, high in zip(self.low, x, self.high)):
-            return []
+            return None
         length = math.sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
-        x += [component / length for component in normal]
+        return x + [component / length for component in normal]
+
+    def cells(self, position, normal):
+        """Pairs of a row and its weight; none outside."""
+        x = self.coordinates(position, normal)
+        if x is None:
+            return []
         found, i = [[self.first(), 1.0]], 0
         while i < len(found):
             while not found[i][0] & ROW:

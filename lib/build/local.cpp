@@ -149,19 +149,25 @@ std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
 }
 
 /// Adds places in what `budget` leaves.
-void add_places(Draft& draft, const LocalOptions& options, std::uint64_t budget, const Progress& progress) {
+void add_places(Draft& draft, const compress::Target& target, const LocalOptions& options, std::uint64_t budget,
+                const Progress& progress) {
     const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
     compress::PlacesSize size;
-    constexpr std::uint64_t record = sizeof(AcdfChunk) + ACDF_ALIGNMENT;
+    const std::uint64_t record = (sizeof(AcdfChunk) + ACDF_ALIGNMENT) * (options.places.portals.empty() ? 1 : 2);
     size.bytes = budget > bytes.size() + record ? budget - bytes.size() - record : 0;
-    draft.description.chunks.push_back(
-        compress::fit_places(file.local().data(), file.description().bin_count, options.places.scene,
-                             options.places.frame, size, [&](double share) {
-                                 if (progress) progress(0.2 + 0.7 * share, "looking from places");
-                             }));
+    compress::PlaceScene scene = options.places.scene;
+    if (!options.places.portals.empty())
+        scene.portals = std::make_shared<const compress::PortalSet>(
+            compress::make_portals(target, options.places.portals, size.bytes / 8));
+    for (compress::Chunk& chunk : compress::fit_places(file.local().data(), file.description().bin_count, scene,
+                                                       options.places.frame, size, [&](double share) {
+                                                           if (progress)
+                                                               progress(0.2 + 0.7 * share, "looking from places");
+                                                       }))
+        draft.description.chunks.push_back(std::move(chunk));
 }
 
 /// At most `whole_budget` bytes before compression, and nearly as many.
@@ -177,7 +183,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
         if (fits && (full || tries > 0)) {
-            if (options.places.scene) add_places(draft, options, whole_budget, progress);
+            if (options.places.scene) add_places(draft, target, options, whole_budget, progress);
             return finish(std::move(draft), target, source, options, bins);
         }
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);

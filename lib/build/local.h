@@ -20,6 +20,7 @@ struct ScenePlaces {
     compress::PlaceScene scene;    ///< empty: places are not told apart
     std::uint64_t local_bytes = 0; ///< of the budget, for what is there without places; 0: a quarter
     compress::PlacesFrame frame;
+    std::vector<compress::PortalRectangle> portals; ///< among the cells
 };
 
 /// What `acdf local` was asked for, beside the probe.

@@ -2,6 +2,7 @@
 
 #include "compress/fit_shared.h"
 #include "compress/place_rows.h"
+#include "compress/portal_rows.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -34,19 +35,6 @@ constexpr float kMargin = 1e-3f;
 
 bool is_finite(const std::array<float, 3>& x) {
     return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
-}
-
-/// The code of the visibility nearest to a factor.
-std::uint8_t visibility_code(double factor) {
-    std::uint32_t low = 0, high = 255;
-    while (low < high) { // the first that is no less
-        const std::uint32_t middle = (low + high) / 2;
-        if (acdf_visibility(static_cast<std::uint8_t>(middle)) < factor) low = middle + 1;
-        else high = middle;
-    }
-    const auto at = [](std::uint32_t code) { return acdf_visibility(static_cast<std::uint8_t>(code)); };
-    if (low > 0 && factor * factor < at(low - 1) * at(low)) --low;
-    return static_cast<std::uint8_t>(low);
 }
 
 /// The box of the first points that a source tells of, which are as even as any; a little larger, as light is
@@ -192,8 +180,9 @@ void divide(Division& out, const PlaceParts& parts, const PlaceScene& scene, std
 
 } // namespace
 
-Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& scene, const PlacesFrame& frame,
-                 const PlacesSize& size, const std::function<void(double)>& progress) {
+std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& scene,
+                              const PlacesFrame& frame, const PlacesSize& size,
+                              const std::function<void(double)>& progress) {
     if (!local.blend.tiles) throw std::invalid_argument("bins that do not share tiles have no places");
     const auto report = [&](double share) {
         if (progress) progress(share);
@@ -201,7 +190,10 @@ Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& s
     const std::uint32_t splits_of_tiles = local.blend.tiles->tile_count - 1;
     const PlaceParts coarse(local, bins, size.columns > 0 ? size.columns : kColumns);
     const std::uint64_t width = 1 + local.light_count + coarse.column_count();
-    const Counts counts = counts_for(size.bytes, width, splits_of_tiles);
+    const PortalSet* portals = scene.portals.get();
+    const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
+                                               width + portals->row_bytes(), splits_of_tiles)
+                                  : counts_for(size.bytes, width, splits_of_tiles);
 
     Division division;
     division.header = header_of(scene.points, frame);
@@ -240,8 +232,11 @@ Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& s
     append(chunk.bytes, columns.data(), columns.size());
     append(chunk.bytes, set_of_row.data(), set_of_row.size());
     append(chunk.bytes, rows.data(), rows.size());
+    std::vector<Chunk> chunks{std::move(chunk)};
+    if (portals)
+        chunks.push_back(portal_chunk(local, *portals, shares, division.points, tree.cell_count(), scene.occluded));
     report(1.0);
-    return chunk;
+    return chunks;
 }
 
 } // namespace acdf::compress

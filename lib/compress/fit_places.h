@@ -16,14 +16,15 @@ struct PlacesFrame {
 };
 
 struct PlacesSize {
-    std::uint64_t bytes = 3 << 20; ///< of the chunk, at most (but for that of one cell)
+    std::uint64_t bytes = 3 << 20; ///< of the chunks, at most (but for those of one cell)
     std::uint32_t columns = 0;     ///< splits of tiles that cells tell apart; 0: as suits the size
 };
 
-/// The chunk PLAC for a local environment whose bins share tiles; positions of the scene's points are those of
-/// cells. The same for any number of threads. Throws std::invalid_argument where there are no tiles or no
-/// points.
-Chunk fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& scene, const PlacesFrame& frame,
-                 const PlacesSize& size, const std::function<void(double)>& progress = {});
+/// The chunk PLAC, and PORT where the scene has portals, for a local environment whose bins share tiles; positions
+/// of the scene's points are those of cells. The same for any number of threads. Throws std::invalid_argument where
+/// there are no tiles or no points.
+std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& scene,
+                              const PlacesFrame& frame, const PlacesSize& size,
+                              const std::function<void(double)>& progress = {});
 
 } // namespace acdf::compress

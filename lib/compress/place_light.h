@@ -2,11 +2,13 @@
 #pragma once
 
 #include "compress/place_parts.h"
+#include "compress/portal_maps.h"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace acdf::compress {
@@ -53,6 +55,7 @@ struct PlaceLight {
 struct PlaceScene {
     PointSource points;
     Occluded occluded;
+    std::shared_ptr<const PortalSet> portals{}; ///< what light comes through, as far as it is told; null: not
 
     explicit operator bool() const { return points && occluded; }
 };

@@ -124,6 +124,18 @@ PlaceCaution best_caution(const Region& region, const PlaceLight& light) {
 
 } // namespace
 
+std::uint8_t visibility_code(double factor) {
+    std::uint32_t low = 0, high = 255;
+    while (low < high) { // the first that is no less
+        const std::uint32_t middle = (low + high) / 2;
+        if (acdf_visibility(static_cast<std::uint8_t>(middle)) < factor) low = middle + 1;
+        else high = middle;
+    }
+    const auto at = [](std::uint32_t code) { return acdf_visibility(static_cast<std::uint8_t>(code)); };
+    if (low > 0 && factor * factor < at(low - 1) * at(low)) --low;
+    return static_cast<std::uint8_t>(low);
+}
+
 CellNumbers::CellNumbers(const AcdfPlaces& header, const std::vector<AcdfPlaceSplit>& splits, std::uint32_t cells)
     : header_(header), rows_(cells, 0) {
     header_.column_count = 0; // rows of one byte: a row's address is its number

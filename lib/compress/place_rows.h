@@ -44,6 +44,9 @@ struct PlaceShare {
 /// together.
 std::vector<PlaceShare> shares_of(const CellNumbers& numbers, const std::vector<PlacePoint>& points);
 
+/// The code of the visibility nearest to a factor.
+std::uint8_t visibility_code(double factor);
+
 /// What the rows of a range of cells are made of, cells x parts each.
 struct PlaceRows {
     std::vector<float> all;     ///< what parts would give to the points of the cell

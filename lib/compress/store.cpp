@@ -145,6 +145,9 @@ Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
     return file;
 }
 
+/// What a reader that does not know it may leave out.
+bool is_ancillary(std::uint32_t type) { return type == ACDF_CHUNK_PLACES || type == ACDF_CHUNK_PORTALS; }
+
 } // namespace
 
 Description environment_description(std::uint32_t columns, std::uint32_t rows,
@@ -198,8 +201,7 @@ std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& desc
     payloads.push_back({ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree, description)});
     payloads.push_back({ACDF_CHUNK_TREE, ACDF_CHUNK_FLAG_CRITICAL, tree.bytes});
     for (const Chunk& chunk : description.chunks)
-        payloads.push_back(
-            {chunk.type, chunk.type == ACDF_CHUNK_PLACES ? 0 : ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
+        payloads.push_back({chunk.type, is_ancillary(chunk.type) ? 0 : ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
     if (!description.metadata.empty())
         payloads.push_back({ACDF_CHUNK_METADATA, 0, metadata_payload(description.metadata)});
     return assemble(description.kind, std::move(payloads), codec);

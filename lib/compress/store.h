@@ -23,7 +23,8 @@ struct AxisDescription {
     double low = 0.0, high = 1.0;
 };
 
-/// A chunk beside those that every file has: critical, but for PLAC, without which a reader serves normals alone.
+/// A chunk beside those that every file has: critical, but for PLAC and PORT, without which a reader serves normals
+/// alone.
 struct Chunk {
     std::uint32_t type = 0;
     std::vector<std::uint8_t> bytes;

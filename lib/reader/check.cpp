@@ -144,12 +144,15 @@ constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_
 
 // Whether a known chunk has a place in files of a kind.
 bool belongs(int known, u32 kind) {
-    if (known == chunk_local || known == chunk_places) return kind == ACDF_KIND_LOCAL;
+    if (known == chunk_local || known == chunk_places || known == chunk_portals) return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
     if (known == chunk_company) return kind != ACDF_KIND_BRDF;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
 }
+
+// Whether a reader that does not know a chunk must refuse the file.
+bool is_critical(int known) { return known != chunk_metadata && known != chunk_places && known != chunk_portals; }
 
 bool is_all_printable(u32 type) {
     return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);
@@ -176,7 +179,7 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
         report.add(3009, at + offsetof(AcdfChunk, flags), "flags %08x of '%s'", chunk.flags, name.text);
-    else if (known >= 0 && critical != (known != chunk_metadata && known != chunk_places))
+    else if (known >= 0 && critical != is_critical(known))
         report.add(3009, at + offsetof(AcdfChunk, flags), "'%s' is marked %s", name.text,
                    critical ? "critical" : "ancillary");
     if (chunk.reserved != 0)
@@ -295,6 +298,8 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
     if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_places].data && !report.stopped())
         check_places(payloads.of[chunk_places], report, parts);
+    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_portals].data && !report.stopped())
+        check_portals(payloads.of[chunk_portals], report, parts);
     if (header.kind == ACDF_KIND_BRDF && !report.stopped())
         check_brdf_kind(description, payloads.of[chunk_views], report, parts);
     if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped())

@@ -58,6 +58,7 @@ struct Parts {
     const AcdfLight* lights = nullptr;         ///< local->light_count
     const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
     AcdfPlaceTable places = {};                ///< of local environments; its header is null where absent
+    AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
     AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back

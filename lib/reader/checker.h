@@ -50,6 +50,7 @@ enum KnownChunk {
     chunk_views,
     chunk_company,
     chunk_places,
+    chunk_portals,
     known_chunks
 };
 
@@ -96,6 +97,8 @@ void check_local_kind(const Payload& description, const Payload& local, const Ti
                       Parts& parts) noexcept;
 /// PLAC of a local environment; needs what check_local_kind sets. Sets parts.places if it is right.
 void check_places(const Payload& payload, Report& report, Parts& parts) noexcept;
+/// PORT of a local environment; needs what check_places sets. Sets parts.portals if it is right.
+void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
 /// COMP, where there is one; needs parts.description. Sets parts.company.

@@ -140,6 +140,7 @@ File& File::operator=(File&& other) noexcept {
     lights_ = std::exchange(other.lights_, nullptr);
     company_ = std::exchange(other.company_, nullptr);
     places_ = std::exchange(other.places_, AcdfPlaceTable{});
+    portals_ = std::exchange(other.portals_, AcdfPortalTable{});
     views_ = std::exchange(other.views_, nullptr);
     nodes_ = std::exchange(other.nodes_, nullptr);
     metadata_ = std::exchange(other.metadata_, nullptr);
@@ -194,6 +195,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.lights_ = parts.lights;
     loaded.company_ = parts.company;
     loaded.places_ = parts.places;
+    loaded.portals_ = parts.portals;
     loaded.views_ = parts.views;
     loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
@@ -259,6 +261,7 @@ LocalEnvironmentView File::local() const noexcept {
     local.cosine_share = static_cast<double>(local_->cosine_share);
     local.tables = local_tables_;
     local.places = places_;
+    local.portals = portals_;
     if (description_->axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
         while (4 * local.subdivisions * local.subdivisions + 2 < axes_[2].resolution) ++local.subdivisions;
     } else {

@@ -36,7 +36,8 @@ const Rule rules[] = {
     {3007, error, malformed, "chunk-bounds", "A payload lies inside the file."},
     {3008, error, malformed, "file-end", "`file_length` is the end of the last payload, rounded up to 64."},
     {3009, error, malformed, "chunk-flags",
-     "Only flag bit 0 may be set; it is clear for META and PLAC and set for all other known types; `reserved` is "
+     "Only flag bit 0 may be set; it is clear for META, PLAC and PORT and set for all other known types; "
+     "`reserved` is "
      "zero."},
     {3010, error, malformed, "raw-length", "With codec 0, `raw_length` equals `stored_length`."},
     {3011, error, malformed, "deflate-ratio",
@@ -44,7 +45,8 @@ const Rule rules[] = {
     {3012, error, ErrorCode::limit_exceeded, "inflate-limit",
      "The compressed chunks inflate to no more than the reader's limit."},
     {3013, error, malformed, "chunk-kind",
-     "TILE and ROWS come only in files of kinds 2 and 3, LOCL and PLAC only in those of kind 2, VIEW only in those "
+     "TILE and ROWS come only in files of kinds 2 and 3, LOCL, PLAC and PORT only in those of kind 2, VIEW only in "
+     "those "
      "of kind 3."},
     {3014, error, malformed, "chunk-type", "The type of a chunk is four printable ASCII characters."},
 
@@ -154,6 +156,16 @@ const Rule rules[] = {
      "split has none."},
     {7014, error, malformed, "place-odds", "No odds of a place are 0 or 255: no part of the light has none."},
     {7015, error, malformed, "place-sets", "The set of columns that a row of places names is there."},
+    {7016, error, malformed, "portals",
+     "PORT comes with PLAC and is as long as its counts tell: 1 to 8 portals, 1 to as many maps, of 1 to 4096 "
+     "cells "
+     "along each axis, and 1 to 4 pieces along each side."},
+    {7017, error, malformed, "portal",
+     "The corner of a portal is finite, its sides are positive and finite, and its map is there."},
+    {7018, error, malformed, "portal-map",
+     "The axes of a map of portals are unit and at right angles; its unit is positive and finite."},
+    {7019, error, malformed, "portal-sums",
+     "The sums of a map begin with a row and a column of 0, and no cell between them has less than 0."},
 
     {8001, error, malformed, "brdf-axes",
      "A BRDF has the axes of §6.8, cos_theta_h of at most 268435456 steps and the others of at most 65536."},

@@ -1,6 +1,6 @@
 // Files of places at the points that a camera sees, without the noise of pictures (docs/places.md):
 //
-//   bench_places make SCENE DATA local|places BYTES OUT    a file as `acdf render` makes it for the scene
+//   bench_places make SCENE DATA local|places|portals BYTES OUT    a file as `acdf render` makes it for the scene
 //   bench_places measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are compared
 //                                                          with; samplers as of acdf render: file:/A/FILE, portals,
 //                                                          mis(A,B)
@@ -11,6 +11,7 @@
 #include "build/builder/sources.h"
 #include "measure/point_sums.h"
 #include "measure/surface_points.h"
+#include "tools/render/portals.h"
 #include "tools/render/run.h"
 #include "tools/render/sampler_build.h"
 
@@ -69,13 +70,15 @@ builder::Places places_of(const compress::PlaceScene& scene) {
     return out;
 }
 
-int make(const tools::LoadedScene& scene, bool places, const char* bytes, const char* path) {
+int make(const tools::LoadedScene& scene, const std::string& kind, const char* bytes, const char* path) {
     builder::TargetRows rows(builder::TargetOptions{});
     rows.begin(scene.probe.width, scene.probe.height);
     rows.take(0, scene.probe.height, scene.probe.rgb.data());
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(std::strtoull(bytes, nullptr, 10));
-    if (places) options.places = places_of(measure::place_scene(scene.scene.geometry));
+    if (kind != "local") options.places = places_of(measure::place_scene(scene.scene.geometry));
+    for (std::size_t i = 0; kind == "portals" && i < scene.scene.geometry.portals.size(); ++i)
+        options.places.portals.push_back(tools::told_portal(options.places, scene.scene.geometry.portals[i]));
     builder::Local made;
     if (const builder::Status status = builder::local(rows.finish(), options, made); !status.ok())
         throw std::runtime_error(status.message);
@@ -289,8 +292,7 @@ int measure_samplers(const tools::LoadedScene& scene, std::size_t count, const s
 int main(int argc, char** argv) {
     try {
         const std::string what = argc > 1 ? argv[1] : "";
-        if (what == "make" && argc == 7)
-            return make(*scene_of(argv[2], argv[3]), argv[4] == std::string("places"), argv[5], argv[6]);
+        if (what == "make" && argc == 7) return make(*scene_of(argv[2], argv[3]), argv[4], argv[5], argv[6]);
         const std::size_t points = argc > 5 ? std::strtoull(argv[4], nullptr, 10) : 0;
         if (what == "measure" && argc > 5)
             return measure_samplers(*scene_of(argv[2], argv[3]), points, {argv + 5, argv + argc});
@@ -300,7 +302,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;
     }
-    std::fprintf(stderr, "usage: bench_places make SCENE DATA local|places BYTES OUT\n"
+    std::fprintf(stderr, "usage: bench_places make SCENE DATA local|places|portals BYTES OUT\n"
                          "       bench_places measure SCENE DATA POINTS SAMPLER...\n"
                          "       bench_places cost SCENE DATA POINTS FILE...\n");
     return 2;

@@ -169,8 +169,7 @@ builder::Target light_target(const RenderArguments& options, const input::Probe&
     pixels.height = static_cast<std::uint32_t>(probe.height);
     builder::Target target;
     const builder::Status status = builder::Target::from(pixels, {}, target);
-    if (status.code == builder::ErrorCode::no_energy)
-        throw Failure(options.scene + ": light: the probe is black");
+    if (status.code == builder::ErrorCode::no_energy) throw Failure(options.scene + ": light: the probe is black");
     if (!status.ok()) throw Failure(options.scene + ": light: " + status.message);
     return target;
 }
@@ -301,6 +300,7 @@ void add_scene_options(CLI::App& command, RenderArguments& options) {
         .add_option("--sampler", options.samplers,
                     "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
                     "tiles:32x16, visibility:32x16, portals, portals:uniform, env:64KiB, local:1MB, places:4MB, "
+                    "places-portals:4MB, "
                     "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
                     "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
                     "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...)")

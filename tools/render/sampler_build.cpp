@@ -13,6 +13,7 @@
 #include "tools/cli/file_input.h"
 #include "tools/cli/mesh_places.h"
 #include "tools/commands.h"
+#include "tools/render/portals.h"
 
 #include <algorithm>
 #include <chrono>
@@ -70,11 +71,15 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
     return file_table(std::move(made.bytes));
 }
 
-Table places_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes) {
+/// `portals`: those of the scene, too.
+Table places_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes,
+                   bool portals) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(bytes);
     const compress::PlaceScene scene = measure::place_scene(geometry);
     if (geometry.turned) turn_from_y_up(options.places);
+    for (std::size_t i = 0; portals && i < geometry.portals.size(); ++i)
+        options.places.portals.push_back(told_portal(options.places, geometry.portals[i]));
     options.places.point = [&](std::uint64_t index, builder::PlacePoint& out) {
         compress::PlacePoint point;
         if (!scene.points(index, point)) return false;
@@ -129,7 +134,8 @@ bool knows_brdf(const SamplerSpec& spec) {
 bool is_ours(const SamplerSpec& spec) {
     if (!spec.parts.empty()) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
     return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
-           spec.kind == SamplerKind::places || spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
+           spec.kind == SamplerKind::places || spec.kind == SamplerKind::places_portals ||
+           spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
 }
 
 } // namespace
@@ -171,7 +177,12 @@ struct SamplerBuilder::Store {
                                                                              geometry->turned, kPortalCells)};
         case SamplerKind::places:
             if (!geometry) fail_without_scene(spec);
-            return places_table(fitted, *geometry, spec.bytes);
+            return places_table(fitted, *geometry, spec.bytes, false);
+        case SamplerKind::places_portals:
+            if (!geometry) fail_without_scene(spec);
+            if (geometry->portals.empty())
+                throw SpecError("sampler '" + spec.text + "': the scene tells no portals");
+            return places_table(fitted, *geometry, spec.bytes, true);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
         case SamplerKind::brdf_table:

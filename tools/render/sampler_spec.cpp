@@ -38,6 +38,7 @@ constexpr Name names[] = {
     {"env", SamplerKind::env, "64KiB"},
     {"local", SamplerKind::local, "1MB"},
     {"places", SamplerKind::places, "4MB"},
+    {"places-portals", SamplerKind::places_portals, "4MB"},
     {"brdf", SamplerKind::brdf, "64KiB"},
     {"brdf-table", SamplerKind::brdf_table, "mean"},
     {"ggx", SamplerKind::ggx, "0.1"},
@@ -78,6 +79,7 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     case SamplerKind::env:
     case SamplerKind::local:
     case SamplerKind::places:
+    case SamplerKind::places_portals:
     case SamplerKind::brdf:
         return read_size(argument, spec);
     case SamplerKind::tiles:

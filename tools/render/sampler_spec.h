@@ -25,14 +25,15 @@ enum class SamplerKind {
     env,        ///< env:64KiB: what `acdf env` makes
     local,      ///< local:1MB: what `acdf local` makes
     places,     ///< places:4MB: what `acdf local --places` makes for the scene
-    brdf,       ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
-    brdf_table, ///< brdf-table[:centre]: the full table of the paper, repaired or as described
-    ggx,        ///< ggx:0.1: normals of a lobe visible to the viewer
-    alias,      ///< alias: table over texels
-    hierarchical, ///< hierarchical: warping through a quadtree
-    downsampled,  ///< downsampled:64x32: a full CDF of means
-    compensated,  ///< compensated: a CDF of what exceeds the mean radiance, in mis(...) alone
-    strata,       ///< strata[:radiance]: jittered in a stratified map, Agarwal et al. 2003
+    places_portals, ///< places-portals:4MB: the same with the scene's portals
+    brdf,           ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
+    brdf_table,     ///< brdf-table[:centre]: the full table of the paper, repaired or as described
+    ggx,            ///< ggx:0.1: normals of a lobe visible to the viewer
+    alias,          ///< alias: table over texels
+    hierarchical,   ///< hierarchical: warping through a quadtree
+    downsampled,    ///< downsampled:64x32: a full CDF of means
+    compensated,    ///< compensated: a CDF of what exceeds the mean radiance, in mis(...) alone
+    strata,         ///< strata[:radiance]: jittered in a stratified map, Agarwal et al. 2003
     ris,     ///< ris:32: resampled candidates of the full CDF; ris:32(local:1MB,brdf:64KiB): of both, half each
     mis,     ///< mis(A,B), mis-power(A,B): balance or power heuristic; mis-compensated is
              ///< mis(compensated,cosine)

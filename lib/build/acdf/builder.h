@@ -215,6 +215,12 @@ struct PlacePoint {
     float position[3] = {}, normal[3] = {0.0f, 0.0f, 1.0f};
 };
 
+/// A rectangle in the scene's coordinates: a corner and two sides at right angles. Light comes from the side that
+/// across x up points to, by the right hand.
+struct Portal {
+    float corner[3] = {}, across[3] = {1.0f, 0.0f, 0.0f}, up[3] = {0.0f, 1.0f, 0.0f};
+};
+
 /// What of the light reaches which place of a scene. Both callbacks are called by several threads at once, and tell
 /// the same for the same arguments: the file is then the same for any number of threads. A point must not lie on
 /// what hides light from it, but a little above.
@@ -227,6 +233,10 @@ struct Places {
     /// From the scene's coordinates, in which a renderer tells positions, to those of points here, a row a
     /// coordinate: x' = t[0] x + t[1] y + t[2] z + t[3].
     float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+    /// Windows and doors that light comes through, at most 8: samples are drawn through them, exactly, and by the
+    /// rows of places for all that comes in another way. With them `transform` turns, mirrors, moves and scales as
+    /// a whole, to the frame of directions.
+    std::vector<Portal> portals;
 };
 
 /// How a local environment is fitted and stored.

@@ -137,13 +137,28 @@ void check(const EnvironmentOptions& options) {
             "the goal of a cascade is a number of cells");
 }
 
+/// Whether a transform turns, mirrors and scales as a whole: rays then have the directions that positions tell.
+static bool keeps_angles(const float t[3][4]) {
+    const auto dot = [t](int i, int k) {
+        return double{t[i][0]} * double{t[k][0]} + double{t[i][1]} * double{t[k][1]} +
+               double{t[i][2]} * double{t[k][2]};
+    };
+    const double square = dot(0, 0), most = 1e-5 * square;
+    return square > 0.0 && std::fabs(dot(1, 1) - square) <= most && std::fabs(dot(2, 2) - square) <= most &&
+           std::fabs(dot(0, 1)) <= most && std::fabs(dot(0, 2)) <= most && std::fabs(dot(1, 2)) <= most;
+}
+
 static void check_places(const LocalOptions& options) {
     require(!options.places.point == !options.places.occluded, "places need both callbacks, or none");
+    require(options.places.point || options.places.portals.empty(), "portals are for files with places");
     if (!options.places.point) return;
     require(options.sharing, "places are for bins that share tiles");
     require(options.goal.kind == Goal::Kind::budget, "the goal of places is a budget");
     for (const auto& row : options.places.transform)
         for (const float t : row) require(std::isfinite(t), "the transform of places is not finite");
+    require(options.places.portals.empty() || keeps_angles(options.places.transform),
+            "with portals, the transform of places must keep angles");
+    require(options.places.portals.size() <= ACDF_MAX_PORTALS, "there are more than 8 portals");
 }
 
 void check(const LocalOptions& options) {

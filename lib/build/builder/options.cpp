@@ -94,6 +94,27 @@ PlacePoint external(const compress::PlacePoint& point) {
     return out;
 }
 
+/// Among the cells. Where the transform mirrors, the sides change places, so that light comes from where it did.
+compress::PortalRectangle internal(const Portal& portal, const float transform[3][4]) {
+    compress::PortalRectangle out;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const float* t = transform[k];
+        const auto turned = [t](const float v[3]) {
+            return double{t[0]} * double{v[0]} + double{t[1]} * double{v[1]} + double{t[2]} * double{v[2]};
+        };
+        out.corner[k] = turned(portal.corner) + double{t[3]};
+        out.across[k] = turned(portal.across);
+        out.up[k] = turned(portal.up);
+    }
+    double determinant = 0.0;
+    for (std::size_t k = 0; k < 3; ++k)
+        determinant +=
+            double{transform[0][k]} * (double{transform[1][(k + 1) % 3]} * double{transform[2][(k + 2) % 3]} -
+                                       double{transform[1][(k + 2) % 3]} * double{transform[2][(k + 1) % 3]});
+    if (determinant < 0.0) std::swap(out.across, out.up);
+    return out;
+}
+
 build::ScenePlaces internal(const Places& places) {
     build::ScenePlaces out;
     if (!places.point) return out;
@@ -110,6 +131,7 @@ build::ScenePlaces internal(const Places& places) {
         return called([&] { return occluded(told, direction.data()); });
     };
     for (int k = 0; k < 3; ++k) std::copy_n(places.transform[k], 4, out.frame.transform[k]);
+    for (const Portal& portal : places.portals) out.portals.push_back(internal(portal, places.transform));
     return out;
 }
 

@@ -222,8 +222,8 @@ ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const A
     return acdf_grid_place(grid, range, u, p);
 }
 
-/* The part of the density that follows the light. */
-ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+/* The density of what rows, or a tree, draw. */
+ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     double p;
@@ -240,14 +240,25 @@ ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint*
     return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
 }
 
+/* The part of the density that follows the light: that of rows, and of windows where a place sees any. */
+ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+    const float row = acdf_local_row_pdf(local, point, direction);
+    return point->windows.count > 0 ? acdf_windows_pdf(&point->windows, direction, row) : row;
+}
+
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
 ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
                                  float light) {
     const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
     const double share = local->cosine_share;
-    const double dx = direction[0], dy = direction[1], dz = direction[2], size = sqrt(dx * dx + dy * dy + dz * dz);
-    double cosine, pdf;
+    double dx, dy, dz, size, cosine, pdf;
+    float given[3];
     if (share == 0.0) return light;
+    acdf_as_given(direction, given);
+    dx = given[0];
+    dy = given[1];
+    dz = given[2];
+    size = sqrt(dx * dx + dy * dy + dz * dz);
     if (!(size > 0.9995 && size < 1.0005)) return 0.0f;
     cosine = (x * dx + y * dy + z * dz) / sqrt(x * x + y * y + z * z);
     pdf = (1.0 - share) * (double)light + (cosine > 0.0 ? share * cosine * (1.0 / ACDF_PI) : 0.0);
@@ -276,14 +287,36 @@ ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* po
     return acdf_local_density(local, point, direction, acdf_local_light_pdf(local, point, direction));
 }
 
+/* Draws by rows, or a tree; u[0] and u[1] in [0, 1]. */
+ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                      double* u) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfRange range[2];
+    double p;
+    acdf_sphere_ranges(grid.columns, grid.rows, range);
+    p = point->what == ACDF_LOCAL_BLEND
+            ? acdf_local_blend_sample(local, point, u, range)
+            : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
+    return acdf_local_place(local, point, &grid, range, u, p);
+}
+
+/* Draws by the row of a place or through its windows, of which there are some. The density is that of the direction
+ * as it was rounded. */
+ACDF_OUTLINE AcdfDirectionSample acdf_local_window_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                          double* u) {
+    AcdfDirectionSample out;
+    if (acdf_windows_choose(&point->windows, u)) acdf_windows_sample(&point->windows, u, out.direction);
+    else out = acdf_local_row_sample(local, point, u);
+    out.pdf = acdf_local_light_pdf(local, point, out.direction);
+    return out;
+}
+
 /* Draws a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
  * direction) where the normal is not valid or nothing shines on it. */
 ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
                                                  double u1) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
-    AcdfRange range[2];
-    double u[2], p;
+    double u[2];
     if (point->what == ACDF_LOCAL_NOTHING) return out;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
@@ -292,11 +325,8 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
         out.pdf = acdf_local_light_pdf(local, point, out.direction);
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
-        acdf_sphere_ranges(grid.columns, grid.rows, range);
-        p = point->what == ACDF_LOCAL_BLEND
-                ? acdf_local_blend_sample(local, point, u, range)
-                : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
-        out = acdf_local_place(local, point, &grid, range, u, p);
+        out = point->windows.count > 0 ? acdf_local_window_sample(local, point, u)
+                                       : acdf_local_row_sample(local, point, u);
     }
     out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
     return out;

@@ -4,7 +4,7 @@
 
 #include <acdf/local_tables.h>
 #include <acdf/normals.h>
-#include <acdf/places.h>
+#include <acdf/portals.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -23,6 +23,7 @@ typedef struct AcdfLocal {
     const AcdfLocalTables* tables; /* runtime tables; null: splits are walked */
     const AcdfCompany* company;    /* null: to be used alone */
     AcdfPlaceTable places;         /* its header is null where places are not told apart */
+    AcdfPortalTable portals;       /* its header is null where there are none */
 } AcdfLocal;
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
@@ -46,6 +47,7 @@ typedef struct AcdfLocalPoint {
     double lights;                             /* sum of the weights of the lights */
     double sum;                                /* of all weights */
     AcdfPlaceMixture place;                    /* empty: the position is not known, or does not matter */
+    AcdfWindows windows;                       /* as the place sees them; its count is 0 where there are none */
 } AcdfLocalPoint;
 
 /* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
@@ -201,16 +203,17 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     acdf_local_nowhere(&out->place);
+    out->windows.count = 0;
     if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
 }
 
-/* Finds what serves a normal at a position of the scene. Outside of all cells, and where places are not told apart,
- * that is what serves the normal. */
-ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3], const float normal[3],
+/* Finds what serves a normal at a position of the scene by rows alone, whatever comes through windows. */
+ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
     double visible, of_light[ACDF_MAX_LIGHTS];
     int i;
     acdf_local_nowhere(&out->place);
+    out->windows.count = 0;
     acdf_as_given(normal, out->surface);
     /* First of all: rows of places are far away, and come while the normal's are found. */
     if (local->blend.tiles)
@@ -228,6 +231,15 @@ ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3]
     acdf_place_see_lights(&out->place, local->light_count, of_light);
     acdf_local_sum(local, of_light, out);
     if (!(out->sum > 0.0)) out->place.count = 0;
+}
+
+/* Finds what serves a normal at a position of the scene. Outside of all cells, and where places are not told apart,
+ * that is what serves the normal. */
+ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3], const float normal[3],
+                                 AcdfLocalPoint* out) {
+    acdf_local_at_cells(local, position, normal, out);
+    if (local->portals.header && out->place.count > 0)
+        acdf_windows_at(&local->portals, &local->places, &out->place, position, out->surface, &out->windows);
 }
 
 /* Whether u0 in [0, 1] draws from the mixture, not a light. */

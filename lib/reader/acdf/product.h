@@ -331,7 +331,7 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     point.light.what = ACDF_LOCAL_NOTHING;
     if (!lobe_.at(local_wo, point.lobe)) return point;
     if (local_) {
-        if (position) acdf_local_at_place(&light_, position, frame.normal, &point.light);
+        if (position) acdf_local_at_cells(&light_, position, frame.normal, &point.light);
         else acdf_local_at(&light_, frame.normal, &point.light);
     } else {
         point.light.what = ACDF_LOCAL_TREE;

@@ -18,7 +18,7 @@ extern "C" {
 
 /* A shading point, ready to be drawn from: plain bytes that may be copied. */
 typedef union AcdfProductPoint {
-    unsigned char bytes[11264];
+    unsigned char bytes[12800];
     double align;
 } AcdfProductPoint;
 

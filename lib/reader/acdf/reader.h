@@ -140,6 +140,7 @@ private:
     const AcdfLight* lights_ = nullptr;
     const AcdfCompany* company_ = nullptr;
     AcdfPlaceTable places_ = {};
+    AcdfPortalTable portals_ = {};
     const AcdfViews* views_ = nullptr;
     const float* nodes_ = nullptr;
     const std::uint8_t* metadata_ = nullptr;

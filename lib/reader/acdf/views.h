@@ -87,6 +87,8 @@ public:
     }
     /// Whether places are told apart.
     ACDF_METHOD bool has_places() const noexcept { return data_.places.header != nullptr; }
+    /// Whether windows are known that light comes through: they are drawn where a place sees them.
+    ACDF_METHOD bool has_portals() const noexcept { return data_.portals.header != nullptr; }
     ACDF_METHOD DirectionSample sample(const AcdfLocalPoint& point, double u0, double u1) const noexcept {
         return acdf_local_sample_at(&data_, &point, u0, u1);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/lib/reader/files.h"
+#include "tests/lib/reader/portals_spec.h"
 
 #include <optional>
 
@@ -75,6 +76,7 @@ struct LocalSpec {
     std::vector<LightSpec> lights;
     float cosine_share = 0.0f;
     std::optional<PlacesSpec> places;
+    std::optional<PortalsSpec> portals;
     double total = 3.0;
     bool zlib = false;
     bool octahedral = false; ///< axes u and v
@@ -147,6 +149,7 @@ struct LocalSpec {
         }
         file.chunks.push_back({"LOCL", local_chunk(), 1, zlib});
         if (places) file.chunks.push_back({"PLAC", places->encode(), 0, zlib});
+        if (portals) file.chunks.push_back({"PORT", portals->encode(), 0, zlib});
         return file;
     }
     Bytes encode() { return file().encode(); }
@@ -205,6 +208,21 @@ inline LocalSpec regional_local() {
     spec.places->columns = {0, 0xFFFF, 0xFFFF, 0};
     spec.places->set_of_row = {0, 1, 1, 0};
     for (Bytes& row : spec.places->rows) row.resize(3);
+    return spec;
+}
+
+/// placed_local with two windows in a wall at x = 4 and one in a wall at y = 3; the last place draws by rows alone.
+inline LocalSpec windowed_local() {
+    LocalSpec spec = placed_local();
+    spec.portals.emplace();
+    spec.portals->portals = {
+        {{4, -1, 0.5f}, {1, 2}, 0}, {{4, 0.5f, 1}, {1.5f, 1.5f}, 0}, {{1.5f, 3, 1}, {2, 1}, 1}};
+    spec.portals->maps = {
+        {{0, 1, 0, 0, 0, 1, 1, 0, 0}, 0.01f, {1, 2, 3, 4, 5, 60, 7, 8, 0, 9, 10, 11, 12, 13, 14, 1}},
+        {{-1, 0, 0, 0, 0, 1, 0, 1, 0}, 0.02f, {9, 2, 3, 4, 5, 6, 7, 30, 9, 9, 10, 0, 1, 3, 14, 1}}};
+    for (Bytes& row : spec.portals->rows = std::vector<Bytes>(4, Bytes(13, 250))) row[0] = 40;
+    spec.portals->rows[1] = {5, 255, 240, 30, 200, 100, 255, 255, 254, 230, 180, 70, 255};
+    spec.portals->rows[3][0] = 255;
     return spec;
 }
 

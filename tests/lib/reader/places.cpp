@@ -165,7 +165,7 @@ TEST_P(GoldenPlaces, DrawTheSameSamples) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(V1_0, GoldenPlaces, ::testing::Values("places", "places_regions"),
+INSTANTIATE_TEST_SUITE_P(V1_0, GoldenPlaces, ::testing::Values("places", "places_regions", "portals"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

@@ -1,0 +1,364 @@
+/* Portals: rectangles that light comes through, as a place sees them. One freestanding header over acdf/places.h,
+ * valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §5.10 and §6.12).
+ *
+ * All portals that face the same way share a map of the light of their hemisphere. Its axes are tangents along the
+ * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is
+ * seen: a *window* (Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", EGSR 2015). A portal is
+ * divided into pieces along its sides. Each is drawn as the light in it, times a cosine to the normal, times how
+ * much of it the cells of the place see; then, in a piece, the map is followed. A share that the cells tell is
+ * drawn by the row of the place: it covers all other light, and a scene that has changed.
+ *
+ * The map is bent by t / (1 + |t|), not by the arc tangent of that paper: cells are about as even, and no machine
+ * rounds it in another way. */
+#ifndef ACDF_PORTALS_H
+#define ACDF_PORTALS_H
+
+#include <acdf/places.h>
+#include <acdf/random.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct AcdfPortalTable {
+    const AcdfPortals* header; /* chunk PORT; null where there is none */
+    const AcdfPortal* portals; /* behind it */
+    const AcdfPortalMap* maps;
+    const uint32_t* sums; /* of all maps */
+    const uint8_t* rows;  /* one a row of places */
+} AcdfPortalTable;
+
+/* A portal that a place sees; none of its tangents is larger than this, and none of its sides shorter in a map. */
+#define ACDF_STEEPEST 0x1p12
+#define ACDF_THINNEST 0x1p-12
+
+typedef struct AcdfWindow {
+    double low[2], high[2]; /* tangents of its sides, along the axes of its map */
+    double weight;          /* of all pieces */
+    uint32_t map;
+    float piece[ACDF_MAX_PORTAL_PIECES][ACDF_MAX_PORTAL_PIECES];   /* weights, column by column */
+    float density[ACDF_MAX_PORTAL_PIECES][ACDF_MAX_PORTAL_PIECES]; /* of weight, for 1 in the map */
+} AcdfWindow;
+
+typedef struct AcdfWindows {
+    AcdfPortalTable table;
+    int count;     /* 0: only the row is drawn, and the rest is not set */
+    double of_row; /* the share that the row draws, in (0, 1) */
+    double weight; /* of all windows, > 0 */
+    AcdfWindow window[ACDF_MAX_PORTALS];
+} AcdfWindows;
+
+/* The place of a tangent on an axis of a map of `size` cells, and back. */
+ACDF_FN double acdf_bend(double tangent, double size) {
+    return 0.5 * size * (1.0 + tangent / (1.0 + fabs(tangent)));
+}
+ACDF_FN double acdf_unbend(double at, double size) {
+    const double x = 2.0 * at / size - 1.0;
+    return x / (1.0 - fabs(x));
+}
+
+ACDF_FN double acdf_dot3(const float a[3], const double b[3]) {
+    return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
+}
+
+/* The cell of a place on an axis: the last one where it lies on the upper end. */
+ACDF_FN uint32_t acdf_map_cell(double at, uint32_t size) {
+    const uint32_t cell = (uint32_t)at;
+    return cell < size ? cell : size - 1;
+}
+
+/* The light of a map below and left of a place, linear within cells. */
+ACDF_FN double acdf_map_sum(const uint32_t* sums, uint32_t size, double x, double y) {
+    const uint32_t column = acdf_map_cell(x, size), row = acdf_map_cell(y, size);
+    const uint32_t* at = sums + (size_t)row * (size + 1) + column;
+    const double s = x - (double)column, t = y - (double)row;
+    const double lower = (double)at[0] + s * ((double)at[1] - (double)at[0]);
+    const double upper = (double)at[size + 1] + s * ((double)at[size + 2] - (double)at[size + 1]);
+    return lower + t * (upper - lower);
+}
+
+/* The light of a cell, exactly. */
+ACDF_FN uint32_t acdf_map_light(const uint32_t* sums, uint32_t size, uint32_t column, uint32_t row) {
+    const uint32_t* at = sums + (size_t)row * (size + 1) + column;
+    return (at[size + 2] - at[size + 1]) - (at[1] - at[0]);
+}
+
+ACDF_FN const uint32_t* acdf_window_sums(const AcdfPortalTable* table, uint32_t map) {
+    const size_t side = (size_t)table->header->size + 1;
+    return table->sums + map * side * side;
+}
+
+/* The bytes of a cell of places. */
+ACDF_FN const uint8_t* acdf_portal_row(const AcdfPortalTable* table, const AcdfPlaceTable* places,
+                                       const uint8_t* row) {
+    const AcdfPortals* header = table->header;
+    const size_t of_place = (size_t)1 + places->light_count + places->header->column_count;
+    const size_t own = (size_t)1 + (size_t)header->portal_count * header->pieces * header->pieces;
+    return table->rows + (size_t)(row - places->rows) / of_place * own;
+}
+
+/* Where a portal is seen from a point; 0 where it is not, or too thin. */
+ACDF_FN int acdf_window_sides(const AcdfPortalTable* table, const AcdfPortal* portal, const double from[3],
+                              AcdfWindow* out) {
+    const AcdfPortalMap* map = &table->maps[portal->map];
+    const double size = (double)table->header->size;
+    double corner[3], distance;
+    int k;
+    for (k = 0; k < 3; ++k) corner[k] = (double)portal->corner[k] - from[k];
+    distance = acdf_dot3(map->axis[2], corner);
+    if (!(distance > 0.0)) return 0;
+    for (k = 0; k < 2; ++k) {
+        const double low = acdf_dot3(map->axis[k], corner), high = low + (double)portal->sides[k];
+        out->low[k] = low / distance;
+        out->high[k] = high / distance;
+        if (!(out->low[k] > -ACDF_STEEPEST && out->high[k] < ACDF_STEEPEST &&
+              acdf_bend(out->high[k], size) - acdf_bend(out->low[k], size) > ACDF_THINNEST))
+            return 0;
+    }
+    out->map = portal->map;
+    return 1;
+}
+
+/* The side of a piece: the tangent at `i` of `pieces` steps. */
+ACDF_FN double acdf_piece_side(const AcdfWindow* window, int axis, uint32_t i, uint32_t pieces) {
+    if (i == pieces) return window->high[axis];
+    return window->low[axis] + (window->high[axis] - window->low[axis]) * ((double)i / (double)pieces);
+}
+
+/* What the cells of a place see of each piece of a portal, whose bytes begin at `first` of each row. */
+ACDF_FN void acdf_window_visible(const AcdfPlaceMixture* place, const uint8_t** rows, uint32_t first,
+                                 uint32_t count, double* out) {
+    uint32_t c;
+    int i;
+    for (c = 0; c < count; ++c) out[c] = 0.0;
+    for (i = 0; i < place->count; ++i)
+        for (c = 0; c < count; ++c) out[c] += place->weight[i] * acdf_visibility(rows[i][first + c]);
+}
+
+/* Weighs the pieces of a window: its light, times the mean of the cosines at the corners, times what is visible. */
+ACDF_FN void acdf_window_weigh(const AcdfPortalTable* table, const double normal[3], const double* visible,
+                               AcdfWindow* window) {
+    const AcdfPortalMap* map = &table->maps[window->map];
+    const uint32_t* sums = acdf_window_sums(table, window->map);
+    const uint32_t size = table->header->size, pieces = table->header->pieces;
+    double n[3], below[2][ACDF_MAX_PORTAL_PIECES + 1], cosine[2][ACDF_MAX_PORTAL_PIECES + 1];
+    uint32_t i, j, k;
+    window->weight = 0.0;
+    for (k = 0; k < 3; ++k) n[k] = acdf_dot3(map->axis[k], normal);
+    for (i = 0; i <= pieces; ++i) { /* column by column of corners: those before, and these */
+        const double x = acdf_piece_side(window, 0, i, pieces), at = acdf_bend(x, (double)size);
+        const int now = (int)(i & 1u), before = 1 - now;
+        for (j = 0; j <= pieces; ++j) {
+            const double y = acdf_piece_side(window, 1, j, pieces);
+            const double height = n[0] * x + n[1] * y + n[2];
+            below[now][j] = acdf_map_sum(sums, size, at, acdf_bend(y, (double)size));
+            cosine[now][j] = height > 0.0 ? height / sqrt(1.0 + x * x + y * y) : 0.0;
+        }
+        for (j = 0; i > 0 && j < pieces; ++j) {
+            const double light = (below[now][j + 1] - below[now][j]) - (below[before][j + 1] - below[before][j]);
+            const double density =
+                (cosine[now][j + 1] + cosine[now][j] + (cosine[before][j + 1] + cosine[before][j])) *
+                (0.25 * (double)map->unit) * visible[(i - 1) * pieces + j];
+            const float weight = (float)(light > 0.0 ? density * light : 0.0);
+            window->piece[i - 1][j] = weight;
+            window->density[i - 1][j] = (float)(weight > 0.0f ? density : 0.0);
+            window->weight += (double)weight;
+        }
+    }
+}
+
+/* The windows of a place, which lies in cells, and a normal. */
+ACDF_FN void acdf_windows_at(const AcdfPortalTable* table, const AcdfPlaceTable* places,
+                             const AcdfPlaceMixture* place, const float position[3], const float normal[3],
+                             AcdfWindows* out) {
+    const uint32_t pieces = table->header->pieces * table->header->pieces;
+    const uint8_t* rows[ACDF_MAX_PLACES_MIXED];
+    double x[6], visible[ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_PIECES];
+    uint32_t k;
+    int i;
+    out->count = 0;
+    out->of_row = out->weight = 0.0;
+    for (i = 0; i < place->count; ++i) {
+        rows[i] = acdf_portal_row(table, places, place->row[i]);
+        out->of_row += place->weight[i] * ((double)rows[i][0] + 1.0) * (1.0 / 256.0);
+    }
+    if (!(out->of_row < 1.0) || !acdf_place_coordinates(places, position, normal, x)) return;
+    out->table = *table;
+    for (k = 0; k < table->header->portal_count; ++k) {
+        AcdfWindow* window = &out->window[out->count];
+        if (!acdf_window_sides(table, &table->portals[k], x, window)) continue;
+        acdf_window_visible(place, rows, 1 + k * pieces, pieces, visible);
+        acdf_window_weigh(table, x + 3, visible, window);
+        if (!(window->weight > 0.0 && acdf_is_finite(window->weight))) continue;
+        out->weight += window->weight;
+        ++out->count;
+    }
+    if (!acdf_is_finite(out->weight)) out->count = 0;
+}
+
+/* Of the densities of windows and row together. */
+ACDF_FN float acdf_windows_mixed(const AcdfWindows* windows, double of_windows, float of_row) {
+    const double pdf = windows->of_row * (double)of_row + (1.0 - windows->of_row) * of_windows;
+    if (!(pdf > 0.0)) return 0.0f;
+    return (float)acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38);
+}
+
+/* The weight per steradian of a unit direction in a window. */
+ACDF_FN double acdf_window_density(const AcdfPortalTable* table, const AcdfWindow* window, const double d[3]) {
+    const AcdfPortalMap* map = &table->maps[window->map];
+    const uint32_t size = table->header->size, pieces = table->header->pieces;
+    const double z = acdf_dot3(map->axis[2], d);
+    double along[2], slope;
+    uint32_t cell[2], piece[2];
+    int k;
+    if (!(z > 0.0)) return 0.0;
+    for (k = 0; k < 2; ++k) {
+        double t;
+        along[k] = acdf_dot3(map->axis[k], d);
+        t = along[k] / z;
+        if (!(t >= window->low[k] && t <= window->high[k])) return 0.0;
+        piece[k] =
+            acdf_map_cell((t - window->low[k]) / (window->high[k] - window->low[k]) * (double)pieces, pieces);
+        cell[k] = acdf_map_cell(acdf_bend(t, (double)size), size);
+    }
+    slope = (z + fabs(along[0])) * (z + fabs(along[1]));
+    return (double)window->density[piece[0]][piece[1]] *
+           (double)acdf_map_light(acdf_window_sums(table, window->map), size, cell[0], cell[1]) *
+           (0.25 * (double)size * (double)size) * z / (slope * slope);
+}
+
+/* Density per steradian of row and windows together; `row`: that of the row. */
+ACDF_FN float acdf_windows_pdf(const AcdfWindows* windows, const float direction[3], float row) {
+    double d[3], size, sum = 0.0;
+    float given[3];
+    int i;
+    acdf_as_given(direction, given);
+    for (i = 0; i < 3; ++i) d[i] = given[i];
+    size = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    if (!(size > 0.9995 && size < 1.0005)) return 0.0f;
+    for (i = 0; i < windows->count; ++i) sum += acdf_window_density(&windows->table, &windows->window[i], d);
+    return acdf_windows_mixed(windows, sum / windows->weight, row);
+}
+
+/* Whether u[0] draws through a window, not by the row; what is left of it takes its place. */
+ACDF_FN int acdf_windows_choose(const AcdfWindows* windows, double* u) {
+    if (u[0] < windows->of_row) {
+        u[0] = acdf_unit_interval(u[0] / windows->of_row);
+        return 0;
+    }
+    u[0] = acdf_unit_interval((u[0] - windows->of_row) / (1.0 - windows->of_row));
+    return 1;
+}
+
+/* The one of `count` parts of weights, some > 0, that *u of all draws; what is left of it takes its place. */
+ACDF_FN uint32_t acdf_draw_part(const double* weight, uint32_t count, double* u) {
+    double x = 0.0;
+    uint32_t i, last = 0;
+    for (i = 0; i < count; ++i) x += weight[i];
+    x *= *u;
+    for (i = 0; i < count; ++i) {
+        if (!(weight[i] > 0.0)) continue;
+        last = i;
+        if (x < weight[i]) break;
+        x -= weight[i];
+    }
+    *u = i < count ? acdf_unit_interval(x / weight[last]) : 1.0;
+    return last;
+}
+
+/* Where, from `low` to `high` on axis 0 of a map, u of the light between two places on axis 1 lies before; on axis
+ * 1 the same of the cells of one column. */
+ACDF_FN double acdf_map_column(const uint32_t* sums, uint32_t size, const double low[2], const double high[2],
+                               double u) {
+    const double from = acdf_map_sum(sums, size, low[0], high[1]) - acdf_map_sum(sums, size, low[0], low[1]);
+    const double to = acdf_map_sum(sums, size, high[0], high[1]) - acdf_map_sum(sums, size, high[0], low[1]);
+    const double sought = from + u * (to - from);
+    uint32_t first = acdf_map_cell(low[0], size), last = acdf_map_cell(high[0], size);
+    double a, b, at_a, at_b;
+    while (first < last) { /* the last column that begins with no more */
+        const uint32_t middle = first + (last - first + 1) / 2;
+        const double x = (double)middle;
+        if (acdf_map_sum(sums, size, x, high[1]) - acdf_map_sum(sums, size, x, low[1]) <= sought) first = middle;
+        else last = middle - 1;
+    }
+    a = low[0] > (double)first ? low[0] : (double)first;
+    b = high[0] < (double)first + 1.0 ? high[0] : (double)first + 1.0;
+    at_a = acdf_map_sum(sums, size, a, high[1]) - acdf_map_sum(sums, size, a, low[1]);
+    at_b = acdf_map_sum(sums, size, b, high[1]) - acdf_map_sum(sums, size, b, low[1]);
+    return at_b > at_a ? a + (b - a) * acdf_clamp((sought - at_a) / (at_b - at_a), 0.0, 1.0) : a;
+}
+ACDF_FN double acdf_map_below(const uint32_t* sums, uint32_t size, uint32_t column, double y) {
+    const uint32_t row = acdf_map_cell(y, size);
+    const uint32_t* at = sums + (size_t)row * (size + 1) + column;
+    const double lower = (double)(at[1] - at[0]), upper = (double)(at[size + 2] - at[size + 1]);
+    return lower + (y - (double)row) * (upper - lower);
+}
+ACDF_FN double acdf_map_row(const uint32_t* sums, uint32_t size, uint32_t column, double low, double high,
+                            double u) {
+    const double from = acdf_map_below(sums, size, column, low), to = acdf_map_below(sums, size, column, high);
+    const double sought = from + u * (to - from);
+    uint32_t first = acdf_map_cell(low, size), last = acdf_map_cell(high, size);
+    double a, b, at_a, at_b;
+    while (first < last) {
+        const uint32_t middle = first + (last - first + 1) / 2;
+        if (acdf_map_below(sums, size, column, (double)middle) <= sought) first = middle;
+        else last = middle - 1;
+    }
+    a = low > (double)first ? low : (double)first;
+    b = high < (double)first + 1.0 ? high : (double)first + 1.0;
+    at_a = acdf_map_below(sums, size, column, a);
+    at_b = acdf_map_below(sums, size, column, b);
+    return at_b > at_a ? a + (b - a) * acdf_clamp((sought - at_a) / (at_b - at_a), 0.0, 1.0) : a;
+}
+
+/* Of a tangent drawn between two sides: so far inside that rounding the direction does not carry it out. */
+ACDF_FN double acdf_inside_piece(double t, double low, double high) {
+    const double steepest = fabs(low) > fabs(high) ? low : high, border = 0x1p-22 * (1.0 + steepest * steepest);
+    if (!(high - low > 2.0 * border)) return 0.5 * (low + high);
+    return acdf_clamp(t, low + border, high - border);
+}
+
+/* Draws a direction in a piece of a window: a column of the map, then a row. */
+ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfWindow* window, const uint32_t piece[2],
+                               const double u[2], float direction[3]) {
+    const AcdfPortalMap* map = &table->maps[window->map];
+    const uint32_t* sums = acdf_window_sums(table, window->map);
+    const uint32_t size = table->header->size, pieces = table->header->pieces;
+    double low[2], high[2], side[2][2], t[2], d[3], at, length;
+    int i;
+    for (i = 0; i < 2; ++i) {
+        side[i][0] = acdf_piece_side(window, i, piece[i], pieces);
+        side[i][1] = acdf_piece_side(window, i, piece[i] + 1, pieces);
+        low[i] = acdf_bend(side[i][0], (double)size);
+        high[i] = acdf_bend(side[i][1], (double)size);
+    }
+    at = acdf_map_column(sums, size, low, high, u[0]);
+    t[0] = acdf_inside_piece(acdf_unbend(at, (double)size), side[0][0], side[0][1]);
+    at = acdf_map_row(sums, size, acdf_map_cell(at, size), low[1], high[1], u[1]);
+    t[1] = acdf_inside_piece(acdf_unbend(at, (double)size), side[1][0], side[1][1]);
+    for (i = 0; i < 3; ++i)
+        d[i] = t[0] * (double)map->axis[0][i] + t[1] * (double)map->axis[1][i] + (double)map->axis[2][i];
+    length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (i = 0; i < 3; ++i) direction[i] = (float)(d[i] / length);
+}
+
+/* Draws a direction through a window: it, a column and a row of its pieces, then in the piece. */
+ACDF_FN void acdf_windows_sample(const AcdfWindows* windows, double* u, float direction[3]) {
+    const uint32_t pieces = windows->table.header->pieces;
+    const AcdfWindow* window;
+    double weight[ACDF_MAX_PORTALS];
+    uint32_t piece[2], i, j;
+    for (i = 0; i < (uint32_t)windows->count; ++i) weight[i] = windows->window[i].weight;
+    window = &windows->window[acdf_draw_part(weight, (uint32_t)windows->count, &u[0])];
+    for (i = 0; i < pieces; ++i)
+        for (weight[i] = 0.0, j = 0; j < pieces; ++j) weight[i] += (double)window->piece[i][j];
+    piece[0] = acdf_draw_part(weight, pieces, &u[0]);
+    for (j = 0; j < pieces; ++j) weight[j] = (double)window->piece[piece[0]][j];
+    piece[1] = acdf_draw_part(weight, pieces, &u[1]);
+    acdf_piece_sample(&windows->table, window, piece, u, direction);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

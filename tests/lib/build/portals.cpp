@@ -1,0 +1,312 @@
+// Files of places with portals: a room with a window, in the light of a smooth sky. Sums over the window judge
+// them.
+#include <acdf/builder.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace acdf;
+using builder::PlacePoint;
+
+constexpr double kPi = 3.14159265358979323846;
+
+double light_from(const double d[3]) {
+    return 0.4 + 0.3 * d[2] + 2.0 * std::exp(-6.0 * ((d[0] - 0.8) * (d[0] - 0.8) + (d[1] - 0.5) * (d[1] - 0.5)));
+}
+
+const builder::Target& sky() {
+    static const builder::Target made = [] {
+        constexpr int columns = 128, rows = 64;
+        std::vector<float> rgb;
+        for (int r = 0; r < rows; ++r)
+            for (int c = 0; c < columns; ++c) {
+                const double theta = kPi * (r + 0.5) / rows, phi = kPi - 2.0 * kPi * (c + 0.5) / columns;
+                const double d[3] = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                     std::cos(theta)};
+                rgb.insert(rgb.end(), 3, float(light_from(d)));
+            }
+        builder::Pixels pixels;
+        pixels.data = rgb.data();
+        pixels.width = columns;
+        pixels.height = rows;
+        builder::Target out;
+        EXPECT_TRUE(builder::Target::from(pixels, {}, out).ok());
+        return out;
+    }();
+    return made;
+}
+
+/// A hole in a wall at x = 2 (axis 0) or y = 2 (axis 1), from low to high along the other one and upwards.
+struct Hole {
+    int axis;
+    double low[2], high[2];
+
+    /// Whether a ray from inside of the room leaves it here.
+    bool holds(const double from[3], const double d[3]) const {
+        if (!(d[axis] > 0.0)) return false;
+        const double t = (2.0 - from[axis]) / d[axis], side = from[1 - axis] + t * d[1 - axis],
+                     z = from[2] + t * d[2];
+        return side > low[0] && side < high[0] && z > low[1] && z < high[1];
+    }
+};
+const Hole kWindow{0, {-1.0, 0.6}, {0.4, 1.6}}, kHalf{0, {-1.0, 0.6}, {-0.4, 1.6}},
+    kDoor{1, {-0.5, 0.0}, {0.4, 1.5}};
+
+/// A room from -2 to 2, 2 high, with holes.
+using Room = std::vector<Hole>;
+
+bool leaves(const Room& room, const float p[3], const float direction[3]) {
+    const double from[3] = {double{p[0]}, double{p[1]}, double{p[2]}},
+                 d[3] = {double{direction[0]}, double{direction[1]}, double{direction[2]}};
+    return std::any_of(room.begin(), room.end(), [&](const Hole& hole) { return hole.holds(from, d); });
+}
+
+/// On the floor, the wall across from the window, and a wall beside it.
+bool point_of_room(std::uint64_t index, PlacePoint& point) {
+    std::uint64_t state = index; // SplitMix64 (Steele et al. 2014)
+    const auto u = [&] {
+        std::uint64_t z = state += 0x9E3779B97F4A7C15u;
+        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+        return float(double((z ^ z >> 31) >> 11) * 0x1p-53);
+    };
+    const float a = 3.9f * u() - 1.95f, b = u();
+    if (index % 3 == 0) point = {{-1.99f, a, 0.02f + 1.95f * b}, {1.0f, 0.0f, 0.0f}};
+    else if (index % 3 == 1) point = {{a, -1.99f, 0.02f + 1.95f * b}, {0.0f, 1.0f, 0.0f}};
+    else point = {{a, 3.9f * b - 1.95f, 0.01f}, {0.0f, 0.0f, 1.0f}};
+    return true;
+}
+
+builder::Portal portal_of(const Hole& hole) {
+    const float low[2] = {float(hole.low[0]), float(hole.low[1])},
+                size[2] = {float(hole.high[0]) - low[0], float(hole.high[1]) - low[1]};
+    if (hole.axis == 0) return {{2.0f, low[0], low[1]}, {0.0f, size[0], 0.0f}, {0.0f, 0.0f, size[1]}};
+    return {{low[0], 2.0f, low[1]}, {0.0f, 0.0f, size[1]}, {size[0], 0.0f, 0.0f}};
+}
+
+builder::LocalOptions of_room(std::vector<builder::Portal> portals, const Room& room = {kWindow}) {
+    builder::LocalOptions out;
+    out.goal = builder::Goal::of_budget(64 << 10);
+    out.places.point = point_of_room;
+    out.places.occluded = [room](const PlacePoint& p, const float* d) { return !leaves(room, p.position, d); };
+    out.places.portals = std::move(portals);
+    return out;
+}
+
+struct RoomFile {
+    builder::Local local;
+    File file;
+
+    explicit RoomFile(const builder::LocalOptions& options, int threads = 0) {
+        builder::Control control;
+        control.threads = threads;
+        const builder::Status status = builder::local(sky(), options, local, control);
+        EXPECT_TRUE(status.ok()) << status.message;
+        EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+    }
+    LocalEnvironmentView view() const { return file.local(); }
+};
+/// Made by one thread.
+const RoomFile& windowed() {
+    static const RoomFile made(of_room({portal_of(kWindow)}), 1);
+    return made;
+}
+
+double cosine_of(const PlacePoint& point, const float d[3]) {
+    return double{point.normal[0]} * double{d[0]} + double{point.normal[1]} * double{d[1]} +
+           double{point.normal[2]} * double{d[2]};
+}
+
+/// What arrives at a point through holes, and the variance of a sample: sums over the tangents of each.
+struct Arrives {
+    double irradiance = 0.0, variance = 0.0;
+    int lost = 0;
+};
+Arrives arrives(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const PlacePoint& point,
+                const Room& room) {
+    constexpr int steps = 96;
+    Arrives out;
+    double square = 0.0;
+    for (const Hole& hole : room) {
+        const int other = 1 - hole.axis;
+        const double x = 2.0 - double{point.position[hole.axis]},
+                     low[2] = {(hole.low[0] - double{point.position[other]}) / x,
+                               (hole.low[1] - double{point.position[2]}) / x},
+                     size[2] = {(hole.high[0] - hole.low[0]) / x, (hole.high[1] - hole.low[1]) / x};
+        for (int i = 0; i < steps; ++i)
+            for (int k = 0; k < steps; ++k) {
+                const double a = low[0] + size[0] * (i + 0.5) / steps, b = low[1] + size[1] * (k + 0.5) / steps,
+                             length = std::sqrt(1.0 + a * a + b * b),
+                             angle = size[0] * size[1] / (steps * steps * length * length * length);
+                double w[3] = {};
+                w[hole.axis] = 1.0 / length;
+                w[other] = a / length;
+                w[2] = b / length;
+                const float d[3] = {float(w[0]), float(w[1]), float(w[2])};
+                const double cosine = cosine_of(point, d);
+                if (!(cosine > 0.0)) continue;
+                const double f = light_from(w) * cosine, p = double{view.pdf(at, d)};
+                out.irradiance += f * angle;
+                out.lost += !(p > 0.0);
+                if (p > 0.0) square += f * f / p * angle;
+            }
+    }
+    out.variance = square - out.irradiance * out.irradiance;
+    return out;
+}
+
+/// Monte Carlo against sums, in standard errors: the mean of all points, and the root of the mean square.
+void expect_as_summed(const RoomFile& made, const Room& room, int count, double spread) {
+    constexpr int samples = 1000;
+    std::mt19937_64 random(11);
+    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
+    double sum = 0.0, square = 0.0;
+    for (int i = 0; i < count; ++i) {
+        PlacePoint point;
+        point_of_room(1000003 + std::uint64_t(i), point);
+        const AcdfLocalPoint at = made.view().at(point.position, point.normal);
+        const Arrives truth = arrives(made.view(), at, point, room);
+        EXPECT_EQ(truth.lost, 0);
+        double mean = 0.0;
+        for (int k = 0; k < samples; ++k) {
+            const DirectionSample s = made.view().sample(at, uniform(), uniform());
+            ASSERT_GT(s.pdf, 0.0f);
+            ASSERT_EQ(made.view().pdf(at, s.direction), s.pdf);
+            const double cosine = cosine_of(point, s.direction);
+            if (!(cosine > 0.0) || !leaves(room, point.position, s.direction)) continue;
+            const double d[3] = {double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}};
+            mean += light_from(d) * cosine / double{s.pdf} / samples;
+        }
+        const double z = (mean - truth.irradiance) / std::sqrt(truth.variance / samples);
+        sum += z;
+        square += z * z;
+    }
+    EXPECT_LT(std::fabs(sum / std::sqrt(count)), 4.0);
+    EXPECT_NEAR(std::sqrt(square / count), 1.0, spread);
+}
+
+TEST(PortalFiles, AreUnbiased) { expect_as_summed(windowed(), {kWindow}, 200, 0.2); }
+TEST(PortalFiles, AreUnbiasedWhereHalfOfTheWindowIsShut) { expect_as_summed(windowed(), {kHalf}, 100, 0.3); }
+/// What comes in there is drawn rarely: means of so few samples are far from normal.
+TEST(PortalFiles, AreUnbiasedWhereADoorIsOpened) { expect_as_summed(windowed(), {kWindow, kDoor}, 100, 1.0); }
+
+double mean_variance(const RoomFile& made) {
+    double sum = 0.0;
+    for (int i = 0; i < 150; ++i) {
+        PlacePoint point;
+        point_of_room(2000003 + std::uint64_t(i), point);
+        const Arrives at = arrives(made.view(), made.view().at(point.position, point.normal), point, {kWindow});
+        sum += at.variance / (at.irradiance * at.irradiance) / 150.0;
+    }
+    return sum;
+}
+
+TEST(PortalFiles, HaveLessNoiseThanPlacesAlone) {
+    const RoomFile places(of_room({}));
+    EXPECT_TRUE(places.view().has_places());
+    EXPECT_FALSE(places.view().has_portals());
+    EXPECT_TRUE(windowed().view().has_portals());
+    EXPECT_LE(windowed().local.bytes.size(), 192u << 10);
+    const double with = mean_variance(windowed()), without = mean_variance(places);
+    EXPECT_LT(with, 0.2);
+    EXPECT_LT(3.0 * with, without);
+}
+
+TEST(PortalFiles, LoseNothingThatANormalMaySee) {
+    std::mt19937_64 random(7);
+    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
+    const auto direction = [&](float out[3]) {
+        const double z = 2.0 * uniform() - 1.0, phi = 2.0 * kPi * uniform(), r = std::sqrt(1.0 - z * z);
+        out[0] = float(r * std::cos(phi));
+        out[1] = float(r * std::sin(phi));
+        out[2] = float(z);
+    };
+    for (int i = 0; i < 100000; ++i) {
+        float n[3], d[3];
+        direction(n);
+        direction(d);
+        const float x[3] = {float(4.2 * uniform() - 2.1), float(4.2 * uniform() - 2.1),
+                            float(2.2 * uniform() - 0.1)};
+        if (windowed().view().pdf(n, d) > 0.0f) {
+            ASSERT_GT(windowed().view().pdf(windowed().view().at(x, n), d), 0.0f);
+        }
+    }
+}
+
+/// In a mirrored scene of twice the size the same window has the same samples.
+TEST(PortalFiles, AreThoseOfTheScenesOwnCoordinates) {
+    builder::LocalOptions options = of_room({portal_of(kWindow)});
+    options.goal = builder::Goal::of_budget(16 << 10);
+    const float mirrored[3][4] = {{-0.5f, 0, 0, 1}, {0, 0.5f, 0, 0}, {0, 0, 0.5f, 0}};
+    for (int k = 0; k < 3; ++k) std::copy_n(mirrored[k], 4, options.places.transform[k]);
+    builder::Portal& portal = options.places.portals[0]; // x = 1 - x'/2
+    portal.corner[0] = 2.0f * (1.0f - portal.corner[0]);
+    for (int k = 1; k < 3; ++k) {
+        portal.corner[k] *= 2.0f;
+        portal.across[k] *= 2.0f;
+        portal.up[k] *= 2.0f;
+    }
+    std::swap(portal.across, portal.up); // light comes from the other side
+    const RoomFile other(options);
+    PlacePoint point;
+    point_of_room(17, point);
+    const float there[3] = {2.0f * (1.0f - point.position[0]), 2.0f * point.position[1], 2.0f * point.position[2]};
+    const AcdfLocalPoint a = windowed().view().at(point.position, point.normal),
+                         b = other.view().at(there, point.normal);
+    ASSERT_EQ(a.windows.count, 1);
+    ASSERT_EQ(b.windows.count, 1);
+    for (int k = 0; k < 2; ++k) {
+        EXPECT_NEAR(a.windows.window[0].low[k], b.windows.window[0].low[k], 1e-5);
+        EXPECT_NEAR(a.windows.window[0].high[k], b.windows.window[0].high[k], 1e-5);
+    }
+}
+
+TEST(PortalFiles, AreTheSameForAnyNumberOfThreads) {
+    builder::Local again;
+    builder::Control control;
+    control.threads = 3;
+    ASSERT_TRUE(builder::local(sky(), of_room({portal_of(kWindow)}), again, control).ok());
+    EXPECT_TRUE(again.bytes == windowed().local.bytes);
+}
+
+TEST(PortalFiles, MistakesAreValues) {
+    using Code = builder::ErrorCode;
+    const auto told = [&](builder::LocalOptions o) {
+        builder::Local result;
+        o.goal = builder::Goal::of_budget(16 << 10);
+        const builder::Status status = builder::local(sky(), o, result);
+        EXPECT_TRUE(result.bytes.empty());
+        EXPECT_NE(status.code, Code::none);
+        return std::string(status.message);
+    };
+    const builder::Portal good = portal_of(kWindow);
+    builder::Portal flat = good, nan = good, skew = good, huge = good, turned = good, outside = good;
+    std::fill_n(flat.up, 3, 0.0f);
+    nan.corner[0] = std::numeric_limits<float>::quiet_NaN();
+    skew.up[1] = 0.3f;
+    huge.across[1] = std::numeric_limits<float>::infinity();
+    std::swap(turned.across, turned.up);
+    outside.corner[1] = 50.0f;
+    EXPECT_NE(told(of_room({good, flat})).find("portal 2 has no area"), std::string::npos);
+    EXPECT_NE(told(of_room({nan})).find("not finite"), std::string::npos);
+    EXPECT_NE(told(of_room({skew})).find("right angles"), std::string::npos);
+    EXPECT_NE(told(of_room({huge})).find("not finite"), std::string::npos);
+    EXPECT_NE(told(of_room({turned})).find("no light arrives through portal 1"), std::string::npos);
+    EXPECT_NE(told(of_room({good, outside})).find("no light arrives through portal 2"), std::string::npos);
+    EXPECT_NE(told(of_room(std::vector<builder::Portal>(9, good))).find("8 portals"), std::string::npos);
+    builder::LocalOptions stretched = of_room({good}), alone = of_room({good});
+    stretched.places.transform[0][0] = 2.0f;
+    EXPECT_NE(told(stretched).find("keep angles"), std::string::npos);
+    alone.places.point = {};
+    alone.places.occluded = {};
+    EXPECT_NE(told(alone).find("with places"), std::string::npos);
+}
+
+} // namespace

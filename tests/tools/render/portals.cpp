@@ -1,0 +1,110 @@
+// Windows that files of places know: told by --portal and --portals, and drawn through in pictures.
+#include "tests/tools/render/scenes.h"
+
+#include <acdf/reader.h>
+
+#include <nlohmann/json.hpp>
+
+namespace acdf::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The opening in the roof of room(), in its own coordinates.
+constexpr const char* kOpening = "-2,0,2 2,0,2 2,2,2";
+constexpr const char* kOpeningYUp = "0,2,-2 0,2,2 2,2,2";
+
+struct PortalFolder : SceneFolder {
+    PortalFolder() : SceneFolder(mesh_scene("room.obj")) { write_text(*this / "room.obj", room()); }
+
+    Result local(const std::string& output, const std::vector<std::string>& more, const char* mesh = "room.obj") {
+        std::vector<std::string> arguments{"local", *this / "probe.exr", "-o",        *this / output, "--budget",
+                                           "96KiB", "--scene",           *this / mesh};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_acdf(arguments);
+    }
+};
+
+struct Opened {
+    File file;
+
+    explicit Opened(const std::string& path) { EXPECT_TRUE(File::open(path.c_str(), file).ok()) << path; }
+    AcdfLocal data() const { return file.local().data(); }
+};
+
+TEST(MeshPortals, AreToldByCornersAndByAScene) {
+    PortalFolder folder;
+    const Result one = folder.local("one.acdf", {"--places", "--portal", kOpening}),
+                 two = folder.local("two.acdf", {"--places", "--portals", folder / "scene.json"});
+    ASSERT_EQ(one.code, 0) << one.err;
+    ASSERT_EQ(two.code, 0) << two.err;
+    write_text(folder / "y.obj", room(true));
+    const Result y_up = folder.local("y.acdf", {"--scene-up", "y", "--places", "--portal", kOpeningYUp}, "y.obj");
+    ASSERT_EQ(y_up.code, 0) << y_up.err;
+    const Opened a(folder / "one.acdf"), b(folder / "two.acdf"), c(folder / "y.acdf");
+    ASSERT_TRUE(a.file.local().has_portals());
+    for (const Opened* other : {&b, &c}) {
+        ASSERT_TRUE(other->file.local().has_portals());
+        ASSERT_EQ(other->data().portals.header->portal_count, 1u);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(a.data().portals.portals->corner[k], other->data().portals.portals->corner[k], 1e-5);
+        for (int k = 0; k < 2; ++k)
+            EXPECT_NEAR(a.data().portals.portals->sides[k], other->data().portals.portals->sides[k], 1e-5);
+    }
+    const float x[3] = {0.5f, -1, 0.1f}, y[3] = {-1, 0.1f, 0.5f}, up[3] = {0, 0, 1};
+    EXPECT_EQ(a.file.local().at(x, up).windows.count, 1);
+    EXPECT_EQ(c.file.local().at(y, up).windows.count, 1);
+
+    const Json info = Json::parse(run_acdf({"info", "--json", folder / "one.acdf"}).out);
+    EXPECT_EQ(info.at("local").at("portals").at("count"), 1);
+    EXPECT_NE(std::string(info.at("options")).find("--places --portal \"-2,0,2 2,0,2 2,2,2\""), std::string::npos);
+    const Result text = run_acdf({"info", folder / "one.acdf"});
+    EXPECT_NE(text.out.find("1 portals, 1 maps"), std::string::npos) << text.out;
+    EXPECT_EQ(run_acdf({"validate", folder / "one.acdf"}).code, 0);
+    EXPECT_EQ(run_acdf({"plot", folder / "one.acdf", "-o", folder / "plot.png", "--place", "0,-1,0.1", "--normal",
+                        "0,0,1"})
+                  .code,
+              0);
+
+    const Result measured = run_acdf({"measure", folder / "one.acdf", "--against", folder / "probe.exr", "--scene",
+                                      folder / "room.obj", "--json"});
+    ASSERT_EQ(measured.code, 0) << measured.err;
+    EXPECT_EQ(Json::parse(measured.out).at("places").at("support_violations"), 0);
+}
+
+TEST(MeshPortals, AreDrawnThroughInPictures) {
+    PortalFolder folder;
+    const Result result = run_acdf({"render",       "--scene",     folder / "scene.json",
+                                    "--data",       folder.data(), "-o",
+                                    folder / "out", "--seeds",     "100",
+                                    "--no-timing",  "--json",      "--no-reference",
+                                    "--sampler",    "local:64KiB", "--sampler",
+                                    "places:96KiB", "--sampler",   "places-portals:96KiB",
+                                    "--sequence",   "independent"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    for (const Json& sampler : json.at("samplers"))
+        EXPECT_LT(std::fabs(double(sampler.at("bias_standard_errors"))), 4.5) << sampler.at("sampler");
+}
+
+TEST(MeshPortals, MistakesAreOneLine) {
+    PortalFolder folder;
+    const auto refused = [&](const std::vector<std::string>& options, int code, const std::string& part) {
+        const Result result = folder.local("no.acdf", options);
+        EXPECT_EQ(result.code, code) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        EXPECT_FALSE(std::filesystem::exists(folder / "no.acdf"));
+    };
+    refused({"--portal", kOpening}, 2, "is for --places");
+    refused({"--places", "--portal", "1,2,3"}, 2, "three corners");
+    refused({"--places", "--portal", "-2,0,2 2,0,2 2,2,2 1"}, 2, "three corners");
+    refused({"--places", "--portal", "-2,0,2 2,0,2 2,2,nan"}, 2, "three corners");
+    refused({"--places", "--portal", "-2,0,2 2,0,2 3,2,2"}, 1, "right angles");
+    refused({"--places", "--portal", "-2,0,2 -2,2,2 2,2,2"}, 1, "portal 1");
+    refused({"--places", "--portals", folder / "none.json"}, 1, "none.json");
+    write_text(folder / "bad.json", "{}");
+    refused({"--places", "--portals", folder / "bad.json"}, 1, "bad.json");
+}
+
+} // namespace
+} // namespace acdf::test

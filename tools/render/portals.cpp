@@ -1,0 +1,28 @@
+#include "tools/render/portals.h"
+
+#include <cstddef>
+
+namespace acdf::tools {
+
+builder::Portal told_portal(const builder::Places& places, const measure::Portal& portal) {
+    builder::Portal out;
+    const auto turn_back = [&places](const measure::Vec3& v, float(&told)[3]) { // the transform only turns
+        for (std::size_t i = 0; i < 3; ++i) {
+            double sum = 0.0;
+            for (std::size_t k = 0; k < 3; ++k) sum += double{places.transform[k][i]} * v[k];
+            told[i] = static_cast<float>(sum);
+        }
+    };
+    const auto& t = places.transform;
+    double determinant = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        determinant += double{t[0][i]} * (double{t[1][j]} * double{t[2][k]} - double{t[1][k]} * double{t[2][j]});
+    }
+    turn_back(portal.corner, out.corner);
+    turn_back(portal.across, determinant < 0.0 ? out.up : out.across);
+    turn_back(portal.up, determinant < 0.0 ? out.across : out.up);
+    return out;
+}
+
+} // namespace acdf::tools
