@@ -29,6 +29,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_words.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/groups.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/lobe.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h

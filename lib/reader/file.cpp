@@ -3,6 +3,7 @@
 #include "input_file.h"
 #include "make_brdf_tables.h"
 #include "make_cells.h"
+#include "make_groups.h"
 #include "make_local_tables.h"
 #include "memory.h"
 
@@ -146,6 +147,7 @@ File& File::operator=(File&& other) noexcept {
     metadata_ = std::exchange(other.metadata_, nullptr);
     metadata_count_ = std::exchange(other.metadata_count_, 0);
     cells_ = std::exchange(other.cells_, nullptr);
+    groups_ = std::exchange(other.groups_, nullptr);
     local_tables_ = std::exchange(other.local_tables_, nullptr);
     brdf_tables_ = std::exchange(other.brdf_tables_, nullptr);
     allocator_ = other.allocator_;
@@ -210,8 +212,10 @@ void File::make_tables() noexcept {
     const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
-    if (kind() == ACDF_KIND_ENVIRONMENT)
+    if (kind() == ACDF_KIND_ENVIRONMENT) {
         cells_ = make_cells(environment().data(), tree_units_, most, allocator_, owned_[2]);
+        if (!cells_) groups_ = make_groups(environment().data(), tree_units_, most, allocator_, owned_[2]);
+    }
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
 }
@@ -239,7 +243,7 @@ Text File::metadata(const char* key) const noexcept {
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
-                            cells_, company_, tree_units_});
+                            cells_, company_, tree_units_, groups_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
@@ -253,7 +257,8 @@ LocalEnvironmentView File::local() const noexcept {
                          description_->parameterization,
                          nullptr,
                          company_,
-                         tree_units_};
+                         tree_units_,
+                         nullptr};
     local.company = company_;
     local.bins = bins_;
     local.lights = lights_;

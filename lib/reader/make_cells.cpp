@@ -19,6 +19,7 @@ using u32 = std::uint32_t;
 constexpr u32 kNumberBits = 31;
 constexpr double kNumberSteps = 0x1p31;
 constexpr std::size_t kMostPieces = 65535;
+constexpr std::size_t kLeastBytes = 72; // a cell, with its part of both grids
 // A draw stays this part of its numbers inside its piece: more than a float rounds.
 constexpr double kPart = 0x1p-21;
 // Tables for shaders may be made for minutes: no part of them may be missing.
@@ -31,8 +32,8 @@ public:
         : environment_(environment), sides_(acdf_environment_grid(&environment)),
           most_steps_(2 * std::size_t{tree_units} + 64), total_(total) {}
 
-    /// False where there can be no tables.
-    bool gather();
+    /// False where there can be no tables, or none of at most so many bytes.
+    bool gather(std::size_t most_bytes);
     AcdfCells* assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block);
 
 private:
@@ -51,10 +52,10 @@ private:
     Growable<KeyBox> numbers_, keys_;
 };
 
-bool CellsMaker::gather() {
+bool CellsMaker::gather(std::size_t most_bytes) {
     const Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows},
                         false, false};
-    if (!count(environment_.root)) return false;
+    if (!count(environment_.root) || cells_ * kLeastBytes > most_bytes) return false;
     const std::size_t about = cells_ + cells_ / 16 + 64; // pieces
     if (!(pieces_.reserve(about) && densities_.reserve(about) && numbers_.reserve(about) && keys_.reserve(about)))
         return false;
@@ -255,12 +256,12 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
 AcdfCells* make_cells(const AcdfEnvironment& environment, u32 tree_units, std::size_t most_bytes,
                       const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
     CellsMaker maker(environment, tree_units, false);
-    return maker.gather() ? maker.assemble(most_bytes, allocator, block) : nullptr;
+    return maker.gather(most_bytes) ? maker.assemble(most_bytes, allocator, block) : nullptr;
 }
 
 AcdfCells* make_shader_cells(const AcdfEnvironment& environment, u32 tree_units, AcdfBlock& block) noexcept {
     CellsMaker maker(environment, tree_units, true);
-    return maker.gather() ? maker.assemble(SIZE_MAX, {}, block) : nullptr;
+    return maker.gather(SIZE_MAX) ? maker.assemble(SIZE_MAX, {}, block) : nullptr;
 }
 
 } // namespace acdf

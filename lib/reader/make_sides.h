@@ -19,27 +19,33 @@ struct Cell {
     bool dark, tilted;
 };
 
+/// The part of the cell `above` that segment i of its curve leaves, of cumulative values from low to high.
+inline Cell part_of(const Cell& above, const AcdfCurve& curve, std::uint32_t i, std::uint32_t low,
+                    std::uint32_t high) {
+    const std::uint32_t axis = acdf_curve_axis(&curve), end = acdf_curve_maximum(&curve);
+    const double maximum = end, width = above.high[axis] - above.low[axis];
+    Cell cell = above;
+    cell.dark = high == low;
+    cell.probability *= static_cast<double>(high - low) / maximum;
+    cell.low[axis] = above.low[axis] + width * (low / maximum);
+    if (high != end) cell.high[axis] = above.low[axis] + width * (high / maximum);
+    AcdfRange range = {above.first[axis], above.last[axis], 0.0};
+    acdf_curve_narrow(&curve, i, &range);
+    cell.first[axis] = range.low;
+    cell.last[axis] = range.high;
+    cell.tilted = curve.tilts ? above.tilted || range.tilt != 0.0 : above.tilted;
+    return cell;
+}
+
 /// Calls add(cell) for each cell of the tree at `at`, which lies in the cell `above`, in their order, as long as it
 /// returns true. Returns whether it always did. A path passes at most 64 curves.
 template <class Add>
 bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, const Add& add) {
     const AcdfCurve curve = acdf_curve_at(tree, at);
-    const std::uint32_t axis = acdf_curve_axis(&curve), end = acdf_curve_maximum(&curve);
-    const double maximum = end, width = above.high[axis] - above.low[axis];
     std::uint32_t low = 0;
     for (std::uint32_t i = 0; i < curve.segments; ++i) {
-        const std::uint32_t high = acdf_curve_cumulative(&curve, i + 1);
-        Cell cell = above;
-        cell.dark = high == low;
-        cell.probability *= static_cast<double>(high - low) / maximum;
-        cell.low[axis] = above.low[axis] + width * (low / maximum);
-        if (high != end) cell.high[axis] = above.low[axis] + width * (high / maximum);
-        AcdfRange range = {above.first[axis], above.last[axis], 0.0};
-        acdf_curve_narrow(&curve, i, &range);
-        cell.first[axis] = range.low;
-        cell.last[axis] = range.high;
-        cell.tilted = curve.tilts ? above.tilted || range.tilt != 0.0 : above.tilted;
-        const std::uint32_t link = acdf_curve_link(&curve, i);
+        const std::uint32_t high = acdf_curve_cumulative(&curve, i + 1), link = acdf_curve_link(&curve, i);
+        const Cell cell = part_of(above, curve, i, low, high);
         if (link == 0 ? !add(cell) : !each_cell(tree, at + link, cell, add)) return false;
         low = high;
     }

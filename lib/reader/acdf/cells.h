@@ -57,6 +57,17 @@ typedef struct AcdfPieceEnds {
 
 /* ---- drawing ---------------------------------------------------------------------------------------- */
 
+/* Numbers in [0, 1) in steps of 2^-52, which are the bits of their fractions where 1 is added. Returns 0 for
+ * others.
+ */
+ACDF_INLINE int acdf_number_steps(double u0, double u1, uint64_t n[2]) {
+    const double shifted[2] = {u0 + 1.0, u1 + 1.0};
+    memcpy(n, shifted, sizeof shifted);
+    n[0] ^= 0x3FF0000000000000u;
+    n[1] ^= 0x3FF0000000000000u;
+    return (n[0] | n[1]) >> 52 == 0;
+}
+
 /* d of a number in steps of 2^-52. */
 ACDF_INLINE float acdf_draw_distance(uint64_t number, uint32_t low) {
     return (float)(int64_t)(number - ((uint64_t)low << 21));
@@ -66,16 +77,12 @@ ACDF_INLINE float acdf_draw_distance(uint64_t number, uint32_t low) {
  * walked: for numbers next to the borders of a cell, or not in [0, 1). */
 ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, AcdfDirectionSample* out) {
     const uint32_t* tables = (const uint32_t*)(const void*)cells;
-    const double shifted[2] = {u0 + 1.0, u1 + 1.0}; /* u in steps of 2^-52 are the bits of its fraction */
     const uint16_t* found;
     uint64_t n[2];
     AcdfVector drawn;
     float along, height;
     uint32_t mask;
-    memcpy(n, shifted, sizeof n);
-    n[0] ^= 0x3FF0000000000000u;
-    n[1] ^= 0x3FF0000000000000u;
-    if ((n[0] | n[1]) >> 52) return 0;
+    if (!acdf_number_steps(u0, u1, n)) return 0;
     mask = acdf_squares_find(tables, &cells->numbers, (uint32_t)(n[0] >> 21), (uint32_t)(n[1] >> 21), &found);
     for (; mask; mask &= mask - 1) {
         const uint32_t cell = found[acdf_lowest_bit(mask)];

@@ -49,16 +49,16 @@ ACDF_INLINE float acdf_row_pdf(const double* z, uint32_t columns, const AcdfRang
     return acdf_cell_pdf(p, range[0].high - range[0].low, columns, z[range[1].low] - z[range[1].high], 1.0);
 }
 
-/* acdf_sphere_place but for the rounding of floats. Returns 0, and leaves `out`, next to the borders of a cell or
- * to a pole, and where there are tilts. */
-ACDF_INLINE int acdf_row_place(const double* z, uint32_t columns, const AcdfRange range[2], const double u[2],
-                               double p, AcdfDirectionSample* out) {
+/* The direction of acdf_sphere_place but for the rounding of floats. Returns 0, and leaves `out`, next to the
+ * borders of a cell or to a pole, and where there are tilts. */
+ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const AcdfRange range[2], const double u[2],
+                                   float out[3]) {
     const double border = (double)columns * (ACDF_FLOAT_BORDER / (2.0 * ACDF_PI));
     const double west = u[0] * (double)(range[0].high - range[0].low), x = (double)range[0].low + west;
     const double z0 = z[range[1].low], z1 = z[range[1].high], height = z0 + u[1] * (z1 - z0);
     const double cap = 1.0 - fabs(height), from_pole = ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER;
     const double least = (z0 - height < height - z1 ? z0 - height : height - z1);
-    const double turn = 1.0 - 2.0 * x / (double)columns;
+    const double turn = 1.0 - x * (2.0 / (double)columns); /* the quotient waits for nothing */
     const int32_t quarter = (int32_t)(2.0 * turn + 4.5) - 4; /* as in acdf_sincospi */
     AcdfVector d;
     /* The sine of the angle to the pole is below sqrt(2 cap). */
@@ -68,9 +68,16 @@ ACDF_INLINE int acdf_row_place(const double* z, uint32_t columns, const AcdfRang
         return 0;
     d = acdf_piece_direction((float)((turn - 0.5 * quarter) * ACDF_PI), (float)cap, (uint32_t)quarter & 3u,
                              (uint32_t)(height < 0.0));
-    out->direction[0] = d.x;
-    out->direction[1] = d.y;
-    out->direction[2] = d.z;
+    out[0] = d.x;
+    out[1] = d.y;
+    out[2] = d.z;
+    return 1;
+}
+
+/* The same with its density, in a cell of probability p. */
+ACDF_INLINE int acdf_row_place(const double* z, uint32_t columns, const AcdfRange range[2], const double u[2],
+                               double p, AcdfDirectionSample* out) {
+    if (!acdf_row_direction(z, columns, range, u, out->direction)) return 0;
     out->pdf = acdf_row_pdf(z, columns, range, p);
     return 1;
 }
@@ -90,11 +97,11 @@ ACDF_INLINE int acdf_fold_square(uint32_t columns, uint32_t rows, const float di
                           &square[1]);
 }
 
-/* As acdf_row_place; poles are no borders. */
-ACDF_INLINE int acdf_fold_place(const AcdfGrid* grid, const AcdfRange range[2], const double u[2], double p,
-                                AcdfDirectionSample* out) {
+/* As acdf_row_direction; poles are no borders. */
+ACDF_INLINE int acdf_fold_direction(const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
+                                    float out[3]) {
     const double width[2] = {(double)(range[0].high - range[0].low), (double)(range[1].high - range[1].low)};
-    const double from[2] = {u[0] * width[0], u[1] * width[1]}, half[2] = {0.5, 0.5};
+    const double from[2] = {u[0] * width[0], u[1] * width[1]};
     const double border[2] = {(double)grid->columns * ACDF_FOLD_BORDER, (double)grid->rows * ACDF_FOLD_BORDER};
     AcdfVector d;
     if (from[0] < border[0] || width[0] - from[0] < border[0] || from[1] < border[1] ||
@@ -102,9 +109,17 @@ ACDF_INLINE int acdf_fold_place(const AcdfGrid* grid, const AcdfRange range[2], 
         return 0;
     d = acdf_square_direction((float)(1.0 - 2.0 * ((double)range[0].low + from[0]) / (double)grid->columns),
                               (float)(2.0 * ((double)range[1].low + from[1]) / (double)grid->rows - 1.0));
-    out->direction[0] = d.x;
-    out->direction[1] = d.y;
-    out->direction[2] = d.z;
+    out[0] = d.x;
+    out[1] = d.y;
+    out[2] = d.z;
+    return 1;
+}
+
+/* As acdf_row_place. */
+ACDF_INLINE int acdf_fold_place(const AcdfGrid* grid, const AcdfRange range[2], const double u[2], double p,
+                                AcdfDirectionSample* out) {
+    const double half[2] = {0.5, 0.5};
+    if (!acdf_fold_direction(grid, range, u, out->direction)) return 0;
     out->pdf = acdf_grid_pdf(grid, range, half, p);
     return 1;
 }

@@ -17,6 +17,7 @@
 #include <acdf/cells.h>
 #include <acdf/company.h>
 #include <acdf/grid.h>
+#include <acdf/groups.h>
 #include <acdf/random.h>
 #include <acdf/short_curves.h>
 
@@ -35,6 +36,7 @@ typedef struct AcdfEnvironment {
     const AcdfCells* cells;     /* runtime tables; null: the tree is walked */
     const AcdfCompany* company; /* null: to be used alone */
     uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
+    const AcdfGroups* groups;   /* runtime tables where `cells` would be too large; null: there are none */
 } AcdfEnvironment;
 
 /* The grid that positions lie on. */
@@ -46,11 +48,13 @@ ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
     return grid;
 }
 
-/* acdf_environment_sample by the tree alone. */
+/* acdf_environment_sample without `cells`. */
 ACDF_OUTLINE AcdfDirectionSample acdf_environment_walk_sample(const AcdfEnvironment* env, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(env);
     double u[2], p;
     AcdfRange range[2];
+    AcdfDirectionSample out;
+    if (env->groups && acdf_groups_sample(env->groups, &grid, u0, u1, &out)) return out;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     acdf_sphere_ranges(env->columns, env->rows, range);
@@ -85,12 +89,14 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     return p;
 }
 
-/* acdf_environment_pdf by the tree alone. */
+/* acdf_environment_pdf without `cells`. */
 ACDF_OUTLINE float acdf_environment_walk_pdf(const AcdfEnvironment* env, const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(env);
     AcdfRange range[2];
-    double t[2];
-    const double p = acdf_environment_find(env, direction, range, t, 0);
+    double t[2], p;
+    float pdf;
+    if (env->groups && acdf_groups_pdf(env->groups, &grid, direction, &pdf)) return pdf;
+    p = acdf_environment_find(env, direction, range, t, 0);
     return p > 0.0 ? acdf_grid_pdf(&grid, range, t, p) : 0.0f;
 }
 
