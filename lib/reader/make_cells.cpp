@@ -223,6 +223,7 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
     const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
     SquaresMaker numbers, directions;
     if (!numbers.make(numbers_.data(), count, kNumberBits, work) ||
+        4 * numbers.words() + 3 * pieces_.bytes() / 2 > most_bytes ||
         !directions.make(keys_.data(), count, sides_.key_bits(), work))
         return nullptr;
     if (total_ && !(numbers.complete() && directions.complete())) return nullptr;

@@ -22,9 +22,9 @@ constexpr double kDrawnSteps = 0x1p31;
 constexpr std::size_t kMostGroups = 65535;
 constexpr u32 kMostSteps = 255;                    // of positions, along a group
 constexpr u32 kFewestCells = 16, kMostCells = 256; // in a group, at most
-// Bytes of a cell, and usually of a group beside its blocks, with its part of both grids.
-constexpr std::size_t kCellBytes = sizeof(AcdfGroupCell) + sizeof(float), kGroupBytes = 128;
-constexpr std::size_t kBlockBytes = 4 * ACDF_GROUP_WORDS;
+constexpr std::size_t kCellBytes = sizeof(AcdfGroupCell) + sizeof(float);
+// Bytes of a group with one block, usually: itself, its boxes and its part of both grids.
+constexpr std::size_t kGroupBytes = 248;
 // Where a draw in a cell is told to lie is less than 2^-24 radians off.
 constexpr double kAngleSteps = 0x1p8;
 
@@ -48,6 +48,13 @@ u32 bits_of(u32 count) {
 
 std::size_t whole_lines(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
 
+// Bytes of tables, usually: groups are two thirds full.
+std::size_t about(std::size_t cells, std::size_t most_cells) {
+    const std::size_t groups = cells * 3 / (2 * most_cells) + 1,
+                      blocks = (cells - cells * ACDF_BLOCK_CELLS / most_cells) / ACDF_BLOCK_CELLS;
+    return cells * kCellBytes + groups * kGroupBytes + blocks * 4 * ACDF_GROUP_WORDS;
+}
+
 class GroupsMaker {
 public:
     GroupsMaker(const AcdfEnvironment& environment, u32 tree_units)
@@ -67,6 +74,13 @@ private:
     void add_cell(const AcdfGroup& group, const Cell& cell);
     bool remember_heights();
     bool failed() const;
+    bool square() const { return environment_.parameterization == ACDF_PARAM_OCTAHEDRAL; }
+    bool may_be_grouped(const Cell& box) const;
+    /// Of positions, along a group: floats tell a place in half a turn well enough.
+    u32 most_steps(u32 axis) const {
+        return std::min(kMostSteps, (axis == 0 ? environment_.columns : environment_.rows) / 2);
+    }
+    double angle(const Cell& cell, int axis) const;
     AcdfGroups* assemble(const SquaresMaker& numbers, const SquaresMaker& places, std::size_t words,
                          const AcdfAllocator& allocator, AcdfBlock& block);
 
@@ -77,7 +91,7 @@ private:
     Growable<Surveyed> curves_;
     Growable<AcdfGroup> groups_;
     Growable<KeyBox> numbers_, places_;
-    Growable<u32> boxes_;
+    Growable<u32> boxes_, more_;
     Growable<AcdfGroupCell> cells_;
     Growable<float> densities_;
     Growable<double> heights_;
@@ -111,15 +125,39 @@ bool GroupsMaker::survey(u32 at, u32& cells) {
 }
 
 bool GroupsMaker::remember_heights() {
-    if (environment_.parameterization == ACDF_PARAM_OCTAHEDRAL) return true;
+    if (square()) return true;
     if (environment_.rows > most_steps_ || !heights_.reserve(std::size_t{environment_.rows} + 1)) return false;
     for (u32 row = 0; row <= environment_.rows; ++row) heights_.add(acdf_row_z(row, environment_.rows));
     return sides_.remember(most_steps_);
 }
 
 bool GroupsMaker::failed() const {
-    return groups_.failed() || numbers_.failed() || places_.failed() || boxes_.failed() || cells_.failed() ||
-           densities_.failed();
+    return groups_.failed() || numbers_.failed() || places_.failed() || boxes_.failed() || more_.failed() ||
+           cells_.failed() || densities_.failed();
+}
+
+// At the poles a direction moves faster than its height: cells there are by themselves.
+bool GroupsMaker::may_be_grouped(const Cell& box) const {
+    return box.last[0] - box.first[0] <= most_steps(0) && box.last[1] - box.first[1] <= most_steps(1) &&
+           (square() || (box.first[1] > 0 && box.last[1] < environment_.rows));
+}
+
+// How far, in radians at most, a direction moves by all of a cell, were it as fast everywhere as where it is
+// fastest.
+double GroupsMaker::angle(const Cell& cell, int axis) const {
+    if (axis == 0 || square())
+        return 2.0 * ACDF_PI * (cell.last[axis] - cell.first[axis]) /
+               (axis == 0 ? environment_.columns : environment_.rows);
+    const double low = heights_[cell.first[1]], high = heights_[cell.last[1]];
+    const double z = std::max(std::fabs(low), std::fabs(high));
+    return (low - high) / std::sqrt((1.0 - z) * (1.0 + z));
+}
+
+// Blocks of no cells.
+void add_blocks(Growable<u32>& boxes, std::size_t count) {
+    auto* const bytes = reinterpret_cast<std::int8_t*>(boxes.add(count * ACDF_GROUP_WORDS, 0x7F7F7F7Fu));
+    for (std::size_t side = 1; bytes && side < 8 * count; side += 2) // upper ones: below all
+        std::memset(bytes + ACDF_BLOCK_CELLS * side, -128, ACDF_BLOCK_CELLS);
 }
 
 // A group of cells that are added next.
@@ -142,14 +180,9 @@ void GroupsMaker::add(const Cell& box, u32 count) {
     }
     group.cells = static_cast<u32>(cells_.size());
     group.count = count;
-    group.blocks = static_cast<u32>(boxes_.size() / ACDF_GROUP_WORDS);
-    if (count > 1) {
-        const std::size_t blocks = (count + ACDF_BLOCK_CELLS - 1) / ACDF_BLOCK_CELLS;
-        auto* const bytes = reinterpret_cast<std::int8_t*>(boxes_.add(blocks * ACDF_GROUP_WORDS, 0x7F7F7F7Fu));
-        if (bytes) // sides in turns, lower ones first: of no cell the upper one is below all
-            for (std::size_t side = 0; side < 8 * blocks; ++side)
-                if (side % 2 == 1) std::memset(bytes + ACDF_BLOCK_CELLS * side, -128, ACDF_BLOCK_CELLS);
-    }
+    group.more = static_cast<u32>(more_.size() / ACDF_GROUP_WORDS);
+    add_blocks(boxes_, 1);
+    add_blocks(more_, (count - 1) / ACDF_BLOCK_CELLS);
     groups_.add(group);
     numbers_.add(number);
     places_.add(place);
@@ -158,23 +191,22 @@ void GroupsMaker::add(const Cell& box, u32 count) {
 // The last group's next cell.
 void GroupsMaker::add_cell(const AcdfGroup& group, const Cell& cell) {
     const std::size_t i = cells_.size() - group.cells;
-    const double angles[2] = {2.0 * ACDF_PI / environment_.columns,
-                              (heights_.size() > 0 ? 1.0 : 2.0) * ACDF_PI / environment_.rows};
+    u32* const block = i < ACDF_BLOCK_CELLS
+                           ? boxes_.data() + (groups_.size() - 1) * ACDF_GROUP_WORDS
+                           : more_.data() + (group.more + i / ACDF_BLOCK_CELLS - 1) * ACDF_GROUP_WORDS;
     const float pdf = sides_.density(cell);
-    AcdfGroupCell out;
-    for (int axis = 0; axis < 2; ++axis) {
+    AcdfGroupCell out = {};
+    for (int axis = 0; group.count > 1 && axis < 2; ++axis) {
         const double low = (cell.low[axis] - group.low[axis]) * group.scale[axis];
         const double width = (cell.high[axis] - cell.low[axis]) * group.scale[axis];
-        const double angle = angles[axis] * (cell.last[axis] - cell.first[axis]);
         const bool told = pdf > 0.0f && width > 0.0;
         out.axis[axis].low = static_cast<u32>(std::min(std::max(std::floor(low * 0x1p32), 0.0), 0x1p32 - 1.0));
-        out.axis[axis].scale = told && angle <= kAngleSteps * width ? static_cast<float>(0x1p-32 / width)
-                                                                    : std::numeric_limits<float>::quiet_NaN();
-        if (group.count == 1) continue;
-        auto* const bytes = reinterpret_cast<std::int8_t*>(
-                                boxes_.data() + ACDF_GROUP_WORDS * (group.blocks + i / ACDF_BLOCK_CELLS)) +
+        out.axis[axis].scale = told && angle(cell, axis) <= kAngleSteps * width
+                                   ? static_cast<float>(0x1p-32 / width)
+                                   : std::numeric_limits<float>::quiet_NaN();
+        auto* const bytes = reinterpret_cast<std::int8_t*>(block) +
                             2 * ACDF_BLOCK_CELLS * static_cast<std::size_t>(axis) + i % ACDF_BLOCK_CELLS;
-        auto* const positions = bytes + 2 * ACDF_GROUP_WORDS;
+        auto* const positions = bytes + 4 * ACDF_GROUP_POSITIONS;
         if (told) {
             bytes[0] = static_cast<std::int8_t>(static_cast<int>(std::max(low, 0.0) * 256.0) - 128);
             bytes[ACDF_BLOCK_CELLS] =
@@ -197,6 +229,7 @@ bool GroupsMaker::gather(u32 most_cells) {
     numbers_.cut(0);
     places_.cut(0);
     boxes_.cut(0);
+    more_.cut(0);
     cells_.cut(0);
     densities_.cut(0);
     return gather(environment_.root, whole, next) && !failed();
@@ -235,11 +268,10 @@ bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
         const u32 high = acdf_curve_cumulative(&curve, i + 1), link = acdf_curve_link(&curve, i);
         const Cell part = part_of(above, curve, i, low, high);
         const u32 cells = link == 0 ? 1 : curves_[next].cells;
-        const bool narrow =
-            part.last[!axis] - part.first[!axis] <= kMostSteps && part.last[axis] - part.first[axis] <= kMostSteps;
+        const bool narrow = may_be_grouped(part);
         low = high;
         if (run.cells > 0 && narrow && run.cells + cells <= most_cells_ &&
-            part.last[axis] - run.box.first[axis] <= kMostSteps) {
+            part.last[axis] - run.box.first[axis] <= most_steps(axis)) {
             run.count += 1;
             run.cells += cells;
             run.box.last[axis] = part.last[axis];
@@ -263,18 +295,19 @@ bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
 
 AcdfGroups* GroupsMaker::make(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
     const std::size_t cells = curves_[0].cells;
-    if (cells * kCellBytes > most_bytes || !remember_heights()) return nullptr;
+    if (cells * kCellBytes > most_bytes || !remember_heights() || !cells_.reserve(cells) ||
+        !densities_.reserve(cells))
+        return nullptr;
     for (u32 most = kFewestCells; most <= kMostCells; most *= 2) {
-        const std::size_t groups = cells / most;
-        const std::size_t about = cells * (kCellBytes + kBlockBytes / ACDF_BLOCK_CELLS) + groups * kGroupBytes;
-        if (groups > kMostGroups || about + heights_.bytes() > most_bytes || !gather(most)) continue;
+        if (about(cells, most) + heights_.bytes() > most_bytes || !gather(most)) continue;
         SquaresMaker numbers, places;
         if (!numbers.make(numbers_.data(), groups_.size(), kDrawnBits) ||
             !places.make(places_.data(), groups_.size(), key_bits_))
             return nullptr;
         const std::size_t words = sizeof(AcdfGroups) / 4 + numbers.words() + places.words() +
-                                  (groups_.bytes() + boxes_.bytes()) / 4 + whole_lines(cells_.bytes() / 4) +
-                                  whole_lines(densities_.bytes() / 4) + whole_lines(heights_.bytes() / 4);
+                                  (groups_.bytes() + boxes_.bytes() + more_.bytes()) / 4 +
+                                  whole_lines(cells_.bytes() / 4) + whole_lines(densities_.bytes() / 4) +
+                                  whole_lines(heights_.bytes() / 4);
         if (4 * words <= most_bytes) return assemble(numbers, places, words, allocator, block);
     }
     return nullptr;
@@ -300,6 +333,7 @@ AcdfGroups* GroupsMaker::assemble(const SquaresMaker& numbers, const SquaresMake
     out->shift[1] = shift_[1];
     out->groups = copy(groups_);
     out->boxes = copy(boxes_);
+    out->more = copy(more_);
     out->cells = copy(cells_);
     out->densities = copy(densities_);
     if (heights_.size() > 0) out->heights = copy(heights_);

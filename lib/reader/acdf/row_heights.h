@@ -57,7 +57,8 @@ ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const Acdf
     const double west = u[0] * (double)(range[0].high - range[0].low), x = (double)range[0].low + west;
     const double z0 = z[range[1].low], z1 = z[range[1].high], height = z0 + u[1] * (z1 - z0);
     const double cap = 1.0 - fabs(height), from_pole = ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER;
-    const double least = (z0 - height < height - z1 ? z0 - height : height - z1);
+    const double from_north = z0 - height, from_south = height - z1;
+    const double least = from_north < from_south ? from_north : from_south; /* in one instruction */
     const double turn = 1.0 - x * (2.0 / (double)columns); /* the quotient waits for nothing */
     const int32_t quarter = (int32_t)(2.0 * turn + 4.5) - 4; /* as in acdf_sincospi */
     AcdfVector d;

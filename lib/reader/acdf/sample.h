@@ -48,18 +48,24 @@ ACDF_FN AcdfGrid acdf_environment_grid(const AcdfEnvironment* env) {
     return grid;
 }
 
-/* acdf_environment_sample without `cells`. */
+/* acdf_environment_sample by the tree alone. */
 ACDF_OUTLINE AcdfDirectionSample acdf_environment_walk_sample(const AcdfEnvironment* env, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(env);
     double u[2], p;
     AcdfRange range[2];
-    AcdfDirectionSample out;
-    if (env->groups && acdf_groups_sample(env->groups, &grid, u0, u1, &out)) return out;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     acdf_sphere_ranges(env->columns, env->rows, range);
     p = acdf_tree_draw(env->tree, env->tree_units, env->root, u, range);
     return acdf_grid_place(&grid, range, u, p);
+}
+
+/* acdf_environment_sample without `cells`. */
+ACDF_OUTLINE AcdfDirectionSample acdf_environment_other_sample(const AcdfEnvironment* env, double u0, double u1) {
+    const AcdfGrid grid = acdf_environment_grid(env);
+    AcdfDirectionSample out;
+    if (env->groups && acdf_groups_sample(env->groups, &grid, u0, u1, &out)) return out;
+    return acdf_environment_walk_sample(env, u0, u1);
 }
 
 /* Draws a direction. u0 (phi or u) and u1 (theta or v) in [0, 1]; values outside are clamped, NaN counts as 0.
@@ -68,7 +74,7 @@ ACDF_OUTLINE AcdfDirectionSample acdf_environment_walk_sample(const AcdfEnvironm
 ACDF_INLINE AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
     AcdfDirectionSample out;
     if (env->cells && acdf_cells_sample(env->cells, u0, u1, &out)) return out;
-    return acdf_environment_walk_sample(env, u0, u1);
+    return acdf_environment_other_sample(env, u0, u1);
 }
 
 /* Where a direction falls: its cell and, if `strata` is not null, the random numbers that lead there; if that
@@ -89,15 +95,21 @@ ACDF_FN double acdf_environment_find(const AcdfEnvironment* env, const float dir
     return p;
 }
 
-/* acdf_environment_pdf without `cells`. */
+/* acdf_environment_pdf by the tree alone. */
 ACDF_OUTLINE float acdf_environment_walk_pdf(const AcdfEnvironment* env, const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(env);
     AcdfRange range[2];
-    double t[2], p;
+    double t[2];
+    const double p = acdf_environment_find(env, direction, range, t, 0);
+    return p > 0.0 ? acdf_grid_pdf(&grid, range, t, p) : 0.0f;
+}
+
+/* acdf_environment_pdf without `cells`. */
+ACDF_OUTLINE float acdf_environment_other_pdf(const AcdfEnvironment* env, const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(env);
     float pdf;
     if (env->groups && acdf_groups_pdf(env->groups, &grid, direction, &pdf)) return pdf;
-    p = acdf_environment_find(env, direction, range, t, 0);
-    return p > 0.0 ? acdf_grid_pdf(&grid, range, t, p) : 0.0f;
+    return acdf_environment_walk_pdf(env, direction);
 }
 
 /* Density per steradian with which acdf_environment_sample draws `direction` (unit). 0 where none falls,
@@ -105,7 +117,7 @@ ACDF_OUTLINE float acdf_environment_walk_pdf(const AcdfEnvironment* env, const f
 ACDF_INLINE float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
     float pdf;
     if (env->cells && acdf_cells_pdf(env->cells, direction, &pdf)) return pdf;
-    return acdf_environment_walk_pdf(env, direction);
+    return acdf_environment_other_pdf(env, direction);
 }
 
 /* The random numbers u[2] for which acdf_environment_sample returns `direction`. Returns 1, or 0 (and u

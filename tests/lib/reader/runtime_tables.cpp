@@ -2,138 +2,25 @@
 // for every direction, on golden files, random trees and every fit.
 #include "tests/extremes/targets.h"
 #include "tests/lib/compress/checks.h"
-#include "tests/lib/reader/random.h"
+#include "tests/lib/reader/environment_pair.h"
 
 #include "compress/store.h"
-#include "tests/lib/reader/tables_pair.h"
-
-#include <acdf/reader.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <string>
 
 namespace {
 
 using namespace acdf_test;
+using Tables = EnvironmentPair::Tables;
 
-struct Pair : TablesPair {
-    using TablesPair::TablesPair;
-    const AcdfCells* cells() const { return fast.environment().data().cells; }
-};
-
-/// Numbers and directions that were asked, and for how many the tables told the answer.
-struct Served {
-    std::size_t draws = 0, directions = 0, of_draws = 0, of_directions = 0;
-};
-
-std::uint32_t bits_of(float x) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
-void expect_same_density(const Pair& pair, const float direction[3], Served& served) {
-    const float fast = pair.fast.environment().pdf(direction), plain = pair.plain.environment().pdf(direction);
-    ASSERT_EQ(bits_of(fast), bits_of(plain)) << direction[0] << ' ' << direction[1] << ' ' << direction[2];
-    float told;
-    ++served.directions;
-    served.of_directions += pair.cells() && acdf_cells_pdf(pair.cells(), direction, &told);
-}
-
-/// A draw, its density, and the densities of directions that rounding could make of it.
-void expect_same_draw(const Pair& pair, double u0, double u1, Served& served) {
-    const acdf::DirectionSample fast = pair.fast.environment().sample(u0, u1);
-    const acdf::DirectionSample plain = pair.plain.environment().sample(u0, u1);
-    ASSERT_EQ(bits_of(fast.pdf), bits_of(plain.pdf)) << u0 << ' ' << u1; // of another cell it is another one
-    for (int i = 0; i < 3; ++i) ASSERT_NEAR(fast.direction[i], plain.direction[i], 4e-7) << u0 << ' ' << u1;
-    ++served.draws;
-    if (!pair.cells()) return; // tilts magnify the rounding of directions
-    AcdfDirectionSample told;
-    served.of_draws += acdf_cells_sample(pair.cells(), u0, u1, &told) != 0;
-    ASSERT_EQ(bits_of(pair.fast.environment().pdf(fast.direction)), bits_of(fast.pdf)) << u0 << ' ' << u1;
-    ASSERT_EQ(bits_of(pair.plain.environment().pdf(fast.direction)), bits_of(fast.pdf)) << u0 << ' ' << u1;
-    const double length =
-        std::sqrt(double{fast.direction[0]} * fast.direction[0] + double{fast.direction[1]} * fast.direction[1] +
-                  double{fast.direction[2]} * fast.direction[2]);
-    float again[3];
-    for (int i = 0; i < 3; ++i) again[i] = static_cast<float>(fast.direction[i] / length);
-    ASSERT_EQ(bits_of(pair.fast.environment().pdf(again)), bits_of(fast.pdf)) << u0 << ' ' << u1;
-}
-
-void direction_of(double phi, double z, float out[3]) {
-    const double sine = std::sqrt((1.0 - z) * (1.0 + z));
-    out[0] = static_cast<float>(sine * std::cos(phi));
-    out[1] = static_cast<float>(sine * std::sin(phi));
-    out[2] = static_cast<float>(z);
-}
-
-/// A direction on a border between columns or rows, or `off` (radians) beside it; `free` says where along it.
-void direction_at_border(const AcdfGrid& grid, int axis, std::uint32_t step, double off, double free,
-                         float out[3]) {
-    const double part = static_cast<double>(step) / (axis == 0 ? grid.columns : grid.rows);
-    if (acdf_grid_is_octahedral(&grid)) {
-        const double at = part + off / ACDF_OCTAHEDRAL_LEAST_SPEED;
-        double d[3];
-        acdf_octahedral_direction(axis == 0 ? at : free, axis == 0 ? free : at, d);
-        for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(d[i]);
-    } else if (axis == 0) {
-        direction_of(M_PI * (1.0 - 2.0 * part) + off, 1.0 - 2.0 * free, out);
-    } else {
-        direction_of(2.0 * M_PI * free, std::cos(M_PI * part + off), out);
-    }
-}
-
-Served expect_agreement(const Pair& pair, int count) {
-    Served served, edges;
-    std::mt19937_64 random(5);
-    for (int i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
-        const auto step0 = static_cast<float>(random() >> 40) * 0x1p-24f;
-        const auto step1 = static_cast<float>(random() >> 40) * 0x1p-24f;
-        double wide[2];
-        acdf_widen(step0, step1, wide);
-        expect_same_draw(pair, uniform(random), uniform(random), served);
-        expect_same_draw(pair, double{step0}, double{step1}, served);
-        expect_same_draw(pair, wide[0], wide[1], served);
-        float direction[3];
-        direction_of(2.0 * M_PI * uniform(random), 2.0 * uniform(random) - 1.0, direction);
-        expect_same_density(pair, direction, served);
-        for (float& d : direction) d *= 1.0003f; // not quite of unit length: it counts all the same
-        expect_same_density(pair, direction, edges);
-        direction_of(M_PI_4 * static_cast<double>(random() % 8), 1.0 - std::exp(-30.0 * uniform(random)),
-                     direction);
-        expect_same_density(pair, direction, edges); // at the seams of pieces, close to the poles
-    }
-    // Exactly on the borders of cells, of the grids, and beside them.
-    const AcdfEnvironment data = pair.plain.environment().data();
-    const AcdfGrid grid = acdf_environment_grid(&data);
-    for (int i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
-        float direction[3];
-        const auto column = static_cast<std::uint32_t>(random() % data.columns),
-                   row = static_cast<std::uint32_t>(random() % data.rows);
-        const double off = (uniform(random) - 0.5) * std::exp2(-20.0 - 10.0 * uniform(random));
-        direction_at_border(grid, 0, column, off, uniform(random), direction);
-        expect_same_density(pair, direction, edges);
-        direction_at_border(grid, 1, row, off, uniform(random), direction);
-        expect_same_density(pair, direction, edges);
-        const double u[2] = {static_cast<double>(random() % 256) / 256.0,
-                             static_cast<double>(random() % 65536) / 65535.0};
-        expect_same_draw(pair, u[0], u[1], edges);
-        expect_same_draw(pair, u[1], uniform(random), edges);
-        expect_same_draw(pair, std::nextafter(u[1], 0.0), std::nextafter(u[0], 1.0), edges);
-    }
-    return served;
-}
-
-void expect_nearly_all(const Served& served) {
-    EXPECT_GT(double(served.of_draws), 0.99 * double(served.draws));
-    EXPECT_GT(double(served.of_directions), 0.99 * double(served.directions));
-}
+constexpr Tables kBoth[] = {Tables::own, Tables::groups};
 
 std::vector<std::uint8_t> stored(const acdf::compress::Target& target, const acdf::compress::FitOptions& options) {
     auto description =
@@ -148,14 +35,17 @@ TEST(RuntimeTables, AgreeOnGoldenFiles) {
     for (const auto& entry : std::filesystem::directory_iterator(ACDF_TEST_DIR "/golden/v1.0")) {
         if (entry.path().extension() != ".acdf") continue;
         std::ifstream in(entry.path(), std::ios::binary);
-        Pair pair({std::istreambuf_iterator<char>(in), {}});
-        if (pair.plain.kind() != ACDF_KIND_ENVIRONMENT) continue;
+        const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
         SCOPED_TRACE(entry.path().filename());
-        ++environments;
-        expect_agreement(pair, 3000);
-        if (HasFatalFailure()) return;
+        for (const Tables tables : kBoth) {
+            const EnvironmentPair pair(bytes, tables);
+            if (pair.plain.kind() != ACDF_KIND_ENVIRONMENT) continue;
+            ++environments;
+            expect_agreement(pair, 1500);
+            if (HasFatalFailure()) return;
+        }
     }
-    EXPECT_GE(environments, 8);
+    EXPECT_GE(environments, 16);
 }
 
 // Shared curves, dark segments, cells of one step, every width of every array.
@@ -166,12 +56,15 @@ TEST(RuntimeTables, AgreeOnRandomTrees) {
         options.tilts = seed % 10 == 0;
         options.octahedral = seed % 7 < 3;
         SCOPED_TRACE(seed);
-        Pair pair(RandomTree(seed, options).make().encode());
-        with_tables += pair.cells() != nullptr;
-        expect_agreement(pair, 200);
-        if (HasFatalFailure()) return;
+        const std::vector<std::uint8_t> bytes = RandomTree(seed, options).make().encode();
+        for (const Tables tables : kBoth) {
+            const EnvironmentPair pair(bytes, tables);
+            with_tables += pair.has_tables();
+            expect_agreement(pair, 150);
+            if (HasFatalFailure()) return;
+        }
     }
-    EXPECT_GT(with_tables, 100);
+    EXPECT_GT(with_tables, 200);
 }
 
 class RuntimeTablesOf : public testing::TestWithParam<NamedTarget> {};
@@ -179,9 +72,11 @@ class RuntimeTablesOf : public testing::TestWithParam<NamedTarget> {};
 TEST_P(RuntimeTablesOf, EveryFitAgree) {
     for (const NamedFit& fit : all_fits(9, 7, 60)) {
         SCOPED_TRACE(fit.name);
-        Pair pair(stored(GetParam().target, fit.options));
-        expect_agreement(pair, 1000);
-        if (HasFatalFailure()) return;
+        const std::vector<std::uint8_t> bytes = stored(GetParam().target, fit.options);
+        for (const Tables tables : kBoth) {
+            expect_agreement(EnvironmentPair(bytes, tables), 600);
+            if (HasFatalFailure()) return;
+        }
     }
 }
 INSTANTIATE_TEST_SUITE_P(Probes, RuntimeTablesOf, testing::ValuesIn(extreme_targets()),
@@ -202,20 +97,77 @@ TEST(RuntimeTables, ServeNearlyAllOfUsualFiles) {
         acdf::compress::FitOptions options;
         options.goal.cells = cells;
         for (const auto& target : {sky, octahedral(sky)}) {
-            Pair pair(stored(target, options));
-            ASSERT_NE(pair.cells(), nullptr);
+            const EnvironmentPair pair(stored(target, options));
+            ASSERT_NE(pair.view().data().cells, nullptr);
             expect_nearly_all(expect_agreement(pair, 20000));
         }
     }
 }
 
+/// Narrow bright lamps in a dark room.
+acdf::compress::Target studio(std::uint32_t columns) {
+    return texel_target(columns, columns / 2,
+                        [columns, random = std::mt19937_64(5)](std::uint32_t c, std::uint32_t r) mutable {
+                            const double x = 2.0 * c / columns, y = 2.0 * r / columns, wall = uniform(random);
+                            const double across = std::fmod(9.0 * x + 4.0 * y, 1.0);
+                            const bool lamp = across < 0.03 && y > 0.2 && y < 0.7;
+                            return (lamp ? 100.0 + 900.0 * across : 1e-3 * y) * (0.5 + wall);
+                        });
+}
+
+/// Cells of one texel, a curve of columns a row.
+std::vector<std::uint8_t> all_texels(std::uint32_t columns, std::uint32_t rows, bool octahedral) {
+    std::mt19937_64 random(3);
+    EnvironmentSpec spec;
+    spec.columns = columns;
+    spec.rows = rows;
+    spec.octahedral = octahedral;
+    const auto curve = [&random](std::uint32_t axis, std::uint32_t segments) {
+        CurveSpec out;
+        out.axis = axis;
+        out.cumulative_bytes = out.position_bytes = 2;
+        for (std::uint32_t i = 1; i < segments; ++i) {
+            out.positions.push_back(i);
+            out.cumulative.push_back((i * 65535 + static_cast<std::uint32_t>(random() % 30000)) / segments);
+        }
+        return out;
+    };
+    CurveSpec root = curve(1, rows);
+    root.link_bytes = 4;
+    for (std::uint32_t row = 0; row < rows; ++row) root.children.push_back(static_cast<int>(row + 1));
+    spec.tree.curves = {root};
+    for (std::uint32_t row = 0; row < rows; ++row) spec.tree.curves.push_back(curve(0, columns));
+    return spec.encode();
+}
+
+// Files of any size have tables: of cells while they are small, else of groups.
+TEST(RuntimeTables, ServeFilesOfAnySize) {
+    for (const std::uint32_t cells : {200u, 5000u, 15000u, 40000u})
+        for (const bool lamps : {true, false}) {
+            acdf::compress::FitOptions options;
+            options.goal.cells = cells;
+            const auto target = lamps ? studio(512) : octahedral(noise_target(512, 256, 9));
+            const EnvironmentPair pair(stored(target, options));
+            SCOPED_TRACE(pair.bytes.size());
+            ASSERT_GT(pair.fast.table_bytes(), 0u);
+            EXPECT_EQ(pair.view().data().groups != nullptr, cells > (lamps ? 10000u : 20000u));
+            expect_nearly_all(expect_agreement(pair, 2000));
+        }
+    for (const std::uint32_t rows : {128u, 496u}) {
+        const EnvironmentPair pair(all_texels(2048, rows, rows == 128));
+        SCOPED_TRACE(pair.bytes.size());
+        ASSERT_NE(pair.view().data().groups, nullptr);
+        expect_agreement(pair, 2000);
+    }
+}
+
 // The cells of a stratum of numbers are those of the walk, and within a cell directions are in the order of
 // numbers.
-void expect_monotone(const acdf::compress::Target& target) {
+void expect_monotone(const acdf::compress::Target& target, Tables tables) {
     acdf::compress::FitOptions options;
     options.goal.cells = 300;
-    Pair pair(stored(target, options));
-    const acdf::EnvironmentView view = pair.fast.environment();
+    const EnvironmentPair pair(stored(target, options), tables);
+    const acdf::EnvironmentView view = pair.view();
     for (int line = 0; line < 40; ++line) {
         const double fixed = (line + 0.5) / 40.0;
         for (int axis = 0; axis < 2; ++axis) {
@@ -244,16 +196,19 @@ void expect_monotone(const acdf::compress::Target& target) {
     }
 }
 TEST(RuntimeTables, AreMonotoneWithinACell) {
-    expect_monotone(noise_target(64, 32, 9));
-    expect_monotone(octahedral(noise_target(64, 32, 9)));
+    for (const Tables tables : kBoth) {
+        expect_monotone(noise_target(64, 32, 9), tables);
+        expect_monotone(octahedral(noise_target(64, 32, 9)), tables);
+    }
 }
 
 TEST(RuntimeTables, AreLeftOutWhereAsked) {
     acdf::compress::FitOptions options;
     options.goal.cells = 100;
-    Pair pair(stored(noise_target(64, 32, 9), options));
+    const EnvironmentPair pair(stored(noise_target(64, 32, 9), options));
     EXPECT_GT(pair.fast.table_bytes(), 0u);
     EXPECT_EQ(pair.plain.environment().data().cells, nullptr);
+    EXPECT_EQ(pair.plain.environment().data().groups, nullptr);
 }
 
 } // namespace
