@@ -19,6 +19,7 @@ using u32 = std::uint32_t;
 
 constexpr u32 kDrawnBits = 31; // of keys of random numbers
 constexpr double kDrawnSteps = 0x1p31;
+constexpr double kLeastWidth = 0x1p-60; // of random numbers, that a group is found by
 constexpr std::size_t kMostGroups = 65535;
 constexpr u32 kMostSteps = 255;                    // of positions, along a group
 constexpr u32 kFewestCells = 16, kMostCells = 256; // in a group, at most
@@ -37,7 +38,6 @@ struct Surveyed {
 struct Run {
     u32 first, count, cells; ///< segments; cells
     Cell box;
-    std::size_t curve; ///< number of the first one below it
 };
 
 u32 bits_of(u32 count) {
@@ -167,7 +167,7 @@ void GroupsMaker::add(const Cell& box, u32 count) {
     for (int axis = 0; axis < 2; ++axis) {
         const double width = box.high[axis] - box.low[axis];
         const u32 last = (1u << kDrawnBits) - 1;
-        const bool drawn = width > 0.0;
+        const bool drawn = width > kLeastWidth;
         group.low[axis] = drawn ? box.low[axis] : 2.0;
         group.scale[axis] = drawn ? 1.0 / width : 1.0;
         group.first[axis] = box.first[axis];
@@ -199,8 +199,8 @@ void GroupsMaker::add_cell(const AcdfGroup& group, const Cell& cell) {
     for (int axis = 0; group.count > 1 && axis < 2; ++axis) {
         const double low = (cell.low[axis] - group.low[axis]) * group.scale[axis];
         const double width = (cell.high[axis] - cell.low[axis]) * group.scale[axis];
-        const bool told = pdf > 0.0f && width > 0.0;
-        out.axis[axis].low = static_cast<u32>(std::min(std::max(std::floor(low * 0x1p32), 0.0), 0x1p32 - 1.0));
+        const bool told = pdf > 0.0f && group.low[axis] < 1.0 && width > 0.0;
+        out.axis[axis].low = told ? static_cast<u32>(std::clamp(std::floor(low * 0x1p32), 0.0, 0x1p32 - 1.0)) : 0;
         out.axis[axis].scale = told && angle(cell, axis) <= kAngleSteps * width
                                    ? static_cast<float>(0x1p-32 / width)
                                    : std::numeric_limits<float>::quiet_NaN();
@@ -278,14 +278,14 @@ bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
             run.box.high[axis] = part.high[axis];
         } else {
             if (!gather_run(at, curve, above, run)) return false;
-            run = {i, 1, cells, part, next};
+            run = {i, 1, cells, part};
             if (link == 0 ? !narrow : !narrow || cells > most_cells_) {
                 run.cells = 0;
                 if (link != 0) {
                     if (!gather(at + link, part, next)) return false;
                     continue;
                 }
-                if (!gather_run(at, curve, above, {i, 1, 1, part, next})) return false;
+                if (!gather_run(at, curve, above, {i, 1, 1, part})) return false;
             }
         }
         if (link != 0) next += curves_[next].curves;
@@ -317,14 +317,13 @@ AcdfGroups* GroupsMaker::assemble(const SquaresMaker& numbers, const SquaresMake
                                   const AcdfAllocator& allocator, AcdfBlock& block) {
     block = take_block(allocator, 4 * words);
     if (!block.data) return nullptr;
-    u32* const tables = static_cast<u32*>(block.data);
+    u32* const tables = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
     AcdfGroups* const out = new (block.data) AcdfGroups();
     std::size_t at = sizeof(AcdfGroups) / 4;
     const auto copy = [&](const auto& from) {
-        const std::size_t begin = at, end = at + from.bytes() / 4;
+        const std::size_t begin = at;
         if (from.size() > 0) std::memcpy(tables + at, from.data(), from.bytes());
-        at = whole_lines(end);
-        std::fill(tables + end, tables + at, 0u);
+        at = whole_lines(at + from.bytes() / 4);
         return static_cast<u32>(begin);
     };
     out->words = static_cast<u32>(words);

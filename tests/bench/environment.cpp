@@ -1,6 +1,7 @@
 // Time of a draw and of a density of environment files, beside samplers of all texels of the same map.
 //
 //   bench_environment [COLUMNS...]            tables in Markdown; 1024 and 4096 by default
+//   bench_environment --files FILE...         a row a file, beside the full tables of 1024 and of 4096 columns
 //   bench_environment --write FILE BYTES [octahedral] the file of 1024 x 512 texels, or of 1024 x 1024
 //   bench_environment --count draw|pdf FILE N [walk]  N calls and nothing else, for callgrind
 #include "tests/bench/directions.h"
@@ -20,6 +21,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <random>
 
 namespace {
@@ -179,6 +181,52 @@ void run(const compress::Target& target) {
     report("density of uniform directions, caches evicted", all_densities(uniform), true);
 }
 
+/// Draws and densities of files, with tables and without, beside full tables.
+int of_files(int files, char** paths) {
+    const FullTable full[2] = {FullTable(sky(1024)), FullTable(sky(4096))};
+    const std::vector<float> u = numbers(false);
+    const Directions w = uniform_directions(kNumbers, 9);
+    std::printf(
+        "| file | bytes | tables | making them, ms | ns a draw | walked | of the full table's, 1k and 4k | ns a "
+        "density | walked | of the full table's, 1k and 4k |\n|---|---|---|---|---|---|---|---|---|---|\n");
+    for (int i = 0; i < files; ++i) {
+        std::ifstream in(paths[i], std::ios::binary);
+        const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+        LoadOptions walk;
+        File plain, tables;
+        double making = 1e9;
+        walk.tables = false;
+        for (int k = 0; k < 5; ++k) {
+            const double begin = acdf_bench::thread_seconds();
+            if (!File::from_memory(bytes.data(), bytes.size(), plain, walk).ok()) return 1;
+            const double middle = acdf_bench::thread_seconds();
+            if (!File::from_memory(bytes.data(), bytes.size(), tables).ok()) return 1;
+            making = std::min(making, 1e3 * (acdf_bench::thread_seconds() - middle - (middle - begin)));
+        }
+        if (plain.kind() != ACDF_KIND_ENVIRONMENT) return 1;
+        const EnvironmentView fast = tables.environment(), slow = plain.environment();
+        std::vector<Candidate> drawn{draws("1k", full[0], u), draws("4k", full[1], u), draws("tables", fast, u),
+                                     draws("walk", slow, u)};
+        std::vector<Candidate> told{densities("1k", full[0], w), densities("4k", full[1], w),
+                                    densities("tables", fast, w), densities("walk", slow, w)};
+        std::string name = paths[i];
+        name.erase(0, name.find_last_of('/') + 1);
+        std::printf("| %s | %llu | %llu | %.1f", name.c_str(), static_cast<unsigned long long>(plain.size()),
+                    static_cast<unsigned long long>(tables.table_bytes()), making);
+        for (auto* const all : {&drawn, &told}) {
+            acdf_bench::Turns turns;
+            turns.rounds = 20;
+            acdf_bench::take_turns(*all, turns);
+            const double ns = (*all)[2].least;
+            std::printf(" | %.1f | %.1f | %.2f %.2f", ns, (*all)[3].least, ns / (*all)[0].least,
+                        ns / (*all)[1].least);
+        }
+        std::printf(" |\n");
+        std::fflush(stdout);
+    }
+    return 0;
+}
+
 int count(const char* what, const char* path, std::size_t calls, bool walk) {
     LoadOptions options;
     options.tables = !walk;
@@ -195,6 +243,7 @@ int count(const char* what, const char* path, std::size_t calls, bool walk) {
 } // namespace
 
 int main(int argc, char** argv) {
+    if (argc >= 3 && std::strcmp(argv[1], "--files") == 0) return of_files(argc - 2, argv + 2);
     if (argc >= 4 && std::strcmp(argv[1], "--write") == 0) {
         const Built built(sky(1024, argc > 4), std::strtoul(argv[3], nullptr, 10));
         std::ofstream(argv[2], std::ios::binary)
