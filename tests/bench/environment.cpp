@@ -201,7 +201,7 @@ int of_files(int files, char** paths) {
             if (!File::from_memory(bytes.data(), bytes.size(), plain, walk).ok()) return 1;
             const double middle = acdf_bench::thread_seconds();
             if (!File::from_memory(bytes.data(), bytes.size(), tables).ok()) return 1;
-            making = std::min(making, 1e3 * (acdf_bench::thread_seconds() - middle - (middle - begin)));
+            making = std::min(making, 1e3 * (acdf_bench::thread_seconds() - 2.0 * middle + begin));
         }
         if (plain.kind() != ACDF_KIND_ENVIRONMENT) return 1;
         const EnvironmentView fast = tables.environment(), slow = plain.environment();
@@ -212,7 +212,7 @@ int of_files(int files, char** paths) {
         std::string name = paths[i];
         name.erase(0, name.find_last_of('/') + 1);
         std::printf("| %s | %llu | %llu | %.1f", name.c_str(), static_cast<unsigned long long>(plain.size()),
-                    static_cast<unsigned long long>(tables.table_bytes()), making);
+                    static_cast<unsigned long long>(tables.table_bytes()), std::max(making, 0.0));
         for (auto* const all : {&drawn, &told}) {
             acdf_bench::Turns turns;
             turns.rounds = 20;
