@@ -107,7 +107,7 @@ public:
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept {
         return 4 * std::uint64_t{cells_          ? cells_->words
-                                 : groups_     ? groups_->words
+                                 : groups_       ? groups_->words
                                  : local_tables_ ? local_tables_->words
                                  : brdf_tables_  ? brdf_tables_->words
                                                  : 0};
