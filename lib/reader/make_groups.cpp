@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <new>
 
 namespace acdf {
@@ -28,6 +27,7 @@ constexpr std::size_t kCellBytes = sizeof(AcdfGroupCell) + sizeof(float);
 constexpr std::size_t kGroupBytes = 248;
 // Where a draw in a cell is told to lie is less than 2^-24 radians off.
 constexpr double kAngleSteps = 0x1p8;
+constexpr float kNeverSure = 1.0f;
 
 /// A curve, in the order of the walk of all.
 struct Surveyed {
@@ -201,9 +201,8 @@ void GroupsMaker::add_cell(const AcdfGroup& group, const Cell& cell) {
         const double width = (cell.high[axis] - cell.low[axis]) * group.scale[axis];
         const bool told = pdf > 0.0f && group.low[axis] < 1.0 && width > 0.0;
         out.axis[axis].low = told ? static_cast<u32>(std::clamp(std::floor(low * 0x1p32), 0.0, 0x1p32 - 1.0)) : 0;
-        out.axis[axis].scale = told && angle(cell, axis) <= kAngleSteps * width
-                                   ? static_cast<float>(0x1p-32 / width)
-                                   : std::numeric_limits<float>::quiet_NaN();
+        out.axis[axis].scale =
+            told && angle(cell, axis) <= kAngleSteps * width ? static_cast<float>(0x1p-32 / width) : kNeverSure;
         auto* const bytes = reinterpret_cast<std::int8_t*>(block) +
                             2 * ACDF_BLOCK_CELLS * static_cast<std::size_t>(axis) + i % ACDF_BLOCK_CELLS;
         auto* const positions = bytes + 4 * ACDF_GROUP_POSITIONS;

@@ -29,7 +29,7 @@ ACDF_STATIC_ASSERT(sizeof(AcdfGroup) == 64);
 /* Of a cell: the numbers that lead to it, (v - low) * scale, of what v is left in its group in steps of 2^-32. */
 typedef struct AcdfGroupAxis {
     uint32_t low;
-    float scale; /* NaN: too narrow to be sure where in it a number leads */
+    float scale; /* 1: all of it is margin, too narrow to be sure where in it a number leads */
 } AcdfGroupAxis;
 typedef struct AcdfGroupCell {
     AcdfGroupAxis axis[2];
