@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Everything that must hold, from a bare Debian 12: installs what is missing, then
-#   0. checks the formatting,
+#   0. builds optimised with warnings as errors, while the packages of tests are being installed, and checks the formatting,
 #   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, runs the tests on synthetic data, and beside them
 #      fuzzes the reader for half a minute, and every parser of our own for 10 seconds,
-#   2. builds optimised with warnings as errors, and compares the files that both builds make byte for byte,
+#   2. compares the files that both builds make byte for byte,
 #   3. runs all tests of the optimised build, those on real data too where it is present.
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
 #
 #   tests/run.sh            all of it
-#   tests/run.sh --quick    stage 3 and what it needs: the optimised build and its tests
+#   tests/run.sh --quick    the optimised build and its tests
 set -euo pipefail
 
 quick=false
@@ -21,8 +21,25 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 jobs=$(nproc)
 log=build/release/ctest.log
+installing= # the process that installs the packages of tests
 
 step() { printf '\n== %s (%ds)\n' "$*" "$SECONDS"; }
+
+# Unpacking keeps less than one core busy.
+begin_to_install_for_tests() {
+    mkdir -p build
+    tools/install_packages.sh test >build/packages.log 2>&1 &
+    installing=$!
+    trap 'wait "$installing"' EXIT # never ended half way
+}
+
+end_to_install_for_tests() {
+    local status=0
+    wait "$installing" || status=$?
+    trap - EXIT
+    ((status == 0)) || cat build/packages.log >&2
+    return "$status"
+}
 
 check_formatting() {
     find format lib tools tests docs \( -name '*.h' -o -name '*.c' -o -name '*.cpp' \) -print0 |
@@ -46,9 +63,10 @@ run_all_builds_alike() {
 }
 
 run_all_tests() {
+    # One more than there are cores, for some wait: for browsers, for daemons of farms, for what they had killed.
     # ctest lists skipped tests after its summary; the summary is to be the last line.
     local status=0
-    ctest --preset release --parallel "$jobs" 2>&1 | tee "$log" || status=$?
+    ctest --preset release --parallel "$((jobs + 1))" 2>&1 | tee "$log" || status=$?
     grep 'tests passed' "$log" || true
     return "$status"
 }
@@ -63,13 +81,16 @@ if $quick; then
     exit
 fi
 step "Packages"
-tools/install_packages.sh build quick test
-step "0. Formatting"
+tools/install_packages.sh build quick
+step "0. Optimised build, in build/release, and formatting"
+begin_to_install_for_tests
+build_release
+end_to_install_for_tests
 check_formatting
+build_release # once more, with the tests of what is installed now
 step "1. Tests with sanitizers and fuzzers, in build/asan"
 run_sanitized_tests
 step "2. The same bytes from both builds, with any number of threads"
-build_release
 run_all_builds_alike
 step "3. All tests, optimised, in build/release"
 run_all_tests
