@@ -162,6 +162,17 @@ void place_corners(const AcdfLocal& local, AcdfCornerRecord* out) {
             }
 }
 
+void place_lights(const AcdfLocal& local, AcdfLightPair* out) {
+    if (local.light_count % 2 > 0) out[local.light_count / 2].radius[1] = 1.0;
+    for (u32 i = 0; i < local.light_count; ++i) {
+        const AcdfLight& light = local.lights[i];
+        AcdfLightPair& pair = out[i / 2];
+        for (int k = 0; k < 3; ++k) pair.direction[k][i % 2] = light.direction[k];
+        pair.radius[i % 2] = light.radius;
+        pair.share[i % 2] = light.share;
+    }
+}
+
 // Of each tile the direction of its middle.
 void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float* out) {
     for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 4) {
@@ -182,7 +193,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     TileTablesMaker tiles(local.blend, env.columns, env.rows);
     if (!tiles.make()) return nullptr;
     const std::size_t corners = corner_words(local),
-                      lights = padded(local.light_count * sizeof(AcdfLightRecord) / 4);
+                      lights = padded((local.light_count + 1) / 2 * sizeof(AcdfLightPair) / 4);
     const std::size_t middles = padded(4 * std::size_t{local.blend.tiles->tile_count});
     std::size_t words = at + tiles.words() + heights + corners + lights + middles;
     if (4 * words > most_bytes) return nullptr;
@@ -203,11 +214,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
         reinterpret_cast<AcdfTileRecord*>(out + tables->tiles.tiles)[local.lights[i].tile].light =
             static_cast<std::uint16_t>(i + 1);
     tables->lights = static_cast<u32>(at);
-    for (u32 i = 0; i < local.light_count; ++i) {
-        const AcdfLight& light = local.lights[i];
-        const float(&d)[3] = light.direction;
-        reinterpret_cast<AcdfLightRecord*>(out + at)[i] = {{d[0], d[1], d[2]}, light.radius, light.share};
-    }
+    place_lights(local, reinterpret_cast<AcdfLightPair*>(out + at));
     at += lights;
     if (corners > 0) {
         tables->corners = static_cast<u32>(at);

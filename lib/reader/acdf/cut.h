@@ -58,7 +58,11 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     uint32_t i;
     int k;
     cut->count = 1;
-    for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_local_light_weight(local, point, i);
+    if (acdf_local_tabled(local, point)) {
+        const AcdfLightPair* pair = acdf_local_lights(local->tables);
+        for (i = 0; i < local->light_count; i += 2) acdf_light_pair_weights(pair++, point, &cut->light[i]);
+    } else
+        for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_local_light_weight(local, point, i);
     whole->node = (uint16_t)acdf_blend_root(&local->blend);
     whole->entry = (uint16_t)(local->tables ? local->tables->tiles.root : 0);
     whole->depth = 0;

@@ -65,6 +65,28 @@ ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* p
                            (double)light->direction[2], (double)light->radius, (double)light->share);
 }
 
+/* The same of two lights. */
+ACDF_INLINE void acdf_light_pair_weights(const AcdfLightPair* pair, const AcdfLocalPoint* point, double weight[2]) {
+#ifdef ACDF_SQUARES_SSE2
+    const __m128d height =
+        _mm_add_pd(_mm_add_pd(_mm_mul_pd(_mm_set1_pd(point->normal[0]), _mm_loadu_pd(pair->direction[0])),
+                              _mm_mul_pd(_mm_set1_pd(point->normal[1]), _mm_loadu_pd(pair->direction[1]))),
+                   _mm_mul_pd(_mm_set1_pd(point->normal[2]), _mm_loadu_pd(pair->direction[2])));
+    const __m128d radius = _mm_mul_pd(_mm_loadu_pd(pair->radius), _mm_set1_pd(point->length));
+    const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), height), above = _mm_add_pd(height, radius);
+    const __m128d cut = _mm_div_pd(_mm_mul_pd(above, above), _mm_mul_pd(_mm_set1_pd(4.0), radius));
+    const __m128d whole = _mm_mul_pd(_mm_set1_pd(0.5), _mm_add_pd(height, size));
+    const __m128d is_cut = _mm_cmplt_pd(size, radius);
+    const __m128d mean = _mm_or_pd(_mm_and_pd(is_cut, cut), _mm_andnot_pd(is_cut, whole));
+    _mm_storeu_pd(weight, _mm_mul_pd(_mm_loadu_pd(pair->share), mean));
+#else
+    int i;
+    for (i = 0; i < 2; ++i)
+        weight[i] = acdf_cap_weight(point, pair->direction[0][i], pair->direction[1][i], pair->direction[2][i],
+                                    pair->radius[i], pair->share[i]);
+#endif
+}
+
 /* The same of light `k` as its place sees it. */
 ACDF_FN double acdf_local_light_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
     const double weight = acdf_light_weight(&local->lights[k], point);
@@ -188,14 +210,20 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
 
 /* Weighs lights and mixture together; `visible`: what of each light arrives, null: all. */
 ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
-    const AcdfLightRecord* light = local->tables ? acdf_local_lights(local->tables) : 0;
+    double weight[2];
     uint32_t k;
-    for (k = 0; k < local->light_count; ++k) {
-        const double weight = light ? acdf_cap_weight(out, light[k].direction[0], light[k].direction[1],
-                                                      light[k].direction[2], light[k].radius, light[k].share)
-                                    : acdf_light_weight(&local->lights[k], out);
-        out->lights += visible ? weight * visible[k] : weight;
-    }
+    if (local->tables && !visible) {
+        const AcdfLightPair* pair = acdf_local_lights(local->tables);
+        for (k = 0; k < local->light_count; k += 2, ++pair) {
+            acdf_light_pair_weights(pair, out, weight);
+            out->lights += weight[0];
+            out->lights += weight[1];
+        }
+    } else
+        for (k = 0; k < local->light_count; ++k) {
+            weight[0] = acdf_light_weight(&local->lights[k], out);
+            out->lights += visible ? weight[0] * visible[k] : weight[0];
+        }
     out->sum = out->lights + acdf_mixture_sum(&out->mix);
     if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
 }

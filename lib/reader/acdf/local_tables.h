@@ -31,10 +31,10 @@ typedef struct AcdfCornerRecord {
     uint32_t row;  /* of the bin */
 } AcdfCornerRecord;
 
-/* A light, as acdf_light_weight needs it. */
-typedef struct AcdfLightRecord {
-    double direction[3], radius, share;
-} AcdfLightRecord;
+/* Two lights, as acdf_light_weight needs them; of an odd number the last one has share 0. */
+typedef struct AcdfLightPair {
+    double direction[3][2], radius[2], share[2];
+} AcdfLightPair;
 
 /* Offsets in words from the start of this struct, which the arrays follow. */
 typedef struct AcdfLocalTables {
@@ -47,7 +47,7 @@ typedef struct AcdfLocalTables {
     uint32_t heights;       /* f64, one more than there are rows: z between them; 0: not on a lat-long grid */
     uint32_t corners;       /* AcdfCornerRecord, in two squares of (2 n + 1)^2, north and south, of x + n and
                                (y + n) (2 n + 1); 0: the octahedron is too large, or there is none */
-    uint32_t lights;        /* AcdfLightRecord, one a light */
+    uint32_t lights;        /* AcdfLightPair, one two lights */
     uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and 0 */
     uint32_t hearts;        /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
                                from it by the brighter halves; 0: there is no room */
@@ -68,8 +68,8 @@ ACDF_INLINE const double* acdf_local_heights(const AcdfLocalTables* tables) {
 ACDF_INLINE const AcdfCornerRecord* acdf_local_corners(const AcdfLocalTables* tables) {
     return (const AcdfCornerRecord*)(const void*)(acdf_local_words(tables) + tables->corners);
 }
-ACDF_INLINE const AcdfLightRecord* acdf_local_lights(const AcdfLocalTables* tables) {
-    return (const AcdfLightRecord*)(const void*)(acdf_local_words(tables) + tables->lights);
+ACDF_INLINE const AcdfLightPair* acdf_local_lights(const AcdfLocalTables* tables) {
+    return (const AcdfLightPair*)(const void*)(acdf_local_words(tables) + tables->lights);
 }
 ACDF_INLINE const float* acdf_local_middle(const AcdfLocalTables* tables, uint32_t tile) {
     return (const float*)(const void*)(acdf_local_words(tables) + tables->middles) + 4 * (size_t)tile;
