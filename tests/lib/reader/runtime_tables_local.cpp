@@ -7,6 +7,7 @@
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/tables_pair.h"
 
+#include <acdf/cut.h>
 #include <acdf/reader.h>
 
 #include <gtest/gtest.h>
@@ -168,6 +169,38 @@ TEST(LocalRuntimeTables, MakeTheSamePoints) {
                       b.mix.row[k] - pair.plain.local().data().blend.rows);
         }
     }
+}
+
+// Tables weigh lights two at a time: any number of them, and those that the horizon cuts.
+TEST(LocalRuntimeTables, WeighLightsAsTheFileDoes) {
+    std::size_t odd = 0, even = 0, cut_by_horizon = 0;
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        const LocalPair pair(RandomLocal(seed, varied_local_options(seed)).make().encode());
+        const AcdfLocal fast = pair.fast.local().data(), plain = pair.plain.local().data();
+        if (!fast.tables || fast.light_count < 2) continue;
+        ++(fast.light_count % 2 > 0 ? odd : even);
+        std::mt19937_64 random(seed);
+        for (int i = 0; i < 100; ++i) {
+            const Normal normal = random_direction(random);
+            const AcdfLocalPoint a = pair.fast.local().at(normal.data()), b = pair.plain.local().at(normal.data());
+            ASSERT_EQ(a.lights, b.lights);
+            if (a.what != ACDF_LOCAL_BLEND) continue;
+            AcdfCut cuts[2];
+            acdf_cut_begin(&fast, &a, &cuts[0]);
+            acdf_cut_begin(&plain, &b, &cuts[1]);
+            for (std::uint32_t k = 0; k < fast.light_count; ++k) {
+                const AcdfLight& light = plain.lights[k];
+                const double height = a.normal[0] * light.direction[0] + a.normal[1] * light.direction[1] +
+                                      a.normal[2] * light.direction[2];
+                cut_by_horizon += std::fabs(height) < light.radius * a.length;
+                ASSERT_EQ(cuts[0].light[k], acdf_light_weight(&light, &b));
+                ASSERT_EQ(cuts[1].light[k], acdf_light_weight(&light, &b));
+            }
+        }
+    }
+    EXPECT_GT(odd, 0u);
+    EXPECT_GT(even, 0u);
+    EXPECT_GT(cut_by_horizon, 100u);
 }
 
 // Rows of several cache lines, whose splits have other numbers in the tables.
