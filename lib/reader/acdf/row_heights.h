@@ -59,8 +59,8 @@ ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const Acdf
     const double cap = 1.0 - fabs(height), from_pole = ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER;
     const double from_north = z0 - height, from_south = height - z1;
     const double least = from_north < from_south ? from_north : from_south; /* in one instruction */
-    const double turn = 1.0 - x * (2.0 / (double)columns); /* the quotient waits for nothing */
-    const int32_t quarter = (int32_t)(2.0 * turn + 4.5) - 4; /* as in acdf_sincospi */
+    const double turn = 1.0 - x * (2.0 / (double)columns);                  /* the quotient waits for nothing */
+    const int32_t quarter = (int32_t)(2.0 * turn + 4.5) - 4;                /* as in acdf_sincospi */
     AcdfVector d;
     /* The sine of the angle to the pole is below sqrt(2 cap). */
     if (west < border || (double)range[0].high - x < border || cap < from_pole ||
