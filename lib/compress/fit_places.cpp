@@ -19,6 +19,8 @@ namespace {
 
 /// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/places.md).
 constexpr std::uint32_t kColumns = 127;
+/// The same beside portals, through which most samples are drawn: cells that know these are worth more.
+constexpr std::uint32_t kColumnsBesidePortals = 31;
 /// Cells that have the same columns, in the mean.
 constexpr std::uint64_t kCellsOfRegion = 200;
 /// How far cells are mixed, of the smaller one at their border.
@@ -188,9 +190,10 @@ std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const 
         if (progress) progress(share);
     };
     const std::uint32_t splits_of_tiles = local.blend.tiles->tile_count - 1;
-    const PlaceParts coarse(local, bins, size.columns > 0 ? size.columns : kColumns);
-    const std::uint64_t width = 1 + local.light_count + coarse.column_count();
     const PortalSet* portals = scene.portals.get();
+    const std::uint32_t usual = portals ? kColumnsBesidePortals : kColumns;
+    const PlaceParts coarse(local, bins, size.columns > 0 ? size.columns : usual);
+    const std::uint64_t width = 1 + local.light_count + coarse.column_count();
     const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
                                                width + portals->row_bytes(), splits_of_tiles)
                                   : counts_for(size.bytes, width, splits_of_tiles);

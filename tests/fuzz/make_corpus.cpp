@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
     write(folder / "complete", complete.encode());
     write(folder / "local", lit_local().encode());
     write(folder / "separate", separate_local().encode());
+    write(folder / "places", regional_local().encode());
+    write(folder / "portals", windowed_local().encode());
     write(folder / "brdf", shared_brdf().encode());
     write(folder / "separate_brdf", separate_brdf().encode());
     write(folder / "spare", spare_file().encode());

@@ -100,6 +100,12 @@ inline void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom
         (void)view.stored(normal);
         float position[3];
         random.any_vector(position);
+        if (n % 2 == 1 && view.has_places()) // else hardly any lies in the cells
+            for (int k = 0; k < 3; ++k) {
+                const AcdfPlaces& cells = *view.data().places.header;
+                position[k] = static_cast<float>(double{cells.low[k]} +
+                                                 (double{cells.high[k]} - double{cells.low[k]}) * random.uniform());
+            }
         const AcdfLocalPoint placed = view.at(position, normal);
         const acdf::DirectionSample seen = view.sample(placed, u0, u1);
         require(is_density(static_cast<double>(seen.pdf)) &&

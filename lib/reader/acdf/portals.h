@@ -142,16 +142,21 @@ ACDF_FN void acdf_window_weigh(const AcdfPortalTable* table, const double normal
     const uint32_t* sums = acdf_window_sums(table, window->map);
     const uint32_t size = table->header->size, pieces = table->header->pieces;
     double n[3], below[2][ACDF_MAX_PORTAL_PIECES + 1], cosine[2][ACDF_MAX_PORTAL_PIECES + 1];
+    double side[ACDF_MAX_PORTAL_PIECES + 1], bent[ACDF_MAX_PORTAL_PIECES + 1];
     uint32_t i, j, k;
     window->weight = 0.0;
     for (k = 0; k < 3; ++k) n[k] = acdf_dot3(map->axis[k], normal);
+    for (j = 0; j <= pieces; ++j) {
+        side[j] = acdf_piece_side(window, 1, j, pieces);
+        bent[j] = acdf_bend(side[j], (double)size);
+    }
     for (i = 0; i <= pieces; ++i) { /* column by column of corners: those before, and these */
         const double x = acdf_piece_side(window, 0, i, pieces), at = acdf_bend(x, (double)size);
         const int now = (int)(i & 1u), before = 1 - now;
         for (j = 0; j <= pieces; ++j) {
-            const double y = acdf_piece_side(window, 1, j, pieces);
+            const double y = side[j];
             const double height = n[0] * x + n[1] * y + n[2];
-            below[now][j] = acdf_map_sum(sums, size, at, acdf_bend(y, (double)size));
+            below[now][j] = acdf_map_sum(sums, size, at, bent[j]);
             cosine[now][j] = height > 0.0 ? height / sqrt(1.0 + x * x + y * y) : 0.0;
         }
         for (j = 0; i > 0 && j < pieces; ++j) {
