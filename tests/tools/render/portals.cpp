@@ -74,17 +74,13 @@ TEST(MeshPortals, AreToldByCornersAndByAScene) {
 
 TEST(MeshPortals, AreDrawnThroughInPictures) {
     PortalFolder folder;
-    const Result result = run_acdf({"render",       "--scene",     folder / "scene.json",
-                                    "--data",       folder.data(), "-o",
-                                    folder / "out", "--seeds",     "100",
-                                    "--no-timing",  "--json",      "--no-reference",
-                                    "--sampler",    "local:64KiB", "--sampler",
-                                    "places:96KiB", "--sampler",   "places-portals:96KiB",
-                                    "--sequence",   "independent"});
+    const Result result = run_acdf({"render", "--scene", folder / "scene.json", "--data", folder.data(), "-o",
+                                    folder / "out", "--seeds", "40", "--no-timing", "--json", "--no-reference",
+                                    "--sampler", "places-portals:96KiB", "--sequence", "independent"});
     ASSERT_EQ(result.code, 0) << result.err;
     const Json json = Json::parse(result.out);
-    for (const Json& sampler : json.at("samplers"))
-        EXPECT_LT(std::fabs(double(sampler.at("bias_standard_errors"))), 4.5) << sampler.at("sampler");
+    ASSERT_EQ(json.at("samplers").size(), 1u);
+    EXPECT_LT(std::fabs(double(json.at("samplers").at(0).at("bias_standard_errors"))), 4.5);
 }
 
 TEST(MeshPortals, MistakesAreOneLine) {
