@@ -89,9 +89,12 @@ int Sides::azimuths(const Cell& cell, Side* out) const {
         side.margin[0] = side.margin[1] = kMargin;
         const double tangents[2] = {to == end && piece.end < 1.0 ? -1.0 : tangent(last),
                                     from == low ? tangent(first) : 1.0};
+        // A quarter ends where the next one begins, in which a piece is not to be looked for: azimuths are local.
+        const double end_of_keys = 2.0 * (piece.quarter + 1.0) * static_cast<double>(ACDF_SLOPE_STEPS) - 1.0;
         for (int i = 0; i < 2; ++i) {
+            const double key = (2.0 * piece.quarter + 1.0 + tangents[i]) * static_cast<double>(ACDF_SLOPE_STEPS);
             side.ends[i] = tangents[i];
-            side.key[i] = (2.0 * piece.quarter + 1.0 + tangents[i]) * static_cast<double>(ACDF_SLOPE_STEPS);
+            side.key[i] = std::min(key, end_of_keys);
         }
         from = to;
     }

@@ -161,6 +161,19 @@ TEST(RuntimeTables, ServeFilesOfAnySize) {
     }
 }
 
+// Two cells, of which one ends just before phi = 3/4 pi, where pieces of the other begin to count azimuths anew.
+TEST(RuntimeTables, KnowAQuarterFromTheNext) {
+    std::ifstream in(ACDF_TEST_DIR "/fuzz/regressions/fuzz_reader/directions_of_the_next_quarter.acdf",
+                     std::ios::binary);
+    const EnvironmentPair pair({std::istreambuf_iterator<char>(in), {}}, Tables::own);
+    ASSERT_TRUE(pair.has_tables());
+    for (int i = 0; i < 1000; ++i)
+        for (const double near : {0x1p-24, 0x1p-22, 0x1p-20, 0x1p-12}) {
+            const acdf::DirectionSample s = pair.view().sample(1.0 - near, (i + 0.5) / 1000.0);
+            ASSERT_EQ(pair.view().pdf(s.direction), s.pdf) << i << " " << near;
+        }
+}
+
 // The cells of a stratum of numbers are those of the walk, and within a cell directions are in the order of
 // numbers.
 void expect_monotone(const acdf::compress::Target& target, Tables tables) {
