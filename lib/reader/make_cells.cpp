@@ -178,8 +178,8 @@ void CellsMaker::add_whole_piece(const Side& azimuth, const Side& height, float 
             number.low[axis] = static_cast<u32>(steps[axis].first);
             number.high[axis] = static_cast<u32>(steps[axis].last);
         }
-        key.low[axis] = static_cast<u32>(side.key[0]);
-        key.high[axis] = static_cast<u32>(side.key[1]);
+        key.low[axis] = side.first_key();
+        key.high[axis] = side.last_key();
     }
     widen(key.low[0], key.high[0], azimuth.piece << 23, ((azimuth.piece + 1) << 23) - 1);
     widen(key.low[1], key.high[1], height.piece << 24, ((height.piece + 1) << 24) - 1);
@@ -206,8 +206,8 @@ void CellsMaker::add_piece(const Side& azimuth, const Side& height, float pdf) {
         axes[axis].width = tagged(axes[axis].width, axis == 0 ? 3u : 1u, side.piece);
         number.low[axis] = drawn ? static_cast<u32>(steps.first) : 1;
         number.high[axis] = drawn ? static_cast<u32>(steps.last) : 0;
-        key.low[axis] = static_cast<u32>(side.key[0]);
-        key.high[axis] = static_cast<u32>(side.key[1]);
+        key.low[axis] = side.first_key();
+        key.high[axis] = side.last_key();
     }
     if (!(any[0] && any[1])) key = {{1, 1}, {0, 0}};
     pieces_.add({axes[0], axes[1]});

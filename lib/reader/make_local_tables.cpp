@@ -104,8 +104,7 @@ bool PiecesMaker::add(const Cell& cell, u32 tile) {
                          0,
                          probability,
                          area});
-            keys_.add({{static_cast<u32>(azimuth.key[0]), static_cast<u32>(height.key[0])},
-                       {static_cast<u32>(azimuth.key[1]), static_cast<u32>(height.key[1])}});
+            keys_.add({{azimuth.first_key(), height.first_key()}, {azimuth.last_key(), height.last_key()}});
         }
     return pieces_.size() <= most_pieces_;
 }

@@ -62,6 +62,7 @@ int Sides::square_side(const Cell& cell, int axis, Side& out) const {
         out.margin[i] = kMargin;
         out.key[i] = ends[i] * static_cast<double>(ACDF_SQUARE_STEPS);
     }
+    out.beyond = out.key[1] + 1.0;
     return 1;
 }
 
@@ -89,12 +90,10 @@ int Sides::azimuths(const Cell& cell, Side* out) const {
         side.margin[0] = side.margin[1] = kMargin;
         const double tangents[2] = {to == end && piece.end < 1.0 ? -1.0 : tangent(last),
                                     from == low ? tangent(first) : 1.0};
-        // A quarter ends where the next one begins, in which a piece is not to be looked for: azimuths are local.
-        const double end_of_keys = 2.0 * (piece.quarter + 1.0) * static_cast<double>(ACDF_SLOPE_STEPS) - 1.0;
+        side.beyond = 2.0 * (piece.quarter + 1.0) * static_cast<double>(ACDF_SLOPE_STEPS);
         for (int i = 0; i < 2; ++i) {
-            const double key = (2.0 * piece.quarter + 1.0 + tangents[i]) * static_cast<double>(ACDF_SLOPE_STEPS);
             side.ends[i] = tangents[i];
-            side.key[i] = std::min(key, end_of_keys);
+            side.key[i] = (2.0 * piece.quarter + 1.0 + tangents[i]) * static_cast<double>(ACDF_SLOPE_STEPS);
         }
         from = to;
     }
@@ -113,6 +112,7 @@ int Sides::heights(const Cell& cell, Side* out) const {
                                    !south && ends[1].z < 0.0 ? &equator : &ends[1]};
         Side& side = out[count++];
         side.piece = south;
+        side.beyond = static_cast<double>(kSouthKeys) + 1.0;
         side.low = row[0] == &equator ? cell.low[1] + ends[0].z * number : cell.low[1];
         side.high = row[1] == &equator ? cell.low[1] + ends[0].z * number : cell.high[1];
         for (int i = 0; i < 2; ++i) {

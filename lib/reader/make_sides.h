@@ -59,7 +59,12 @@ struct Side {
     double local[2];     ///< at low and high: local azimuth, 1 - |z|, or 1 - 2 u, 2 v - 1
     double margin[2];    ///< of `local`, in which nothing is sure
     double key[2];       ///< of acdf_direction_place: the lesser, and the greater
+    double beyond;       ///< the first key behind its piece; that of a quarter is the next one's
     double ends[2];      ///< tangents of azimuth or 1 - |z|: the lesser, and the greater; not on the square
+
+    std::uint32_t first_key() const { return static_cast<std::uint32_t>(key[0]); }
+    /// In another quarter local azimuths are others: it is not to be looked for there.
+    std::uint32_t last_key() const { return static_cast<std::uint32_t>(key[1] < beyond ? key[1] : beyond - 1.0); }
 };
 
 /// Cuts cells of a grid.
