@@ -56,4 +56,7 @@ private:
     bool failed_ = false;
 };
 
+/// So many words, up to whole cache lines.
+inline std::size_t whole_lines(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
+
 } // namespace acdf

@@ -216,8 +216,6 @@ void CellsMaker::add_piece(const Side& azimuth, const Side& height, float pdf) {
     keys_.add(key);
 }
 
-std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
-
 AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
     const std::size_t count = pieces_.size();
     const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
@@ -227,18 +225,19 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
         !directions.make(keys_.data(), count, sides_.key_bits(), work))
         return nullptr;
     if (total_ && !(numbers.complete() && directions.complete())) return nullptr;
-    std::size_t words = padded(sizeof(AcdfCells) / 4) + numbers.words() + directions.words();
-    words += padded(pieces_.bytes() / 4) + padded(densities_.bytes() / 4) + padded(ends_.bytes() / 4);
+    std::size_t words = whole_lines(sizeof(AcdfCells) / 4) + numbers.words() + directions.words();
+    words +=
+        whole_lines(pieces_.bytes() / 4) + whole_lines(densities_.bytes() / 4) + whole_lines(ends_.bytes() / 4);
     if (4 * words > most_bytes) return nullptr;
     block = take_block(allocator, 4 * words);
     if (!block.data) return nullptr;
     u32* const tables = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
     AcdfCells* const cells = new (block.data) AcdfCells();
-    std::size_t at = padded(sizeof(AcdfCells) / 4);
+    std::size_t at = whole_lines(sizeof(AcdfCells) / 4);
     const auto copy = [&](const auto& from) {
         const std::size_t begin = at;
         std::memcpy(tables + at, from.data(), from.bytes());
-        at = padded(at + from.bytes() / 4);
+        at = whole_lines(at + from.bytes() / 4);
         return static_cast<u32>(begin);
     };
     cells->words = static_cast<u32>(words);

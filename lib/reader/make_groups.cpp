@@ -46,8 +46,6 @@ u32 bits_of(u32 count) {
     return bits;
 }
 
-std::size_t whole_lines(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
-
 // Bytes of tables, usually: groups are two thirds full.
 std::size_t about(std::size_t cells, std::size_t most_cells) {
     const std::size_t groups = cells * 3 / (2 * most_cells) + 1,

@@ -19,8 +19,6 @@ namespace {
 
 using u32 = std::uint32_t;
 
-std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
-
 // Of pieces and parts: where they are larger, calls would wait for memory longer than the walk takes.
 constexpr std::size_t kMostBytes = std::size_t{3} << 20;
 
@@ -110,9 +108,11 @@ bool PiecesMaker::add(const Cell& cell, u32 tile) {
 }
 
 std::size_t PiecesMaker::part_words() const {
-    return padded(2 * std::size_t{local_.blend.tiles->row_count} * local_.blend.tiles->tile_count);
+    return whole_lines(2 * std::size_t{local_.blend.tiles->row_count} * local_.blend.tiles->tile_count);
 }
-std::size_t PiecesMaker::words() const { return padded(pieces_.bytes() / 4) + directions_.words() + part_words(); }
+std::size_t PiecesMaker::words() const {
+    return whole_lines(pieces_.bytes() / 4) + directions_.words() + part_words();
+}
 
 std::size_t PiecesMaker::place(u32* words, std::size_t at, AcdfLocalTables& out) const {
     const AcdfBlend& blend = local_.blend;
@@ -120,7 +120,7 @@ std::size_t PiecesMaker::place(u32* words, std::size_t at, AcdfLocalTables& out)
     out.count = static_cast<u32>(pieces_.size());
     out.pieces = static_cast<u32>(at);
     if (pieces_.size() > 0) std::memcpy(words + at, pieces_.data(), pieces_.bytes());
-    at = directions_.place(words, at + padded(pieces_.bytes() / 4), out.directions);
+    at = directions_.place(words, at + whole_lines(pieces_.bytes() / 4), out.directions);
     out.parts = static_cast<u32>(at);
     auto* const parts = reinterpret_cast<double*>(words + at);
     for (std::size_t i = 0; i < blend.tiles->row_count; ++i)
@@ -145,7 +145,7 @@ constexpr u32 kMostSubdivisions = 32; // of an octahedron whose corners are told
 
 std::size_t corner_words(const AcdfLocal& local) {
     const std::size_t n = local.subdivisions, side = 2 * n + 1;
-    return n > 0 && n <= kMostSubdivisions ? padded(2 * side * side * sizeof(AcdfCornerRecord) / 4) : 0;
+    return n > 0 && n <= kMostSubdivisions ? whole_lines(2 * side * side * sizeof(AcdfCornerRecord) / 4) : 0;
 }
 
 void place_corners(const AcdfLocal& local, AcdfCornerRecord* out) {
@@ -187,13 +187,13 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
                                    const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
     const AcdfEnvironment& env = local.environment;
     const bool latlong = env.parameterization == ACDF_PARAM_LATLONG;
-    const std::size_t heights = latlong ? padded(2 * (std::size_t{env.rows} + 1)) : 0;
+    const std::size_t heights = latlong ? whole_lines(2 * (std::size_t{env.rows} + 1)) : 0;
     std::size_t at = sizeof(AcdfLocalTables) / 4;
     TileTablesMaker tiles(local.blend, env.columns, env.rows);
     if (!tiles.make()) return nullptr;
     const std::size_t corners = corner_words(local),
-                      lights = padded((local.light_count + 1) / 2 * sizeof(AcdfLightPair) / 4);
-    const std::size_t middles = padded(4 * std::size_t{local.blend.tiles->tile_count});
+                      lights = whole_lines((local.light_count + 1) / 2 * sizeof(AcdfLightPair) / 4);
+    const std::size_t middles = whole_lines(4 * std::size_t{local.blend.tiles->tile_count});
     std::size_t words = at + tiles.words() + heights + corners + lights + middles;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);

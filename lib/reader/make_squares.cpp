@@ -16,8 +16,6 @@ constexpr u32 kByteBits = 8;
 constexpr u32 kMostBits = 16;         // of the grid
 constexpr std::size_t kLookedAt = 32; // cells, to choose an axis
 
-std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
-
 } // namespace
 
 bool SquaresMaker::make(const KeyBox* boxes, std::size_t count, u32 key_bits, std::size_t work_a_box) noexcept {
@@ -172,15 +170,15 @@ void SquaresMaker::fill(const Grid& grid, const Rectangle& rectangle, u32 entry)
 }
 
 std::size_t SquaresMaker::words() const noexcept {
-    return padded(block_boxes_.size()) + padded(block_cells_.size() / 2) + padded(entries_.size()) +
-           padded(finer_.size());
+    return whole_lines(block_boxes_.size()) + whole_lines(block_cells_.size() / 2) + whole_lines(entries_.size()) +
+           whole_lines(finer_.size());
 }
 
 std::size_t SquaresMaker::place(u32* tables, std::size_t at, AcdfSquares& out) const noexcept {
     const auto copy = [&](const auto& from) {
         const std::size_t begin = at;
         if (from.size() > 0) std::memcpy(tables + at, from.data(), from.bytes());
-        at = padded(at + (from.bytes() + 3) / 4);
+        at = whole_lines(at + (from.bytes() + 3) / 4);
         return static_cast<u32>(begin);
     };
     out.shift0 = grid_.shift[0];

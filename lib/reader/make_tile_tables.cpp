@@ -15,8 +15,6 @@ constexpr u32 kMostGridBits = 15;
 constexpr std::size_t kCodes = 256;
 constexpr std::size_t kLine = 64; // bytes
 
-std::size_t padded(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
-
 } // namespace
 
 TileTablesMaker::TileTablesMaker(const AcdfBlend& blend, u32 columns, u32 rows) noexcept
@@ -140,8 +138,8 @@ std::size_t TileTablesMaker::row_words() const noexcept {
 std::size_t TileTablesMaker::split_words() const noexcept { return 2 * (stride() + kLine); }
 
 std::size_t TileTablesMaker::words() const noexcept {
-    return padded(4 * kCodes) + split_words() + row_words() + padded(tiles_.bytes() / 4) +
-           padded((paths_.bytes() + 3) / 4) + padded((grid_.bytes() + 3) / 4);
+    return whole_lines(4 * kCodes) + split_words() + row_words() + whole_lines(tiles_.bytes() / 4) +
+           whole_lines((paths_.bytes() + 3) / 4) + whole_lines((grid_.bytes() + 3) / 4);
 }
 
 std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& out) const noexcept {
@@ -149,7 +147,7 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
     const auto copy = [&](const auto& from) {
         const std::size_t begin = at;
         if (from.size() > 0) std::memcpy(words + at, from.data(), from.bytes());
-        at = padded(at + (from.bytes() + 3) / 4);
+        at = whole_lines(at + (from.bytes() + 3) / 4);
         return static_cast<u32>(begin);
     };
     out.codes = static_cast<u32>(at);
@@ -158,14 +156,14 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
         codes[2 * i] = blend_.tiles->codebook[i] * (1.0 / 65535.0);
         codes[2 * i + 1] = (65535.0 - blend_.tiles->codebook[i]) * (1.0 / 65535.0);
     }
-    at = padded(at + 4 * kCodes);
+    at = whole_lines(at + 4 * kCodes);
     out.splits = static_cast<u32>(at);
     for (std::size_t i = 0; i < splits; ++i) {
         AcdfSplit split = blend_.splits[i];
         for (std::uint16_t& child : split.child) child = static_cast<std::uint16_t>(renumbered(child));
         reinterpret_cast<AcdfSplit*>(words + at)[numbers_[i]] = split;
     }
-    at = padded(at + 2 * stride());
+    at = whole_lines(at + 2 * stride());
     out.rows = static_cast<u32>(at);
     const std::size_t rows =
         splits > 0 ? blend_.tiles->row_count : 0; // without splits any number of them takes no byte
@@ -187,7 +185,7 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
 
 std::size_t TileTablesMaker::heart_words() const noexcept {
     return used_ > 0 && 2 * std::size_t{blend_.tiles->tile_count} < 65536
-               ? padded(blend_.tiles->row_count * stride() / 2)
+               ? whole_lines(blend_.tiles->row_count * stride() / 2)
                : 0;
 }
 

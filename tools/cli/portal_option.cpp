@@ -1,34 +1,30 @@
 #include "tools/cli/portal_option.h"
 
 #include "input/image.h"
+#include "input/text_lines.h"
 #include "tools/cli/file_input.h"
 #include "tools/render/portals.h"
 #include "tools/render/scene_file.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 
 namespace acdf::tools {
 namespace {
 
 /// Nine numbers with blanks or commas between; false where the text is anything else.
 bool read_corners(const std::string& text, float (&corner)[3][3]) {
-    const char* at = text.c_str();
-    const auto skip = [&at] {
-        while (*at == ' ' || *at == ',') ++at;
-    };
-    for (auto& one : corner)
-        for (float& x : one) {
-            char* end = nullptr;
-            skip();
-            x = std::strtof(at, &end);
-            if (end == at || !std::isfinite(x) || (*end && *end != ' ' && *end != ',')) return false;
-            at = end;
-        }
-    skip();
-    return *at == 0;
+    constexpr int count = 9;
+    double numbers[count + 1]; // one more than there may be
+    const char *at = text.data(), *const end = at + text.size();
+    if (input::read_numbers(at, end, numbers, count + 1) != count || at != end) return false;
+    for (int i = 0; i < count; ++i) {
+        if (!(std::abs(numbers[i]) <= double{std::numeric_limits<float>::max()})) return false;
+        corner[i / 3][i % 3] = static_cast<float>(numbers[i]);
+    }
+    return true;
 }
 
 /// In the fewest digits that are that number.

@@ -1,5 +1,7 @@
 #include "tools/render/portals.h"
 
+#include "build/own_terms.h"
+
 #include <cstddef>
 
 namespace acdf::tools {
@@ -13,15 +15,10 @@ builder::Portal told_portal(const builder::Places& places, const measure::Portal
             told[i] = static_cast<float>(sum);
         }
     };
-    const auto& t = places.transform;
-    double determinant = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-        determinant += double{t[0][i]} * (double{t[1][j]} * double{t[2][k]} - double{t[1][k]} * double{t[2][j]});
-    }
+    const bool mirrored = builder::mirrors(places.transform);
     turn_back(portal.corner, out.corner);
-    turn_back(portal.across, determinant < 0.0 ? out.up : out.across);
-    turn_back(portal.up, determinant < 0.0 ? out.across : out.up);
+    turn_back(portal.across, mirrored ? out.up : out.across);
+    turn_back(portal.up, mirrored ? out.across : out.up);
     return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "build/errors.h"
 #include "build/option_text.h"
+#include "build/own_terms.h"
 
 #include <algorithm>
 #include <optional>
@@ -75,6 +76,15 @@ build::EnvironmentOptions internal(const EnvironmentOptions& options) {
     return out;
 }
 
+bool mirrors(const float transform[3][4]) {
+    double determinant = 0.0;
+    for (std::size_t k = 0; k < 3; ++k)
+        determinant +=
+            double{transform[0][k]} * (double{transform[1][(k + 1) % 3]} * double{transform[2][(k + 2) % 3]} -
+                                       double{transform[1][(k + 2) % 3]} * double{transform[2][(k + 1) % 3]});
+    return determinant < 0.0;
+}
+
 namespace {
 
 /// A callback of the caller's, whose exceptions are told apart from others.
@@ -106,12 +116,7 @@ compress::PortalRectangle internal(const Portal& portal, const float transform[3
         out.across[k] = turned(portal.across);
         out.up[k] = turned(portal.up);
     }
-    double determinant = 0.0;
-    for (std::size_t k = 0; k < 3; ++k)
-        determinant +=
-            double{transform[0][k]} * (double{transform[1][(k + 1) % 3]} * double{transform[2][(k + 2) % 3]} -
-                                       double{transform[1][(k + 2) % 3]} * double{transform[2][(k + 1) % 3]});
-    if (determinant < 0.0) std::swap(out.across, out.up);
+    if (mirrors(transform)) std::swap(out.across, out.up);
     return out;
 }
 
