@@ -2,7 +2,7 @@
 # Everything that must hold, from a bare Debian 12: installs what is missing, then
 #   0. builds optimised with warnings as errors, while the packages of tests are being installed, and checks the formatting,
 #   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, runs the tests on synthetic data, and beside them
-#      fuzzes the reader for half a minute, and every parser of our own for 10 seconds,
+#      fuzzes the reader for a quarter of a minute, and every parser of our own for 5 seconds,
 #   2. compares the files that both builds make byte for byte,
 #   3. runs all tests of the optimised build, those on real data too where it is present.
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.

@@ -41,12 +41,11 @@ compress::Chunk views_chunk(const compress::BrdfFit& fit, float diffuse_share) {
 }
 
 BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Reflected& reflected,
-                           bool isotropic) {
+                           const std::vector<compress::View>& views) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
-    const auto views = measure_views(file, reflected, random_views(kMeasuredViews, isotropic));
-    BrdfAccuracy out = summary(views);
+    BrdfAccuracy out = summary(measure_views(file, reflected, views));
     out.cells = brdf_cells(file);
     return out;
 }
@@ -152,7 +151,8 @@ Draft draft(const Task& task, const compress::Goal& goal, double max_weight, con
 BrdfFile finish(const Task& task, const Draft& draft, const Progress& progress) {
     if (progress) progress(0.8, "measuring");
     BrdfFile out;
-    out.accuracy = measure_bytes(draft.bytes, task.reflected, task.brdf.isotropic);
+    out.accuracy = measure_bytes(draft.bytes, task.reflected,
+                                 random_views(task.options.measured_views, task.brdf.isotropic));
     out.bytes = brdf_bytes(draft.fit, task.options, metadata(task.brdf, task.options, out.accuracy));
     out.theta_views = static_cast<std::uint32_t>(draft.fit.nodes.size());
     out.phi_views = draft.fit.phi_views;

@@ -14,6 +14,9 @@
 
 namespace acdf::build {
 
+/// Views on which accuracy is measured: cos(theta_o) uniform in [0.1, 1].
+constexpr std::uint32_t kMeasuredViews = 64;
+
 /// What `acdf brdf` was asked for, beside the BRDF.
 struct BrdfFileOptions {
     compress::BrdfOptions fit; ///< symmetry, max_weight and file_size are set by build_brdf
@@ -22,6 +25,8 @@ struct BrdfFileOptions {
     compress::ChannelWeights weights;
     float diffuse_share = 0.0f; ///< of a cosine lobe, in [0, 1)
     AcdfCodec codec = ACDF_CODEC_NONE;
+    /// Not told by the file: for callers who measure by themselves.
+    std::uint32_t measured_views = kMeasuredViews;
 };
 
 /// All options that shape the file, in one spelling: what its `fit.options` tells.
@@ -37,9 +42,6 @@ struct BrdfFile {
 /// root of the sum of squares of the channels. `brdf` must live as long.
 compress::Reflected reflected_light(const Brdf& brdf, AcdfChannels channels,
                                     const compress::ChannelWeights& weights);
-
-/// Views on which accuracy is measured: cos(theta_o) uniform in [0.1, 1].
-constexpr std::uint32_t kMeasuredViews = 64;
 
 /// The file of a fit, with zeros for what is not known yet.
 std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFileOptions& options,

@@ -18,16 +18,26 @@ constexpr int max_halvings = 6;
 // Solid angles are added up as integers: their sum is the same in any order, so on any number of threads.
 constexpr double units = 0x1p61 / (4.0 * compress::pi);
 
+// Small maps are cut into as many cells as larger ones. Their overlaps, some 15 MB, are kept from one pass to the
+// next.
+constexpr std::size_t max_kept_texels = 256 * 128;
+
+struct Overlap {
+    int x, y;
+    double omega;
+};
+
 class Resampler {
 public:
     Resampler(const Map& map, std::vector<float>& rgb, int width)
         : map_(map), rgb_(rgb), width_(width), height_(width / 2), covered_(texels(map)) {}
 
     std::vector<float> run() {
+        const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+        if (count <= max_kept_texels) kept_.resize(count);
         parallel_rows(height_, [&](int row) { add_coverage(row); });
         parallel_rows(map_.height, [&](int row) { scale_source(row); });
-        std::vector<float> result(std::size_t{3} * static_cast<std::size_t>(width_) *
-                                  static_cast<std::size_t>(height_));
+        std::vector<float> result(3 * count);
         parallel_rows(height_, [&](int row) { gather(row, result); });
         hand_out_missed(result);
         return result;
@@ -55,13 +65,20 @@ private:
         return {phi(column), phi(column + 1), theta(row), theta(row + 1)};
     }
 
+    template <typename Visit>
+    void for_each_source(int column, int row, const Visit& visit) const {
+        for_each_overlap(map_, texel(column, row), max_halvings, [&](int x, int y, double omega, const Polygon&) {
+            visit(Overlap{x, y, omega});
+        });
+    }
+
     void add_coverage(int row) {
         for (int column = 0; column < width_; ++column)
-            for_each_overlap(map_, texel(column, row), max_halvings,
-                             [&](int x, int y, double omega, const Polygon&) {
-                                 covered_[index(x, y)].fetch_add(static_cast<std::uint64_t>(omega * units),
-                                                                 std::memory_order_relaxed);
-                             });
+            for_each_source(column, row, [&](const Overlap& part) {
+                covered_[index(part.x, part.y)].fetch_add(static_cast<std::uint64_t>(part.omega * units),
+                                                          std::memory_order_relaxed);
+                if (!kept_.empty()) kept_[texel_index(column, row)].push_back(part);
+            });
     }
 
     // After this, `rgb_` times the solid angle by which lat-long texels overlap a texel is what it hands out.
@@ -78,20 +95,26 @@ private:
     void gather(int row, std::vector<float>& result) const {
         for (int column = 0; column < width_; ++column) {
             double sum[3] = {0.0, 0.0, 0.0}, total = 0.0;
-            for_each_overlap(map_, texel(column, row), max_halvings,
-                             [&](int x, int y, double omega, const Polygon&) {
-                                 const float* source = rgb_.data() + 3 * index(x, y);
-                                 for (int c = 0; c < 3; ++c) sum[c] += omega * source[c];
-                                 total += omega;
-                             });
+            const auto add = [&](const Overlap& part) {
+                const float* source = rgb_.data() + 3 * index(part.x, part.y);
+                for (int c = 0; c < 3; ++c) sum[c] += part.omega * source[c];
+                total += part.omega;
+            };
+            if (kept_.empty()) for_each_source(column, row, add);
+            for (const Overlap& part : kept(column, row)) add(part);
             for (int c = 0; c < 3; ++c)
                 result[result_index(column, row) + static_cast<std::size_t>(c)] = to_float(sum[c] / total);
         }
     }
 
-    std::size_t result_index(int column, int row) const {
-        return 3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
-                    static_cast<std::size_t>(column));
+    std::size_t texel_index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+    }
+    std::size_t result_index(int column, int row) const { return 3 * texel_index(column, row); }
+
+    const std::vector<Overlap>& kept(int column, int row) const {
+        static const std::vector<Overlap> none;
+        return kept_.empty() ? none : kept_[texel_index(column, row)];
     }
 
     // Slivers at the rim of a disc may have been missed by all: each goes where its middle points.
@@ -124,6 +147,7 @@ private:
     std::vector<float>& rgb_;
     const int width_, height_;
     std::vector<std::atomic<std::uint64_t>> covered_;
+    std::vector<std::vector<Overlap>> kept_; ///< of each texel; none where there are many
 };
 
 } // namespace

@@ -1,11 +1,14 @@
 #include "images/image_file.h"
 
+#include "images/float_map.h"
+
 #include <stdexcept>
 
 namespace acdf::images {
 
 ImageFile::ImageFile(const std::string& path, int threads)
-    : module_(module()), image_(module_.open(path, threads, header_, error_), module_.close) {}
+    : reader_(is_float_map(path) ? float_map_reader() : module().reader),
+      image_(reader_.open(path, threads, header_, error_), reader_.close) {}
 
 std::vector<std::uint8_t> encode(const Picture& picture, const Encoding& encoding) {
     std::vector<std::uint8_t> bytes;

@@ -1,5 +1,6 @@
 // What the program and the module that holds OpenImageIO say to each other. OpenImageIO brings some 250 shared
-// libraries, which take longer to load than most commands to run: the module is opened when the first image is.
+// libraries, which take longer to load than most commands to run: the module is opened when the first image is that
+// we cannot read ourselves.
 #pragma once
 
 #include "images/picture.h"
@@ -53,12 +54,8 @@ struct Encoding {
     std::vector<Attribute> attributes;
 };
 
-/// A table of functions and plain data, no classes with virtual functions: those would need their type information
-/// to be one in program and module. Nothing of ours is thrown through it; what the standard library throws
-/// (std::bad_alloc) is.
-struct Module {
-    const char* version; ///< of acdf: a module of another version is refused
-
+/// How an image file is read, by the module or by ourselves.
+struct ImageReader {
     /// Null and `error` where the file cannot be read. `threads` 0: all cores.
     void* (*open)(const std::string& path, int threads, Header& header, std::string& error);
     void (*close)(void* image);
@@ -70,6 +67,14 @@ struct Module {
     std::string (*text)(const void* image, const char* name);
     int (*integer)(const void* image, const char* name, int otherwise);
     float (*real)(const void* image, const char* name, float otherwise);
+};
+
+/// A table of functions and plain data, no classes with virtual functions: those would need their type information
+/// to be one in program and module. Nothing of ours is thrown through it; what the standard library throws
+/// (std::bad_alloc) is.
+struct Module {
+    const char* version; ///< of acdf: a module of another version is refused
+    ImageReader reader;  ///< of every format that OpenImageIO reads
 
     /// An image file in memory. False and `error` where it cannot be made.
     bool (*encode)(const Picture& picture, const Encoding& encoding, std::vector<std::uint8_t>& bytes,

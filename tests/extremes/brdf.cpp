@@ -73,7 +73,7 @@ protected:
         std::unique_ptr<MadeBrdf>& brdf = made[GetParam().name];
         if (!brdf) {
             std::unique_ptr<Brdf> source = GetParam().make();
-            acdf::build::BrdfFileOptions options;
+            acdf::build::BrdfFileOptions options = roughly_measured();
             options.codec = ACDF_CODEC_ZLIB;
             // About 16 KiB; a budget would be searched for.
             options.fit.goal = {acdf::compress::Goal::Kind::cells, source->isotropic ? 900u : 450u, 0, 0.0};

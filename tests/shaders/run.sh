@@ -23,7 +23,7 @@ skip() {
 need() { command -v "$1" >/dev/null || skip "no $1"; }
 
 make_file() {
-    local probe=${PROBE:-$work/sky.exr} domain=latlong kind=env
+    local probe=${PROBE:-$work/sky.pfm} domain=latlong kind=env
     if [ "$walk" = brdf ]; then
         local model=cook-torrance:m=0.2
         [ "$form" = brdf ] || model=ggx:alpha=0.1,0.3

@@ -15,7 +15,7 @@ using nlohmann::json;
 class LocalCommand : public testing::Test {
 protected:
     Folder folder;
-    const std::string probe = folder / "probe.exr", output = folder / "probe.acdf";
+    const std::string probe = folder / "probe.pfm", output = folder / "probe.acdf";
 
     void SetUp() override {
         write_probe(probe, [](double phi, double z) {
@@ -130,10 +130,10 @@ TEST_F(LocalCommand, SaysWhereTheNormalGainsNothing) {
     made({"--budget", "40kB"});
     EXPECT_EQ(messages.find("acdf env"), std::string::npos) << messages;
     // One light straight above a floor: its own CDF is as good.
-    write_probe(folder / "lamp.exr", [](double, double z) { return z > 0.95 ? 1.0 : 0.0; });
+    write_probe(folder / "lamp.pfm", [](double, double z) { return z > 0.95 ? 1.0 : 0.0; });
     write_text(folder / "floor.txt", "0 0 1\n");
     const json report =
-        made({"--budget", "40kB", "--scene", folder / "floor.txt", "--cosine-share", "0.5"}, folder / "lamp.exr");
+        made({"--budget", "40kB", "--scene", folder / "floor.txt", "--cosine-share", "0.5"}, folder / "lamp.pfm");
     EXPECT_LT(report["gain"], 1.5);
     EXPECT_NE(messages.find("`acdf env` would do about as well"), std::string::npos) << messages;
 }

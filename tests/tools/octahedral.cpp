@@ -20,7 +20,7 @@ using nlohmann::json;
 class OctahedralCommand : public testing::Test {
 protected:
     Folder folder;
-    const std::string square = folder / "square.exr", latlong = folder / "latlong.exr", disc = folder / "disc.exr",
+    const std::string square = folder / "square.pfm", latlong = folder / "latlong.pfm", disc = folder / "disc.pfm",
                       output = folder / "out.acdf";
 
     void SetUp() override {

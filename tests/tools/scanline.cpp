@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 class ScanlineCommand : public testing::Test {
 protected:
     Folder folder;
-    std::string probe = folder / "sky.exr";
+    std::string probe = folder / "sky.pfm";
 
     /// 256 x 128: every row a wave of its own height, and a narrow light in row 50.
     void SetUp() override {

@@ -89,6 +89,8 @@ protected:
 
 TEST_F(Startup, LoadsNoLibraryForImagesWhereThereIsNone) {
     write_text(image, "never opened");
+    const std::string map = folder / "sky.pfm"; // which needs no library
+    write_rgb(map, 4, 2, std::vector<float>(24, 1.0f));
     const std::vector<std::string> commands[] = {
         {"--version"},
         {"--help"},
@@ -100,6 +102,8 @@ TEST_F(Startup, LoadsNoLibraryForImagesWhereThereIsNone) {
         {"brdf", "ggx:alpha=0.5", "-o", folder / "ggx.acdf", "--budget", "4KiB", "-q"},
         {"table", table, "-o", folder / "table.acdf", "-q"},
         {"batch", image, "-o", folder / "out", "--dry-run"},
+        {"env", map, "-o", folder / "map.acdf", "-q"},
+        {"batch", map, "-o", folder / "out", "-q"},
     };
     for (const std::vector<std::string>& command : commands) {
         const std::set<std::string> names = loaded_by(command);

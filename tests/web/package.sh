@@ -33,9 +33,9 @@ for file in acdf.mjs acdf.d.ts acdf.wasm shaders.mjs shaders.d.ts README.md LICE
     test -s "node_modules/acdf/$file" || { echo "$file is not in the packed file" >&2; exit 1; }
 done
 
-"$make_sky" sky.exr
-"$acdf" env sky.exr --budget 16KiB --compress zlib -o sky.acdf --quiet
-"$acdf" local sky.exr --budget 64KiB -o local.acdf --quiet
+"$make_sky" sky.pfm
+"$acdf" env sky.pfm --budget 16KiB --compress zlib -o sky.acdf --quiet
+"$acdf" local sky.pfm --budget 64KiB -o local.acdf --quiet
 "$acdf" sample sky.acdf -n 20000 >sky.csv
 "$acdf" sample local.acdf -n 20000 --normal 0,0.6,0.8 >local.csv
 "$acdf" export sky.acdf --target glsl --tables tables.bin >sky.glsl

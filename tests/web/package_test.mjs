@@ -37,7 +37,7 @@ test("what a file is", () => {
     assert.equal(info.parameterization, "latlong");
     assert.equal(info.bytes, readFileSync("sky.acdf").length);
     assert.deepEqual(info.axes.map(axis => [axis.name, axis.role]), [["phi", "sampled"], ["theta", "sampled"]]);
-    assert.equal(info.metadata["source.name"], "sky.exr");
+    assert.equal(info.metadata["source.name"], "sky.pfm");
     assert.ok(info.total > 0 && info.tableBytes > 0);
 });
 

@@ -16,10 +16,10 @@ trap 'rm -rf "$work"' EXIT
 "$here/../../docs/viewer/build.sh" "$build"
 cp "$build/web/viewer.html" "$here/viewer_test.html" "$here"/../golden/v1.0/{brdf,places}.acdf "$work"
 cd "$work"
-"$make_sky" sky.exr
-"$acdf" env sky.exr --budget 8KiB --compress zlib -o sky.acdf --quiet
-"$acdf" env sky.exr --budget 8KiB --domain octahedral -o square.acdf --quiet
-"$acdf" local sky.exr --budget 64KiB -o local.acdf --quiet
+"$make_sky" sky.pfm
+"$acdf" env sky.pfm --budget 8KiB --compress zlib -o sky.acdf --quiet
+"$acdf" env sky.pfm --budget 8KiB --domain octahedral -o square.acdf --quiet
+"$acdf" local sky.pfm --budget 64KiB -o local.acdf --quiet
 printf 'not a file of ours, but long enough to be one if bytes were all that it takes' >broken.acdf
 echo '0.6 0 0.8' | "$acdf" pdf sky.acdf >density
 "$acdf" info sky.acdf --json >info.json

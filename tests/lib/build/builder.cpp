@@ -174,17 +174,17 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
     for (const Layout& layout : layouts) {
         std::vector<float> rgb = sky(layout.width, layout.height);
         rgb[3 * (layout.height / 2 * layout.width + layout.width / 2)] = -1.0f;
-        write_rgb(folder / "p.exr", int(layout.width), int(layout.height), rgb);
+        write_rgb(folder / "p.pfm", int(layout.width), int(layout.height), rgb);
         EnvironmentOptions options;
         options.goal = Goal::of_budget(4000);
         options.codec = ACDF_CODEC_ZLIB;
         options.target.filter = ACDF_FILTER_BILINEAR;
-        options.source = {"p.exr", input::file_sha256(folder / "p.exr"), "",
+        options.source = {"p.pfm", input::file_sha256(folder / "p.pfm"), "",
                           std::string("--projection ") + layout.name + " "};
         Pixels pixels = pixels_of(rgb, layout.width, layout.height);
         pixels.projection = layout.projection;
         EXPECT_EQ(bytes_of(pixels, options),
-                  program_bytes({"env", folder / "p.exr", "--projection", layout.name, "--budget", "4000",
+                  program_bytes({"env", folder / "p.pfm", "--projection", layout.name, "--budget", "4000",
                                  "--compress", "zlib", "--filter", "bilinear"},
                                 folder / "p.acdf"))
             << layout.name << " " << layout.width;
@@ -194,11 +194,11 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
 TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
     const Folder folder;
     const std::vector<float> rgb = sky();
-    write_rgb(folder / "p.exr", int(kSkyWidth), int(kSkyHeight), rgb);
+    write_rgb(folder / "p.pfm", int(kSkyWidth), int(kSkyHeight), rgb);
     const auto expect_same = [&](EnvironmentOptions options, std::vector<std::string> arguments) {
-        options.source = {"p.exr", input::file_sha256(folder / "p.exr"), "", ""};
+        options.source = {"p.pfm", input::file_sha256(folder / "p.pfm"), "", ""};
         const std::string text = arguments.empty() ? "" : arguments.back();
-        arguments.insert(arguments.begin(), {"env", folder / "p.exr"});
+        arguments.insert(arguments.begin(), {"env", folder / "p.pfm"});
         const Bytes made = bytes_of(pixels_of(rgb), options);
         EXPECT_EQ(made, program_bytes(arguments, folder / "p.acdf")) << text;
         File file;

@@ -21,9 +21,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// A file of 64 x 32 texels of a sky, as the program reads it.
 class SkyFile {
 public:
-    SkyFile() : rgb(sky()), path_(folder_ / "sky.exr") {
+    SkyFile() : rgb(sky()), path_(folder_ / "sky.pfm") {
         write_rgb(path_, int(kSkyWidth), int(kSkyHeight), rgb);
-        source = {"sky.exr", input::file_sha256(path_), "", ""};
+        source = {"sky.pfm", input::file_sha256(path_), "", ""};
     }
     Bytes program(std::vector<std::string> arguments) const {
         arguments.insert(arguments.begin(), {"local", path_});

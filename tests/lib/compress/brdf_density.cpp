@@ -191,7 +191,7 @@ TEST(BrdfFit, strataOfRandomNumbersAreHalvesOfDirections) {
 }
 
 TEST(BrdfFit, floorIsAnExactMixture) {
-    acdf::build::BrdfFileOptions options;
+    acdf::build::BrdfFileOptions options = roughly_measured();
     options.fit.goal.cells = 300;
     const auto plain = make_brdf(std::make_unique<LobeBrdf>(0.1, 0.1), options);
     options.diffuse_share = 0.25f;
@@ -219,7 +219,7 @@ TEST(BrdfFit, isTheSameForAnyNumberOfThreads) {
 }
 
 TEST(BrdfFit, smallerGoalsTakeFewerBytes) {
-    acdf::build::BrdfFileOptions options;
+    acdf::build::BrdfFileOptions options = roughly_measured();
     options.fit.goal.kind = acdf::compress::Goal::Kind::variance;
     options.fit.goal.variance = 0.05;
     const auto rough = make_brdf(std::make_unique<LobeBrdf>(0.2, 0.2), options);

@@ -10,10 +10,27 @@
 #include <algorithm>
 #include <filesystem>
 #include <ostream>
+#include <vector>
 
 namespace {
 
 using namespace acdf::compress;
+
+/// Texels averaged to a map of this width: what every fit does is the same on fewer of them.
+constexpr std::uint32_t kWidth = 256;
+
+Target averaged(const Target& target) {
+    const std::uint32_t by = target.columns / kWidth, rows = target.rows / by;
+    std::vector<float> rgb;
+    for (std::uint32_t r = 0; r < rows; ++r)
+        for (std::uint32_t c = 0; c < kWidth; ++c) {
+            double sum = 0.0;
+            for (std::uint32_t y = 0; y < by; ++y)
+                for (std::uint32_t x = 0; x < by; ++x) sum += double{target.row(r * by + y)[c * by + x]};
+            rgb.insert(rgb.end(), 3, static_cast<float>(sum / (by * by)));
+        }
+    return environment_target(rgb.data(), kWidth, rows, TargetOptions{});
+}
 
 struct Figures {
     const char* name;
@@ -48,7 +65,9 @@ protected:
 };
 
 TEST_P(Probe, EveryFitIsADensityThatCoversIt) {
-    for (const auto& fit : acdf_test::all_fits(64, 64, 4096)) acdf_test::check_fit(target_, fit);
+    const bool whole = std::string(GetParam().name) == "courtyard"; // one of them as large as it is
+    const Target target = whole ? target_ : averaged(target_);
+    for (const auto& fit : acdf_test::all_fits(64, 64, 4096)) acdf_test::check_fit(target, fit);
 }
 
 TEST_P(Probe, PaperFitMeetsItsFigure) {
@@ -90,8 +109,8 @@ TEST_P(Projection, EveryFitIsADensityThatCoversIt) {
     acdf::input::ProbeOptions options;
     options.projection = GetParam().projection;
     const acdf::input::Probe probe = acdf::input::read_probe(path, options);
-    const Target target = environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
-                                             static_cast<std::uint32_t>(probe.height), TargetOptions{});
+    const Target target = averaged(environment_target(probe.rgb.data(), static_cast<std::uint32_t>(probe.width),
+                                                      static_cast<std::uint32_t>(probe.height), TargetOptions{}));
     for (const auto& fit : acdf_test::all_fits(64, 64, 4096)) acdf_test::check_fit(target, fit);
 }
 

@@ -69,7 +69,7 @@ test_ninja() {
     build() { ACDF=$acdf "$farm/ninja.sh" "$out" "$work/probes" "${options[@]}" "$@" >"$work/ninja.log" 2>&1; }
 
     build || fail "ninja.sh"
-    [[ $(count) == 32 ]] || fail "$(count) jobs ran, not 32"
+    [[ $(count) == 16 ]] || fail "$(count) jobs ran, not 16"
     expect_same "$out"
     build || fail "ninja.sh, again"
     [[ $(count) == 0 ]] || fail "$(count) jobs ran though nothing had changed"
@@ -85,7 +85,7 @@ test_ninja() {
     rm "$work/probes/new.pfm" "$out"/new.*
 
     build --set env.filter=bilinear || fail "ninja.sh with another option"
-    [[ $(count) == 16 ]] || fail "$(count) jobs ran for an option of env"
+    [[ $(count) == 8 ]] || fail "$(count) jobs ran for an option of env"
 
     echo "no probe" >"$work/probes/probe004.pfm"
     rm "$out/probe005.acdf"
@@ -97,7 +97,7 @@ test_parallel() {
     need parallel
     SHARDS=5 JOBS=2 ACDF=$acdf PARALLEL=--will-cite \
         "$farm/parallel.sh" "$work/out" "$work/probes" "${options[@]}" >"$work/parallel.log" 2>&1 || fail "parallel.sh"
-    grep -q '^all .* 32 .* 0 ' "$work/parallel.log" || fail "the table does not tell 32 jobs"
+    grep -q '^all .* 16 .* 0 ' "$work/parallel.log" || fail "the table does not tell 16 jobs"
     expect_same "$work/out"
     echo "no probe" >"$work/probes/probe004.pfm"
     if SHARDS=5 ACDF=$acdf PARALLEL=--will-cite \
@@ -198,11 +198,11 @@ test_slurm() {
     await has_ended "${job}_2"
     expect_same "$work/out"
     "$acdf" batch --merge-reports "$work/out/reports/$job"/*.json >"$work/merged.log" || fail "reports"
-    grep -q '^all .* 32 .* 0 ' "$work/merged.log" || fail "the table does not tell 32 jobs"
+    grep -q '^all .* 16 .* 0 ' "$work/merged.log" || fail "the table does not tell 16 jobs"
     grep -q '"up to date"' "$work/out/reports/$job/2.json" || fail "task 2 did not go on where it was killed"
 }
 
-"$make_probes" "$work/probes" 16 40
+"$make_probes" "$work/probes" 8 40
 "$acdf" batch "$work/probes" -o "$work/expected" "${options[@]}" --quiet
 "test_$engine"
-echo "$engine: all 32 files as expected"
+echo "$engine: all 16 files as expected"

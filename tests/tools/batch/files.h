@@ -1,10 +1,11 @@
 // Libraries of small probes for the tests of acdf batch.
 #pragma once
 
+#include "tests/inputs/float_map.h"
+
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <string>
 #include <vector>
@@ -18,9 +19,7 @@ inline void write_small_probe(const std::string& path, std::uint32_t seed, std::
     for (float& v : rgb) v = 0.1f + static_cast<float>(random() % 1024) / 1024.0f;
     const std::size_t bright = random() % (rgb.size() / 3);
     for (std::size_t c = 0; c < 3; ++c) rgb[3 * bright + c] = 100.0f;
-    std::ofstream file(path, std::ios::binary);
-    file << "PF\n" << 2 * rows << " " << rows << "\n-1.0\n"; // little-endian
-    file.write(reinterpret_cast<const char*>(rgb.data()), static_cast<std::streamsize>(rgb.size() * sizeof(float)));
+    write_float_map(path, static_cast<int>(2 * rows), static_cast<int>(rows), rgb);
 }
 
 /// probe000.pfm to probe<count - 1>.pfm in `folder`, which is made.

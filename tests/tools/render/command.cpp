@@ -139,13 +139,13 @@ TEST_F(RenderCommand, SaysWhatIsWrong) {
     refused({}, 1, "scene.json: the scene: lacks 'camera'");
     write_text(folder / "scene.json", small_scene("\"nonsense\""));
     refused({}, 1, "samplers: sampler 'nonsense'");
-    std::filesystem::remove(folder / "probe.exr");
+    std::filesystem::remove(folder / "probe.pfm");
     write_text(folder / "scene.json", small_scene("\"cosine\""));
-    refused({}, 1, "probe.exr");
+    refused({}, 1, "probe.pfm");
 }
 
 TEST_F(RenderCommand, TakesFiles) {
-    ASSERT_EQ(run_acdf({"env", folder / "probe.exr", "-o", folder / "sky.acdf", "--cells", "64", "-q"}).code, 0);
+    ASSERT_EQ(run_acdf({"env", folder / "probe.pfm", "-o", folder / "sky.acdf", "--cells", "64", "-q"}).code, 0);
     const Result result =
         render_once("out", {"--sampler", "cosine", "--sampler", "file:sky.acdf", "--json", "--no-timing"});
     ASSERT_EQ(result.code, 0) << result.err;

@@ -31,7 +31,7 @@ TEST(RenderSceneFile, IsReadWhole) {
     EXPECT_EQ(scene.camera.fov, 35.0);
     EXPECT_EQ(scene.width, 8u);
     EXPECT_EQ(scene.height, 6u);
-    EXPECT_EQ(scene.probe, "probe.exr");
+    EXPECT_EQ(scene.probe, "probe.pfm");
     EXPECT_EQ(scene.projection, input::Projection::latlong);
     EXPECT_EQ(scene.samples, 8u);
     EXPECT_EQ(scene.samplers, (std::vector<std::string>{"full-cdf", "cosine"}));

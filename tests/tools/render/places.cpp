@@ -90,19 +90,19 @@ void expect_as_summed(Viewed& scene, const std::vector<std::vector<std::string>>
 
 TEST(RenderPlaces, AreAsSummedBehindAWall) {
     Viewed scene(test::small_scene("\"full-cdf\""));
-    expect_as_summed(scene, {{"local:64KiB"}, {"places:64KiB"}, {"visibility:8x4"}, {"places:64KiB", "cosine"}});
+    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"visibility:8x4"}, {"places:24KiB", "cosine"}});
 }
 
 TEST(RenderPlaces, AreAsSummedInARoom) {
     Viewed scene(test::mesh_scene("room.obj"));
-    expect_as_summed(scene, {{"local:64KiB"}, {"places:64KiB"}, {"tiles:8x4"}, {"visibility:8x4"}});
+    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"tiles:8x4"}, {"visibility:8x4"}});
 }
 
 /// Wherever light is, from any place and for any normal, it may be drawn.
 TEST(RenderPlaces, LoseNoLightAnywhere) {
     for (const std::string& text : {test::small_scene("\"full-cdf\""), test::mesh_scene("room.obj")}) {
         Viewed scene(text);
-        const auto point = scene.parts({"places:64KiB"}).parts[0].of_material[0]->point_sampler();
+        const auto point = scene.parts({"places:24KiB"}).parts[0].of_material[0]->point_sampler();
         const compress::PlaceScene places = measure::place_scene(scene.loaded->scene.geometry);
         std::mt19937_64 random(11);
         const auto any = [&] {

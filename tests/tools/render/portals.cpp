@@ -18,8 +18,8 @@ struct PortalFolder : SceneFolder {
     PortalFolder() : SceneFolder(mesh_scene("room.obj")) { write_text(*this / "room.obj", room()); }
 
     Result local(const std::string& output, const std::vector<std::string>& more, const char* mesh = "room.obj") {
-        std::vector<std::string> arguments{"local", *this / "probe.exr", "-o",        *this / output, "--budget",
-                                           "96KiB", "--scene",           *this / mesh};
+        std::vector<std::string> arguments{"local", *this / "probe.pfm", "-o",        *this / output, "--budget",
+                                           "48KiB", "--scene",           *this / mesh};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     }
@@ -66,7 +66,7 @@ TEST(MeshPortals, AreToldByCornersAndByAScene) {
                   .code,
               0);
 
-    const Result measured = run_acdf({"measure", folder / "one.acdf", "--against", folder / "probe.exr", "--scene",
+    const Result measured = run_acdf({"measure", folder / "one.acdf", "--against", folder / "probe.pfm", "--scene",
                                       folder / "room.obj", "--json"});
     ASSERT_EQ(measured.code, 0) << measured.err;
     EXPECT_EQ(Json::parse(measured.out).at("places").at("support_violations"), 0);
@@ -76,7 +76,7 @@ TEST(MeshPortals, AreDrawnThroughInPictures) {
     PortalFolder folder;
     const Result result = run_acdf({"render", "--scene", folder / "scene.json", "--data", folder.data(), "-o",
                                     folder / "out", "--seeds", "40", "--no-timing", "--json", "--no-reference",
-                                    "--sampler", "places-portals:96KiB", "--sequence", "independent"});
+                                    "--sampler", "places-portals:48KiB", "--sequence", "independent"});
     ASSERT_EQ(result.code, 0) << result.err;
     const Json json = Json::parse(result.out);
     ASSERT_EQ(json.at("samplers").size(), 1u);

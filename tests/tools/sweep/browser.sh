@@ -74,9 +74,9 @@ addEventListener("load", () => {
 });
 JS
 
-name="sky <b>&\"'.exr"
-"$make_sky" "$work/sky.exr"
-mv "$work/sky.exr" "$work/$name"
+name="sky <b>&\"'.pfm"
+"$make_sky" "$work/sky.pfm"
+mv "$work/sky.pfm" "$work/$name"
 (cd "$work" && "$acdf" sweep "$name" -o out --budgets 4KiB,16KiB --quiet)
 
 for width in 1280 390; do

@@ -14,7 +14,7 @@ namespace {
 std::string tiny_probe(const Folder& folder) {
     std::vector<float> rgb(32 * 16 * 3);
     for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<float>(1 + (i / 3 * 37) % 523);
-    const std::string path = folder / "tiny.exr";
+    const std::string path = folder / "tiny.pfm";
     write_rgb(path, 32, 16, rgb);
     return path;
 }
