@@ -151,8 +151,8 @@ Draft draft(const Task& task, const compress::Goal& goal, double max_weight, con
 BrdfFile finish(const Task& task, const Draft& draft, const Progress& progress) {
     if (progress) progress(0.8, "measuring");
     BrdfFile out;
-    out.accuracy = measure_bytes(draft.bytes, task.reflected,
-                                 random_views(task.options.measured_views, task.brdf.isotropic));
+    out.accuracy =
+        measure_bytes(draft.bytes, task.reflected, random_views(task.options.measured_views, task.brdf.isotropic));
     out.bytes = brdf_bytes(draft.fit, task.options, metadata(task.brdf, task.options, out.accuracy));
     out.theta_views = static_cast<std::uint32_t>(draft.fit.nodes.size());
     out.phi_views = draft.fit.phi_views;

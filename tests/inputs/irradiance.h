@@ -23,7 +23,7 @@ inline double dot(const float a[3], const float b[3]) {
 inline double length(const float a[3]) { return std::sqrt(dot(a, a)); }
 
 /// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where
-/// no part is below the horizon, else of quarters, down to a thousandth of a radian.
+/// no part is below the horizon, else of quarters, down to a 500th of a radian.
 inline double clamped_cosine(const double n[3], double phi0, double phi1, double theta0, double theta1) {
     const auto cosine = [&](double phi, double theta) {
         return std::sin(theta) * (n[0] * std::cos(phi) + n[1] * std::sin(phi)) + n[2] * std::cos(theta);
@@ -31,7 +31,7 @@ inline double clamped_cosine(const double n[3], double phi0, double phi1, double
     const double phi = 0.5 * (phi0 + phi1), theta = 0.5 * (theta0 + theta1);
     const double reach = 0.5 * (std::fabs(phi0 - phi1) + std::fabs(theta1 - theta0)), middle = cosine(phi, theta);
     if (middle <= -reach) return 0.0;
-    if (middle >= reach || reach < 1e-3) {
+    if (middle >= reach || reach < 2e-3) {
         if (middle <= 0.0) return 0.0;
         const auto sine_square = [](double t) { return 0.5 * (t - std::sin(t) * std::cos(t)); };
         return (n[0] * (std::sin(phi0) - std::sin(phi1)) - n[1] * (std::cos(phi0) - std::cos(phi1))) *

@@ -175,6 +175,7 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
 /// E[(f/p)^2] of one sample for f = L max(0, n . omega), about: of 2 x 2 directions a texel.
 inline double second_moment(const LocalMap& map, const float normal[3]) {
     const auto view = map.view();
+    const AcdfLocalPoint at = view.at(normal);
     const double size = length(normal);
     acdf::compress::Sum sum;
     for (std::uint32_t r = 0; r < map.target.rows; ++r)
@@ -184,7 +185,7 @@ inline double second_moment(const LocalMap& map, const float normal[3]) {
                 const double cosine = dot(normal, d) / size, f = static_cast<double>(map.radiance(c, r)) * cosine;
                 if (!(cosine > 0.0)) continue;
                 sum.add(0.25 * square_area(view.data().environment, r) * f * f /
-                        static_cast<double>(view.pdf(normal, d)));
+                        static_cast<double>(view.pdf(at, d)));
             }
     return sum.value();
 }

@@ -21,9 +21,8 @@ using Json = nlohmann::json;
 struct MeshFolder : SceneFolder {
     MeshFolder() : SceneFolder(mesh_scene("room.obj")) { write_text(*this / "room.obj", room()); }
 
-    /// Looking from places takes as long as there are bytes for them: few, where more would show no more.
-    Result local(const std::string& output, std::vector<std::string> more, const std::string& budget = "24KiB") {
-        std::vector<std::string> arguments{"local", *this / "probe.pfm", "-o", *this / output, "--budget", budget};
+    Result local(const std::string& output, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"local", *this / "probe.pfm", "-o", *this / output, "--budget", "64KiB"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     }
@@ -55,7 +54,7 @@ struct MeshFolder : SceneFolder {
 
 TEST(MeshPlaces, AreDrawnFromInPictures) {
     MeshFolder folder;
-    const Result made = folder.local("room.acdf", {"--scene", folder / "room.obj", "--places", "--json"}, "64KiB");
+    const Result made = folder.local("room.acdf", {"--scene", folder / "room.obj", "--places", "--json"});
     ASSERT_EQ(made.code, 0) << made.err;
     EXPECT_NE(made.err.find("places on 22 triangles"), std::string::npos) << made.err;
     EXPECT_GT(Json::parse(made.out).at("places"), 50);
@@ -234,14 +233,14 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
     folder.room_file("y.acdf", true);
     const Result result =
         folder.render("y.json", "out",
-                      {"--sampler", "local:24KiB", "--sampler", "file:y.acdf", "--sampler", "places:24KiB",
-                       "--sampler", "product(places:24KiB,ggx:0.9)", "--sequence", "independent"},
+                      {"--sampler", "local:64KiB", "--sampler", "file:y.acdf", "--sampler", "places:64KiB",
+                       "--sampler", "product(places:64KiB,ggx:0.9)", "--sequence", "independent"},
                       "40");
     ASSERT_EQ(result.code, 0) << result.err;
     const Json samplers = Json::parse(result.out).at("samplers");
     for (const Json& one : samplers) {
         EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
-        if (one.at("sampler") == "local:24KiB") continue;
+        if (one.at("sampler") == "local:64KiB") continue;
         EXPECT_GT(one.at("equal_samples_gain").at("value"), 2.0) << one;
     }
 }
