@@ -23,6 +23,8 @@ std::size_t words_of(std::size_t count) {
     return ((count * sizeof(T) + 63) & ~std::size_t{63}) / 4;
 }
 
+bool is_power_of_two(u32 x) { return x != 0 && (x & (x - 1)) == 0; }
+
 struct BrdfCell {
     u32 side[2][2]; // of each axis: the first position, and the last one
     std::uint64_t ways;
@@ -57,6 +59,7 @@ private:
     void place_views(double* nodes, std::uint16_t* guide) const;
     void place_borders(int axis, std::int32_t* out, std::uint16_t* guide) const;
     void place_grid(std::uint16_t* out) const;
+    void place_paths(AcdfBrdfPath* out) const;
     void add_parts(const std::uint8_t* row, u32 node, double product, double* out) const;
     template <class T>
     static T* at(AcdfBrdfTables* tables, u32 word) {
@@ -134,7 +137,7 @@ std::size_t BrdfTablesMaker::lay_out(AcdfBrdfTables& out, bool grid, u32 guess_b
     out.codes = take(words_of<double>(512));
     if (grid) out.grid = take(words_of<std::uint16_t>(between()));
     if (guess_bits) {
-        out.ways = take(words_of<std::uint64_t>(cells()));
+        out.paths = take(words_of<AcdfBrdfPath>(cells()));
         out.guesses = take(words_of<std::uint16_t>(std::size_t{pairs()} << 2 * guess_bits));
     }
     out.guess_bits = guess_bits;
@@ -146,7 +149,7 @@ std::size_t BrdfTablesMaker::lay_out(AcdfBrdfTables& out, bool grid, u32 guess_b
 /// nothing is left that tables are made for.
 bool BrdfTablesMaker::choose(AcdfBrdfTables& out) const {
     const bool grid = between() <= 256 * std::size_t{cells()} && 4 * lay_out(out, true, 0) <= most_bytes_;
-    u32 bits = guesses_ ? kMostGuessBits : 0;
+    u32 bits = guesses_ && is_power_of_two(brdf_.columns) && is_power_of_two(brdf_.rows) ? kMostGuessBits : 0;
     while (bits && 4 * lay_out(out, grid, bits) > most_bytes_) bits = bits > kLeastGuessBits ? bits - 1 : 0;
     return 4 * lay_out(out, grid, bits) <= most_bytes_ && (grid || bits || !guesses_);
 }
@@ -159,6 +162,8 @@ AcdfBrdfTables* BrdfTablesMaker::assemble(const AcdfAllocator& allocator, AcdfBl
     if (!block.data) return nullptr;
     std::memset(block.data, 0, 4 * words);
     AcdfBrdfTables* const tables = new (block.data) AcdfBrdfTables(layout);
+    tables->inverse[0] = 1.0 / brdf_.columns;
+    tables->inverse[1] = 1.0 / brdf_.rows;
     place_views(at<double>(tables, layout.nodes), at<std::uint16_t>(tables, layout.guide));
     for (int axis = 0; axis < 2; ++axis)
         place_borders(axis, at<std::int32_t>(tables, layout.borders[axis]),
@@ -177,7 +182,7 @@ AcdfBrdfTables* BrdfTablesMaker::assemble(const AcdfAllocator& allocator, AcdfBl
     for (u32 i = 0; i < cells(); ++i) at<double>(tables, layout.areas)[i] = cells_[i].area();
     if (layout.grid) place_grid(at<std::uint16_t>(tables, layout.grid));
     if (!layout.guesses) return tables;
-    for (u32 i = 0; i < cells(); ++i) at<std::uint64_t>(tables, layout.ways)[i] = cells_[i].ways;
+    place_paths(at<AcdfBrdfPath>(tables, layout.paths));
     guess_brdf_cells(brdf_, layout.guess_bits, at<std::uint16_t>(tables, layout.guesses));
     return tables;
 }
@@ -213,6 +218,16 @@ void BrdfTablesMaker::place_grid(std::uint16_t* out) const {
         for (std::size_t row = below(1, side[1][0]); row <= last; ++row) {
             std::uint16_t* const line = out + row * (borders_[0].size() + 1);
             std::fill(line + left, line + right, static_cast<std::uint16_t>(i));
+        }
+    }
+}
+
+void BrdfTablesMaker::place_paths(AcdfBrdfPath* out) const {
+    for (u32 i = 0; i < cells(); ++i) {
+        out[i].ways = cells_[i].ways;
+        for (int axis = 0; axis < 2; ++axis) {
+            out[i].low[axis] = static_cast<std::int32_t>(cells_[i].side[axis][0]);
+            out[i].high[axis] = static_cast<std::int32_t>(cells_[i].side[axis][1]);
         }
     }
 }

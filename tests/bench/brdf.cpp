@@ -119,7 +119,7 @@ struct Built {
 template <class Call>
 std::function<void(std::size_t, std::size_t)> each(const Call& call) {
     return [call](std::size_t first, std::size_t count) {
-        for (std::size_t i = first; i < first + count; ++i) keep(call(queries()[i]));
+        for (std::size_t i = first; i < first + count; ++i) keep(call(queries()[i % kQueries]));
     };
 }
 /// A sample and a pdf of one sampler.

@@ -22,7 +22,7 @@ ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], doub
     half[2] = view->wo[2] + z;
     place->length = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
     place->dot = fabs(view->wo[0] * half[0] + view->wo[1] * half[1] + view->wo[2] * half[2]);
-    return acdf_are_finite(wi) && length2 > 0.999 && length2 < 1.001 && place->length > 0.0;
+    return acdf_is_unit_square(length2) && place->length > 0.0;
 }
 
 /* atan2(y, x) / pi for y >= 0 as acdf_atan2pi has it, but for rounding and without branches: the octant of a
@@ -56,15 +56,13 @@ ACDF_INLINE uint32_t acdf_brdf_step(double position, uint32_t resolution) {
     return position < (double)resolution ? (uint32_t)position : resolution - 1;
 }
 
-/* Reflects wo at the half-vector of a position. `reach`: rounding wi to float moves its position by less. A float
- * below 1 is off by 2^-25 at most, so wi by 0.87 * 2^-24 and the half-vector, since wo + wi is 2 |wo . wh| long, by
- * half of that over the cosine; here twice as much. Not finite or NaN at the pole. */
-ACDF_INLINE void acdf_brdf_reflect(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double position[2],
-                                   double sign, float wi[3], double reach[2]) {
-    const double cap = position[1] / (double)brdf->rows; /* 1 - cos(theta_h) */
-    const double hz = 1.0 - cap, radius = sqrt(cap * (2.0 - cap)), x = position[0] / (double)brdf->columns;
-    const double scale = radius / sqrt(view->turn[0] * view->turn[0] + view->turn[1] * view->turn[1]);
-    double sine, cosine, hx, hy, dot, turn, angle;
+/* Reflects wo at the half-vector at x, a part of axis 0, of which cap is 1 - cos(theta_h). Returns how long wo + wi
+ * is; *radius is sin(theta_h). */
+ACDF_INLINE double acdf_brdf_reflect_at(const AcdfBrdf* brdf, const AcdfBrdfView* view, double x, double cap,
+                                        double sign, float wi[3], double* radius) {
+    const double hz = 1.0 - cap, sin_theta = sqrt(cap * (2.0 - cap));
+    const double scale = sin_theta / sqrt(view->turn[0] * view->turn[0] + view->turn[1] * view->turn[1]);
+    double sine, cosine, hx, hy, dot;
     acdf_sincospi(acdf_brdf_mirrored(brdf) ? sign * x : 2.0 * x - 1.0, &sine, &cosine);
     hx = scale * (view->turn[0] * cosine - view->turn[1] * sine);
     hy = scale * (view->turn[1] * cosine + view->turn[0] * sine);
@@ -72,7 +70,19 @@ ACDF_INLINE void acdf_brdf_reflect(const AcdfBrdf* brdf, const AcdfBrdfView* vie
     wi[0] = (float)(dot * hx - view->wo[0]);
     wi[1] = (float)(dot * hy - view->wo[1]);
     wi[2] = (float)(dot * hz - view->wo[2]);
-    turn = 0x1p-23 / (fabs(dot) * radius); /* of its azimuth: 0x1p-24 over the cosine and the radius */
+    *radius = sin_theta;
+    return fabs(dot);
+}
+
+/* The same at a position. `reach`: rounding wi to float moves its position by less. A float below 1 is off by 2^-25
+ * at most, so wi by 0.87 * 2^-24 and the half-vector, since wo + wi is 2 |wo . wh| long, by half of that over the
+ * cosine; here twice as much. Not finite or NaN at the pole. */
+ACDF_INLINE void acdf_brdf_reflect(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double position[2],
+                                   double sign, float wi[3], double reach[2]) {
+    double radius, turn, angle;
+    const double dot = acdf_brdf_reflect_at(brdf, view, position[0] / (double)brdf->columns,
+                                            position[1] / (double)brdf->rows, sign, wi, &radius);
+    turn = 0x1p-23 / (dot * radius); /* of its azimuth: 0x1p-24 over the cosine and the radius */
     angle = turn * radius;
     reach[0] = (double)brdf->columns * turn; /* of a half or a whole turn: pi or more to spare */
     reach[1] = (double)brdf->rows * (angle * (radius + angle));

@@ -41,47 +41,48 @@ typedef struct AcdfPairWalk {
     __m128d x, weight, chosen, part;
 } AcdfPairWalk;
 
-/* Masks of the four ways to go: axis << 1 | upper. */
-typedef struct AcdfPairMasks {
-    uint64_t upper[4][2]; /* all bits where it is the upper part */
-    uint64_t cut[4][2];   /* of them the axis's */
-    uint64_t other[4][2]; /* all bits of the other axis */
-    uint64_t one[4][2];   /* 1.0 on the axis */
-} AcdfPairMasks;
+/* Masks of a way to go. */
+typedef union AcdfPairMask {
+    uint64_t bits[2];
+    __m128d lanes;
+} AcdfPairMask;
+typedef struct AcdfPairWay {
+    AcdfPairMask upper; /* all bits where it is the upper part */
+    AcdfPairMask cut;   /* of them the axis's */
+    AcdfPairMask other; /* all bits of the other axis */
+    AcdfPairMask one;   /* 1.0 on the axis */
+} AcdfPairWay;
 
 #define ACDF_ALL 0xFFFFFFFFFFFFFFFFu
 #define ACDF_ONE 0x3FF0000000000000u
-static const AcdfPairMasks acdf_pair_masks = {{{0, 0}, {ACDF_ALL, ACDF_ALL}, {0, 0}, {ACDF_ALL, ACDF_ALL}},
-                                              {{0, 0}, {ACDF_ALL, 0}, {0, 0}, {0, ACDF_ALL}},
-                                              {{0, ACDF_ALL}, {0, ACDF_ALL}, {ACDF_ALL, 0}, {ACDF_ALL, 0}},
-                                              {{ACDF_ONE, 0}, {ACDF_ONE, 0}, {0, ACDF_ONE}, {0, ACDF_ONE}}};
+/* axis << 1 | upper */
+static const AcdfPairWay acdf_pair_ways[4] = {
+    {{{0, 0}}, {{0, 0}}, {{0, ACDF_ALL}}, {{ACDF_ONE, 0}}},
+    {{{ACDF_ALL, ACDF_ALL}}, {{ACDF_ALL, 0}}, {{0, ACDF_ALL}}, {{ACDF_ONE, 0}}},
+    {{{0, 0}}, {{0, 0}}, {{ACDF_ALL, 0}}, {{0, ACDF_ONE}}},
+    {{{ACDF_ALL, ACDF_ALL}}, {{0, ACDF_ALL}}, {{ACDF_ALL, 0}}, {{0, ACDF_ONE}}}};
 #undef ACDF_ALL
 #undef ACDF_ONE
 
-/* Of one of those arrays; `way` is 16 bytes times the way. */
-ACDF_INLINE __m128d acdf_pair_mask(const uint64_t masks[4][2], uint32_t way) {
-    return _mm_loadu_pd((const double*)(const void*)((const char*)masks + way));
-}
-
 /* Goes a way at a split where rows have these codes. Returns whether the random numbers lead there; where nothing
  * is left of the weight they may not. */
-ACDF_INLINE int acdf_pair_step(AcdfPairWalk* walk, const double* code0, const double* code1, uint32_t way) {
-    const uint32_t to = (way & 0x10u) << 4; /* 256 codes of upper parts follow those of lower ones */
+ACDF_INLINE int acdf_pair_step(AcdfPairWalk* walk, const double* code0, const double* code1, uint32_t axis,
+                               uint32_t upper) {
+    const AcdfPairWay* way = &acdf_pair_ways[axis << 1 | upper];
+    const size_t to = (size_t)upper << 8; /* 256 codes of upper parts follow those of lower ones */
     const __m128d lower = _mm_mul_pd(walk->weight, _mm_loadh_pd(_mm_load_sd(code0), code1));
-    const __m128d upper = acdf_pair_mask(acdf_pair_masks.upper, way),
-                  other = acdf_pair_mask(acdf_pair_masks.other, way);
     /* weight - lower, or lower */
-    const __m128d weight = _mm_andnot_pd(_mm_set1_pd(-0.0), _mm_sub_pd(_mm_and_pd(walk->weight, upper), lower));
+    const __m128d weight =
+        _mm_andnot_pd(_mm_set1_pd(-0.0), _mm_sub_pd(_mm_and_pd(walk->weight, way->upper.lanes), lower));
     const __m128d sums = _mm_add_pd(_mm_unpacklo_pd(lower, weight), _mm_unpackhi_pd(lower, weight));
     const __m128d low = _mm_unpacklo_pd(sums, sums), chosen = _mm_unpackhi_pd(sums, sums);
-    const __m128d below = _mm_xor_pd(_mm_cmplt_pd(walk->x, low), upper);
-    const __m128d scale =
-        _mm_or_pd(_mm_and_pd(_mm_div_pd(chosen, walk->chosen), other), acdf_pair_mask(acdf_pair_masks.one, way));
-    walk->x = _mm_mul_pd(_mm_sub_pd(walk->x, _mm_and_pd(low, acdf_pair_mask(acdf_pair_masks.cut, way))), scale);
+    const __m128d below = _mm_xor_pd(_mm_cmplt_pd(walk->x, low), way->upper.lanes);
+    const __m128d scale = _mm_or_pd(_mm_and_pd(_mm_div_pd(chosen, walk->chosen), way->other.lanes), way->one.lanes);
+    walk->x = _mm_mul_pd(_mm_sub_pd(walk->x, _mm_and_pd(low, way->cut.lanes)), scale);
     walk->weight = weight;
     walk->chosen = chosen;
     walk->part = _mm_mul_pd(walk->part, _mm_loadh_pd(_mm_load_sd(code0 + to), code1 + to));
-    return _mm_movemask_pd(_mm_or_pd(below, other)) == 3;
+    return _mm_movemask_pd(_mm_or_pd(below, way->other.lanes)) == 3;
 }
 
 /* The cell that the random numbers u lead to half-way between two views. */
@@ -94,97 +95,115 @@ ACDF_INLINE uint32_t acdf_brdf_guess(const AcdfBrdfTables* tables, uint32_t lowe
     return guesses[row << bits | (column < most ? column : most)];
 }
 
-/* Goes on from a split as acdf_blend_sample does. */
-ACDF_OUTLINE void acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* row0, const uint8_t* row1, uint32_t node,
-                                      AcdfPairWalk* walk, uint32_t side[4]) {
+/* Goes on from a split as acdf_blend_sample does: here no guess tells which way. Returns the cell. */
+ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* row0, const uint8_t* row1,
+                                          uint32_t node, AcdfPairWalk* walk) {
     const double* codes = (const double*)acdf_brdf_words(brdf->tables, brdf->tables->codes);
+    AcdfPairWalk at = *walk;
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &brdf->blend.splits[node];
         const double *code0 = codes + row0[node], *code1 = codes + row1[node];
         const uint32_t axis = split->place & 1u;
-        const AcdfPairWalk before = *walk;
-        uint32_t upper = 1;
-        if (!acdf_pair_step(walk, code0, code1, axis << 5 | 0x10u)) {
-            *walk = before;
-            acdf_pair_step(walk, code0, code1, axis << 5);
-            upper = 0;
+        const AcdfPairWay* way = &acdf_pair_ways[axis << 1];
+        const __m128d code = _mm_loadh_pd(_mm_load_sd(code0), code1), lower = _mm_mul_pd(at.weight, code);
+        const __m128d upper = _mm_sub_pd(at.weight, lower);
+        const __m128d sums = _mm_add_pd(_mm_unpacklo_pd(lower, upper), _mm_unpackhi_pd(lower, upper));
+        const __m128d low = _mm_unpacklo_pd(sums, sums), high = _mm_unpackhi_pd(sums, sums);
+        const __m128d below = _mm_or_pd(_mm_cmplt_pd(at.x, low), _mm_cmple_pd(high, _mm_setzero_pd()));
+        __m128d chosen;
+        if (_mm_movemask_pd(below) >> axis & 1) {
+            at.weight = lower;
+            at.part = _mm_mul_pd(at.part, code);
+            chosen = low;
+            node = split->child[0];
+        } else {
+            at.weight = upper;
+            at.part = _mm_mul_pd(at.part, _mm_loadh_pd(_mm_load_sd(code0 + 256), code1 + 256));
+            at.x = _mm_sub_pd(at.x, _mm_andnot_pd(way->other.lanes, low));
+            chosen = high;
+            node = split->child[1];
         }
-        side[2 * axis + 1 - upper] = split->place >> 3;
-        node = split->child[upper];
+        at.x = _mm_mul_pd(at.x,
+                          _mm_or_pd(_mm_and_pd(_mm_div_pd(chosen, at.chosen), way->other.lanes), way->one.lanes));
+        at.chosen = chosen;
     }
+    *walk = at;
+    return node & ~ACDF_TILE_FLAG;
 }
 
 /* Draws a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the walk goes where a guess
- * says, so that nothing waits for a comparison, for as long as those agree. `side` becomes low and high of axis 0,
- * then of axis 1. Returns the cell's probability; 0 where there is nothing to draw. */
-ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u[2],
-                                       uint32_t side[4]) {
+ * says, so that nothing waits for a comparison, for as long as those agree. Returns the cell's probability; 0 where
+ * there is nothing to draw. */
+ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
+                                       __m128d* left, const AcdfBrdfPath** drawn) {
     const AcdfBrdfTables* tables = brdf->tables;
     const double* codes = (const double*)acdf_brdf_words(tables, tables->codes);
+    const AcdfBrdfPath* paths = (const AcdfBrdfPath*)acdf_brdf_words(tables, tables->paths);
     const AcdfSplit* splits = brdf->blend.splits;
     const uint8_t *row0 = view->row[0], *row1 = view->row[1];
     const __m128d weight = _mm_set_pd(view->pair[1], view->pair[0]);
     const __m128d whole = _mm_add_pd(weight, _mm_shuffle_pd(weight, weight, 1));
-    uint32_t node = acdf_blend_root(&brdf->blend);
-    uint64_t ways;
+    uint32_t node = acdf_blend_root(&brdf->blend), cell = acdf_brdf_guess(tables, view->lower, u);
+    uint64_t ways = paths[cell].ways;
     AcdfPairWalk walk;
-    __m128d left;
-    ways = ((const uint64_t*)acdf_brdf_words(tables, tables->ways))[acdf_brdf_guess(tables, view->lower, u)];
-    side[0] = side[2] = 0;
-    side[1] = brdf->columns;
-    side[3] = brdf->rows;
+    __m128d share;
     walk.weight = weight;
+    walk.part = _mm_set1_pd(1.0);
     walk.chosen = whole;
     walk.x = _mm_mul_pd(_mm_set_pd(u[1], u[0]), whole);
-    walk.part = _mm_set1_pd(1.0);
     for (; !(node & ACDF_TILE_FLAG); ways >>= 1) {
-        const uint32_t place = splits[node].place, axis = place & 1u, upper = (uint32_t)ways & 1u;
+        const uint32_t upper = (uint32_t)ways & 1u;
         AcdfPairWalk next = walk;
-        if (!acdf_pair_step(&next, codes + row0[node], codes + row1[node], axis << 5 | upper << 4)) {
+        if (!acdf_pair_step(&next, codes + row0[node], codes + row1[node], splits[node].place & 1u, upper)) {
             next = walk;
-            acdf_brdf_pair_walk(brdf, row0, row1, node, &next, side);
+            cell = acdf_brdf_pair_walk(brdf, row0, row1, node, &next);
             walk = next;
             break;
         }
         walk = next;
-        side[2 * axis + 1 - upper] = place >> 3;
         node = splits[node].child[upper];
     }
+    *drawn = &paths[cell];
     if (!(_mm_cvtsd_f64(walk.chosen) > 0.0)) return 0.0;
-    left = _mm_div_pd(walk.x, walk.chosen); /* not more than 1, which rounding might bring about */
-    left = _mm_min_pd(left, _mm_set1_pd(1.0));
-    _mm_storel_pd(&u[0], left);
-    _mm_storeh_pd(&u[1], left);
-    left = _mm_mul_pd(weight, walk.part);
-    left = _mm_div_sd(_mm_add_sd(left, _mm_unpackhi_pd(left, left)), whole);
-    return acdf_positive(_mm_cvtsd_f64(left));
+    *left = _mm_div_pd(walk.x, walk.chosen);
+    share = _mm_mul_pd(weight, walk.part);
+    share = _mm_div_sd(_mm_add_sd(share, _mm_unpackhi_pd(share, share)), whole);
+    return acdf_positive(_mm_cvtsd_f64(share));
+}
+
+ACDF_INLINE __m128d acdf_pair_doubles(const int32_t of[2]) {
+    return _mm_cvtepi32_pd(_mm_loadl_epi64((const __m128i*)(const void*)of));
 }
 
 /* acdf_brdf_view_sample, of tables that have guesses. Returns 0 where there is nothing to draw, and where rounding
  * wi may carry it over the border of its cell: then the walk is to be asked. */
 ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                       AcdfDirectionSample* out) {
+    const AcdfBrdfTables* tables = brdf->tables;
+    const AcdfBrdfPath* path;
     AcdfBrdfPlace place;
-    uint32_t side[4];
-    double u[2], position[2], reach[2], low[2], wide[2], half[3], sign = 1.0, p;
-    int axis;
+    __m128d left, low, high, wide, position, reach, inside;
+    double u[2], part[2], half[3], sign = 1.0, p, dot, radius;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     if (acdf_brdf_mirrored(brdf)) sign = acdf_brdf_mirror(&u[0]);
-    p = acdf_brdf_pair_draw(brdf, view, u, side);
+    p = acdf_brdf_pair_draw(brdf, view, u, &left, &path);
     if (!(p > 0.0)) return 0;
-    for (axis = 0; axis < 2; ++axis) {
-        low[axis] = (double)side[2 * axis];
-        wide[axis] = (double)(side[2 * axis + 1] - side[2 * axis]);
-        position[axis] = low[axis] + acdf_clamp(u[axis], 0x1p-30, 1.0 - 0x1p-30) * wide[axis];
-    }
-    acdf_brdf_reflect(brdf, view, position, sign, out->direction, reach);
-    for (axis = 0; axis < 2; ++axis)
-        if (!(position[axis] >= low[axis] + reach[axis] &&
-              position[axis] < (double)side[2 * axis + 1] - reach[axis]))
-            return 0;
+    low = acdf_pair_doubles(path->low);
+    high = acdf_pair_doubles(path->high);
+    wide = _mm_sub_pd(high, low);
+    position = _mm_min_pd(_mm_max_pd(left, _mm_set1_pd(0x1p-30)), _mm_set1_pd(1.0 - 0x1p-30));
+    position = _mm_add_pd(low, _mm_mul_pd(position, wide));
+    _mm_storeu_pd(part, _mm_mul_pd(position, _mm_loadu_pd(tables->inverse)));
+    dot = acdf_brdf_reflect_at(brdf, view, part[0], part[1], sign, out->direction, &radius);
+    /* Farther from the borders than acdf_brdf_reflect's `reach`, both sides times what that divides by. */
+    reach = _mm_set_pd(0x1p-23 * (radius * dot + 0x1p-23) * (double)brdf->rows, 0x1p-23 * (double)brdf->columns);
+    inside = _mm_min_pd(_mm_sub_pd(position, low), _mm_sub_pd(high, position));
+    inside = _mm_mul_pd(inside, _mm_set_pd(dot * dot, dot * radius));
+    if (_mm_movemask_pd(_mm_cmpgt_pd(inside, reach)) != 3) return 0;
     if (!acdf_brdf_half(view, out->direction, half, &place)) return 0;
-    out->pdf = acdf_brdf_positive(acdf_brdf_mean_density(brdf, p, wide[0] * wide[1], &place));
+    wide = _mm_mul_sd(wide, _mm_unpackhi_pd(wide, wide));
+    out->pdf = acdf_brdf_positive(acdf_brdf_mean_density(brdf, p, _mm_cvtsd_f64(wide), &place));
     return 1;
 }
 

@@ -32,12 +32,20 @@ typedef struct AcdfBrdfTables {
     uint32_t areas;            /* f64 a cell, of grid squares */
     uint32_t parts;            /* f64, `stride` a cell: what part of a view's row it has */
     uint32_t codes;            /* f64, 256: probability of a split's lower part; 256: of its upper part */
-    uint32_t ways;             /* u64 a cell: its path, from the lowest bit on; 1: an upper part */
+    uint32_t paths;            /* AcdfBrdfPath, one a cell */
     uint32_t guesses;          /* u16, 2^(2 guess_bits) a view and the next one: a cell; 0: there are none */
     uint32_t guess_bits;       /* of each number; azimuths next to each other */
-    uint32_t reserved[15];
+    uint32_t reserved[11];
+    double inverse[2]; /* of the steps of each axis; exact where there are guesses: they are powers of two */
 } AcdfBrdfTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfBrdfTables) == 128);
+
+/* How a cell is reached, and where it lies. */
+typedef struct AcdfBrdfPath {
+    uint64_t ways; /* at each split, from the lowest bit on: 1 is its upper part */
+    int32_t low[2], high[2];
+} AcdfBrdfPath;
+ACDF_STATIC_ASSERT(sizeof(AcdfBrdfPath) == 24);
 
 ACDF_INLINE const void* acdf_brdf_words(const AcdfBrdfTables* tables, uint32_t at) {
     return (const uint32_t*)(const void*)tables + at;
@@ -52,9 +60,14 @@ ACDF_INLINE const double* acdf_brdf_parts(const AcdfBrdfTables* tables, uint32_t
 
 /* ---- finding ---------------------------------------------------------------------------------------- */
 
+/* Of a view: its coordinate and its share; then those of the next one. */
+ACDF_INLINE const double* acdf_brdf_node(const AcdfBrdfTables* tables, uint32_t view) {
+    return (const double*)acdf_brdf_words(tables, tables->nodes) + 2 * (size_t)view;
+}
+
 /* The last view, but not the very last one, whose coordinate is at most x, in [0, 1]; else 0. */
 ACDF_INLINE uint32_t acdf_brdf_lower_view(const AcdfBrdfTables* tables, double x) {
-    const double* nodes = (const double*)acdf_brdf_words(tables, tables->nodes);
+    const double* nodes = acdf_brdf_node(tables, 0);
     uint32_t low = ((const uint16_t*)acdf_brdf_words(tables, tables->guide))[(int32_t)(x * ACDF_VIEW_STEPS)];
     while (low < tables->last && nodes[2 * low + 2] <= x) ++low;
     return low;

@@ -82,7 +82,7 @@ ACDF_INLINE int acdf_brdf_turn(const float wo[3], int isotropic, AcdfBrdfView* v
     view->wo[2] = z;
     view->turn[0] = turned ? x : 1.0;
     view->turn[1] = turned ? y : 0.0;
-    return acdf_are_finite(given) && length2 > 0.999 && length2 < 1.001 && z > 0.0;
+    return acdf_is_unit_square(length2) && z > 0.0;
 }
 
 ACDF_FN void acdf_brdf_add(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t index, double weight,
@@ -100,15 +100,18 @@ ACDF_FN void acdf_brdf_add(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t in
 /* What runtime tables ask of a view: the two rows around it. Returns 0 for wo that are not unit vectors above the
  * surface. */
 ACDF_INLINE int acdf_brdf_pair_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view) {
-    uint32_t node[2];
-    double t;
+    const double* node;
+    double x, t;
     if (!acdf_brdf_turn(wo, 1, view)) return 0;
-    t = acdf_view_nodes(brdf, acdf_view_coordinate(view->wo[2]), node);
-    view->lower = node[0];
-    view->pair[0] = (1.0 - t) * (double)brdf->bins[node[0]].share;
-    view->pair[1] = t * (double)brdf->bins[node[1]].share;
-    view->row[0] = acdf_blend_row(&brdf->blend, brdf->bins[node[0]].root);
-    view->row[1] = acdf_blend_row(&brdf->blend, brdf->bins[node[1]].root);
+    x = acdf_view_coordinate(view->wo[2]);
+    view->lower = acdf_brdf_lower_view(brdf->tables, x);
+    node = acdf_brdf_node(brdf->tables, view->lower); /* infinity and 0 stand behind the only one */
+    t = (x - node[0]) / (node[2] - node[0]);
+    t = t > 0.0 ? (t < 1.0 ? t : 1.0) : 0.0;
+    view->pair[0] = (1.0 - t) * node[1];
+    view->pair[1] = t * node[3];
+    view->row[0] = acdf_blend_row(&brdf->blend, brdf->bins[view->lower].root);
+    view->row[1] = acdf_blend_row(&brdf->blend, brdf->bins[view->lower + (brdf->views->theta_count > 1)].root);
     return 1;
 }
 

@@ -51,6 +51,14 @@ ACDF_FN int acdf_are_finite(const float v[3]) {
     return (bits[0] & exponent) != exponent && (bits[1] & exponent) != exponent && (bits[2] & exponent) != exponent;
 }
 
+/* Whether the square of a length is in (0.999, 1.001), by its bits, too: it is if a vector is finite and of unit
+ * length. */
+ACDF_FN int acdf_is_unit_square(double length2) {
+    uint64_t bits;
+    memcpy(&bits, &length2, sizeof bits);
+    return bits - 0x3FEFF7CED916872Cu < 0x3FF004189374BC6Au - 0x3FEFF7CED916872Cu;
+}
+
 ACDF_FN double acdf_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
 /* The floats of v. Where a caller rounds doubles to v and is inlined, gcc 12 (x86 without AVX, from -O2 on) takes a
