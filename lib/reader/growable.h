@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 
@@ -58,5 +59,17 @@ private:
 
 /// So many words, up to whole cache lines.
 inline std::size_t whole_lines(std::size_t words) { return (words + 15) & ~std::size_t{15}; }
+
+/// Copies an array to the word `at` of tables and moves that past it, to a whole line: what is left of the last one
+/// becomes 0. Returns where the array begins.
+template <class T>
+std::uint32_t copy_lines(const Growable<T>& from, std::uint32_t* tables, std::size_t& at) noexcept {
+    char* const begin = reinterpret_cast<char*>(tables + at);
+    const std::size_t first = at, bytes = from.bytes();
+    at = whole_lines(at + (bytes + 3) / 4);
+    if (bytes > 0) std::memcpy(begin, from.data(), bytes);
+    std::memset(begin + bytes, 0, 4 * (at - first) - bytes);
+    return static_cast<std::uint32_t>(first);
+}
 
 } // namespace acdf

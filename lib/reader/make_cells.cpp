@@ -231,15 +231,10 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
     if (4 * words > most_bytes) return nullptr;
     block = take_block(allocator, 4 * words);
     if (!block.data) return nullptr;
-    u32* const tables = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
-    AcdfCells* const cells = new (block.data) AcdfCells();
     std::size_t at = whole_lines(sizeof(AcdfCells) / 4);
-    const auto copy = [&](const auto& from) {
-        const std::size_t begin = at;
-        std::memcpy(tables + at, from.data(), from.bytes());
-        at = whole_lines(at + from.bytes() / 4);
-        return static_cast<u32>(begin);
-    };
+    u32* const tables = static_cast<u32*>(std::memset(block.data, 0, 4 * at));
+    AcdfCells* const cells = new (block.data) AcdfCells();
+    const auto copy = [&](const auto& from) { return copy_lines(from, tables, at); };
     cells->words = static_cast<u32>(words);
     cells->count = static_cast<u32>(count);
     cells->octahedral = environment_.parameterization == ACDF_PARAM_OCTAHEDRAL;

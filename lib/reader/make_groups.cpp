@@ -57,7 +57,8 @@ class GroupsMaker {
 public:
     GroupsMaker(const AcdfEnvironment& environment, u32 tree_units)
         : environment_(environment), sides_(acdf_environment_grid(&environment)),
-          most_steps_(2 * std::size_t{tree_units} + 64) {}
+          most_steps_(2 * std::size_t{tree_units} + 64), step_{2.0 * ACDF_PI / environment.columns,
+                                                               2.0 * ACDF_PI / environment.rows} {}
 
     /// False where there can be no tables.
     bool survey();
@@ -67,7 +68,7 @@ private:
     bool survey(u32 at, u32& cells);
     bool gather(u32 most_cells);
     bool gather(u32 at, const Cell& above, std::size_t& next);
-    bool gather_run(u32 at, const AcdfCurve& curve, const Cell& above, const Run& run);
+    bool gather_run(u32 at, const AcdfCurve& curve, const Run& run);
     void add(const Cell& box, u32 count);
     void add_cell(const AcdfGroup& group, const Cell& cell);
     bool remember_heights();
@@ -78,21 +79,24 @@ private:
     u32 most_steps(u32 axis) const {
         return std::min(kMostSteps, (axis == 0 ? environment_.columns : environment_.rows) / 2);
     }
-    double angle(const Cell& cell, int axis) const;
+    bool is_slow(const Cell& cell, int axis, double width) const;
+    float density(const Cell& cell) const;
     AcdfGroups* assemble(const SquaresMaker& numbers, const SquaresMaker& places, std::size_t words,
                          const AcdfAllocator& allocator, AcdfBlock& block);
 
     AcdfEnvironment environment_;
     Sides sides_;
     std::size_t most_steps_, steps_ = 0;
+    double step_[2]; ///< radians, of positions along an axis that is not one of heights
     u32 key_bits_ = 0, shift_[2] = {0, 0}, most_cells_ = 0;
     Growable<Surveyed> curves_;
+    Cell parts_[kMostCells]; ///< of a run
     Growable<AcdfGroup> groups_;
     Growable<KeyBox> numbers_, places_;
     Growable<u32> boxes_, more_;
     Growable<AcdfGroupCell> cells_;
     Growable<float> densities_;
-    Growable<double> heights_;
+    Growable<double> heights_, sines_; ///< of each row: of the angle to the pole
 };
 
 bool GroupsMaker::survey() {
@@ -125,8 +129,13 @@ bool GroupsMaker::survey(u32 at, u32& cells) {
 bool GroupsMaker::remember_heights() {
     if (square()) return true;
     if (environment_.rows > most_steps_ || !heights_.reserve(std::size_t{environment_.rows} + 1)) return false;
-    for (u32 row = 0; row <= environment_.rows; ++row) heights_.add(acdf_row_z(row, environment_.rows));
-    return sides_.remember(most_steps_);
+    if (!sines_.reserve(std::size_t{environment_.rows} + 1)) return false;
+    for (u32 row = 0; row <= environment_.rows; ++row) {
+        const double z = acdf_row_z(row, environment_.rows);
+        heights_.add(z);
+        sines_.add(std::sqrt((1.0 - z) * (1.0 + z)));
+    }
+    return true;
 }
 
 bool GroupsMaker::failed() const {
@@ -140,15 +149,18 @@ bool GroupsMaker::may_be_grouped(const Cell& box) const {
            (square() || (box.first[1] > 0 && box.last[1] < environment_.rows));
 }
 
-// How far, in radians at most, a direction moves by all of a cell, were it as fast everywhere as where it is
-// fastest.
-double GroupsMaker::angle(const Cell& cell, int axis) const {
-    if (axis == 0 || square())
-        return 2.0 * ACDF_PI * (cell.last[axis] - cell.first[axis]) /
-               (axis == 0 ? environment_.columns : environment_.rows);
-    const double low = heights_[cell.first[1]], high = heights_[cell.last[1]];
-    const double z = std::max(std::fabs(low), std::fabs(high));
-    return (low - high) / std::sqrt((1.0 - z) * (1.0 + z));
+// Whether a direction moves slowly enough where a cell's random numbers, that part of its group's, lead across it,
+// were it as fast everywhere as where it is fastest.
+bool GroupsMaker::is_slow(const Cell& cell, int axis, double width) const {
+    if (axis == 0 || square()) return (cell.last[axis] - cell.first[axis]) * step_[axis] <= kAngleSteps * width;
+    const u32 first = cell.first[1], last = cell.last[1];
+    return heights_[first] - heights_[last] <= kAngleSteps * width * std::min(sines_[first], sines_[last]);
+}
+
+float GroupsMaker::density(const Cell& cell) const {
+    if (square() || cell.dark) return sides_.density(cell);
+    return acdf_cell_pdf(acdf_positive(cell.probability), cell.last[0] - cell.first[0], environment_.columns,
+                         heights_[cell.first[1]] - heights_[cell.last[1]], 1.0);
 }
 
 // Blocks of no cells.
@@ -192,15 +204,15 @@ void GroupsMaker::add_cell(const AcdfGroup& group, const Cell& cell) {
     u32* const block = i < ACDF_BLOCK_CELLS
                            ? boxes_.data() + (groups_.size() - 1) * ACDF_GROUP_WORDS
                            : more_.data() + (group.more + i / ACDF_BLOCK_CELLS - 1) * ACDF_GROUP_WORDS;
-    const float pdf = sides_.density(cell);
+    const float pdf = density(cell);
     AcdfGroupCell out = {};
     for (int axis = 0; group.count > 1 && axis < 2; ++axis) {
         const double low = (cell.low[axis] - group.low[axis]) * group.scale[axis];
         const double width = (cell.high[axis] - cell.low[axis]) * group.scale[axis];
         const bool told = pdf > 0.0f && group.low[axis] < 1.0 && width > 0.0;
-        out.axis[axis].low = told ? static_cast<u32>(std::clamp(std::floor(low * 0x1p32), 0.0, 0x1p32 - 1.0)) : 0;
+        out.axis[axis].low = told ? static_cast<u32>(std::clamp(low * 0x1p32, 0.0, 0x1p32 - 1.0)) : 0;
         out.axis[axis].scale =
-            told && angle(cell, axis) <= kAngleSteps * width ? static_cast<float>(0x1p-32 / width) : kNeverSure;
+            told && is_slow(cell, axis, width) ? static_cast<float>(0x1p-32 / width) : kNeverSure;
         auto* const bytes = reinterpret_cast<std::int8_t*>(block) +
                             2 * ACDF_BLOCK_CELLS * static_cast<std::size_t>(axis) + i % ACDF_BLOCK_CELLS;
         auto* const positions = bytes + 4 * ACDF_GROUP_POSITIONS;
@@ -232,8 +244,8 @@ bool GroupsMaker::gather(u32 most_cells) {
     return gather(environment_.root, whole, next) && !failed();
 }
 
-// Makes groups of a run of segments.
-bool GroupsMaker::gather_run(u32 at, const AcdfCurve& curve, const Cell& above, const Run& run) {
+// Makes a group of a run of segments, of which parts_ are.
+bool GroupsMaker::gather_run(u32 at, const AcdfCurve& curve, const Run& run) {
     if (run.cells == 0) return true;
     if (groups_.size() == kMostGroups) return false;
     add(run.box, run.cells);
@@ -243,13 +255,10 @@ bool GroupsMaker::gather_run(u32 at, const AcdfCurve& curve, const Cell& above, 
         add_cell(group, cell);
         return true;
     };
-    u32 low = acdf_curve_cumulative(&curve, run.first);
-    for (u32 i = run.first; i < run.first + run.count; ++i) {
-        const u32 high = acdf_curve_cumulative(&curve, i + 1), link = acdf_curve_link(&curve, i);
-        const Cell part = part_of(above, curve, i, low, high);
-        if (link == 0) cell_of(part);
-        else each_cell(environment_.tree, at + link, part, cell_of);
-        low = high;
+    for (u32 i = 0; i < run.count; ++i) {
+        const u32 link = acdf_curve_link(&curve, run.first + i);
+        if (link == 0) cell_of(parts_[i]);
+        else each_cell(environment_.tree, at + link, parts_[i], cell_of);
     }
     return true;
 }
@@ -259,35 +268,37 @@ bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
     const AcdfCurve curve = acdf_curve_at(environment_.tree, at);
     const u32 axis = acdf_curve_axis(&curve);
     Run run = {};
-    u32 low = 0;
+    Cut low = {0, 0.0};
     ++next;
     for (u32 i = 0; i < curve.segments; ++i) {
-        const u32 high = acdf_curve_cumulative(&curve, i + 1), link = acdf_curve_link(&curve, i);
+        const Cut high = cut_of(curve, i + 1);
+        const u32 link = acdf_curve_link(&curve, i);
         const Cell part = part_of(above, curve, i, low, high);
         const u32 cells = link == 0 ? 1 : curves_[next].cells;
         const bool narrow = may_be_grouped(part);
         low = high;
         if (run.cells > 0 && narrow && run.cells + cells <= most_cells_ &&
             part.last[axis] - run.box.first[axis] <= most_steps(axis)) {
-            run.count += 1;
+            parts_[run.count++] = part;
             run.cells += cells;
             run.box.last[axis] = part.last[axis];
             run.box.high[axis] = part.high[axis];
         } else {
-            if (!gather_run(at, curve, above, run)) return false;
+            if (!gather_run(at, curve, run)) return false;
             run = {i, 1, cells, part};
+            parts_[0] = part;
             if (link == 0 ? !narrow : !narrow || cells > most_cells_) {
                 run.cells = 0;
                 if (link != 0) {
                     if (!gather(at + link, part, next)) return false;
                     continue;
                 }
-                if (!gather_run(at, curve, above, {i, 1, 1, part})) return false;
+                if (!gather_run(at, curve, {i, 1, 1, part})) return false;
             }
         }
         if (link != 0) next += curves_[next].curves;
     }
-    return gather_run(at, curve, above, run);
+    return gather_run(at, curve, run);
 }
 
 AcdfGroups* GroupsMaker::make(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
@@ -314,15 +325,10 @@ AcdfGroups* GroupsMaker::assemble(const SquaresMaker& numbers, const SquaresMake
                                   const AcdfAllocator& allocator, AcdfBlock& block) {
     block = take_block(allocator, 4 * words);
     if (!block.data) return nullptr;
-    u32* const tables = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
+    u32* const tables = static_cast<u32*>(block.data);
     AcdfGroups* const out = new (block.data) AcdfGroups();
     std::size_t at = sizeof(AcdfGroups) / 4;
-    const auto copy = [&](const auto& from) {
-        const std::size_t begin = at;
-        if (from.size() > 0) std::memcpy(tables + at, from.data(), from.bytes());
-        at = whole_lines(at + from.bytes() / 4);
-        return static_cast<u32>(begin);
-    };
+    const auto copy = [&](const auto& from) { return copy_lines(from, tables, at); };
     out->words = static_cast<u32>(words);
     out->count = static_cast<u32>(cells_.size());
     out->shift[0] = shift_[0];

@@ -19,16 +19,25 @@ struct Cell {
     bool dark, tilted;
 };
 
-/// The part of the cell `above` that segment i of its curve leaves, of cumulative values from low to high.
-inline Cell part_of(const Cell& above, const AcdfCurve& curve, std::uint32_t i, std::uint32_t low,
-                    std::uint32_t high) {
+/// The border of a curve before segment i, or behind the last one: its cumulative value, and as a part of all.
+struct Cut {
+    std::uint32_t cumulative;
+    double part;
+};
+inline Cut cut_of(const AcdfCurve& curve, std::uint32_t i) {
+    const std::uint32_t cumulative = acdf_curve_cumulative(&curve, i);
+    return {cumulative, cumulative / static_cast<double>(acdf_curve_maximum(&curve))};
+}
+
+/// The part of the cell `above` that segment i of its curve leaves, between two cuts.
+inline Cell part_of(const Cell& above, const AcdfCurve& curve, std::uint32_t i, const Cut& low, const Cut& high) {
     const std::uint32_t axis = acdf_curve_axis(&curve), end = acdf_curve_maximum(&curve);
-    const double maximum = end, width = above.high[axis] - above.low[axis];
+    const double width = above.high[axis] - above.low[axis];
     Cell cell = above;
-    cell.dark = high == low;
-    cell.probability *= static_cast<double>(high - low) / maximum;
-    cell.low[axis] = above.low[axis] + width * (low / maximum);
-    if (high != end) cell.high[axis] = above.low[axis] + width * (high / maximum);
+    cell.dark = high.cumulative == low.cumulative;
+    cell.probability *= static_cast<double>(high.cumulative - low.cumulative) / end;
+    cell.low[axis] = above.low[axis] + width * low.part;
+    if (high.cumulative != end) cell.high[axis] = above.low[axis] + width * high.part;
     AcdfRange range = {above.first[axis], above.last[axis], 0.0};
     acdf_curve_narrow(&curve, i, &range);
     cell.first[axis] = range.low;
@@ -42,9 +51,10 @@ inline Cell part_of(const Cell& above, const AcdfCurve& curve, std::uint32_t i, 
 template <class Add>
 bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, const Add& add) {
     const AcdfCurve curve = acdf_curve_at(tree, at);
-    std::uint32_t low = 0;
+    Cut low = {0, 0.0};
     for (std::uint32_t i = 0; i < curve.segments; ++i) {
-        const std::uint32_t high = acdf_curve_cumulative(&curve, i + 1), link = acdf_curve_link(&curve, i);
+        const Cut high = cut_of(curve, i + 1);
+        const std::uint32_t link = acdf_curve_link(&curve, i);
         const Cell cell = part_of(above, curve, i, low, high);
         if (link == 0 ? !add(cell) : !each_cell(tree, at + link, cell, add)) return false;
         low = high;

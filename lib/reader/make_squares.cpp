@@ -42,18 +42,23 @@ SquaresMaker::Grid SquaresMaker::shaped(const Rectangle& rectangle, std::size_t 
     Grid grid = {
         {rectangle.origin[0], rectangle.origin[1]}, {0, 0}, {rectangle.log2[0], rectangle.log2[1]}, number};
     const std::size_t step = 1 + (list_.size() - first) / kLookedAt;
+    u32 low[2][kLookedAt], high[2][kLookedAt];
+    std::size_t count = 0;
+    for (std::size_t k = first; k < list_.size(); k += step, ++count)
+        for (int axis = 0; axis < 2; ++axis) {
+            const KeyBox& box = boxes_[list_[k]];
+            const u32 end = rectangle.origin[axis] + ((1u << rectangle.log2[axis]) - 1);
+            low[axis][count] = std::max(box.low[axis], rectangle.origin[axis]);
+            high[axis][count] = std::min(box.high[axis], end);
+        }
     for (u32 i = 0; i < bits; ++i) {
-        std::size_t cuts[2] = {0, 0};
-        for (std::size_t k = first; k < list_.size(); k += step)
-            for (int axis = 0; axis < 2; ++axis) {
-                if (grid.shift[axis] == 0) continue;
-                const KeyBox& box = boxes_[list_[k]];
-                const u32 end = rectangle.origin[axis] + ((1u << rectangle.log2[axis]) - 1),
-                          shift = grid.shift[axis];
-                const u32 low = std::max(box.low[axis], rectangle.origin[axis]),
-                          high = std::min(box.high[axis], end);
-                cuts[axis] += ((high >> (shift - 1)) - (low >> (shift - 1))) - ((high >> shift) - (low >> shift));
-            }
+        u32 cuts[2] = {0, 0};
+        for (int axis = 0; axis < 2; ++axis) {
+            const u32 shift = grid.shift[axis];
+            for (std::size_t k = 0; k < count && shift > 0; ++k)
+                cuts[axis] += ((high[axis][k] >> (shift - 1)) - (low[axis][k] >> (shift - 1))) -
+                              ((high[axis][k] >> shift) - (low[axis][k] >> shift));
+        }
         const int axis = grid.shift[0] == 0   ? 1
                          : grid.shift[1] == 0 ? 0
                          : cuts[0] != cuts[1] ? (cuts[0] < cuts[1] ? 0 : 1)
@@ -175,12 +180,7 @@ std::size_t SquaresMaker::words() const noexcept {
 }
 
 std::size_t SquaresMaker::place(u32* tables, std::size_t at, AcdfSquares& out) const noexcept {
-    const auto copy = [&](const auto& from) {
-        const std::size_t begin = at;
-        if (from.size() > 0) std::memcpy(tables + at, from.data(), from.bytes());
-        at = whole_lines(at + (from.bytes() + 3) / 4);
-        return static_cast<u32>(begin);
-    };
+    const auto copy = [&](const auto& from) { return copy_lines(from, tables, at); };
     out.shift0 = grid_.shift[0];
     out.shift1 = grid_.shift[1];
     out.bits0 = grid_.bits[0];
