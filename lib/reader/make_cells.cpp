@@ -19,7 +19,8 @@ using u32 = std::uint32_t;
 constexpr u32 kNumberBits = 31;
 constexpr double kNumberSteps = 0x1p31;
 constexpr std::size_t kMostPieces = 65535;
-constexpr std::size_t kLeastBytes = 72; // a cell, with its part of both grids
+constexpr std::size_t kLeastBytes = 84;          // a cell, with its part of both grids
+constexpr std::size_t kLeastDirectionBytes = 16; // of them, of the grid of directions
 // A draw stays this part of its numbers inside its piece: more than a float rounds.
 constexpr double kPart = 0x1p-21;
 // Tables for shaders may be made for minutes: no part of them may be missing.
@@ -220,9 +221,9 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
     const std::size_t count = pieces_.size();
     const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
     SquaresMaker numbers, directions;
-    if (!numbers.make(numbers_.data(), count, kNumberBits, work) ||
-        4 * numbers.words() + 3 * pieces_.bytes() / 2 > most_bytes ||
-        !directions.make(keys_.data(), count, sides_.key_bits(), work))
+    const std::size_t others = pieces_.bytes() + densities_.bytes() + count * kLeastDirectionBytes;
+    if (others > most_bytes || !numbers.make(numbers_.data(), count, kNumberBits, work, most_bytes - others) ||
+        4 * numbers.words() > most_bytes - others || !directions.make(keys_.data(), count, sides_.key_bits(), work))
         return nullptr;
     if (total_ && !(numbers.complete() && directions.complete())) return nullptr;
     std::size_t words = whole_lines(sizeof(AcdfCells) / 4) + numbers.words() + directions.words();

@@ -18,8 +18,10 @@ constexpr std::size_t kLookedAt = 32; // cells, to choose an axis
 
 } // namespace
 
-bool SquaresMaker::make(const KeyBox* boxes, std::size_t count, u32 key_bits, std::size_t work_a_box) noexcept {
+bool SquaresMaker::make(const KeyBox* boxes, std::size_t count, u32 key_bits, std::size_t work_a_box,
+                        std::size_t most_bytes) noexcept {
     boxes_ = boxes;
+    most_words_ = most_bytes / 4;
     work_ = work_a_box * (count + ACDF_BLOCK_CELLS);
     const Rectangle whole = {{0, 0}, {key_bits, key_bits}};
     block(whole, 0); // no cells: the empty one
@@ -73,7 +75,7 @@ SquaresMaker::Grid SquaresMaker::shaped(const Rectangle& rectangle, std::size_t 
 void SquaresMaker::divide(const Grid& grid, const Rectangle& rectangle, std::size_t first) {
     const std::size_t end = list_.size(), count = end - first;
     if (count <= ACDF_BLOCK_CELLS) return fill(grid, rectangle, block(rectangle, first));
-    if (work_ < 2 * count || list_.failed()) { // the entries stay empty
+    if (work_ < 2 * count || list_.failed() || words() > most_words_) { // the entries stay empty
         complete_ = false;
         return;
     }

@@ -19,10 +19,10 @@ struct KeyBox {
 class SquaresMaker {
 public:
     /// Over boxes (at most 65536) of keys of `key_bits` bits. Boxes with low > high are in no block. The work is in
-    /// proportion to `count`, whatever the boxes: where it would be more, entries name the empty block. Returns
-    /// false where memory fails.
-    bool make(const KeyBox* boxes, std::size_t count, std::uint32_t key_bits,
-              std::size_t work_a_box = kUsualWork) noexcept;
+    /// proportion to `count`, whatever the boxes: where it would be more, entries name the empty block. Once there
+    /// are more than `most_bytes` it ends, too. Returns false where memory fails.
+    bool make(const KeyBox* boxes, std::size_t count, std::uint32_t key_bits, std::size_t work_a_box = kUsualWork,
+              std::size_t most_bytes = SIZE_MAX) noexcept;
     /// Whether every entry names all boxes that it touches.
     bool complete() const noexcept { return complete_; }
 
@@ -54,7 +54,7 @@ private:
 
     const KeyBox* boxes_ = nullptr;
     Grid grid_ = {};
-    std::size_t work_ = 0; ///< that is left
+    std::size_t work_ = 0, most_words_ = 0; ///< work that is left
     bool complete_ = true;
     Growable<std::uint32_t> entries_, finer_, block_boxes_;
     Growable<std::uint16_t> block_cells_;
