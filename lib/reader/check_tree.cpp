@@ -23,13 +23,10 @@ struct Mark {
     u32 a, b;
 };
 
-// By sums of ever longer runs: processors before x86-64-v2 have no instruction, and what a compiler calls is
-// slower.
-u32 bits_set(u64 x) {
+u32 bits_set(u64 x) { // where a processor may lack the instruction, compilers call a function
     x -= x >> 1 & 0x5555555555555555;
     x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
-    x = (x + (x >> 4)) & 0x0F0F0F0F0F0F0F0F;
-    return static_cast<u32>(x * 0x0101010101010101 >> 56);
+    return static_cast<u32>(((x + (x >> 4)) & 0x0F0F0F0F0F0F0F0F) * 0x0101010101010101 >> 56);
 }
 
 // Where curves start, as bits, and how many start before each run of 64 units: a curve's index in constant time.
