@@ -28,9 +28,10 @@ ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], doub
 /* atan2(y, x) / pi for y >= 0 as acdf_atan2pi has it, but for rounding and without branches: the octant of a
  * half-vector cannot be guessed. */
 ACDF_INLINE double acdf_brdf_azimuth(double y, double x) {
-    const double ax = fabs(x), high = ax > y ? ax : y, low = ax > y ? y : ax;
-    const double wide = (double)(low > 0.41421356237309503 * high), steep = (double)(y > ax),
-                 left = (double)(x < 0.0);
+    const double ax = fabs(x), high = ax > y ? ax : y, low = ax < y ? ax : y;
+    /* 0 or 1 from signs: what is compared, compilers turn into branches. */
+    const double wide = 0.5 - 0.5 * acdf_sign(0.41421356237309503 * high - low);
+    const double steep = 0.5 - 0.5 * acdf_sign(ax - y), left = 0.5 - 0.5 * acdf_sign(x + 0.0);
     const double w = high > 0.0 ? (low - wide * high) / (high + wide * low) : 0.0;
     return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + acdf_narrow_atanpi(w)));
 }
@@ -41,11 +42,11 @@ ACDF_INLINE int acdf_brdf_place(const AcdfBrdf* brdf, const AcdfBrdfView* view, 
                                 AcdfBrdfPlace* place, double* sign) {
     double half[3], hx, hy, phi, below;
     if (!acdf_brdf_half(view, wi, half, place)) return 0;
-    below = 1.0 - 2.0 * (double)(half[2] < 0.0); /* a half-vector below the surface reflects as its opposite does */
+    below = acdf_sign(half[2] + 0.0); /* a half-vector below the surface reflects as its opposite does */
     hx = below * (view->turn[0] * half[0] + view->turn[1] * half[1]);
     hy = below * (view->turn[0] * half[1] - view->turn[1] * half[0]);
     phi = acdf_brdf_azimuth(fabs(hy), hx);
-    *sign = 1.0 - 2.0 * (double)(hy < 0.0);
+    *sign = acdf_sign(hy + 0.0);
     place->position[0] = (double)brdf->columns * (acdf_brdf_mirrored(brdf) ? phi : 0.5 + 0.5 * *sign * phi);
     place->position[1] = (double)brdf->rows * ((half[0] * half[0] + half[1] * half[1]) /
                                                (place->length * (place->length + fabs(half[2]))));

@@ -82,6 +82,19 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     whole->probability = 1.0;
 }
 
+/* Asks for what divisions of the whole read of the rows, so that it comes while something else is done: the upper
+ * splits, which stand first, and of most files all. */
+ACDF_FN void acdf_cut_ahead(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut) {
+    uint32_t split, end;
+    int i;
+    if (!local->tables || !local->tables->hearts || point->mix.count == 0) return;
+    end = local->tables->tiles.stride < 2048 ? local->tables->tiles.stride : 2048;
+    for (split = 0; split < end; split += 32)
+        ACDF_PREFETCH(acdf_local_hearts(local->tables, point->codes[cut->nearest]) + split);
+    for (i = 0; i < point->mix.count; ++i)
+        for (split = 0; split < end; split += 64) ACDF_PREFETCH(point->codes[i] + split);
+}
+
 /* Whether a part can be divided: it is no tile, and there is room. */
 ACDF_FN int acdf_cut_divisible(const AcdfCut* cut, int part) {
     return !(cut->part[part].node & ACDF_TILE_FLAG) && cut->count < ACDF_CUT_MAX_PARTS;
@@ -136,13 +149,18 @@ ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point,
 /* The lights of the halves of a part, whose numbers `upper` has, too. */
 ACDF_FN void acdf_cut_share_lights(const AcdfLocal* local, const AcdfCut* cut, AcdfCutPart* part,
                                    AcdfCutPart* upper) {
-    uint32_t first = part->first_light;
     const uint32_t end = part->end_light;
-    part->lights = upper->lights = 0.0;
+    uint32_t k, count = 0;
+    double sum[2] = {0.0, 0.0};
+    for (k = part->first_light; k < end; ++k) {
+        const uint32_t below = (uint32_t)(local->lights[k].tile < upper->tile);
+        sum[below ^ 1u] += cut->light[k];
+        count += below;
+    }
+    part->lights = sum[0];
+    upper->lights = sum[1];
     upper->end_light = part->end_light;
-    for (; first < end && local->lights[first].tile < upper->tile; ++first) part->lights += cut->light[first];
-    part->end_light = upper->first_light = (uint16_t)first;
-    for (; first < end; ++first) upper->lights += cut->light[first];
+    part->end_light = upper->first_light = (uint16_t)(part->first_light + count);
 }
 
 /* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
@@ -237,7 +255,7 @@ ACDF_FN uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* po
     if (local->tables && local->tables->hearts && point->mix.count > 0) {
         const uint32_t tile = part->node & ACDF_TILE_FLAG
                                   ? part->node & ~ACDF_TILE_FLAG
-                                  : acdf_local_heart(local->tables, point->codes[cut->nearest], part->entry);
+                                  : acdf_local_hearts(local->tables, point->codes[cut->nearest])[part->entry];
         for (k = 0; k < 3; ++k) direction[k] = acdf_local_middle(local->tables, tile)[k];
         return tile;
     }
@@ -260,6 +278,11 @@ ACDF_FN double acdf_cut_solid_angle(const AcdfLocal* local, const AcdfCutPart* p
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     int i;
+    if (local->tables && local->tables->heights) {
+        const double* z = acdf_local_heights(local->tables);
+        return 2.0 * ACDF_PI * (double)(part->high[0] - part->low[0]) / (double)grid.columns *
+               (z[part->low[1]] - z[part->high[1]]);
+    }
     for (i = 0; i < 2; ++i) {
         range[i].low = part->low[i];
         range[i].high = part->high[i];

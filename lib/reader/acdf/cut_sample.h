@@ -11,26 +11,24 @@ extern "C" {
 /* Makes the cut ready to be drawn from: to be called when all parts have their probabilities, which need not add up
  * to 1. Parts without light get none. Where nothing is left the cut is emptied. */
 ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
-    double whole[ACDF_CUT_MAX_PARTS], sum = 0.0;
-    int i, k;
+    /* Of parts and splits, so that a child's number finds its own without a branch that nobody guesses: part ~n
+     * stands before split 0, which is in the middle. */
+    double shares[2 * ACDF_CUT_MAX_PARTS], *share = shares + ACDF_CUT_MAX_PARTS, sum = 0.0;
+    int i;
     for (i = 0; i < cut->count; ++i) {
-        AcdfCutPart* part = &cut->part[i];
-        if (!(part->sum > 0.0) || !(part->probability > 0.0)) part->probability = 0.0;
-        sum += part->probability;
+        const AcdfCutPart* part = &cut->part[i];
+        sum += share[~i] = part->sum > 0.0 && part->probability > 0.0 ? part->probability : 0.0;
     }
     if (!(sum > 0.0) || !acdf_is_finite(sum)) {
         cut->count = 0;
         return;
     }
-    for (i = 0; i < cut->count; ++i) cut->part[i].probability /= sum;
+    for (i = 0; i < cut->count; ++i) cut->part[i].probability = share[~i] /= sum;
     for (i = cut->count - 2; i >= 0; --i) { /* a split's children stand behind it */
-        double half[2];
-        for (k = 0; k < 2; ++k) {
-            const int child = cut->split[i].child[k];
-            half[k] = child < 0 ? cut->part[~child].probability : whole[child];
-        }
-        whole[i] = half[0] + half[1];
-        cut->split[i].lower = whole[i] > 0.0 ? half[0] / whole[i] : 1.0;
+        AcdfCutSplit* split = &cut->split[i];
+        const double lower = share[split->child[0]], whole = lower + share[split->child[1]];
+        share[i] = whole;
+        split->lower = whole > 0.0 ? lower / whole : 1.0;
     }
 }
 

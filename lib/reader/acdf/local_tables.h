@@ -74,11 +74,10 @@ ACDF_INLINE const AcdfLightPair* acdf_local_lights(const AcdfLocalTables* tables
 ACDF_INLINE const float* acdf_local_middle(const AcdfLocalTables* tables, uint32_t tile) {
     return (const float*)(const void*)(acdf_local_words(tables) + tables->middles) + 4 * (size_t)tile;
 }
-/* Of the row whose codes these are. */
-ACDF_INLINE uint32_t acdf_local_heart(const AcdfLocalTables* tables, const uint8_t* codes, uint32_t split) {
+/* Of the row whose codes these are, one a split. */
+ACDF_INLINE const uint16_t* acdf_local_hearts(const AcdfLocalTables* tables, const uint8_t* codes) {
     const uint8_t* rows = (const uint8_t*)(const void*)(acdf_local_words(tables) + tables->tiles.rows);
-    const uint16_t* hearts = (const uint16_t*)(const void*)(acdf_local_words(tables) + tables->hearts);
-    return hearts[(size_t)(codes - rows) + split];
+    return (const uint16_t*)(const void*)(acdf_local_words(tables) + tables->hearts) + (codes - rows);
 }
 ACDF_INLINE const AcdfTileRecord* acdf_local_tile(const AcdfLocalTables* tables, uint32_t tile) {
     return acdf_tile_record(acdf_local_words(tables), &tables->tiles, tile);

@@ -12,11 +12,13 @@ namespace acdf {
 class PartQueue {
 public:
     /// Squares of priorities are told apart from 2^-57 `scale` to 64 `scale`.
-    ACDF_METHOD explicit PartQueue(double scale) noexcept : top_(key(64.0 * scale)), filled_(0) {}
+    ACDF_METHOD explicit PartQueue(double scale) noexcept : top_(key(64.0 * scale)), filled_(0) {
+        memset(head_, -1, sizeof head_);
+    }
 
     ACDF_METHOD void push(int part, double square) noexcept {
         const int below = top_ - key(square), bucket = below < 0 ? 0 : below > 63 ? 63 : below;
-        next_[part] = filled_ >> bucket & 1u ? head_[bucket] : -1;
+        next_[part] = head_[bucket];
         head_[bucket] = static_cast<std::int8_t>(part);
         filled_ |= std::uint64_t{1} << bucket;
     }
@@ -28,7 +30,7 @@ public:
             low ? acdf_lowest_bit(low) : 32 + acdf_lowest_bit(static_cast<std::uint32_t>(filled_ >> 32));
         const int part = head_[bucket];
         head_[bucket] = next_[part];
-        if (head_[bucket] < 0) filled_ &= ~(std::uint64_t{1} << bucket);
+        filled_ &= ~(static_cast<std::uint64_t>(head_[bucket] < 0) << bucket);
         return part;
     }
 
