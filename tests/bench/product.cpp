@@ -90,6 +90,14 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                            for (const auto& u : all[i].u) sink = sampler.sample(points[i], u[0], u[1]).pdf;
                    },
                    double{kPoints * kDraws}});
+    out.push_back({name + ", `at` of 64 parts and 16 samples there, a sample",
+                   [=, &all] {
+                       for (const Place& place : all) {
+                           const auto point = sampler.at(place.frame, place.wo);
+                           for (const auto& u : place.u) sink = sampler.sample(point, u[0], u[1]).pdf;
+                       }
+                   },
+                   double{kPoints * kDraws}});
     std::vector<typename AnyLobe::Point> views(kPoints);
     std::vector<AcdfLocalPoint> normals(kPoints);
     for (std::size_t i = 0; i < kPoints; ++i) {

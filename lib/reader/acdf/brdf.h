@@ -179,6 +179,16 @@ ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const Ac
     return acdf_brdf_view_walk(brdf, view, u0, u1);
 }
 
+/* A direction about as acdf_brdf_view_sample draws it, to look where much is reflected; pdf 0: none. */
+ACDF_FN AcdfDirectionSample acdf_brdf_view_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0,
+                                                 double u1) {
+#ifdef ACDF_BRDF_GUESSES
+    AcdfDirectionSample out;
+    if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_about(brdf, view, u0, u1, &out)) return out;
+#endif
+    return acdf_brdf_view_sample(brdf, view, u0, u1);
+}
+
 /* acdf_brdf_sample by a walk. */
 ACDF_OUTLINE AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
     const AcdfDirectionSample nothing = {{0.0f, 0.0f, 0.0f}, 0.0f};

@@ -118,7 +118,7 @@ ACDF_METHOD LobeGuides ProductSampler<AnyLobe>::guides(const Point& point) const
     out.drawn = parts_ < 32 ? 4 : 8;
     for (int i = 0; i < out.drawn; ++i) {
         const int reversed = (i & 1) << 2 | (i & 2) | i >> 2; // the points of Hammersley, moved off the borders
-        const ProductSample s = lobe_.sample(point.lobe, (i + 0.5) / out.drawn, (reversed + 0.5) / 8.0);
+        const ProductSample s = lobe_about(lobe_, point.lobe, (i + 0.5) / out.drawn, (reversed + 0.5) / 8.0, 0);
         if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
         float world[3];
         std::uint32_t square[2];
