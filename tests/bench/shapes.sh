@@ -14,7 +14,7 @@ for shape in "${shapes[@]}"; do
         file=$work/$probe${shape// /}.acdf
         read -ra options <<<"$shape"
         "$build/tools/acdf" local "$data/probes/$probe" "${options[@]}" -o "$file" --json --quiet |
-            sed -n 's/.*"relative_variance": \([0-9.e-]*\).*/ \1 |/p' | tr -d '\n'
+            awk '/"relative_variance":/ { printf " %.4f |", $2 }'
     done
     printf '\n'
 done

@@ -82,13 +82,14 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     whole->probability = 1.0;
 }
 
-/* Asks for what divisions of the whole read of the rows, so that it comes while something else is done: the upper
- * splits, which stand first, and of most files all. */
-ACDF_FN void acdf_cut_ahead(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut) {
+/* Asks for what divisions of the whole into `parts` read of the rows, so that it comes while something else is
+ * done: the upper splits, which stand first, and for many parts all. */
+ACDF_FN void acdf_cut_ahead(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut, int parts) {
+    const uint32_t some = 32u * (uint32_t)(parts < ACDF_CUT_MAX_PARTS ? parts : ACDF_CUT_MAX_PARTS);
     uint32_t split, end;
     int i;
     if (!local->tables || !local->tables->hearts || point->mix.count == 0) return;
-    end = local->tables->tiles.stride < 2048 ? local->tables->tiles.stride : 2048;
+    end = local->tables->tiles.stride < some ? local->tables->tiles.stride : some;
     for (split = 0; split < end; split += 32)
         ACDF_PREFETCH(acdf_local_hearts(local->tables, point->codes[cut->nearest]) + split);
     for (i = 0; i < point->mix.count; ++i)

@@ -244,7 +244,7 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     acdf_cut_begin(&light_, &point.light, &point.cut);
     if (parts_ > 1) {
         PartRating ratings[ACDF_CUT_MAX_PARTS];
-        acdf_cut_ahead(&light_, &point.light, &point.cut);
+        acdf_cut_ahead(&light_, &point.light, &point.cut, parts_);
         const LobeGuides drawn = guides(point);
         divide(point, drawn, ratings);
         point.share = weigh_parts(point.cut, drawn, ratings);
