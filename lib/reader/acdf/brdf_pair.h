@@ -212,27 +212,19 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
 ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, double u0, double u1,
                                      AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;
+    const AcdfBrdfPath* path;
     AcdfBrdfPlace place;
-    uint32_t side[4], node = acdf_blend_root(&brdf->blend), cell;
-    double u[2], position[2], reach[2], half[3], sign = 1.0, p;
-    uint64_t ways;
+    uint32_t cell;
+    double u[2], part[2], half[3], sign = 1.0, radius, p;
     int axis;
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     if (acdf_brdf_mirrored(brdf)) sign = acdf_brdf_mirror(&u[0]);
     cell = acdf_brdf_guess(tables, view->lower, u);
-    side[0] = side[2] = 0;
-    side[1] = brdf->columns;
-    side[3] = brdf->rows;
-    for (ways = ((const uint64_t*)acdf_brdf_words(tables, tables->ways))[cell]; !(node & ACDF_TILE_FLAG);
-         ways >>= 1) {
-        const AcdfSplit* split = &brdf->blend.splits[node];
-        const uint32_t upper = (uint32_t)ways & 1u;
-        side[2 * (split->place & 1u) + 1 - upper] = split->place >> 3;
-        node = split->child[upper];
-    }
-    for (axis = 0; axis < 2; ++axis) position[axis] = 0.5 * ((double)side[2 * axis] + (double)side[2 * axis + 1]);
-    acdf_brdf_reflect(brdf, view, position, sign, out->direction, reach);
+    path = (const AcdfBrdfPath*)acdf_brdf_words(tables, tables->paths) + cell;
+    for (axis = 0; axis < 2; ++axis)
+        part[axis] = 0.5 * ((double)path->low[axis] + (double)path->high[axis]) * tables->inverse[axis];
+    acdf_brdf_reflect_at(brdf, view, part[0], part[1], sign, out->direction, &radius);
     p = acdf_brdf_pair_share(brdf, view, cell);
     if (!(p > 0.0) || !acdf_brdf_half(view, out->direction, half, &place)) return 0;
     out->pdf = acdf_brdf_positive(acdf_brdf_mean_density(brdf, p, acdf_brdf_area(tables, cell), &place));
