@@ -3,7 +3,7 @@ import math
 import struct
 
 from .refused import require
-from .sphere import clamp, direction_of, f32, of_unit_length
+from .sphere import clamp, direction_of, f32, of_unit_length, pdf32
 from .tiles import sum_of
 
 STEEPEST, THINNEST, BORDER = 4096, 2.0**-12, 2.0**-22
@@ -78,7 +78,7 @@ class Portals:
         if not share < 1:
             return None
         seen = [Window(self, k, cells, x) for k in range(len(self.portals))]
-        seen = [window for window in seen if window.weight > 0]
+        seen = [window for window in seen if 0 < window.weight < math.inf]
         return Windows(share, seen) if seen else None
 
 
@@ -198,7 +198,7 @@ class Windows:
             return 0.0
         through = sum_of([window.density(d) for window in self.seen]) / self.weight
         pdf = self.share * row + (1 - self.share) * through
-        return f32(max(pdf, 1.17549435e-38)) if pdf > 0 else 0.0
+        return pdf32(pdf) if pdf > 0 else 0.0
 
     def draw(self, u):
         u = list(u)

@@ -11,7 +11,8 @@ NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 
 def f32(v):
-    return float(np.float32(v))
+    with np.errstate(over="ignore"):  # beyond them all: infinite
+        return float(np.float32(v))
 
 
 def pdf32(v):

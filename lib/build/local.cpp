@@ -142,10 +142,24 @@ compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, doub
     return size;
 }
 
+/// Of a file with places: one part in so many is for all that is there without them.
+constexpr std::uint64_t kLocalPart = 4;
+
 /// What a file of `budget` bytes gives to all that is there without places.
 std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
     if (!options.places.scene) return budget;
-    return options.places.local_bytes > 0 ? options.places.local_bytes : budget / 4;
+    return options.places.local_bytes > 0 ? options.places.local_bytes : budget / kLocalPart;
+}
+
+[[noreturn]] void out_of_reach(std::uint64_t budget, std::uint64_t least) {
+    throw std::runtime_error("a size of " + std::to_string(budget) +
+                             " bytes is out of reach; the least that can be had is about " + std::to_string(least));
+}
+
+/// The file in which what is there without places has `local` bytes.
+std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local) {
+    if (!options.places.scene) return local;
+    return options.places.local_bytes > 0 ? local : local * kLocalPart;
 }
 
 /// Adds places in what `budget` leaves.
@@ -168,6 +182,8 @@ void add_places(Draft& draft, const compress::Target& target, const LocalOptions
                                                                progress(0.2 + 0.7 * share, "looking from places");
                                                        }))
         draft.description.chunks.push_back(std::move(chunk));
+    const std::uint64_t made = compress::store(draft.tree, draft.description).size();
+    if (made > budget) out_of_reach(budget, made); // a single cell, or a map of portals, is more than is left
 }
 
 /// At most `whole_budget` bytes before compression, and nearly as many.
@@ -189,10 +205,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
         const std::int64_t next = static_cast<std::int64_t>(size.tree_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
-            if (size.tiles <= 2)
-                throw std::runtime_error("a size of " + std::to_string(budget) +
-                                         " bytes is out of reach; the least that can be had is about " +
-                                         std::to_string(bytes));
+            if (size.tiles <= 2) out_of_reach(whole_budget, whole_of(options, bytes));
             size.tiles = size.tiles * 3 / 4;
             size.tree_bytes = size_for(options, bins, double(budget)).tree_bytes;
             tries = 0;

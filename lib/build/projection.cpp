@@ -220,7 +220,9 @@ int latlong_width(const Map& map) {
 
 int octahedral_side(const Map& map) {
     if (map.layout == Layout::octahedral) return map.width;
-    const double texels = texels_around(map) / std::sqrt(compress::pi);
+    // As many around, but not a square of thousands for a map of a few rows.
+    const double texels = std::min(texels_around(map) / std::sqrt(compress::pi),
+                                   4.0 * std::sqrt(double(map.width) * double(map.height)));
     int side = 4;
     while (side < texels) side *= 2;
     return side;

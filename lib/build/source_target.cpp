@@ -54,6 +54,7 @@ public:
             for (std::size_t plane = 0; plane < 3; ++plane) total[plane].add(row[plane]);
         hand_out_missed(total);
         light_borders();
+        compress::refuse_overflow(target_);
         for (const Sum& plane : total) {
             target_.total += plane.value();
             target_.mean_square += plane.value() * plane.value();

@@ -123,9 +123,7 @@ void write_curve(const Packed& packed, const CurveShape& shape, std::size_t at,
     block.align(2);
 }
 
-} // namespace
-
-EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio) {
+EncodedTree encode(const Cascade& cascade, double price, double most_ratio) {
     const std::vector<double> weight = reach(cascade);
     const std::vector<Lows> lows = range_lows(cascade);
     std::vector<Packed> packed;
@@ -148,6 +146,52 @@ EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio)
         tree.offsets.push_back(static_cast<std::uint32_t>(offset[i] / 2));
     for (std::uint32_t root : cascade.roots) tree.roots.push_back(static_cast<std::uint32_t>(offset[root] / 2));
     return tree;
+}
+
+/// A bin of one cell.
+bool is_bare(const Curve& curve) {
+    const auto refined = [](std::int32_t child) { return child >= 0; };
+    return curve.segments() == 1 && curve.tilts.empty() &&
+           std::none_of(curve.children.begin(), curve.children.end(), refined);
+}
+
+/// The same with one bare curve for all roots that are one; where each curve of the old one is now.
+Cascade sharing_bare_roots(const Cascade& cascade, std::vector<std::uint32_t>& now) {
+    Cascade out;
+    std::vector<char> root(cascade.curves.size(), 0);
+    for (const std::uint32_t r : cascade.roots) root[r] = 1;
+    for (const Curve& curve : cascade.curves) // a child stays behind its parents
+        for (const std::int32_t child : curve.children)
+            if (child >= 0) root[static_cast<std::size_t>(child)] = 0;
+    std::int64_t bare = -1;
+    for (std::size_t i = 0; i < cascade.curves.size(); ++i) {
+        const bool shared = root[i] && is_bare(cascade.curves[i]);
+        if (shared && bare >= 0) {
+            now.push_back(static_cast<std::uint32_t>(bare));
+            continue;
+        }
+        if (shared) bare = static_cast<std::int64_t>(out.curves.size());
+        now.push_back(static_cast<std::uint32_t>(out.curves.size()));
+        out.curves.push_back(cascade.curves[i]);
+    }
+    for (Curve& curve : out.curves)
+        for (std::int32_t& child : curve.children)
+            if (child >= 0) child = static_cast<std::int32_t>(now[static_cast<std::size_t>(child)]);
+    for (const std::uint32_t r : cascade.roots) out.roots.push_back(now[r]);
+    return out;
+}
+
+} // namespace
+
+EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio) {
+    EncodedTree tree = encode(cascade, price, most_ratio);
+    if (cascade.curves.size() <= tree.bytes.size() / 4 + 1) return tree;
+    // Many bins of one cell, whose curves have two bytes: readers take no more curves than a quarter of the bytes.
+    std::vector<std::uint32_t> now;
+    EncodedTree shared = encode(sharing_bare_roots(cascade, now), price, most_ratio);
+    tree.offsets.clear();
+    for (const std::uint32_t curve : now) tree.offsets.push_back(shared.offsets[curve]);
+    return {std::move(shared.bytes), std::move(shared.roots), std::move(tree.offsets)};
 }
 
 } // namespace acdf::compress

@@ -232,6 +232,7 @@ Target EnvironmentTarget::moments() {
         float* peaks = target.peaks.data() + std::size_t{r} * columns_;
         for (std::uint32_t c = 0; c < columns_; ++c) peaks[c] = positive_float(peak[c]);
     });
+    refuse_overflow(target);
     for (std::size_t plane = 0; plane < planes_; ++plane) {
         Sum sum;
         for (std::uint32_t r = 0; r < rows_; ++r) sum.add(row_total[r][plane]);

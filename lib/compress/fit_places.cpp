@@ -35,12 +35,15 @@ constexpr double kDivisionShare = 0.4;
 /// Around the points: light is gathered next to them, too.
 constexpr float kMargin = 1e-3f;
 
-bool is_finite(const std::array<float, 3>& x) {
-    return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
+/// Farther out there are no places: differences of floats must be floats.
+constexpr float kFarthest = 1e30f;
+
+bool is_near(const std::array<float, 3>& x) {
+    return std::all_of(x.begin(), x.end(), [](float c) { return std::fabs(c) <= kFarthest; });
 }
 
 /// The box of the first points that a source tells of, which are as even as any; a little larger, as light is
-/// gathered next to them, too.
+/// gathered next to them, too. It has a volume, wherever it lies.
 AcdfPlaces header_of(const PointSource& source, const PlacesFrame& frame) {
     AcdfPlaces out = {};
     for (int k = 0; k < 3; ++k) std::copy_n(frame.transform[k], 4, out.transform[k]);
@@ -48,12 +51,13 @@ AcdfPlaces header_of(const PointSource& source, const PlacesFrame& frame) {
     std::vector<PlacePoint> points(batch);
     std::vector<char> there(batch, 0);
     tbb::parallel_for(std::size_t{0}, batch,
-                      [&](std::size_t i) { there[i] = source(i, points[i]) && is_finite(points[i].position); });
+                      [&](std::size_t i) { there[i] = source(i, points[i]) && is_near(points[i].position); });
     if (std::find(there.begin(), there.end(), 1) == there.end())
-        throw std::invalid_argument("a scene without points");
+        throw std::invalid_argument("a scene without points within 1e30 of its origin");
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     float size = 0.0f;
     for (std::size_t k = 0; k < 3; ++k) {
-        out.low[k] = std::numeric_limits<float>::infinity();
+        out.low[k] = kInfinity;
         out.high[k] = -out.low[k];
         for (std::size_t i = 0; i < batch; ++i) {
             if (!there[i]) continue;
@@ -63,9 +67,9 @@ AcdfPlaces header_of(const PointSource& source, const PlacesFrame& frame) {
         size = std::max(size, out.high[k] - out.low[k]);
     }
     if (!(size > 0.0f)) size = 1.0f;
-    for (std::size_t k = 0; k < 3; ++k) {
-        out.low[k] -= kMargin * size;
-        out.high[k] += kMargin * size;
+    for (std::size_t k = 0; k < 3; ++k) { // far from the origin the margin may be less than floats tell apart
+        out.low[k] = std::min(out.low[k] - kMargin * size, std::nextafter(out.low[k], -kInfinity));
+        out.high[k] = std::max(out.high[k] + kMargin * size, std::nextafter(out.high[k], kInfinity));
     }
     return out;
 }
@@ -113,7 +117,7 @@ public:
         std::vector<std::uint32_t> cell(batch);
         for (const std::uint64_t end = next_ + most; next_ < end && points_.size() < count; next_ += batch) {
             tbb::parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
-                const bool there = source_(next_ + i, candidates[i]) && is_finite(candidates[i].position);
+                const bool there = source_(next_ + i, candidates[i]) && is_near(candidates[i].position);
                 cell[i] = there ? numbers.of(candidates[i]) : cells;
             });
             for (std::size_t i = 0; i < batch && points_.size() < count; ++i) {

@@ -66,9 +66,11 @@ AcdfPortalMap map_of(const PortalRectangle& r) {
 
 /// Whether a map has the sides of a rectangle that faces the same way.
 bool serves(const AcdfPortalMap& map, const AcdfPortalMap& own) {
-    if (dot(axis_of(map, 2), axis_of(own, 2)) < kParallel) return false;
-    const double turned = dot(axis_of(map, 0), axis_of(own, 0));
-    return std::fabs(turned) > kParallel || std::fabs(turned) < 1e-6;
+    // Floats make a unit vector longer or shorter than 1 by more than the cosine may differ from it.
+    const auto cosine = [&](int axis) { return dot(unit(axis_of(map, axis)), unit(axis_of(own, axis))); };
+    if (cosine(2) < kParallel) return false;
+    const double turned = std::fabs(cosine(0));
+    return turned > kParallel || turned < 1e-6;
 }
 
 /// The rectangle along the axes of its map.

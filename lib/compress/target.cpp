@@ -6,6 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace acdf::compress {
 namespace {
@@ -38,6 +40,11 @@ Target transposed(const Target& target) {
         }
     });
     return out;
+}
+
+void refuse_overflow(const Target& target) {
+    if (!std::all_of(target.values.begin(), target.values.end(), [](float v) { return std::isfinite(v); }))
+        throw std::invalid_argument("radiance whose channels together are more than a float holds; scale it down");
 }
 
 bool has_energy(const Target& target) {

@@ -63,6 +63,9 @@ bool take_texels(const float* rgb, std::size_t count, const TargetOptions& optio
 /// A double as a float that is positive where the double is: rounding must not make darkness out of light.
 float positive_float(double value);
 
+/// Throws std::invalid_argument where channels together are more than a float holds.
+void refuse_overflow(const Target& target);
+
 /// A grid of directions without any light: all but the values.
 Target empty_target(std::uint32_t columns, std::uint32_t rows, AcdfParameterization parameterization);
 

@@ -3,15 +3,11 @@
 #include "input/file_name.h"
 #include "input/image.h"
 #include "input/instances.h"
+#include "input/ply_counts.h"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
-
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace acdf::input {
 namespace {
@@ -28,27 +24,6 @@ public:
 private:
     std::string path_;
 };
-
-/// Refuses a PLY header that claims more elements than the file has bytes, before memory is asked for.
-void check_ply_counts(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    char line[1024];
-    std::error_code error;
-    const std::uint64_t size = std::filesystem::file_size(path, error);
-    if (error || !file.getline(line, sizeof line) || std::string(line).substr(0, 3) != "ply")
-        throw input_error(path, "it does not begin with \"ply\": no PLY mesh, or damaged");
-    while (file.getline(line, sizeof line)) {
-        std::istringstream words(line);
-        std::string word, name;
-        std::uint64_t count = 0;
-        words >> word;
-        if (word == "end_header") return;
-        if (word != "element") continue;
-        if (!(words >> name >> count) || count > size)
-            throw input_error(path, "its header claims more elements than the file has bytes; it is damaged");
-    }
-    throw input_error(path, "its header does not end; it is cut short or damaged");
-}
 
 const aiScene* read_mesh(Assimp::Importer& importer, const std::string& path) {
     if (lower_extension(path) == ".ply") check_ply_counts(path);

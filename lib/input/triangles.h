@@ -27,8 +27,8 @@ struct Triangles {
     std::array<double, 3> position(std::size_t triangle, double b1, double b2) const;
 };
 
-/// Reads a mesh or a list of instances (mesh_file.h), polygons as fans of triangles; `up` as for normals. Throws
-/// Error.
+/// Reads a mesh or a list of instances (mesh_file.h), polygons as fans of triangles; `up` as for normals. Triangles
+/// with a corner that is no number, or farther than 1e30 from the origin on an axis, are left out. Throws Error.
 Triangles read_triangles(const std::string& path, UpAxis up);
 
 /// A hierarchy of boxes over triangles, four side by side. Results are the same on every machine and for any number

@@ -12,9 +12,11 @@ import csv
 import math
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 import numpy as np
 
@@ -171,6 +173,41 @@ def broken_files(program, fail):
             fail.check(found == (0 if wanted in WARNINGS else wanted), f"{file.name}: {found or 'not refused'}")
 
 
+# ---- extremes -------------------------------------------------------------------------------------------
+
+
+def with_bytes(data, chunk, at, value):
+    """A file with other bytes in the payload of a chunk that is stored as it is, and with right CRCs."""
+    out = bytearray(data)
+    count = struct.unpack_from("<I", out, 36)[0]
+    record = next(64 + 48 * i for i in range(count) if out[64 + 48 * i:68 + 48 * i] == chunk)
+    codec, _, offset, length = struct.unpack_from("<IIQQ", out, record + 8)
+    assert codec == 0 and at + len(value) <= length
+    out[offset + at:offset + at + len(value)] = value
+    struct.pack_into("<I", out, record + 12, zlib.crc32(out[offset:offset + length]))
+    struct.pack_into("<I", out, 60, zlib.crc32(out[64:64 + 48 * count], zlib.crc32(out[:60])))
+    return bytes(out)
+
+
+def extreme_files(make_vectors, fail):
+    """Numbers that no program writes and every reader must take: windows that weigh more than a float holds, or less."""
+    portals = (GOLDEN / "portals.acdf").read_bytes()
+    at = portals.index(b"PORT")
+    offset = struct.unpack_from("<Q", portals, at + 16)[0]
+    count, maps = struct.unpack_from("<2I", portals, offset)
+    with tempfile.TemporaryDirectory() as name:
+        folder, files = pathlib.Path(name), []
+        for i, unit in enumerate((3.4e38, 1e30, 1e-30, 1e-44)):
+            data = portals
+            for one in range(maps):
+                data = with_bytes(data, b"PORT", 16 + 24 * count + 40 * one + 36, struct.pack("<f", unit))
+            files.append(folder / f"unit_{i}.acdf")
+            files[-1].write_bytes(data)
+        run(folder, make_vectors, folder, *files)
+        for file in files:
+            compare(load(file.read_bytes()), file.with_suffix(".csv"), fail)
+
+
 # ---- fresh files ----------------------------------------------------------------------------------------
 
 
@@ -276,6 +313,8 @@ def main():
         damaged_files(fail)
         if options.broken_files:
             broken_files(options.broken_files, fail)
+        if options.make_vectors:
+            extreme_files(options.make_vectors, fail)
         if options.program:
             fresh_files(options.program, options.make_vectors, fail)
     print(f"{fail.compared} compared, {fail.count} wrong")

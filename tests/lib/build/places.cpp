@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -192,6 +193,36 @@ TEST(PlaceFiles, FillTheirBudget) {
     EXPECT_GE(placed().local.bytes.size(), 90u << 10);
     EXPECT_TRUE(placed().view().has_places());
     EXPECT_FALSE(plain().view().has_places());
+}
+
+/// What cannot be had is told in bytes of the whole file.
+TEST(PlaceFiles, AreNotMadeLargerThanTheirBudget) {
+    builder::Local result;
+    const builder::Status status = builder::local(target(), with_places(4 << 10), result);
+    EXPECT_EQ(status.code, builder::ErrorCode::out_of_reach);
+    const std::string text = status.message,
+                      start = "a size of 4096 bytes is out of reach; the least that can be had is about ";
+    ASSERT_EQ(text.rfind(start, 0), 0u) << text;
+    const std::uint64_t least = std::stoull(text.substr(start.size())), enough = least + least / 4;
+    const Built built(with_places(enough));
+    EXPECT_LE(built.local.bytes.size(), enough);
+    EXPECT_TRUE(built.view().has_places());
+}
+
+/// Floats tell no margin around a floor that is flat and far away.
+TEST(PlaceFiles, OfAFloorFarFromTheOrigin) {
+    builder::LocalOptions far = with_places(16 << 10);
+    far.places.point = [](std::uint64_t index, PlacePoint& point) {
+        point_of(index, point);
+        point = {{point.position[0], point.position[1], 1e7f}, {0.0f, 0.0f, 1.0f}};
+        if (index % 5 == 0) point.position[2] = 3e38f; // no place is so far out
+        return true;
+    };
+    far.places.occluded = [](const PlacePoint&, const float*) { return false; };
+    const Built built(far);
+    EXPECT_TRUE(built.view().has_places());
+    const float at[3] = {1.0f, 2.0f, 1e7f}, up[3] = {0.0f, 0.0f, 1.0f};
+    EXPECT_GT(built.view().at(at, up).place.count, 0);
 }
 
 TEST(PlaceFiles, DrawWhatAPlaceSees) {

@@ -240,4 +240,12 @@ TEST(InputProjection, LatlongWidthIsAPowerOfTwoNoCoarserThanTheSource) {
     EXPECT_EQ(latlong_width({Layout::angular, 1, 1}), 4);
 }
 
+TEST(InputProjection, OctahedralSideIsNoCoarserThanTheSourceButForMapsOfFewRows) {
+    EXPECT_EQ(octahedral_side({Layout::latlong, 1024, 512}), 1024);
+    EXPECT_EQ(octahedral_side({Layout::latlong, 4096, 1024}), 4096);
+    EXPECT_EQ(octahedral_side({Layout::latlong, 65536, 1}), 1024);
+    EXPECT_EQ(octahedral_side({Layout::latlong, 1, 65536}), 4);
+    EXPECT_EQ(octahedral_side({Layout::vertical_cross, 768, 1024}), 1024);
+}
+
 } // namespace

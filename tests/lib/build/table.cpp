@@ -244,6 +244,16 @@ TEST(TableFit, IndexedBins) {
     EXPECT_GT(table.accuracy.median, 0.0);
 }
 
+TEST(TableFit, BinsOfOneCell) {
+    const Table table = table_of(
+        array_of({5, 7}, [](const ShapeVector& at) { return at[0] == 2 ? 0.0 : 1.0 + at[0]; }), with_cells(8, 1));
+    const Loaded loaded(table.bytes);
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        const double x = 3.5;
+        EXPECT_NEAR(loaded.file.table().pdf(&i, &x), i == 2 ? 0.0 : 1.0 / 7.0, 1e-12);
+    }
+}
+
 // Shares that no float can hold stay positive: nothing with energy is lost.
 TEST(TableFit, FaintBinsCanBeDrawn) {
     const input::NpyArray array = array_of({2, 4}, [](const ShapeVector& at) {

@@ -183,6 +183,21 @@ Cascade far_link(std::uint32_t segments) {
     return cascade;
 }
 
+/// Readers take no more curves than a quarter of TREE's bytes, and a curve of one cell has two.
+TEST(Store, ManyBinsOfOneCellShareTheirCurve) {
+    const Curve bare{1, {}, {1.0}, {}, {}}, split{0, {3}, {0.25, 0.75}, {}, {}};
+    Cascade cascade{std::vector<Curve>(12, bare), {}};
+    cascade.curves[2] = split;
+    for (std::uint32_t i = 0; i < 12; ++i) cascade.roots.push_back(i);
+    const EncodedTree tree = encode_tree(cascade);
+    EXPECT_LE(tree.bytes.size(), 12u);
+    for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(tree.roots[i], i == 2 ? 1u : 0u);
+    EXPECT_EQ(tree.offsets, tree.roots);
+    // Where the others make up for them they are left as they are.
+    const EncodedTree two = encode_tree({{bare, split, bare}, {0, 1, 2}}, 0.0);
+    EXPECT_LT(two.roots[1], two.roots[2]);
+}
+
 TEST(Store, LinksAreAsWideAsTheyMustBe) {
     const std::uint32_t segments[] = {20, 2000, 0x10000};
     for (std::uint32_t code = 1; code <= 3; ++code) {

@@ -84,6 +84,16 @@ TEST(Target, SeparateChannelsAreTheRootOfTheSumOfSquares) {
                 1e-9 * target.mean_square);
 }
 
+TEST(Target, ChannelsThatAreMoreThanAFloatTogetherAreRefused) {
+    const std::vector<float> rgb(std::size_t{3} * kColumns * kRows, 3e38f);
+    const auto made = [&](AcdfChannels channels, AcdfFilter filter) {
+        return compress::environment_target(rgb.data(), kColumns, kRows, options(channels, filter));
+    };
+    EXPECT_THROW(made(ACDF_CHANNELS_SEPARATE, ACDF_FILTER_NEAREST), std::invalid_argument);
+    EXPECT_THROW(made(ACDF_CHANNELS_SEPARATE, ACDF_FILTER_BILINEAR), std::invalid_argument);
+    EXPECT_EQ(made(ACDF_CHANNELS_LARGEST, ACDF_FILTER_NEAREST).values[0], 3e38f);
+}
+
 /// A file that fits `target`, and how it serves `other`.
 build::Accuracy measured(const compress::Target& target, const compress::Target& other, std::uint32_t cells) {
     compress::FitOptions fit;

@@ -99,6 +99,37 @@ TEST(SceneHostile, Meshes) {
     EXPECT_NE(refusal_of(folder, "a.ply", start + "end_header\n"), "");
 }
 
+/// A list of as many corners as `length` tells, of a file of some hundred bytes.
+std::string ply_of_a_list(const std::string& format, const std::string& type, const std::string& length) {
+    std::string bytes = "ply\nformat " + format +
+                        " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                        "element face 1\nproperty list " +
+                        type + " int vertex_indices\nend_header\n";
+    if (format == "ascii") return bytes + "0 0 0\n1 0 0\n0 1 0\n" + length + " 0 1 2\n";
+    const float vertices[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::int32_t corners[3] = {0, 1, 2};
+    bytes.append(reinterpret_cast<const char*>(vertices), sizeof vertices) += length;
+    return bytes.append(reinterpret_cast<const char*>(corners), sizeof corners);
+}
+
+TEST(SceneHostile, PlyListsAreNoLongerThanTheFile) {
+    const Folder folder;
+    const auto told = [&](const std::string& format, const std::string& type, const std::string& length) {
+        return refusal_of(folder, "a.ply", ply_of_a_list(format, type, length));
+    };
+    const std::string little = "binary_little_endian", big = "binary_big_endian", zeros(3, '\0');
+    EXPECT_EQ(told("ascii", "uint", "3"), "");
+    EXPECT_EQ(told(little, "uint", "\3" + zeros), "");
+    EXPECT_EQ(told(little, "char", "\3"), "");
+    EXPECT_CONTAINS(told("ascii", "uint", "3000000000"), "a list in it claims");
+    EXPECT_CONTAINS(told("ascii", "int", "-1"), "a list in it claims");
+    EXPECT_CONTAINS(told(little, "uint", zeros + "\xB0"), "a list in it claims");
+    EXPECT_CONTAINS(told(little, "int", zeros + "\xB0"), "a list in it claims");
+    EXPECT_CONTAINS(told(little, "char", "\xFF"), "a list in it claims");
+    EXPECT_CONTAINS(told(big, "uint", "\x70" + zeros), "a list in it claims");
+    EXPECT_CONTAINS(told(little, "float", zeros + "\x40"), "of a type that PLY has not");
+}
+
 struct Sample {
     std::string name, bytes;
 };

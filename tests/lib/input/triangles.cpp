@@ -95,6 +95,15 @@ TEST(MeshTriangles, ArePolygonsInFansTurnedWithYUp) {
     EXPECT_EQ(y.corners[2].position, (std::array<float, 3>{0, 1, 2}));
 }
 
+TEST(MeshTriangles, OfCornersThatAreNoNumbersOrTooFarAwayAreLeftOut) {
+    const Folder folder;
+    write_bytes(folder.file("a.obj"),
+                "v 0 0 0\nv 1 0 0\nv 1 2 0\nv nan 2 0\nv 0 3e38 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
+    EXPECT_EQ(read_triangles(folder.file("a.obj"), UpAxis::z).count(), 1u);
+    write_bytes(folder.file("b.obj"), "v -3e38 0 0\nv 3e38 0 0\nv 0 3e38 0\nf 1 2 3\n");
+    EXPECT_THROW(read_triangles(folder.file("b.obj"), UpAxis::z), Error);
+}
+
 /// Both sides of a triangle are sampled all over, whatever sequence tells the points.
 TEST(MeshSurfaces, GiveEachTriangleAndSideItsPoints) {
     Triangles four;
