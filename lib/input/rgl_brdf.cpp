@@ -3,7 +3,9 @@
 #include "compress/trigonometry.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace acdf::input {
@@ -66,7 +68,35 @@ INSTANTIATE(float)
 INSTANTIATE(double)
 #undef INSTANTIATE
 
-RglBrdf::RglBrdf(RglTables tables) : tables_(std::move(tables)) {
+namespace {
+
+/// What a BRDF needs of a view, which mostly is that of the evaluation before.
+struct LastView {
+    std::uint64_t brdf = 0; ///< its number
+    double wo[3] = {0.0, 0.0, 0.0};
+    RglView<double> view;
+    double area = 0.0; ///< projected, where the tables hold it apart
+
+    bool is(std::uint64_t number, const double of[3]) const {
+        return brdf == number && wo[0] == of[0] && wo[1] == of[1] && wo[2] == of[2];
+    }
+};
+
+constexpr RglMix<double> kOnly = {{0}, {1.0}, 1};
+
+double projected_area(const RglTables& tables, const RglView<double>& view) {
+    const double y = (view.phi + compress::pi) / (2.0 * compress::pi);
+    return tables.sigma.bilinear(kOnly, tables.sigma.place(theta_coordinate(view.theta), y));
+}
+
+std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+} // namespace
+
+RglBrdf::RglBrdf(RglTables tables) : tables_(std::move(tables)), number_(next_number()) {
     isotropic = tables_.isotropic && tables_.nodes.phi.size() == 1;
     asymmetry = tables_.asymmetry;
     mirror = isotropic && asymmetry <= 1e-3;
@@ -76,17 +106,17 @@ RglBrdf::RglBrdf(RglTables tables) : tables_(std::move(tables)) {
 void RglBrdf::evaluate(const double wo[3], const double wi[3], double rgb[3]) const {
     std::fill(rgb, rgb + 3, 0.0);
     if (!(wo[2] > 0.0 && wi[2] > 0.0)) return;
-    const auto view = rgl_view(tables_, wo);
+    thread_local LastView last;
+    if (!last.is(number_, wo)) {
+        last = {number_, {wo[0], wo[1], wo[2]}, rgl_view(tables_, wo), 0.0};
+        if (tables_.jacobian) last.area = projected_area(tables_, last.view);
+    }
+    const RglView<double>& view = last.view;
     const auto half = rgl_half(tables_, view, wi);
     const auto point = tables_.vndf.invert(view.mix, half.x, half.y);
     double scale = 1.0 / wi[2]; // the tables hold rho cos(theta_i)
-    if (tables_.jacobian) {
-        const RglMix<double> only = {{0}, {1.0}, 1};
-        const double view_y = (view.phi + compress::pi) / (2.0 * compress::pi);
-        const auto towards = tables_.sigma.place(theta_coordinate(view.theta), view_y);
-        scale *= tables_.ndf.bilinear(only, tables_.ndf.place(half.x, half.y)) /
-                 (4.0 * tables_.sigma.bilinear(only, towards));
-    }
+    if (tables_.jacobian)
+        scale *= tables_.ndf.bilinear(kOnly, tables_.ndf.place(half.x, half.y)) / (4.0 * last.area);
     const auto place = tables_.colour.place(point.x, point.y);
     for (std::size_t c = 0; c < 3; ++c) {
         const double value = tables_.colour.bilinear(view.mix, place, c) * scale;

@@ -56,6 +56,7 @@ public:
 
 private:
     RglTables tables_;
+    std::uint64_t number_; ///< of no other object of this process
 };
 
 /// `name` goes into messages. Throws Error for anything but a sound RGB or spectral .bsdf file.

@@ -1,34 +1,26 @@
 // Accuracy on real BRDFs: what the documentation tells must hold.
-#include "tests/inputs/brdf_files.h"
+#include "tests/lib/build/real_brdfs.h"
 
 #include "input/rgl_brdf.h"
 #include "measure/brdf_table.h"
 #include "measure/rgl_sampler.h"
 
-#include <filesystem>
-
 using namespace acdf_test;
 
 namespace {
-
-std::string path_of(const std::string& name) { return std::string(ACDF_TEST_DATA) + "/brdfs/" + name; }
-
-#define NEEDS(name)                                                                                                \
-    if (!std::filesystem::exists(path_of(name))) GTEST_SKIP() << path_of(name) << " is not there"
 
 class MerlFile : public testing::TestWithParam<const char*> {};
 
 TEST_P(MerlFile, at64KiBBeatsTheFullTable) {
     NEEDS(GetParam());
-    const auto brdf = make_brdf(acdf::input::open_brdf(path_of(GetParam())), budget(64 << 10));
+    const MadeBrdf& brdf = real_brdf(GetParam(), 64);
     const auto views = acdf::build::random_views(24, true);
-    const auto ours =
-        acdf::build::summary(acdf::build::measure_views(brdf->file, brdf->reflected, views, 201, 350));
-    const acdf::measure::TabulatedBrdf table(brdf->reflected, true, acdf::measure::BrdfTableKind::mean);
+    const auto ours = acdf::build::summary(acdf::build::measure_views(brdf.file, brdf.reflected, views, 201, 350));
+    const acdf::measure::TabulatedBrdf table(brdf.reflected, true, acdf::measure::BrdfTableKind::mean);
     const auto theirs = acdf::build::summary(
         acdf::build::measure_views([&](const double wo[3], const double wi[3]) { return table.pdf(wo, wi); },
-                                   brdf->reflected, views, 201, 350));
-    EXPECT_LE(brdf->made.bytes.size(), 64u << 10);
+                                   brdf.reflected, views, 201, 350));
+    EXPECT_LE(brdf.made.bytes.size(), 64u << 10);
     EXPECT_LE(ours.relative_variance, 0.008);
     EXPECT_LE(ours.relative_variance, theirs.relative_variance);
     EXPECT_EQ(ours.support_violations, 0u);
@@ -46,18 +38,17 @@ class RglFile : public testing::TestWithParam<RglCase> {};
 
 TEST_P(RglFile, beatsItsAuthorsSampler) {
     NEEDS(GetParam().name);
-    const auto brdf = make_brdf(acdf::input::open_brdf(path_of(GetParam().name)), budget(GetParam().kib << 10));
-    const auto& rgl = dynamic_cast<const acdf::input::RglBrdf&>(*brdf->source);
+    const MadeBrdf& brdf = real_brdf(GetParam().name, GetParam().kib);
+    const auto& rgl = dynamic_cast<const acdf::input::RglBrdf&>(*brdf.source);
     const acdf::measure::RglSampler sampler(rgl);
     const auto views = acdf::build::random_views(16, true, std::cos(75.0 * 3.14159265358979 / 180.0), 0.996);
-    const auto ours =
-        acdf::build::summary(acdf::build::measure_views(brdf->file, brdf->reflected, views, 201, 350));
+    const auto ours = acdf::build::summary(acdf::build::measure_views(brdf.file, brdf.reflected, views, 201, 350));
     const auto theirs = acdf::build::summary(acdf::build::with_lost_samples(
         acdf::build::measure_views([&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); },
-                                   brdf->reflected, views, 201, 350)));
+                                   brdf.reflected, views, 201, 350)));
     EXPECT_LE(ours.relative_variance, theirs.relative_variance);
     EXPECT_EQ(ours.support_violations, 0u);
-    EXPECT_LE(3 * brdf->made.bytes.size(), std::filesystem::file_size(path_of(GetParam().name)));
+    EXPECT_LE(3 * brdf.made.bytes.size(), std::filesystem::file_size(real_brdf_path(GetParam().name)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, RglFile,

@@ -1,12 +1,10 @@
 // Weights of samples of BRDF files: bounded without being asked to be, next to free, and by a number where one is
 // given; and what more bytes gain.
-#include "tests/inputs/brdf_files.h"
 #include "tests/inputs/sanitized.h"
+#include "tests/lib/build/real_brdfs.h"
 
 #include "build/weight_bound.h"
-#include "input/brdf.h"
 
-#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
@@ -97,15 +95,19 @@ TEST(WithinWeight, TightensAsLongAsItHelps) {
     EXPECT_EQ(acdf::build::within_weight(0.0, same).accuracy.max_weight, 9.0); // no bound
 }
 
-class MeasuredWeights : public testing::TestWithParam<const char*> {};
+/// A measured BRDF and two sizes of its file.
+struct Ladder {
+    const char* name;
+    std::uint64_t kib[2];
+};
+
+class MeasuredWeights : public testing::TestWithParam<Ladder> {};
 
 TEST_P(MeasuredWeights, AreBoundedAndNoiseFallsWithEveryByte) {
-    const std::string path = std::string(ACDF_TEST_DATA) + "/brdfs/" + GetParam();
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    NEEDS(GetParam().name);
     double variance = std::numeric_limits<double>::infinity(), worst = variance;
-    for (const std::uint64_t kib : {128u, 200u}) {
-        const auto brdf = make_brdf(acdf::input::open_brdf(path), budget(kib << 10));
-        const acdf::build::BrdfAccuracy a = elsewhere(*brdf, 64);
+    for (const std::uint64_t kib : GetParam().kib) {
+        const acdf::build::BrdfAccuracy a = elsewhere(real_brdf(GetParam().name, kib), 64);
         EXPECT_LE(a.max_weight, 30.0) << kib;
         EXPECT_LT(a.relative_variance, variance) << kib;
         EXPECT_LT(a.worst, worst) << kib;
@@ -116,7 +118,8 @@ TEST_P(MeasuredWeights, AreBoundedAndNoiseFallsWithEveryByte) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, MeasuredWeights,
-                         testing::Values("cc_ibiza_sunset_rgb.bsdf", "paper_white_rgb.bsdf"),
-                         [](const auto& info) { return std::string(info.param).substr(0, 5); });
+                         testing::Values(Ladder{"cc_ibiza_sunset_rgb.bsdf", {128, 176}},
+                                         Ladder{"paper_white_rgb.bsdf", {128, 200}}),
+                         [](const auto& info) { return std::string(info.param.name).substr(0, 5); });
 
 } // namespace

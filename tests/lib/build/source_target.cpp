@@ -1,11 +1,13 @@
 // Files of maps of every layout: what is printed of them is what a sum over the map's own texels gives, with the
 // map's own lookup and the reader's density, written here once more.
 #include "build/source_target.h"
+#include "build/cube.h"
 #include "build/environment_accuracy.h"
 #include "build/source_lookup.h"
 #include "compress/fit.h"
 #include "compress/store.h"
 #include "compress/threads.h"
+#include "tests/inputs/sanitized.h"
 
 #include <acdf/reader.h>
 #include <gtest/gtest.h>
@@ -18,6 +20,7 @@
 namespace {
 
 using namespace acdf;
+using acdf_test::kSanitized;
 using build::Direction;
 using build::Layout;
 using build::Map;
@@ -181,6 +184,8 @@ void check(const Map& map, AcdfParameterization grid, AcdfFilter filter) {
 TEST_P(EveryLayout, WhatIsPrintedIsTrue) {
     for (const AcdfParameterization grid : {ACDF_PARAM_LATLONG, ACDF_PARAM_OCTAHEDRAL})
         for (const AcdfFilter filter : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR}) {
+            // Each grid with each filter takes ten seconds under sanitizers.
+            if (kSanitized && (grid == ACDF_PARAM_LATLONG) != (filter == ACDF_FILTER_NEAREST)) continue;
             SCOPED_TRACE(std::string(grid == ACDF_PARAM_LATLONG ? "lat-long" : "octahedral") +
                          (filter == ACDF_FILTER_NEAREST ? ", nearest" : ", bilinear"));
             check(GetParam().map, grid, filter);
@@ -223,7 +228,7 @@ TEST(SourceTarget, IsTheSameForAnyNumberOfThreads) {
     const Map map = maps[2].map;
     const std::vector<float> rgb = picture(map);
     const build::SourceTarget& a = target_of(map, ACDF_PARAM_OCTAHEDRAL, ACDF_FILTER_NEAREST);
-    for (const int threads : {1, 2, 7}) {
+    for (const int threads : {1, 7}) {
         build::SourceTarget b;
         compress::with_threads(threads, [&] {
             b = build::source_target(map, rgb.data(), build::domain_for(map, ACDF_PARAM_OCTAHEDRAL),
@@ -237,6 +242,8 @@ TEST(SourceTarget, IsTheSameForAnyNumberOfThreads) {
 TEST(SourceTarget, TakesTheGridThatLosesLess) {
     for (const Named& named : maps) {
         if (build::own_domain(named.map)) continue;
+        if (kSanitized && named.map.layout != Layout::angular) continue;
+        if (build::cube_face_size(named.map) > 0 && named.map.layout != Layout::vertical_cross) continue;
         const std::vector<float> rgb = picture(named.map);
         double least = 1e30;
         for (const AcdfParameterization grid : {ACDF_PARAM_LATLONG, ACDF_PARAM_OCTAHEDRAL})
