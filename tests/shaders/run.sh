@@ -3,7 +3,8 @@
 # with the reader. DEVICE: c, opencl, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
 # on a lat-long grid; or what is walked: local, local_square, square (the octahedral one), walk (the first one again), brdf
 # and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment name another source than that of tests, the size of the
-# file, and the share of a BRDF that follows the cosine.
+# file, and the share of a BRDF that follows the cosine. MADE names a folder for files that several devices take: DEVICE "file"
+# puts one there, others take it if there is one.
 set -euo pipefail
 device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5 form=${6:-cells}
 walk=
@@ -27,7 +28,11 @@ make_file() {
     if [ "$walk" = brdf ]; then
         local model=cook-torrance:m=0.2
         [ "$form" = brdf ] || model=ggx:alpha=0.1,0.3
-        "$acdf" brdf "${BRDF:-$model}" --budget "${BUDGET:-16KiB}" --diffuse-floor "${FLOOR:-0.1}" -o "$work/sky.acdf" --quiet
+        if [ -e "${MADE-}/$form.acdf" ]; then
+            cp "$MADE/$form.acdf" "$work/sky.acdf"
+        else
+            "$acdf" brdf "${BRDF:-$model}" --budget "${BUDGET:-16KiB}" --diffuse-floor "${FLOOR:-0.1}" -o "$work/sky.acdf" --quiet
+        fi
         "$compare" inputs "$work/sky.acdf" "$count" "$work"
         return
     fi
@@ -160,6 +165,11 @@ on_mesa() {
 }
 
 case $device in
+file)
+    rm -f "$MADE/$form.acdf"
+    make_file
+    cp "$work/sky.acdf" "$MADE/$form.acdf"
+    ;;
 c) on_c ;;
 opencl) on_opencl ;;
 glslang) on_glslang ;;
@@ -168,7 +178,7 @@ webgl) on_browser webgl glsl 4 ;;
 mesa) on_mesa ;;
 webgpu) on_browser webgpu wgsl 4 ;;
 *)
-    echo "usage: run.sh c|opencl|glslang|kernels|webgl|mesa|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
+    echo "usage: run.sh file|c|opencl|glslang|kernels|webgl|mesa|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
     exit 2
     ;;
 esac
