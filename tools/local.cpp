@@ -256,8 +256,7 @@ void LocalConversion::add_bins(CLI::App& command) {
         .add_option(
             "--normals", normals_,
             "Bins of normals: N divides each edge of an octahedron, 4 N^2 + 2 bins that are interpolated; AxB is "
-            "a lat-long grid (phi x theta) whose nearest bin serves, as in the paper, for --no-sharing, with "
-            "--no-sharing")
+            "a lat-long grid (phi x theta) whose nearest bin serves, as in the paper, with --no-sharing")
         ->option_text("N|AxB [as suits the size]")
         ->group("Normals");
     scene_.add(command,

@@ -105,6 +105,12 @@ TEST_F(Hostile, InputsWithoutAnEnd) {
     expect_failure({"info", "-"}, 1, "not an .acdf file", std::string(1 << 20, '\0'));
 }
 
+TEST_F(Hostile, RadianceBeyondFloatsIsToldWithItsFile) {
+    const std::string bright = folder / "bright.pfm";
+    std::ofstream(bright, std::ios::binary) << "PF\n2 1\n-1.0\n" << std::string(24, '\x7F'); // 3.4e38 each
+    expect_failure({"env", bright, "--channel", "rgb", "-o", file}, 1, "bright.pfm: radiance");
+}
+
 TEST_F(Hostile, NamesOfChoicesAreTold) {
     expect_failure({"env", probe, "--fit", "spline", "-o", file}, 2,
                    "'spline' is none of cdf, pdf, uniform, variance");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 
 namespace acdf::tools {
 
@@ -26,7 +27,7 @@ std::string reading_text(const input::ProbeOptions& options) {
 
 namespace {
 
-/// What `make` makes, unless it has no energy.
+/// What `make` makes, unless it has no energy, or more than floats hold.
 template <class Make>
 builder::Target lit(const std::string& path, const Make& make) {
     try {
@@ -35,6 +36,8 @@ builder::Target lit(const std::string& path, const Make& make) {
         throw Failure(path +
                       ": the probe is black in the channels asked for, so there is nothing to sample; is it the "
                       "right file or layer? (what is black in all channels is accepted with --on-black uniform)");
+    } catch (const std::invalid_argument& error) {
+        throw Failure(path + ": " + error.what());
     }
 }
 
