@@ -124,14 +124,14 @@ struct Task {
 };
 
 /// A file whose accuracy is not measured yet, which changes none of its size.
-struct Draft {
+struct BrdfDraft {
     compress::BrdfFit fit;
     std::vector<std::uint8_t> bytes;
 };
 
 /// `goal`: before compression; what the file says of its options keeps that of the task. `max_weight`: 0 for that
 /// of the task.
-Draft draft(const Task& task, const compress::Goal& goal, double max_weight, const Progress& progress) {
+BrdfDraft draft(const Task& task, const compress::Goal& goal, double max_weight, const Progress& progress) {
     BrdfFileOptions plain = task.options; // rows that are not made yet cannot tell how well they compress
     plain.codec = ACDF_CODEC_NONE;
     compress::BrdfOptions fit_options = task.options.fit;
@@ -143,12 +143,12 @@ Draft draft(const Task& task, const compress::Goal& goal, double max_weight, con
     fit_options.progress = [&](double share) {
         if (progress) progress(0.8 * share, "fitting");
     };
-    Draft out{compress::fit_brdf(task.reflected, fit_options), {}};
+    BrdfDraft out{compress::fit_brdf(task.reflected, fit_options), {}};
     out.bytes = brdf_bytes(out.fit, task.options, task.unknown);
     return out;
 }
 
-BrdfFile finish(const Task& task, const Draft& draft, const Progress& progress) {
+BrdfFile finish(const Task& task, const BrdfDraft& draft, const Progress& progress) {
     if (progress) progress(0.8, "measuring");
     BrdfFile out;
     out.accuracy =
@@ -167,7 +167,7 @@ BrdfFile build_brdf(const Brdf& brdf, const BrdfFileOptions& options, const Prog
     return within_weight(options.max_weight, [&](double max_weight) {
         if (options.codec == ACDF_CODEC_NONE || goal.kind != compress::Goal::Kind::budget)
             return finish(task, draft(task, goal, max_weight, progress), progress);
-        const Draft best = fill_compressed(goal.budget, [&](std::uint64_t bytes) {
+        const BrdfDraft best = fill_compressed(goal.budget, [&](std::uint64_t bytes) {
             compress::Goal plain = goal;
             plain.budget = bytes;
             return draft(task, plain, max_weight, progress);

@@ -89,13 +89,13 @@ Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, 
 }
 
 /// Everything of a file but its accuracy.
-struct Draft {
+struct LocalDraft {
     compress::EncodedTree tree;
     compress::Description description;
 };
 
 /// Stores a draft with the accuracy that it has.
-Local finish(Draft draft, const compress::Target& target, const Source& source, const LocalOptions& options,
+Local finish(LocalDraft draft, const compress::Target& target, const Source& source, const LocalOptions& options,
              const NormalBins& bins) {
     Local out = measured(compress::store(draft.tree, draft.description), target, options);
     const compress::Description told = description_of(target, source, options, bins, out.accuracy);
@@ -111,15 +111,15 @@ float mean_share(const std::vector<AcdfCompanyRecord>& records, const NormalBins
     return static_cast<float>(std::clamp(sum, 1e-3, 1.0)); // weights add up to 1
 }
 
-Draft shared_draft(const compress::Target& target, const Source& source, const LocalOptions& options,
-                   const NormalBins& bins, const compress::LocalSize& size, const Progress& progress) {
+LocalDraft shared_draft(const compress::Target& target, const Source& source, const LocalOptions& options,
+                        const NormalBins& bins, const compress::LocalSize& size, const Progress& progress) {
     compress::LocalFit fit = compress::fit_local(
         target, bins, size,
         [&](double share) {
             if (progress) progress(0.8 * share, "fitting");
         },
         options.company);
-    Draft draft{std::move(fit.tree), description_of(target, source, options, bins, {})};
+    LocalDraft draft{std::move(fit.tree), description_of(target, source, options, bins, {})};
     draft.description.shares = std::move(fit.shares);
     draft.description.chunks = compress::shared_chunks(fit.shared);
     draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
@@ -163,8 +163,8 @@ std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local) {
 }
 
 /// Adds places in what `budget` leaves.
-void add_places(Draft& draft, const compress::Target& target, const LocalOptions& options, std::uint64_t budget,
-                const Progress& progress) {
+void add_places(LocalDraft& draft, const compress::Target& target, const LocalOptions& options,
+                std::uint64_t budget, const Progress& progress) {
     const std::vector<std::uint8_t> bytes = compress::store(draft.tree, draft.description);
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
@@ -194,7 +194,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
     compress::LocalSize size = size_for(options, bins, double(budget));
     if (max_weight > 0.0) size.max_weight = max_weight;
     for (int tries = 0;; ++tries) {
-        Draft draft = shared_draft(target, source, options, bins, size, progress);
+        LocalDraft draft = shared_draft(target, source, options, bins, size, progress);
         const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
@@ -264,7 +264,7 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
 Local build_separate(const compress::Target& target, const Source& source, const LocalOptions& options,
                      const Progress& progress) {
     const NormalBins bins = bins_of(options, options.subdivisions > 0 ? options.subdivisions : 6);
-    Draft draft{{}, description_of(target, source, options, bins, {})};
+    LocalDraft draft{{}, description_of(target, source, options, bins, {})};
     draft.description.shares.assign(bins.normals.size(), 0.0f);
     draft.description.chunks = {compress::local_chunk(static_cast<float>(options.cosine_share), {})};
     compress::FitOptions fit = options.fit;

@@ -79,14 +79,14 @@ private:
 
 /// The cells in the order of the tree, and the first of each run that is summed at once: runs of about the same
 /// number of grid points, whatever the number of threads.
-struct Work {
+struct TableWork {
     std::vector<TableCell> cells;
     std::vector<std::size_t> begin;
 };
 
-Work divide(const File& file, std::uint32_t root, const Grid& grid) {
+TableWork divide(const File& file, std::uint32_t root, const Grid& grid) {
     constexpr std::uint64_t kPoints = 1 << 17;
-    Work work;
+    TableWork work;
     std::uint64_t points = kPoints;
     for_each_table_cell(file, root, [&](const TableCell& cell) {
         if (points >= kPoints) {
@@ -102,7 +102,7 @@ Work divide(const File& file, std::uint32_t root, const Grid& grid) {
     return work;
 }
 
-Sums sum_cells(const Work& work, const Bin& bin) {
+Sums sum_cells(const TableWork& work, const Bin& bin) {
     std::vector<Sums> parts(work.begin.size() - 1);
     tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
         for (std::size_t i = work.begin[k]; i < work.begin[k + 1]; ++i) bin.add(work.cells[i], parts[k]);
@@ -125,7 +125,7 @@ BinAccuracy measure_bin(const File& file, std::uint32_t index, const Grid& grid)
     a.lit = bin.lit();
     if (!a.lit) return a;
     if (file.bin(index).share > 0.0f) {
-        const Work work = divide(file, file.bin(index).root, grid);
+        const TableWork work = divide(file, file.bin(index).root, grid);
         const Sums sums = sum_cells(work, bin);
         a.cells = work.cells.size();
         a.support_violations = sums.violations;

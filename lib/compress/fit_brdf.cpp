@@ -18,7 +18,7 @@
 namespace acdf::compress {
 namespace {
 
-constexpr int kSteps = 24;               // of optimise_rows
+constexpr int kRowSteps = 24;            // of optimise_rows
 constexpr int kRaises = 12;              // of rows whose bytes do not keep a bound on weights
 constexpr std::uint32_t kFileRow = 1;    // axis of the file: cos_theta_h
 constexpr std::uint32_t kFileColumn = 0; // phi_h
@@ -73,7 +73,7 @@ public:
         });
         RowProbabilities rows(nodes_.bins());
         tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t b) { rows[b] = first_row(b, tree, cell); });
-        optimise_rows(rows, mixtures, kSteps);
+        optimise_rows(rows, mixtures, kRowSteps);
 
         BrdfFit out = empty(mirrored);
         out.rows.codebook = row_codebook();
@@ -281,9 +281,9 @@ Plan plan(const BrdfOptions& options, std::uint64_t budget) {
     return out;
 }
 
-class Search {
+class BrdfSearch {
 public:
-    Search(const Reflected& reflected, const BrdfOptions& options)
+    BrdfSearch(const Reflected& reflected, const BrdfOptions& options)
         : reflected_(reflected), options_(options),
           grid_(options.symmetry.mirrored    ? 256
                 : options.symmetry.isotropic ? 384
@@ -358,7 +358,7 @@ BrdfFit fit_brdf(const Reflected& reflected, const BrdfOptions& given) {
     if (options.symmetry.isotropic) options.phi_views = 1;
     else options.symmetry.mirrored = false;
     if (options.fit != ACDF_FIT_VARIANCE || !options.sharing) return fit_separate(reflected, options);
-    const Search search(reflected, options);
+    const BrdfSearch search(reflected, options);
     switch (options.goal.kind) {
     case Goal::Kind::variance:
         return search.reaching(options.goal.variance);

@@ -152,7 +152,7 @@ Counts counts_for(std::uint64_t bytes, std::uint64_t width, std::uint64_t tile_s
 }
 
 /// Points of a scene and cells for them, found together in rounds.
-struct Division {
+struct DividedPlaces {
     AcdfPlaces header{};
     std::vector<PlacePoint> points;
     std::vector<AcdfPlaceSplit> splits;
@@ -160,7 +160,7 @@ struct Division {
     std::unique_ptr<PlaceCells> tree; ///< refers to points and light
 };
 
-void divide(Division& out, const PlaceParts& parts, const PlaceScene& scene, std::uint32_t cells,
+void divide(DividedPlaces& out, const PlaceParts& parts, const PlaceScene& scene, std::uint32_t cells,
             const std::function<void(double)>& report) {
     const AcdfPlaces& h = out.header;
     const PlaceCells::Box low{h.low[0], h.low[1], h.low[2], -1.0f, -1.0f, -1.0f},
@@ -202,7 +202,7 @@ std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const 
                                                width + portals->row_bytes(), splits_of_tiles)
                                   : counts_for(size.bytes, width, splits_of_tiles);
 
-    Division division;
+    DividedPlaces division;
     division.header = header_of(scene.points, frame);
     divide(division, coarse, scene, counts.cells, [&](double share) { report(kDivisionShare * share); });
     const PlaceCells& tree = *division.tree;

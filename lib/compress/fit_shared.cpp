@@ -10,8 +10,8 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::size_t kBatch = 32;  // boxes divided at once: the same for any number of threads
-constexpr double kLeastGain = 1e-9; // of the sum of costs, which is about 1: less is rounding
+constexpr std::size_t kBoxes = 32;        // boxes divided at once: the same for any number of threads
+constexpr double kLeastSharedGain = 1e-9; // of the sum of costs, which is about 1: less is rounding
 // Of all cells that may be needed together. What is known of a cell at the border of what a row sees may be less
 // than what is there: a floor bounds the weights, at the price of this share of the samples at most.
 constexpr double kLeastShares = 2e-4;
@@ -110,12 +110,12 @@ SharedPartition::SharedPartition(const SharedGrid& grid, const std::vector<Share
     using Entry = std::pair<double, std::uint32_t>; // gain, and number from the back: for equal gains the older one
     std::priority_queue<Entry> queue;
     const auto push = [&](std::uint32_t index) {
-        if (nodes_[index].gain > kLeastGain) queue.push({nodes_[index].gain, ~index});
+        if (nodes_[index].gain > kLeastSharedGain) queue.push({nodes_[index].gain, ~index});
     };
     push(0);
     for (std::uint32_t leaves = 1; leaves < cells && !queue.empty();) {
         std::vector<std::uint32_t> children;
-        while (!queue.empty() && leaves < cells && children.size() < 2 * kBatch) {
+        while (!queue.empty() && leaves < cells && children.size() < 2 * kBoxes) {
             const std::uint32_t index = ~queue.top().second;
             queue.pop();
             Node lower = nodes_[index], upper = lower;

@@ -40,9 +40,9 @@ struct Candidate {
     double max_weight = 0.0; ///< the largest f/p over its mean
 };
 
-class Search {
+class TreeSearch {
 public:
-    Search(const std::vector<Grid>& bins, const FitOptions& options)
+    TreeSearch(const std::vector<Grid>& bins, const FitOptions& options)
         : goal_(options.goal), options_(options), sizer_(bins.size(), most_ratio(options)) {
         dark_axis_ = bins.front().axes.front();
         for (const Grid& bin : bins) {
@@ -338,6 +338,8 @@ private:
 
 } // namespace
 
-Fitted fit_trees(const std::vector<Grid>& bins, const FitOptions& options) { return Search(bins, options).run(); }
+Fitted fit_trees(const std::vector<Grid>& bins, const FitOptions& options) {
+    return TreeSearch(bins, options).run();
+}
 
 } // namespace acdf::compress

@@ -14,12 +14,12 @@
 namespace acdf::compress {
 namespace {
 
-constexpr int kSteps = 2; // towards the minimum: most of what is gained comes with the first
+constexpr int kDescents = 2; // towards the minimum: most of what is gained comes with the first
 /// Of a corner's own best part, what stays at least, and the cosine below which all stays, times the subdivisions:
 /// both bound weights.
 constexpr double kLeastPart = 0.25, kLeastCosine = 0.06;
-/// Samples in vain count so many times more where they are many, fully from `kMany` on.
-constexpr double kVainCost = 6.0, kFew = 0.01, kMany = 0.02;
+/// Samples in vain count so many times more where they are many, fully from `kManyVain` on.
+constexpr double kVainCost = 6.0, kFewVain = 0.01, kManyVain = 0.02;
 /// Of what a bin's normals count, the corner itself.
 constexpr double kCornerShare = 0.2;
 
@@ -116,7 +116,7 @@ double light_weights(const std::vector<AcdfLight>& lights, const Direction& plac
 }
 
 /// Arrays of a thread, one number a tile.
-struct Scratch {
+struct MixedScratch {
     TileView view;
     std::vector<double> mixed, raise, lower;
 };
@@ -132,7 +132,7 @@ public:
         : light_(light), lights_(lights), normals_(normals), own_(own), parts_(parts),
           least_cosine_(kLeastCosine / normals.subdivisions()) {}
 
-    void run(std::size_t bin, Scratch& s, std::vector<float>& out) const {
+    void run(std::size_t bin, MixedScratch& s, std::vector<float>& out) const {
         s.mixed.resize(light_.size());
         s.raise.assign(light_.size(), 0.0);
         s.lower.assign(light_.size(), 0.0);
@@ -154,7 +154,7 @@ public:
     }
 
 private:
-    void add(const MixedNormal& normal, std::size_t bin, Scratch& s) const {
+    void add(const MixedNormal& normal, std::size_t bin, MixedScratch& s) const {
         const double length = std::sqrt(dot(normal.place, normal.place));
         const Direction unit = {normal.place[0] / length, normal.place[1] / length, normal.place[2] / length};
         light_.look(unit, s.view);
@@ -177,7 +177,7 @@ private:
             vain += s.mixed[t] * s.view.hidden[t];
         }
         if (!(irradiance > 0.0)) return;
-        const double penalty = kVainCost * std::clamp((vain / sum - kFew) / (kMany - kFew), 0.0, 1.0);
+        const double penalty = kVainCost * std::clamp((vain / sum - kFewVain) / (kManyVain - kFewVain), 0.0, 1.0);
         const double scale = own_weight * normal.frequency / (irradiance * irradiance);
         for (std::size_t t = 0; t < s.mixed.size(); ++t) {
             if (!(s.mixed[t] > 0.0)) continue;
@@ -197,7 +197,7 @@ private:
 } // namespace
 
 TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::vector<AcdfLight>& lights) {
-    tbb::enumerable_thread_specific<Scratch> scratch;
+    tbb::enumerable_thread_specific<MixedScratch> scratch;
     TileParts own(bins.normals.size());
     tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t b) {
         if (!(bins.weight[b] > 0.0)) return;
@@ -207,7 +207,7 @@ TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::
     });
     const MixedNormals normals(bins);
     TileParts parts = own, next = own;
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kDescents; ++step) {
         const Step towards(light, lights, normals, own, parts);
         tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
             if (!parts[b].empty()) towards.run(b, scratch.local(), next[b]);

@@ -12,11 +12,11 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::size_t kBatch = 1024;      // parts divided at once
+constexpr std::size_t kParts = 1024;      // parts divided at once
 constexpr std::size_t kSubtree = 1 << 16; // steps of a box that one thread divides to the end
 constexpr std::size_t kSubtreesAtOnce = 64;
 
-struct Scratch {
+struct PartScratch {
     Projections projections;
     DivisionScratch division;
 };
@@ -48,7 +48,7 @@ struct Growth {
 
     /// Divides a part; its children get their place later.
     void divide(std::int8_t forced, Part& part, Children& out) const {
-        thread_local Scratch scratch; // arrays as long as an axis
+        thread_local PartScratch scratch; // arrays as long as an axis
         project(grid, total, part.box, scratch.projections);
         std::array<Division, ACDF_MAX_AXES> divisions;
         const double cost = part.moments.cost();
@@ -154,10 +154,10 @@ public:
             if (growth_.open(parts_[i])) level.push_back(i);
         for (; !level.empty(); level.swap(next)) {
             next.clear();
-            for (std::size_t begin = 0; begin < level.size(); begin += kBatch) {
+            for (std::size_t begin = 0; begin < level.size(); begin += kParts) {
                 if (full()) return;
                 batch_.assign(level.begin() + std::ptrdiff_t(begin),
-                              level.begin() + std::ptrdiff_t(std::min(level.size(), begin + kBatch)));
+                              level.begin() + std::ptrdiff_t(std::min(level.size(), begin + kParts)));
                 if (parts_.size() > forgetting_.parts) put_small_ones_aside();
                 divide_batch(next, visit);
             }

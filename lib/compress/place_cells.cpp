@@ -9,9 +9,9 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kSteps = 16;   ///< places on an axis where a cell may be divided
-constexpr float kLeastPoints = 8.0f;   ///< of a cell
-constexpr std::uint32_t kAsked = 1024; ///< points of a cell that tell where it is divided, about
+constexpr std::uint32_t kBorders = 16;      ///< places on an axis where a cell may be divided
+constexpr float kLeastPoints = 8.0f;        ///< of a cell
+constexpr std::uint32_t kCellPoints = 1024; ///< points of a cell that tell where it is divided, about
 
 /// The root of the second moment of the points that are summed, with the best rows for them.
 double cost_of(const PlaceSums& sums, const std::vector<float>& prior, std::vector<float>& work) {
@@ -83,7 +83,7 @@ PlaceCells::PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& p
 
 /// Factors of a node, and where it is divided best.
 void PlaceCells::consider(Node& node) const {
-    const std::uint32_t count = node.end - node.begin, stride = std::max(count / kAsked, 1u);
+    const std::uint32_t count = node.end - node.begin, stride = std::max(count / kCellPoints, 1u);
     PlaceSums sums(light_.parts);
     for (std::uint32_t i = node.begin; i < node.end; i += stride) sums.add(light_.of(order_[i]), 1.0f);
     for (std::size_t p = 0; p < light_.parts; ++p)
@@ -110,15 +110,15 @@ PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums
         low = std::min(low, points_[order_[i]].coordinate(axis));
         high = std::max(high, points_[order_[i]].coordinate(axis));
     }
-    const float step = (high - low) / kSteps;
+    const float step = (high - low) / kBorders;
     if (!(low + step > low && high - step < high)) return best;
-    std::vector<PlaceSums> lower(kSteps, PlaceSums(light_.parts));
+    std::vector<PlaceSums> lower(kBorders, PlaceSums(light_.parts));
     const auto border = [&](std::uint32_t k) { return low + step * static_cast<float>(k); };
     for (std::uint32_t i = node.begin; i < node.end; i += stride) {
         const float x = points_[order_[i]].coordinate(axis);
-        auto k = static_cast<std::uint32_t>(std::clamp((x - low) / step, 0.0f, float(kSteps - 1)));
+        auto k = static_cast<std::uint32_t>(std::clamp((x - low) / step, 0.0f, float(kBorders - 1)));
         while (k > 0 && x < border(k)) --k;
-        while (k + 1 < kSteps && !(x < border(k + 1))) ++k;
+        while (k + 1 < kBorders && !(x < border(k + 1))) ++k;
         lower[k].add(light_.of(order_[i]), 1.0f);
     }
     std::vector<PlaceSums> upper = lower;
@@ -126,7 +126,7 @@ PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums
     accumulate(upper, false);
     std::vector<float> work;
     const double whole = cost_of(sums, node.factors, work);
-    for (std::uint32_t k = 1; k < kSteps; ++k) {
+    for (std::uint32_t k = 1; k < kBorders; ++k) {
         if (lower[k - 1].points < kLeastPoints || upper[k].points < kLeastPoints) continue;
         const double gain =
             whole - cost_of(lower[k - 1], node.factors, work) - cost_of(upper[k], node.factors, work);

@@ -13,9 +13,9 @@ constexpr double kLeastGain = 1e-12; // of the sum of costs, which is at least 1
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A line of steps: costs of its segments from prefix sums.
-class Line {
+class PolishedLine {
 public:
-    Line(const Grid& grid, double total)
+    PolishedLine(const Grid& grid, double total)
         : grid_(grid), total_(total), measure_(grid.shape[0] + 1, 0.0), energy_(measure_) {
         for (std::uint32_t i = 0; i < grid.shape[0]; ++i) {
             const double f = grid.values[i] / total;
@@ -67,7 +67,7 @@ std::vector<Place> places(const Knots& knots, std::size_t i, std::uint32_t strid
 
 /// The best joint move of all knots: dynamic programming over the knots in order, over a window of places each.
 /// Returns what it gained.
-double move_knots(const Line& line, std::uint32_t stride, Knots& knots) {
+double move_knots(const PolishedLine& line, std::uint32_t stride, Knots& knots) {
     std::vector<std::vector<Place>> table{places(knots, 0, stride)};
     double before = 0.0;
     for (std::size_t i = 1; i < knots.size(); ++i) {
@@ -94,7 +94,7 @@ std::uint32_t largest_stride(const Knots& knots) {
     return stride;
 }
 
-void rewrite(const Line& line, const Knots& knots, std::size_t index, double& cost, Flattened& flat) {
+void rewrite(const PolishedLine& line, const Knots& knots, std::size_t index, double& cost, Flattened& flat) {
     Curve& curve = flat.cascade.curves[index];
     curve.knots.assign(knots.begin() + 1, knots.end() - 1);
     cost = 0.0;
@@ -114,7 +114,7 @@ void polish(const Partition& partition, std::size_t bin, Flattened& flat) {
     const std::uint32_t root = flat.cascade.roots[bin];
     const Curve& curve = flat.cascade.curves[root];
     if (grid.dimensions() != 1 || curve.knots.empty()) return;
-    const Line line(grid, partition.total());
+    const PolishedLine line(grid, partition.total());
     Knots knots{0};
     knots.insert(knots.end(), curve.knots.begin(), curve.knots.end());
     knots.push_back(grid.shape[0]);

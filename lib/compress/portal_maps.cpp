@@ -1,5 +1,6 @@
 #include "compress/portal_maps.h"
 
+#include "compress/light.h"
 #include "compress/sum.h"
 
 #include <acdf/grid.h>
@@ -26,7 +27,6 @@ constexpr int kFewest = 4, kMost = 32;
 constexpr double kWhole = 0x1p31, kFloor = 1e-3;
 constexpr double kParallel = 1.0 - 1e-9, kRight = 1e-4;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector cross(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }

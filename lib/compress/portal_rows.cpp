@@ -22,7 +22,7 @@ constexpr double kLeastOfRow = 0.02, kMostOfRow = 0.9;
 constexpr double kDark = 0.1;
 constexpr std::size_t kAsked = 4096;
 /// Cells whose points are looked at together.
-constexpr std::uint32_t kBlock = 128;
+constexpr std::uint32_t kCells = 128;
 
 /// Numbers in [0, 1), evenly spread over `index` for each `stream` (Roberts 2018).
 double spread(std::uint64_t index, std::uint64_t stream, double step) {
@@ -214,8 +214,8 @@ Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const std::vect
     const PortalRays rays(local, set, occluded);
     const double dark = kDark * mean_light(rays, set, points);
     std::vector<std::uint8_t> rows(cells * width);
-    tbb::parallel_for(0u, (cells + kBlock - 1) / kBlock, [&](std::uint32_t block) {
-        const std::uint32_t begin = block * kBlock, end = std::min(begin + kBlock, cells);
+    tbb::parallel_for(0u, (cells + kCells - 1) / kCells, [&](std::uint32_t block) {
+        const std::uint32_t begin = block * kCells, end = std::min(begin + kCells, cells);
         const std::vector<CellSums> sums = sum_up_cells(rays, shares, points, begin, end, width - 1, dark);
         for (std::uint32_t cell = begin; cell < end; ++cell)
             encode_cell(sums[cell - begin], set.header.portal_count, set.header.pieces * set.header.pieces,

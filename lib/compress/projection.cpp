@@ -12,7 +12,7 @@ constexpr std::size_t kLines = 4;  // summed side by side: each alone would wait
 constexpr std::size_t kTile = 128; // steps of them that stay in the cache
 
 /// A line of the box along the last axis.
-struct Line {
+struct LineSums {
     const float *values = nullptr, *peaks = nullptr; ///< from the box's first step on
     double weight = 1.0;                             ///< its measure on the other axes
     std::array<std::uint32_t, ACDF_MAX_AXES> index;  ///< its place on them
@@ -82,7 +82,7 @@ void raise_peaks(const float* peaks, std::size_t count, float* __restrict along)
 
 /// Adds so many lines, in order, to the slices across the last axis, and sums each from its first step to its last.
 template <std::size_t Lines>
-void add_lines(const Line* lines, std::size_t length, double total, const double* measures, Slices& along,
+void add_lines(const LineSums* lines, std::size_t length, double total, const double* measures, Slices& along,
                LineSum* sums) {
     double flux[Lines][kTile], energy[Lines][kTile];
     LineSum sum[Lines];
@@ -110,7 +110,7 @@ public:
     Gathered(const Grid& grid, double total, const Box& box, Projections& out)
         : grid_(grid), box_(box), out_(out), total_(total), last_(grid.dimensions() - 1) {}
 
-    void add(const Line& line) {
+    void add(const LineSums& line) {
         lines_[count_++] = line;
         if (count_ == kLines) {
             add_lines<kLines>(lines_, box_.length(last_), total_, measures(), out_[last_], sums_);
@@ -142,7 +142,7 @@ private:
     Projections& out_;
     double total_;
     std::size_t last_, count_ = 0;
-    Line lines_[kLines];
+    LineSums lines_[kLines];
     LineSum sums_[kLines];
 };
 
@@ -204,7 +204,7 @@ void project(const Grid& grid, double total, const Box& box, Projections& out) {
     set_measures(grid, box, out);
     const std::size_t last = grid.dimensions() - 1;
     Gathered gathered(grid, total, box, out);
-    Line line;
+    LineSums line;
     for_each_line(grid, box, [&](std::size_t offset, const auto& index) {
         line.weight = 1.0;
         for (std::size_t axis = 0; axis < last; ++axis) line.weight *= grid.measure[axis][index[axis]];

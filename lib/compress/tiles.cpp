@@ -52,12 +52,12 @@ Sphere sphere_of(const Target& target) {
 }
 
 /// The best division of a box, found or not.
-struct Candidate {
+struct TileSplit {
     double gain = 0.0;
     std::uint32_t axis = 0, position = 0;
     std::size_t node = 0;
 
-    bool operator<(const Candidate& other) const { // for equal gains the older node first
+    bool operator<(const TileSplit& other) const { // for equal gains the older node first
         return gain != other.gain ? gain < other.gain : node > other.node;
     }
 };
@@ -74,7 +74,7 @@ public:
         all.end[1] = target_.columns;
         push(all, 1);
         for (std::uint32_t tiles = 1; tiles < count && !queue_.empty(); ++tiles) {
-            const Candidate best = queue_.top();
+            const TileSplit best = queue_.top();
             queue_.pop();
             Box lower = nodes_[best.node].box, upper = lower;
             const std::uint32_t depth = nodes_[best.node].depth + 1;
@@ -92,7 +92,7 @@ public:
 private:
     struct Node {
         Box box;
-        Candidate split;
+        TileSplit split;
         std::size_t first_child = 0; ///< 0: a tile
         std::uint32_t depth = 1;     ///< splits on the way to its own, itself included
         bool light = false;          ///< if it stays a tile
@@ -126,7 +126,7 @@ private:
     }
 
     /// The best split of the lines projected last.
-    void consider(std::uint32_t axis, const Box& box, double whole, Candidate& best) {
+    void consider(std::uint32_t axis, const Box& box, double whole, TileSplit& best) {
         const std::vector<Light>& lines = lines_[axis];
         after_.assign(lines.size() + 1, Light{});
         for (std::size_t i = lines.size(); i-- > 0;) {
@@ -151,7 +151,7 @@ private:
         project(box);
         Light all;
         for (const Light& line : lines_[0]) all.add(line);
-        Candidate best;
+        TileSplit best;
         best.node = index;
         for (std::uint32_t axis = 0; axis < 2; ++axis) consider(axis, box, all.spread(), best);
         if (best.position == 0) return;
@@ -191,7 +191,7 @@ private:
     std::array<std::vector<Light>, 2> lines_;
     std::vector<Light> after_;
     std::vector<Node> nodes_;
-    std::priority_queue<Candidate> queue_;
+    std::priority_queue<TileSplit> queue_;
 };
 
 } // namespace

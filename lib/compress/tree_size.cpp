@@ -5,7 +5,7 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+constexpr std::uint32_t kNoCurve = 0xFFFFFFFFu;
 
 /// What rounding to each width does to a curve, once it has been asked for.
 struct Roundings {
@@ -26,7 +26,7 @@ struct SizedTree::Curves {
     std::vector<std::vector<std::uint8_t>> divided; ///< for each bin
     std::vector<Curve> curves;
     std::vector<double> probability;  ///< of all segments
-    std::vector<std::uint32_t> child; ///< of all segments: a curve, or kNone
+    std::vector<std::uint32_t> child; ///< of all segments: a curve, or kNoCurve
 
     std::vector<double> probabilities(const Curve& curve) const {
         const auto first = probability.begin() + std::ptrdiff_t(curve.first_segment);
@@ -75,7 +75,7 @@ std::shared_ptr<const SizedTree::Curves> TreeSizer::curves_of(const std::vector<
                                    std::uint32_t(out->child.size()),
                                    std::make_shared<Roundings>()});
             out->probability.push_back(1.0);
-            out->child.push_back(kNone);
+            out->child.push_back(kNoCurve);
             continue;
         }
         const std::vector<Part>& parts = *bins[b].parts;
@@ -95,7 +95,7 @@ std::shared_ptr<const SizedTree::Curves> TreeSizer::curves_of(const std::vector<
                 const double p = segment_probability(cost, from.part, segment->part);
                 out->probability.push_back(p);
                 out->child.push_back(
-                    segment->child < 0 ? kNone : static_cast<std::uint32_t>(base + std::size_t(segment->child)));
+                    segment->child < 0 ? kNoCurve : static_cast<std::uint32_t>(base + std::size_t(segment->child)));
                 curve.lit += p > 0.0;
                 if (segment->child < 0) continue;
                 curve.shape.link_code = 1;
@@ -149,7 +149,7 @@ std::uint64_t TreeSizer::bytes(const SizedTree& tree) const {
                      const auto first = all.child.begin() + std::ptrdiff_t(all.curves[i].first_segment);
                      return std::any_of(
                          first, first + std::ptrdiff_t(shapes[i].segments),
-                         [&](std::uint32_t child) { return child != kNone && test(std::size_t{child}); });
+                         [&](std::uint32_t child) { return child != kNoCurve && test(std::size_t{child}); });
                  })
         .back();
 }

@@ -21,11 +21,14 @@ std::string file_name(const std::string& path) {
     return out;
 }
 
-std::string lower_extension(const std::string& path) {
-    std::string text = std::filesystem::path(path).extension().string();
+std::string lower(std::string text) {
     for (char& c : text)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return text;
+}
+
+std::string lower_extension(const std::string& path) {
+    return lower(std::filesystem::path(path).extension().string());
 }
 
 void require_regular_file(const std::string& path, const char* give) {

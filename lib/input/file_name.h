@@ -12,6 +12,9 @@ std::string file_name(const std::string& path);
 /// there. `give`: what to give instead, such as "an image file".
 void require_regular_file(const std::string& path, const char* give);
 
+/// The letters A to Z of a text made small, whatever the locale.
+std::string lower(std::string text);
+
 /// What follows the last dot of the name, with it, in small letters; empty where there is none.
 std::string lower_extension(const std::string& path);
 

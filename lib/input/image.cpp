@@ -1,6 +1,7 @@
 #include "input/image.h"
 
 #include "images/image_file.h"
+#include "input/file_name.h"
 #include "input/transfer.h"
 
 #include <algorithm>
@@ -33,12 +34,6 @@ std::string list(const std::vector<std::string>& names) {
     std::string text;
     for (std::size_t i = 0; i < names.size() && i < 12; ++i) text += (i ? ", " : "") + names[i];
     return names.size() > 12 ? text + ", ..." : text;
-}
-
-std::string lower(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
 }
 
 int find_channel(const std::vector<std::string>& names, const std::string& name) {

@@ -1,4 +1,5 @@
 #include "images/image_file.h"
+#include "input/file_name.h"
 #include "input/image.h"
 #include "input/scene_sources.h"
 
@@ -12,12 +13,6 @@ namespace {
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 30;
 constexpr int kMaxSide = 1 << 18;
 
-std::string lower(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
-
 bool ends_in(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
@@ -28,11 +23,11 @@ bool is_normal_layer(const std::string& layer) {
     return last == "n" || last == "ns" || ends_in(last, "normal") || ends_in(last, "normals");
 }
 
-using Channels = std::array<int, 3>;
+using NormalChannels = std::array<int, 3>;
 
-std::optional<Channels> find_triple(const std::vector<std::string>& names,
-                                    const std::array<std::string, 3>& triple) {
-    Channels out{};
+std::optional<NormalChannels> find_triple(const std::vector<std::string>& names,
+                                          const std::array<std::string, 3>& triple) {
+    NormalChannels out{};
     for (std::size_t i = 0; i < 3; ++i) {
         const auto found = std::find(names.begin(), names.end(), triple[i]);
         if (found == names.end()) return std::nullopt;
@@ -41,7 +36,7 @@ std::optional<Channels> find_triple(const std::vector<std::string>& names,
     return out;
 }
 
-std::optional<Channels> find_normals(std::vector<std::string> names, bool rgb) {
+std::optional<NormalChannels> find_normals(std::vector<std::string> names, bool rgb) {
     for (std::string& name : names) name = lower(name);
     for (const std::string& name : names) {
         const std::string stem = name.substr(0, name.size() - std::min<std::size_t>(name.size(), 1));
@@ -65,7 +60,7 @@ public:
     }
 
     void add(bool rgb, NormalHistogram& histogram) {
-        const Channels channels = seek_normals(rgb);
+        const NormalChannels channels = seek_normals(rgb);
         check_spec();
         const int height = header().data.height;
         const int rows = header().tile_height > 0 ? header().tile_height : std::min(height, 64);
@@ -77,7 +72,7 @@ private:
     const images::Header& header() const { return file_.header(); }
 
     /// Goes to the first part that has normals.
-    Channels seek_normals(bool rgb) {
+    NormalChannels seek_normals(bool rgb) {
         std::string names;
         for (int part = 0; file_.seek(part); ++part) {
             if (const auto found = find_normals(header().channels, rgb)) return *found;
@@ -104,7 +99,7 @@ private:
     }
 
     /// Rows [begin, end) of the data window, counted from its top; what lies outside it is background.
-    void add_rows(int begin, int end, const Channels& channels, NormalHistogram& histogram) {
+    void add_rows(int begin, int end, const NormalChannels& channels, NormalHistogram& histogram) {
         const auto [first, last] = std::minmax_element(channels.begin(), channels.end());
         const int low = *first, high = *last + 1, count = high - low;
         const std::size_t pixels =

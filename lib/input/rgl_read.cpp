@@ -37,9 +37,9 @@ std::size_t clamp_negative(std::vector<float>& values) {
     return count;
 }
 
-class Reader {
+class RglReader {
 public:
-    Reader(const TensorFile& file, RglTables& out) : file_(file), out_(out) {}
+    RglReader(const TensorFile& file, RglTables& out) : file_(file), out_(out) {}
 
     void read() {
         if (file_.find("M") && !file_.find("vndf"))
@@ -215,7 +215,7 @@ std::vector<double> srgb_weights(const std::vector<float>& wavelengths) {
 std::unique_ptr<RglBrdf> parse_rgl(const std::string& name, const std::uint8_t* data, std::size_t size) {
     const TensorFile file(name, data, size);
     RglTables tables;
-    Reader(file, tables).read();
+    RglReader(file, tables).read();
     auto brdf = std::make_unique<RglBrdf>(std::move(tables));
     brdf->name = name;
     return brdf;

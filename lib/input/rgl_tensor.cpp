@@ -11,7 +11,7 @@ namespace {
 
 constexpr char magic[12] = "tensor_file";
 constexpr std::uint32_t max_fields = 256;
-constexpr std::size_t max_dimensions = 8, max_name = 256;
+constexpr std::size_t max_tensor_dimensions = 8, max_name = 256;
 constexpr std::size_t type_size[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 
 /// Reads numbers one after the other, never past the end.
@@ -62,7 +62,7 @@ TensorField read_field(Cursor& file) {
     const auto dimensions = file.number<std::uint16_t>();
     const auto type = file.number<std::uint8_t>();
     const auto offset = file.number<std::uint64_t>();
-    if (dimensions > max_dimensions)
+    if (dimensions > max_tensor_dimensions)
         file.fail("field '" + field.name + "' has " + std::to_string(dimensions) + " dimensions");
     if (type == 0 || type > static_cast<std::uint8_t>(TensorType::float64))
         file.fail("field '" + field.name + "' has the unknown type " + std::to_string(type));

@@ -1,5 +1,7 @@
 #include "input/transfer.h"
 
+#include "input/file_name.h"
+
 #include <cmath>
 #include <cstdlib>
 
@@ -8,9 +10,7 @@ namespace {
 
 // 0: sRGB; 1: linear; else a power law.
 double declared_gamma(const images::ImageFile& file, bool& declared) {
-    std::string space = file.text("oiio:ColorSpace");
-    for (char& c : space)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const std::string space = lower(file.text("oiio:ColorSpace"));
     declared = true;
     if (space == "srgb") return 0.0;
     if (space == "linear" || space == "scene_linear") return 1.0;

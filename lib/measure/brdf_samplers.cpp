@@ -1,20 +1,20 @@
 #include "measure/brdf_samplers.h"
 
+#include <acdf/elementary.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace acdf::measure {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot_product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 } // namespace
 
 BrdfSample CosineSampler::sample(const double wo[3], const double u[2]) {
     BrdfSample out;
-    const double r = std::sqrt(u[1]), phi = 2.0 * pi * u[0];
+    const double r = std::sqrt(u[1]), phi = 2.0 * ACDF_PI * u[0];
     out.wi[0] = r * std::cos(phi);
     out.wi[1] = r * std::sin(phi);
     out.wi[2] = std::sqrt(1.0 - u[1]);
@@ -23,7 +23,7 @@ BrdfSample CosineSampler::sample(const double wo[3], const double u[2]) {
 }
 
 double CosineSampler::pdf(const double wo[3], const double wi[3]) {
-    return wo[2] > 0.0 && wi[2] > 0.0 ? wi[2] / pi : 0.0;
+    return wo[2] > 0.0 && wi[2] > 0.0 ? wi[2] / ACDF_PI : 0.0;
 }
 
 BrdfSample GgxSampler::sample(const double wo[3], const double u[2]) const {
@@ -31,24 +31,24 @@ BrdfSample GgxSampler::sample(const double wo[3], const double u[2]) const {
     if (!(wo[2] > 0.0)) return out;
     // Stretched so that the normals are those of a hemisphere, seen from v; a and b span the plane across it.
     double v[3] = {alpha_x_ * wo[0], alpha_y_ * wo[1], wo[2]};
-    const double length = std::sqrt(dot(v, v));
+    const double length = std::sqrt(dot_product(v, v));
     for (double& x : v) x /= length;
     const double across = std::hypot(v[0], v[1]);
     const double a[3] = {across > 0.0 ? -v[1] / across : 1.0, across > 0.0 ? v[0] / across : 0.0, 0.0};
     const double b[3] = {-v[2] * a[1], v[2] * a[0], v[0] * a[1] - v[1] * a[0]};
 
     // A point of the visible half discs: that of the hemisphere's front, and the other one foreshortened.
-    const double r = std::sqrt(u[0]), phi = 2.0 * pi * u[1], s = 0.5 * (1.0 + v[2]);
+    const double r = std::sqrt(u[0]), phi = 2.0 * ACDF_PI * u[1], s = 0.5 * (1.0 + v[2]);
     const double t1 = r * std::cos(phi), edge = std::sqrt(std::max(0.0, 1.0 - t1 * t1));
     const double t2 = (1.0 - s) * edge + s * r * std::sin(phi);
     const double t3 = std::sqrt(std::max(0.0, 1.0 - t1 * t1 - t2 * t2));
     double h[3];
     for (int k = 0; k < 3; ++k) h[k] = t1 * a[k] + t2 * b[k] + t3 * v[k];
     h[0] *= alpha_x_, h[1] *= alpha_y_, h[2] = std::max(0.0, h[2]);
-    const double norm = std::sqrt(dot(h, h));
+    const double norm = std::sqrt(dot_product(h, h));
     for (double& x : h) x /= norm;
 
-    const double cosine = dot(wo, h);
+    const double cosine = dot_product(wo, h);
     for (int k = 0; k < 3; ++k) out.wi[k] = 2.0 * cosine * h[k] - wo[k];
     out.pdf = pdf(wo, out.wi);
     return out;
@@ -57,10 +57,10 @@ BrdfSample GgxSampler::sample(const double wo[3], const double u[2]) const {
 double GgxSampler::pdf(const double wo[3], const double wi[3]) const {
     if (!(wo[2] > 0.0 && wi[2] > 0.0)) return 0.0;
     double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
-    const double length = std::sqrt(dot(h, h));
+    const double length = std::sqrt(dot_product(h, h));
     const double x = h[0] / (length * alpha_x_), y = h[1] / (length * alpha_y_), z = h[2] / length;
     const double s = x * x + y * y + z * z;
-    const double d = 1.0 / (pi * alpha_x_ * alpha_y_ * s * s);
+    const double d = 1.0 / (ACDF_PI * alpha_x_ * alpha_y_ * s * s);
     const double stretched =
         std::sqrt(alpha_x_ * alpha_x_ * wo[0] * wo[0] + alpha_y_ * alpha_y_ * wo[1] * wo[1] + wo[2] * wo[2]);
     return d / (2.0 * (wo[2] + stretched)); // D G1 / (4 cos), G1 = 2 cos / (cos + stretched)

@@ -2,6 +2,8 @@
 
 #include "compress/sum.h"
 
+#include <acdf/elementary.h>
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,8 +12,6 @@
 
 namespace acdf::measure {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 void direction(double theta, double phi, double out[3]) {
     out[0] = std::sin(theta) * std::cos(phi);
@@ -63,8 +63,8 @@ void TabulatedBrdf::fill_bin(const compress::Reflected& reflected, BrdfTableKind
     for (const double s : mean ? places : centre)
         for (const double t : mean && !relative ? places : centre) {
             double wo[3];
-            direction(0.5 * pi * (theta_o + s) / size_.theta_o,
-                      relative ? 0.0 : 2.0 * pi * (phi_o + t) / size_.phi_o - pi, wo);
+            direction(0.5 * ACDF_PI * (theta_o + s) / size_.theta_o,
+                      relative ? 0.0 : 2.0 * ACDF_PI * (phi_o + t) / size_.phi_o - ACDF_PI, wo);
             add_view(reflected, mean, wo, square);
         }
     double* const mass = &mass_[(std::size_t{theta_o} * size_.phi_o + phi_o) * size_.cells()];
@@ -82,11 +82,11 @@ void TabulatedBrdf::add_view(const compress::Reflected& reflected, bool mean, co
             for (const double x : mean ? places : centre) {
                 if ((y == 0.5) != (x == 0.5)) continue; // corners and centre
                 double h[3], wi[3];
-                direction(0.5 * pi * (static_cast<double>(row) + y) / size_.theta_h,
-                          2.0 * pi * (static_cast<double>(column) + x) / size_.phi_h - pi, h);
+                direction(0.5 * ACDF_PI * (static_cast<double>(row) + y) / size_.theta_h,
+                          2.0 * ACDF_PI * (static_cast<double>(column) + x) / size_.phi_h - ACDF_PI, h);
                 const double dot = reflect(wo, h, wi);
                 if (!(dot > 0.0 && wi[2] > 0.0)) continue;
-                const double f = reflected(wo, wi) * 4.0 * dot, p = compress::kPrior * 4.0 * dot / pi;
+                const double f = reflected(wo, wi) * 4.0 * dot, p = compress::kPrior * 4.0 * dot / ACDF_PI;
                 light[cell] += f * f;
                 prior[cell] += mean ? p * p : 0.0;
                 integral.add(f * cell_solid_angle(row));
@@ -130,16 +130,16 @@ void TabulatedBrdf::make_cdfs(std::size_t bin) {
 }
 
 std::size_t TabulatedBrdf::bin_of(const double wo[3]) const {
-    const double theta = std::atan2(std::hypot(wo[0], wo[1]), wo[2]) / (0.5 * pi);
-    const double phi = (std::atan2(wo[1], wo[0]) + pi) / (2.0 * pi);
+    const double theta = std::atan2(std::hypot(wo[0], wo[1]), wo[2]) / (0.5 * ACDF_PI);
+    const double phi = (std::atan2(wo[1], wo[0]) + ACDF_PI) / (2.0 * ACDF_PI);
     return step_of(theta, size_.theta_o) * size_.phi_o + step_of(phi, size_.phi_o);
 }
 
 double TabulatedBrdf::turn(const double wo[3]) const { return size_.phi_o == 1 ? std::atan2(wo[1], wo[0]) : 0.0; }
 
 double TabulatedBrdf::cell_solid_angle(std::size_t row) const {
-    const double step = 0.5 * pi / size_.theta_h, middle = step * (static_cast<double>(row) + 0.5);
-    return 2.0 * std::sin(middle) * std::sin(0.5 * step) * 2.0 * pi / size_.phi_h; // differences of cosines
+    const double step = 0.5 * ACDF_PI / size_.theta_h, middle = step * (static_cast<double>(row) + 0.5);
+    return 2.0 * std::sin(middle) * std::sin(0.5 * step) * 2.0 * ACDF_PI / size_.phi_h; // differences of cosines
 }
 
 BrdfSample TabulatedBrdf::sample(const double wo[3], const double u[2]) const {
@@ -161,12 +161,12 @@ BrdfSample TabulatedBrdf::sample(const double wo[3], const double u[2]) const {
     const std::size_t first = bin * size_.cells() + row * size_.phi_h;
     const std::size_t column = invert(&conditional_[first], size_.phi_h, u[0], s);
 
-    const double step = 0.5 * pi / size_.theta_h;
+    const double step = 0.5 * ACDF_PI / size_.theta_h;
     const double low = std::cos(step * static_cast<double>(row)),
                  high = std::cos(step * (static_cast<double>(row) + 1.0));
     const double theta = std::acos(std::clamp(low + t * (high - low), -1.0, 1.0));
     double h[3];
-    direction(theta, 2.0 * pi * (static_cast<double>(column) + s) / size_.phi_h - pi + turn(wo), h);
+    direction(theta, 2.0 * ACDF_PI * (static_cast<double>(column) + s) / size_.phi_h - ACDF_PI + turn(wo), h);
     const double dot = reflect(wo, h, out.wi);
     if (dot > 0.0 && out.wi[2] > 0.0) out.pdf = mass_[first + column] / (cell_solid_angle(row) * 4.0 * dot);
     return out;
@@ -176,8 +176,8 @@ double TabulatedBrdf::pdf(const double wo[3], const double wi[3]) const {
     if (!(wo[2] > 0.0 && wi[2] > 0.0)) return 0.0;
     const double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
     const double length = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-    const double theta = std::atan2(std::hypot(h[0], h[1]), h[2]) / (0.5 * pi);
-    double phi = (std::atan2(h[1], h[0]) - turn(wo) + pi) / (2.0 * pi);
+    const double theta = std::atan2(std::hypot(h[0], h[1]), h[2]) / (0.5 * ACDF_PI);
+    double phi = (std::atan2(h[1], h[0]) - turn(wo) + ACDF_PI) / (2.0 * ACDF_PI);
     phi -= std::floor(phi);
     const std::size_t row = step_of(theta, size_.theta_h), column = step_of(phi, size_.phi_h);
     const double dot = 0.5 * length; // wo . wh

@@ -7,7 +7,7 @@ namespace acdf::measure {
 namespace {
 
 template <class Real>
-constexpr Real pi = Real(3.14159265358979323846);
+constexpr Real kPi = Real(3.14159265358979323846);
 
 template <class Real>
 struct Vector {
@@ -26,8 +26,8 @@ BrdfSample RglSamplerOf<Real>::sample(const double wo[3], const double u[2]) con
     const auto bright = tables_.luminance.sample(view.mix, static_cast<Real>(u[0]), static_cast<Real>(u[1]));
     const auto normal = tables_.vndf.sample(view.mix, bright.x, bright.y);
 
-    const Real theta = normal.x * normal.x * (pi<Real> / 2), sine = std::sin(theta);
-    const Real phi = (2 * normal.y - 1) * pi<Real> + (tables_.isotropic ? view.phi : Real(0));
+    const Real theta = normal.x * normal.x * (kPi<Real> / 2), sine = std::sin(theta);
+    const Real phi = (2 * normal.y - 1) * kPi<Real> + (tables_.isotropic ? view.phi : Real(0));
     const Real m[3] = {sine * std::cos(phi), sine * std::sin(phi), std::cos(theta)};
     const Real dot = view.wo[0] * m[0] + view.wo[1] * m[1] + view.wo[2] * m[2];
     Real wi[3];
@@ -35,7 +35,7 @@ BrdfSample RglSamplerOf<Real>::sample(const double wo[3], const double u[2]) con
     view.fold(wi);
     std::copy(wi, wi + 3, out.wi);
     if (!(wi[2] > 0)) return out;
-    const Real jacobian = std::max(2 * pi<Real> * pi<Real> * normal.x * sine, Real(1e-6)) * 4 * dot;
+    const Real jacobian = std::max(2 * kPi<Real> * kPi<Real> * normal.x * sine, Real(1e-6)) * 4 * dot;
     out.pdf = static_cast<double>(bright.pdf * normal.pdf / jacobian);
     return out;
 }

@@ -23,16 +23,16 @@ double weight(const S& shape) {
 }
 double weight(const Mesh& mesh) { return mesh.surface ? mesh.surface->weight() : 0.0; }
 
-struct Surface {
+struct SurfacePoint {
     Vec3 position{}, n{};
 };
 
-Surface at_shape(const Mesh& mesh, double u, double v, std::uint64_t index) {
+SurfacePoint at_shape(const Mesh& mesh, double u, double v, std::uint64_t index) {
     const input::MeshSurface::Point point = mesh.surface->at(u, v, input::is_front(index));
     return {point.position, point.normal};
 }
 
-Surface at_shape(const Sphere& sphere, double u, double v, std::uint64_t) {
+SurfacePoint at_shape(const Sphere& sphere, double u, double v, std::uint64_t) {
     double sine, cosine;
     acdf_sincospi(2.0 * u - 1.0, &sine, &cosine);
     const double z = 1.0 - 2.0 * v, r = std::sqrt((1.0 - z) * (1.0 + z));
@@ -40,7 +40,7 @@ Surface at_shape(const Sphere& sphere, double u, double v, std::uint64_t) {
     return {sphere.centre + sphere.radius * n, n};
 }
 
-Surface at_shape(const Plane& plane, double u, double v, std::uint64_t) {
+SurfacePoint at_shape(const Plane& plane, double u, double v, std::uint64_t) {
     double sine, cosine;
     const bool below = u < 0.02; // its lower side is seldom seen
     acdf_sincospi(2.0 * (below ? u / 0.02 : (u - 0.02) / 0.98) - 1.0, &sine, &cosine);
@@ -48,7 +48,7 @@ Surface at_shape(const Plane& plane, double u, double v, std::uint64_t) {
     return {{r * cosine, r * sine, plane.z}, {0.0, 0.0, below ? -1.0 : 1.0}};
 }
 
-Surface at_shape(const Box3& box, double u, double v, std::uint64_t) {
+SurfacePoint at_shape(const Box3& box, double u, double v, std::uint64_t) {
     const Vec3 side = box.high - box.low;
     const double whole = area(box);
     for (std::size_t axis = 0;; ++axis)
@@ -59,7 +59,7 @@ Surface at_shape(const Box3& box, double u, double v, std::uint64_t) {
                 u -= share;
                 continue;
             }
-            Surface out;
+            SurfacePoint out;
             out.position = box.low;
             if (upper) out.position[axis] = box.high[axis];
             out.position[a] += side[a] * std::min(u / share, 1.0);
@@ -69,7 +69,7 @@ Surface at_shape(const Box3& box, double u, double v, std::uint64_t) {
         }
 }
 
-compress::PlacePoint place_point(const Surface& surface) {
+compress::PlacePoint place_point(const SurfacePoint& surface) {
     compress::PlacePoint out;
     for (std::size_t k = 0; k < 3; ++k) {
         out.position[k] = static_cast<float>(surface.position[k]);

@@ -3,6 +3,7 @@
 
 #include "rules.h"
 
+#include <cstring>
 #include <type_traits>
 
 namespace acdf {
@@ -39,6 +40,13 @@ Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits&
             else return target(finding);
         },
         const_cast<void*>(static_cast<const void*>(&sink)), limits);
+}
+
+/// A length in META, at any alignment.
+inline std::uint32_t load_u32(const std::uint8_t* bytes) noexcept {
+    std::uint32_t value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
 }
 
 /// Where the parts of a file lie once found: what `File` keeps.

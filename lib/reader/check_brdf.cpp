@@ -39,7 +39,7 @@ const char* axis_fault(const AcdfAxis& axis, u32 i) {
     return axis.resolution > w.most ? "resolution" : nullptr;
 }
 
-void check_axes(const Payload& payload, Report& report, const Parts& parts) {
+void check_brdf_axes(const Payload& payload, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 4) {
         report.add(8001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
@@ -87,7 +87,7 @@ void check_nodes(const Payload& payload, Report& report, const Parts& parts) {
 
 void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept {
     if (parts.description->parameterization != ACDF_PARAM_HALF_ANGLE) return; // rule 5016: what axes mean is open
-    check_axes(description, report, parts);
+    check_brdf_axes(description, report, parts);
     if (!views.data) {
         report.add(8003, description.at(0), "there is no VIEW");
         return;

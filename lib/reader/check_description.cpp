@@ -20,7 +20,6 @@ constexpr u32 max_resolution = 0x7FFFFFFF;
 constexpr u32 max_environment_resolution = 65536;
 constexpr u32 max_metadata_pairs = 1024; // so that comparing all keys stays linear in the bytes
 constexpr u32 max_key_bytes = 255;
-constexpr double pi = ACDF_PI;
 
 // What is wrong with an axis name; null if nothing.
 const char* name_fault(const u8 (&name)[16]) {
@@ -103,18 +102,12 @@ struct EnvironmentAxis {
     double low, high;
 };
 
-constexpr EnvironmentAxis latlong_axes[2] = {{{'p', 'h', 'i'}, ACDF_MEASURE_LINEAR, pi, -pi},
-                                             {{'t', 'h', 'e', 't', 'a'}, ACDF_MEASURE_COSINE, 0.0, pi}};
+constexpr EnvironmentAxis latlong_axes[2] = {{{'p', 'h', 'i'}, ACDF_MEASURE_LINEAR, ACDF_PI, -ACDF_PI},
+                                             {{'t', 'h', 'e', 't', 'a'}, ACDF_MEASURE_COSINE, 0.0, ACDF_PI}};
 constexpr EnvironmentAxis octahedral_axes[2] = {{{'u'}, ACDF_MEASURE_LINEAR, 0.0, 1.0},
                                                 {{'v'}, ACDF_MEASURE_LINEAR, 0.0, 1.0}};
 
 // ---- metadata -------------------------------------------------------------------------------------------
-
-u32 load_u32(const u8* bytes) {
-    u32 value;
-    std::memcpy(&value, bytes, sizeof value);
-    return value;
-}
 
 struct Key {
     const u8* data;

@@ -13,7 +13,6 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-constexpr double pi = ACDF_PI;
 constexpr u32 max_subdivisions = 1024;
 
 bool named(const AcdfAxis& axis, const char* name) {
@@ -35,11 +34,11 @@ const char* grid_fault(const AcdfAxis& axis, bool theta) {
     if (!named(axis, theta ? "normal theta" : "normal phi")) return "name";
     if (axis.role != ACDF_AXIS_INDEXED) return "role";
     if (axis.measure != ACDF_MEASURE_LINEAR) return "measure";
-    if (axis.low != (theta ? 0.0 : pi) || axis.high != (theta ? pi : -pi)) return "range";
+    if (axis.low != (theta ? 0.0 : ACDF_PI) || axis.high != (theta ? ACDF_PI : -ACDF_PI)) return "range";
     return axis.resolution > 65536 ? "resolution" : nullptr;
 }
 
-void check_axes(const Payload& payload, Report& report, const Parts& parts) {
+void check_local_axes(const Payload& payload, Report& report, const Parts& parts) {
     const AcdfDescription& d = *parts.description;
     if (d.axis_count != 3 && d.axis_count != 4) {
         report.add(7003, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
@@ -124,7 +123,7 @@ void check_light_rows(const Payload& payload, Report& report, const Parts& parts
 
 void check_local_kind(const Payload& description, const Payload& payload, const TileBoxes& boxes, Report& report,
                       Parts& parts) noexcept {
-    check_axes(description, report, parts);
+    check_local_axes(description, report, parts);
     const u64 errors = report.verdict().errors;
     const auto* header = reinterpret_cast<const AcdfLocalHeader*>(payload.data);
     if (!payload.data) {

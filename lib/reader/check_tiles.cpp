@@ -15,7 +15,7 @@ using u64 = std::uint64_t;
 using ull = unsigned long long;
 
 // A split's part that has not been walked yet.
-struct Open {
+struct OpenTile {
     u32 node;  // a child as stored
     u32 depth; // splits above it
     TileBox box;
@@ -72,11 +72,11 @@ bool split_box(const Tiles& tiles, u32 index, const TileBox& box, TileBox part[2
 }
 
 // Walks the splits in preorder; `open` has room for all of them. True where each is met in its turn, and each tile.
-bool walk(const Tiles& tiles, const TileBox& whole, Open* open, TileBox* boxes, Report& report) {
+bool walk(const Tiles& tiles, const TileBox& whole, OpenTile* open, TileBox* boxes, Report& report) {
     u32 next_split = 0, next_tile = 0, count = 0;
     open[count++] = {tiles.header.tile_count > 1 ? 0 : ACDF_TILE_FLAG, 0, whole};
     while (count > 0) {
-        const Open now = open[--count];
+        const OpenTile now = open[--count];
         if (now.node & ACDF_TILE_FLAG) {
             if ((now.node & ~ACDF_TILE_FLAG) != next_tile) {
                 report.add(6022, tiles.at(0), "tile %u comes where %u is due", now.node & ~ACDF_TILE_FLAG,
@@ -115,10 +115,10 @@ bool find_boxes(const Tiles& tiles, const Parts& parts, TileBoxes& boxes, Report
     const TileBox whole{{0, 0}, {parts.axes[0].resolution, parts.axes[1].resolution}};
     const u64 count = tiles.header.tile_count;
     boxes.of = static_cast<TileBox*>(std::malloc(count * sizeof(TileBox)));
-    Open* open = static_cast<Open*>(std::malloc((count + 1) * sizeof(Open)));
+    OpenTile* open = static_cast<OpenTile*>(std::malloc((count + 1) * sizeof(OpenTile)));
     bool right = false;
     if (boxes.of && open) right = walk(tiles, whole, open, boxes.of, report);
-    else report.add(1003, tiles.payload.at(0), "%llu bytes for tiles", static_cast<ull>(count * sizeof(Open)));
+    else report.add(1003, tiles.payload.at(0), "%llu bytes for tiles", static_cast<ull>(count * sizeof(OpenTile)));
     std::free(open);
     if (!right) {
         std::free(boxes.of);

@@ -103,12 +103,6 @@ Status read_path(const char* path, const LoadOptions& options, AcdfBlock& block,
     return {};
 }
 
-u32 load_u32(const u8* bytes) {
-    u32 value;
-    std::memcpy(&value, bytes, sizeof value);
-    return value;
-}
-
 // Reads a length and its text, and moves behind them.
 Text next_text(const u8*& at) {
     const Text text{reinterpret_cast<const char*>(at) + 4, load_u32(at)};

@@ -18,7 +18,6 @@ using u32 = std::uint32_t;
 
 constexpr u32 kNumberBits = 31;
 constexpr double kNumberSteps = 0x1p31;
-constexpr std::size_t kMostPieces = 65535;
 constexpr std::size_t kLeastBytes = 84;          // a cell, with its part of both grids
 constexpr std::size_t kLeastDirectionBytes = 16; // of them, of the grid of directions
 // A draw stays this part of its numbers inside its piece: more than a float rounds.

@@ -22,8 +22,6 @@ using u32 = std::uint32_t;
 // Of pieces and parts: where they are larger, calls would wait for memory longer than the walk takes.
 constexpr std::size_t kMostBytes = std::size_t{3} << 20;
 
-constexpr std::size_t kMostPieces = 65535; // what lists can name
-
 class PiecesMaker {
 public:
     PiecesMaker(const AcdfLocal& local, u32 tree_units, std::size_t most_bytes)

@@ -10,6 +10,9 @@
 
 namespace acdf {
 
+/// What the lists of blocks can name.
+constexpr std::size_t kMostPieces = 65535;
+
 /// The keys that may lead to a cell, ends included.
 struct KeyBox {
     std::uint32_t low[2], high[2];

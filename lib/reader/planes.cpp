@@ -33,7 +33,7 @@ struct Stream {
 };
 
 /// A curve some of whose children are still to come.
-struct Open {
+struct OpenCurve {
     u64 at = 0;    ///< of the curve
     u64 links = 0; ///< of its array of links
     u32 link_size = 0, segments = 0;
@@ -71,7 +71,7 @@ private:
     /// Writes the link that leads to the curve at `at`, unless that is a root.
     bool link_from_parent(u64 at) {
         if (open_count_ == 0) return true;
-        Open& parent = open_[open_count_ - 1];
+        OpenCurve& parent = open_[open_count_ - 1];
         const u32 segment = parent.children->at(parent.next);
         const u64 distance = (at - parent.at) / 2;
         if (segment >= parent.segments || distance > 0xFFFFFFFFu >> (32 - 8 * parent.link_size)) return false;
@@ -151,7 +151,7 @@ private:
     u8* tree_;
     u64 size_;
     Stream streams_[ACDF_PLANE_STREAMS];
-    Open open_[ACDF_MAX_DEPTH];
+    OpenCurve open_[ACDF_MAX_DEPTH];
     u32 open_count_ = 0;
 };
 

@@ -1,12 +1,12 @@
 #include "tools/batch/jobs.h"
 
 #include "input/brdf_models.h"
+#include "input/file_name.h"
 #include "tools/cli/file_input.h"
 #include "tools/commands.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
@@ -23,13 +23,6 @@ namespace fs = std::filesystem;
 constexpr std::array probe_extensions = {".exr", ".hdr", ".pfm", ".tif", ".tiff", ".tx"};
 constexpr std::array brdf_extensions = {".binary", ".bsdf"};
 
-std::string lower_extension(const fs::path& path) {
-    std::string text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 template <std::size_t N>
 bool is_one_of(const std::array<const char*, N>& list, const std::string& text) {
     return std::find(list.begin(), list.end(), text) != list.end();
@@ -39,7 +32,7 @@ bool is_one_of(const std::array<const char*, N>& list, const std::string& text) 
 /// shape.
 bool is_rendering(const fs::path& path) {
     std::error_code ignored;
-    return lower_extension(path) == ".exr" && fs::exists(path.parent_path() / "render.json", ignored) &&
+    return input::lower_extension(path) == ".exr" && fs::exists(path.parent_path() / "render.json", ignored) &&
            fs::exists(fs::path(path).replace_extension(".png"), ignored);
 }
 
@@ -49,7 +42,7 @@ public:
 
     void add_input(const std::string& input) {
         std::error_code error;
-        if (input == "-" || lower_extension(input) == ".jsonl") add_manifest(input);
+        if (input == "-" || input::lower_extension(input) == ".jsonl") add_manifest(input);
         else if (fs::is_directory(input, error)) add_folder(input);
         else if (!fs::exists(input, error) && input.find_first_of("*?[") != std::string::npos) add_glob(input);
         else add_file(input, input);
@@ -61,7 +54,7 @@ private:
     /// A job for each kind that the source becomes by default. `name`: what the output is called after.
     void add_source(const std::string& source, const fs::path& name) {
         const JobKind* brdf = find_kind("brdf");
-        if (is_one_of(brdf_extensions, lower_extension(source))) return add(source, brdf, name);
+        if (is_one_of(brdf_extensions, input::lower_extension(source))) return add(source, brdf, name);
         for (const JobKind* kind : defaults_.probe_kinds) add(source, kind, name);
     }
 
@@ -76,7 +69,7 @@ private:
     }
 
     void add_file(const std::string& path, const std::string& origin) {
-        if (lower_extension(path) == ".npy")
+        if (input::lower_extension(path) == ".npy")
             out_.errors.push_back(origin + ": may be a BRDF or a table; name it in a manifest, with its kind");
         else add_source(path, fs::path(path).filename());
     }
@@ -92,7 +85,7 @@ private:
             const bool hidden = path.filename().string().front() == '.', directory = i->is_directory();
             if (directory && hidden) i.disable_recursion_pending();
             else if (directory && !i->is_symlink()) out_.folders.push_back(path.string());
-            const std::string extension = lower_extension(path);
+            const std::string extension = input::lower_extension(path);
             if (!directory && !hidden && !is_rendering(path) &&
                 (is_one_of(probe_extensions, extension) || is_one_of(brdf_extensions, extension)))
                 found.push_back(path);
@@ -133,7 +126,7 @@ private:
     void add_line(const ManifestJob& line, const std::string& name, const fs::path& base) {
         BatchJob job;
         job.origin = name + ":" + std::to_string(line.line);
-        const std::string extension = lower_extension(line.source);
+        const std::string extension = input::lower_extension(line.source);
         const bool model = input::is_model(line.source);
         if (!line.kind && extension == ".npy") {
             out_.errors.push_back(job.origin + ": " + line.source + " is a BRDF only if 'kind' says so");

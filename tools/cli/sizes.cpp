@@ -1,6 +1,7 @@
 #include "tools/cli/sizes.h"
 
-#include <cctype>
+#include "input/file_name.h"
+
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -40,7 +41,8 @@ std::optional<std::uint64_t> parse_size(const std::string& text) {
     if (error != std::errc{} || !std::isfinite(number) || std::signbit(number)) return std::nullopt;
     std::string name;
     for (const char* c = rest; c != end; ++c)
-        if (!(*c == ' ' && name.empty())) name += static_cast<char>(std::tolower(static_cast<unsigned char>(*c)));
+        if (!(*c == ' ' && name.empty())) name += *c;
+    name = input::lower(name);
     for (const Unit& unit : units)
         if (name == unit.name) {
             const double bytes = std::floor(number * unit.bytes);

@@ -1,6 +1,7 @@
 #include "tools/plot/source.h"
 
 #include "build/format_names.h"
+#include "input/file_name.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/probe_source.h"
 #include "tools/cli/sizes.h"
@@ -141,9 +142,7 @@ void load_image(const PlotArguments& options, Plotted& source) {
 } // namespace
 
 bool is_exr(const std::string& path) {
-    std::string extension = fs::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = input::lower_extension(path);
     if (extension != ".exr" && extension != ".png" && path != "-")
         throw CLI::ValidationError("--output", "needs a name that ends in .png (picture) or .exr (numbers)");
     return extension == ".exr";

@@ -1,6 +1,7 @@
 // acdf sweep: size against noise and time, on a user's own probe or BRDF: a table and a page.
 #include "build/format_names.h"
 #include "input/brdf.h"
+#include "input/file_name.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -52,9 +53,7 @@ struct SweepArguments {
 
 /// What --kind is where it is not given: files of BRDFs and what is no file but a model's name.
 SweepKind kind_of(const std::string& source) {
-    std::string extension = fs::path(source).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = input::lower_extension(source);
     for (const char* brdf : {".binary", ".bsdf", ".pbsdf", ".npy"})
         if (extension == brdf) return SweepKind::brdf;
     std::error_code ignored;
