@@ -195,6 +195,7 @@ test_slurm() {
         "$farm/slurm.sh" "$work/out" "$work/probes" "${options[@]}")
     await test -e "$work/killed"
     await scontrol requeue "${job}_2"
+    sleep 3 # what starts within the second of a kill, Slurm takes for what was killed
     await has_ended "${job}_2"
     expect_same "$work/out"
     "$acdf" batch --merge-reports "$work/out/reports/$job"/*.json >"$work/merged.log" || fail "reports"
