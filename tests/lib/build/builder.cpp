@@ -188,6 +188,7 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
                                  "--compress", "zlib", "--filter", "bilinear"},
                                 folder / "p.acdf"))
             << layout.name << " " << layout.width;
+        if (acdf_test::kSanitized) break; // test_build and test_projection resample the others
     }
 }
 

@@ -150,6 +150,7 @@ TEST(BuilderBrdf, MakesWhatTheProgramMakes) {
     BrdfOptions options;
     options.goal = Goal::of_budget(6 << 10);
     expect_same("ggx:alpha=0.2", options, {"--budget", "6KiB"});
+    if (acdf_test::kSanitized) return; // the same code, with other options
     options.channels = {ACDF_CHANNELS_LARGEST, {1.0, 1.0, 1.0}};
     options.diffuse_share = 0.1f;
     options.theta_views = 5, options.phi_views = 4;

@@ -1,5 +1,6 @@
 // acdf batch as a user runs it: resume, failures, shards, Ninja.
 #include "tests/tools/batch/command.h"
+#include "tests/inputs/sanitized.h"
 
 #include <cctype>
 #include <csignal>
@@ -210,13 +211,14 @@ TEST_F(BatchCommand, KeepsWithinMemory) {
 }
 
 TEST_F(BatchCommand, FilesAreTheSameForAnyThreadsAndJobs) {
-    write_small_probes(probes, 5, 16);
+    const std::uint32_t count = acdf_test::kSanitized ? 2 : 5;
+    write_small_probes(probes, count, 16);
     const std::vector<std::string> run = {probes, "--kind", "env,local", "--set", "local.budget=12KiB", "--force"};
     Files expected;
     for (const auto& [threads, jobs] : {std::pair{"1", "1"}, {"4", "1"}, {"3", "3"}, {"2", "7"}}) {
         std::vector<std::string> arguments = run;
         arguments.insert(arguments.end(), {"--threads", threads, "--jobs", jobs});
-        EXPECT_EQ(report(arguments)["done"], 10);
+        EXPECT_EQ(report(arguments)["done"], 2 * count);
         EXPECT_EQ(messages, "");
         if (expected.empty()) expected = files_in(out);
         else EXPECT_EQ(files_in(out), expected) << threads << " threads, " << jobs << " jobs";
@@ -242,7 +244,8 @@ TEST_F(BatchCommand, ShardsTogetherAreTheWholeAndReportsMerge) {
 }
 
 TEST_F(BatchCommand, KilledAtAnyTimeItEndsWithTheSameBytes) {
-    write_small_probes(probes, 80);
+    const std::size_t share = acdf_test::kSanitized ? 12 : 24; // of the files, until a kill
+    write_small_probes(probes, static_cast<std::uint32_t>(10 * share / 3));
     const std::vector<std::string> run = {probes,           "--kind", "env,local",         "--set",
                                           "env.cells=40",   "--set",  "local.budget=8KiB", "--set",
                                           "local.normals=2"};
@@ -256,12 +259,12 @@ TEST_F(BatchCommand, KilledAtAnyTimeItEndsWithTheSameBytes) {
     ASSERT_EQ(run_acdf(with_output(folder / "undisturbed")).code, 0);
 
     std::mt19937 random(2005);
-    const std::size_t jobs = 160;
+    const std::size_t jobs = 20 * share / 3;
     for (int kill_number = 1; kill_number <= 5; ++kill_number) {
         const pid_t pid = start_acdf(with_output(out), "/dev/null", folder / "stdout", folder / "stderr");
         ASSERT_GT(pid, 0);
         // By progress, not by the clock: after some share of the files that are still missing.
-        std::size_t at_most = 24 * static_cast<std::size_t>(kill_number) + random() % 16;
+        std::size_t at_most = share * static_cast<std::size_t>(kill_number) + random() % (2 * share / 3);
         while (true) {
             std::size_t made = 0;
             std::error_code ignored;
