@@ -35,13 +35,6 @@ constexpr double kDivisionShare = 0.4;
 /// Around the points: light is gathered next to them, too.
 constexpr float kMargin = 1e-3f;
 
-/// Farther out there are no places: differences of floats must be floats.
-constexpr float kFarthest = 1e30f;
-
-bool is_near(const std::array<float, 3>& x) {
-    return std::all_of(x.begin(), x.end(), [](float c) { return std::fabs(c) <= kFarthest; });
-}
-
 /// The box of the first points that a source tells of, which are as even as any; a little larger, as light is
 /// gathered next to them, too. It has a volume, wherever it lies.
 AcdfPlaces header_of(const PointSource& source, const PlacesFrame& frame) {

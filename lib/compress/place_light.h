@@ -4,6 +4,7 @@
 #include "compress/place_parts.h"
 #include "compress/portal_maps.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +13,11 @@
 #include <vector>
 
 namespace acdf::compress {
+
+/// Farther out than 1e30 there is no scene: sizes and areas, and differences of floats, must be numbers.
+inline bool is_near(const std::array<float, 3>& position) {
+    return std::all_of(position.begin(), position.end(), [](float x) { return std::fabs(x) <= 1e30f; });
+}
 
 /// A point of a surface, or in the air, where light is gathered.
 struct PlacePoint {

@@ -83,12 +83,9 @@ std::unique_ptr<FloatMap> open_map(const std::string& path) {
     return map;
 }
 
-void* open(const std::string& path, int, Header& header, std::string& error) {
+void* open(const std::string& path, int, Header& header, std::string&) {
     std::unique_ptr<FloatMap> map = open_map(path);
-    if (!map) {
-        error = "it has changed while it was opened";
-        return nullptr;
-    }
+    if (!map) return nullptr;
     header = {};
     header.format = "pnm";
     header.data = header.display = {0, 0, map->layout.width, map->layout.height};
@@ -134,8 +131,6 @@ int integer(const void*, const char*, int otherwise) { return otherwise; }
 float real(const void*, const char*, float otherwise) { return otherwise; }
 
 } // namespace
-
-bool is_float_map(const std::string& path) { return open_map(path) != nullptr; }
 
 const ImageReader& float_map_reader() {
     static const ImageReader functions = {open, close, seek, read, text, integer, real};

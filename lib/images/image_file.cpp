@@ -7,8 +7,11 @@
 namespace acdf::images {
 
 ImageFile::ImageFile(const std::string& path, int threads)
-    : reader_(is_float_map(path) ? float_map_reader() : module().reader),
-      image_(reader_.open(path, threads, header_, error_), reader_.close) {}
+    : reader_(&float_map_reader()), image_(reader_->open(path, threads, header_, error_), reader_->close) {
+    if (image_) return;
+    reader_ = &module().reader;
+    image_ = {reader_->open(path, threads, header_, error_), reader_->close};
+}
 
 std::vector<std::uint8_t> encode(const Picture& picture, const Encoding& encoding) {
     std::vector<std::uint8_t> bytes;

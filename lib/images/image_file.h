@@ -21,15 +21,15 @@ public:
     const std::string& error() const { return error_; }
 
     const Header& header() const { return header_; }
-    bool seek(int part) { return reader_.seek(image_.get(), part, header_); }
-    bool read(const Rows& rows, float* to) { return reader_.read(image_.get(), rows, to, error_); }
+    bool seek(int part) { return reader_->seek(image_.get(), part, header_); }
+    bool read(const Rows& rows, float* to) { return reader_->read(image_.get(), rows, to, error_); }
 
-    std::string text(const char* name) const { return reader_.text(image_.get(), name); }
-    int integer(const char* name, int otherwise) const { return reader_.integer(image_.get(), name, otherwise); }
-    float real(const char* name, float otherwise) const { return reader_.real(image_.get(), name, otherwise); }
+    std::string text(const char* name) const { return reader_->text(image_.get(), name); }
+    int integer(const char* name, int otherwise) const { return reader_->integer(image_.get(), name, otherwise); }
+    float real(const char* name, float otherwise) const { return reader_->real(image_.get(), name, otherwise); }
 
 private:
-    const ImageReader& reader_;
+    const ImageReader* reader_;
     Header header_;
     std::string error_;
     std::unique_ptr<void, void (*)(void*)> image_;

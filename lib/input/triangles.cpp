@@ -1,11 +1,11 @@
 #include "input/triangles.h"
 
+#include "compress/place_light.h"
 #include "input/image.h"
 #include "input/mesh_file.h"
 
 #include <assimp/mesh.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace acdf::input {
@@ -13,9 +13,6 @@ namespace {
 
 /// More would take some 20 GB with their hierarchy.
 constexpr std::size_t most_triangles = std::size_t{1} << 26;
-
-/// What is farther out is no scene: sizes and areas must be numbers.
-constexpr float farthest = 1e30f;
 
 /// As docs/conventions.md turns frames with y up.
 std::array<float, 3> turned(const std::array<float, 3>& v, UpAxis up) {
@@ -26,15 +23,11 @@ bool are_finite(const std::array<float, 3>& v) {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-bool are_near(const std::array<float, 3>& v) {
-    return std::all_of(v.begin(), v.end(), [](float x) { return std::fabs(x) <= farthest; });
-}
-
 bool corner_of(const aiMesh& mesh, const Placement& place, unsigned index, UpAxis up, Triangles::Corner& out) {
     if (index >= mesh.mNumVertices) return false;
     const aiVector3D& p = mesh.mVertices[index];
     out.position = turned(place.position({p.x, p.y, p.z}), up);
-    if (!are_near(out.position)) return false;
+    if (!compress::is_near(out.position)) return false;
     if (!mesh.mNormals) return true;
     const aiVector3D& n = mesh.mNormals[index];
     if (!are_finite({n.x, n.y, n.z})) return true;

@@ -1,5 +1,7 @@
 #include "measure/rgl_sampler.h"
 
+#include <acdf/elementary.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,7 @@ namespace acdf::measure {
 namespace {
 
 template <class Real>
-constexpr Real kPi = Real(3.14159265358979323846);
+constexpr Real kPi = Real(ACDF_PI);
 
 template <class Real>
 struct Vector {

@@ -2,7 +2,6 @@
 #include "make_tile_tables.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace acdf {
 
@@ -144,12 +143,6 @@ std::size_t TileTablesMaker::words() const noexcept {
 
 std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& out) const noexcept {
     const std::size_t splits = blend_.tiles->tile_count - 1;
-    const auto copy = [&](const auto& from) {
-        const std::size_t begin = at;
-        if (from.size() > 0) std::memcpy(words + at, from.data(), from.bytes());
-        at = whole_lines(at + (from.bytes() + 3) / 4);
-        return static_cast<u32>(begin);
-    };
     out.codes = static_cast<u32>(at);
     auto* const codes = reinterpret_cast<double*>(words + at);
     for (std::size_t i = 0; i < kCodes; ++i) { // as acdf_blend_find_rows reckons
@@ -174,9 +167,9 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
     at += row_words();
     out.stride = static_cast<u32>(stride());
     out.root = splits > 0 ? 0 : ACDF_TILE_FLAG;
-    out.tiles = copy(tiles_);
-    out.paths = copy(paths_);
-    out.grid = copy(grid_);
+    out.tiles = copy_lines(tiles_, words, at);
+    out.paths = copy_lines(paths_, words, at);
+    out.grid = copy_lines(grid_, words, at);
     out.shift[0] = shift_[0];
     out.shift[1] = shift_[1];
     out.bits0 = bits_[0];
