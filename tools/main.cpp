@@ -12,6 +12,8 @@
 #include <new>
 #include <string>
 
+#include <fcntl.h>
+
 namespace {
 
 using namespace acdf::tools;
@@ -38,6 +40,13 @@ constexpr const char* footer =
     "`acdf COMMAND --help` explains a command, with examples.\n\n"
     "Results go to stdout, messages to stderr; - stands for stdin or stdout.\n"
     "Exit codes: 0 done, 1 input or I/O error (one line on stderr), 2 wrong usage, 3 `validate` found faults";
+
+// The next file opened would take the place of a stream that is closed, and messages would go into it. What takes
+// it instead cannot be read (stdin) or written (the others): using it remains an error.
+void hold_closed_streams() {
+    for (int stream = 0; stream <= 2; ++stream)
+        if (fcntl(stream, F_GETFD) < 0) (void)!open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
+}
 
 // Of libraries: those that it was compiled with.
 std::string version_text() {
@@ -102,4 +111,7 @@ int acdf::tools::run_program(int argc, char** argv) {
     return parse_and_run(program, argc, argv, exit_code);
 }
 
-int main(int argc, char** argv) { return acdf::tools::run_program(argc, argv); }
+int main(int argc, char** argv) {
+    hold_closed_streams();
+    return acdf::tools::run_program(argc, argv);
+}

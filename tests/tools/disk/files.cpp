@@ -2,6 +2,8 @@
 // one is there, whole, and nothing else.
 #include "tests/tools/disk/files.h"
 
+#include "tests/inputs/float_map.h"
+
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -70,6 +72,22 @@ TEST_F(Disk, fullDeviceIsAnError) {
         const Result result = run_shell("exec " + program + " sample '" + sky + "' -n 20000 " + where);
         EXPECT_EQ(result.code, 1) << where;
         EXPECT_NE(result.err.find("No space left on device"), std::string::npos) << result.err;
+    }
+}
+
+// What is opened next must not take their place: messages would go into it.
+TEST_F(Disk, closedStreamsGetNoOutput) {
+    const std::string map = folder / "sky.pfm", whole = folder / "whole.acdf";
+    write_float_map(map, 4, 2, std::vector<float>(24, 1.0f));
+    ASSERT_EQ(run_acdf({"env", map, "-o", whole}).code, 0);
+    const std::pair<const char*, int> cases[] = {
+        {"2>&-", 0}, {"<&- 2>&-", 0}, {">&-", 1}, {">&- 2>&-", 1}, {"<&- >&- 2>&-", 1}};
+    for (const auto& [closed, code] : cases) {
+        const Result result =
+            run_shell("exec " + program + " env '" + map + "' -f -o '" + out + "' >/dev/null " + closed);
+        EXPECT_EQ(result.code, code) << closed << ": results that cannot be told are an error, messages are none";
+        EXPECT_EQ(read_text(out), read_text(whole)) << closed;
+        std::filesystem::remove(out);
     }
 }
 
