@@ -60,9 +60,16 @@ std::string called(const CLI::App& program) {
     return parsed.empty() ? "acdf" : "acdf " + parsed.front()->get_name();
 }
 
+// CLI11 tells an option without its value, or with commas alone, by the name of a type, which may be empty.
+std::string what_is_wrong(const CLI::ParseError& error) {
+    const std::string text = on_one_line(error.what());
+    const std::size_t option = text.find(": 1 required ");
+    return option == std::string::npos ? text : text.substr(0, option) + ": needs a value";
+}
+
 int usage_error(const CLI::App& program, const CLI::ParseError& error) {
     const std::string name = called(program);
-    say(name + ": " + on_one_line(error.what()) + "; see `" + name + " --help`");
+    say(name + ": " + what_is_wrong(error) + "; see `" + name + " --help`");
     return exit_usage;
 }
 

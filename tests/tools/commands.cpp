@@ -115,6 +115,9 @@ TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {
     expect_one_line_error(run_acdf({"sample", sky, "-n", "-1"}), 2, "acdf sample --help");
     expect_one_line_error(run_acdf({"sample", sky}), 2, "--count");
     expect_one_line_error(run_acdf({"sample", sky, "-n", "1", "--sequence", "halton"}), 2, "halton");
+    expect_one_line_error(run_acdf({"sample", sky, "-n"}), 2, "--count: needs a value");
+    expect_one_line_error(run_acdf({"table", sky, "-o", folder / "out", "--names", ",,"}), 2,
+                          "--names: needs a value");
     for (const std::string& name : command_names())
         expect_one_line_error(run_acdf({name, "--no-such-option"}), 2, "acdf " + name + " --help");
     for (const std::string name : {"info", "validate", "sample", "pdf"}) {
