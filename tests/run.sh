@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Everything that must hold, from a bare Debian 12: installs what is missing, then
-#   0. builds optimised with warnings as errors, while the packages of tests are being installed, and checks the formatting,
+#   0. builds optimised with warnings as errors, while packages are still being installed, and checks the formatting,
 #   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, runs the tests on synthetic data, and beside them
 #      fuzzes the reader for a quarter of a minute, and every parser of our own for 5 seconds,
 #   2. compares the files that both builds make byte for byte,
@@ -72,16 +72,16 @@ run_all_tests() {
 }
 
 if $quick; then
-    step "Packages"
-    tools/install_packages.sh build quick
+    step "Packages, and libraries that need few of them"
+    tools/first_build.sh build quick
     step "Optimised build, in build/release"
     build_release
     step "Its tests"
     run_all_tests
     exit
 fi
-step "Packages"
-tools/install_packages.sh build quick
+step "Packages, and libraries that need few of them"
+tools/first_build.sh build quick
 step "0. Optimised build, in build/release, and formatting"
 begin_to_install_for_tests
 build_release

@@ -17,8 +17,8 @@ for probe in "$@"; do
 done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-step "Packages"
-tools/install_packages.sh build
+step "Packages, and libraries that need few of them"
+tools/first_build.sh build
 
 step "Building the acdf program in build/release"
 cmake --preset release -DACDF_BUILD_TESTS=OFF -DACDF_BUILD_ONCE=ON

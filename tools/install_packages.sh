@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Installs packages that are missing (Debian 12 and its kin). Asks for nothing, changes nothing where all are there.
-# Used by tools/demo.sh, tests/run.sh and tests/tools/batch/farm.sh.
+# Used by tools/first_build.sh, tests/run.sh and tests/tools/batch/farm.sh.
 #
-#   tools/install_packages.sh SET...     those of tools/packages.txt with such a second word
+#   tools/install_packages.sh SET...     those of tools/packages.txt with such a second or third word
 #   tools/install_packages.sh LIST       all of another list, one a line
 set -euo pipefail
 
-usage() { echo "usage: tools/install_packages.sh build|quick|test... | LIST" >&2; exit 2; }
+usage() { echo "usage: tools/install_packages.sh first|build|quick|test... | LIST" >&2; exit 2; }
 
 (($# > 0)) || usage
 if [[ -f $1 ]]; then
@@ -15,7 +15,7 @@ else
     list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
     wanted=
     for set in "$@"; do
-        of_set=$(awk -v set="$set" '!/^#/ && $2 == set { print $1 }' "$list")
+        of_set=$(awk -v set="$set" '!/^#/ && ($2 == set || $3 == set) { print $1 }' "$list")
         [[ -n $of_set ]] || usage
         wanted+=" $of_set"
     done
@@ -50,5 +50,8 @@ if ((EUID != 0)); then
 fi
 
 echo "Installing ${#missing[@]} missing packages: ${missing[*]}"
-"${as_root[@]}" apt-get update
+# What was read minutes ago is not read again: sets are installed one after the other.
+if [[ -z $(find /var/lib/apt/lists/partial -maxdepth 0 -mmin -10 2>/dev/null) ]]; then
+    "${as_root[@]}" apt-get update
+fi
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
