@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -111,16 +112,17 @@ float mean_share(const std::vector<AcdfCompanyRecord>& records, const NormalBins
     return static_cast<float>(std::clamp(sum, 1e-3, 1.0)); // weights add up to 1
 }
 
-LocalDraft shared_draft(const compress::Target& target, const Source& source, const LocalOptions& options,
-                        const NormalBins& bins, const compress::LocalSize& size, const Progress& progress) {
-    compress::LocalFit fit = compress::fit_local(
-        target, bins, size,
-        [&](double share) {
-            if (progress) progress(0.8 * share, "fitting");
-        },
-        options.company);
-    LocalDraft draft{std::move(fit.tree), description_of(target, source, options, bins, {})};
-    draft.description.shares = std::move(fit.shares);
+/// The first four fifths of the work.
+compress::Progress fitting(const Progress& progress) {
+    return [&progress](double share) {
+        if (progress) progress(0.8 * share, "fitting");
+    };
+}
+
+LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& target, const Source& source,
+                        const LocalOptions& options, const NormalBins& bins) {
+    LocalDraft draft{fit.tree, description_of(target, source, options, bins, {})};
+    draft.description.shares = fit.shares;
     draft.description.chunks = compress::shared_chunks(fit.shared);
     draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
     if (options.company)
@@ -193,12 +195,17 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
     const NormalBins bins = bins_for(options, double(budget));
     compress::LocalSize size = size_for(options, bins, double(budget));
     if (max_weight > 0.0) size.max_weight = max_weight;
+    std::optional<compress::LocalFitter> fitter; // of so many tiles
     for (int tries = 0;; ++tries) {
-        LocalDraft draft = shared_draft(target, source, options, bins, size, progress);
+        if (!fitter) fitter.emplace(target, bins, size, fitting(progress), options.company);
+        compress::LocalFit fit = fitter->outlined(size.tree_bytes);
+        LocalDraft draft = shared_draft(fit, target, source, options, bins);
         const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
         if (fits && (full || tries > 0)) {
+            fitter->fill(fit);
+            draft = shared_draft(fit, target, source, options, bins);
             if (options.places.scene) add_places(draft, target, options, whole_budget, progress);
             return finish(std::move(draft), target, source, options, bins);
         }
@@ -207,6 +214,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         if (next < 64 || tries == 6) {
             if (size.tiles <= 2) out_of_reach(whole_budget, whole_of(options, bytes));
             size.tiles = size.tiles * 3 / 4;
+            fitter.reset();
             size.tree_bytes = size_for(options, bins, double(budget)).tree_bytes;
             tries = 0;
             continue;
@@ -335,8 +343,9 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
         size.tree_bytes = static_cast<std::uint64_t>(bytes);
         return within_weight(options.max_weight, [&](double max_weight) {
             if (max_weight > 0.0) size.max_weight = max_weight;
-            return finish(shared_draft(target, source, options, bins, size, progress), target, source, options,
-                          bins);
+            const compress::LocalFit fit =
+                compress::fit_local(target, bins, size, fitting(progress), options.company);
+            return finish(shared_draft(fit, target, source, options, bins), target, source, options, bins);
         });
     }
     }

@@ -147,18 +147,24 @@ private:
     }
 
     NormalAccuracy sum(const float n[3], const TilePicture& picture, const std::vector<double>& tile) const {
+        return picture.slope.empty() ? sum<false>(n, picture, tile) : sum<true>(n, picture, tile);
+    }
+
+    template <bool sloped>
+    NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
         NormalAccuracy out;
         Sum flux, second, first_above, light, light_second;
-        const double share = local_.cosine_share;
+        const bool drawn = !tile.empty(), alone = !local_.company;
+        const double share = drawn ? double{local_.cosine_share} : 0.0;
+        for (double& probability : tile) probability *= 1.0 - share;
         double largest = 0.0;
         Combination both = no_combination(), rival = both;
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
             const std::size_t row = std::size_t{r} * target_.columns;
             double row_flux = 0.0, row_second = 0.0, row_above = 0.0, row_light = 0.0, row_light_second = 0.0;
             cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
-                const double light_p =
-                    tile.empty() ? 0.0 : (1.0 - share) * tile[picture.tile[row + c]] * picture.density[row + c];
-                const double rest = tile.empty() ? 0.0 : share * cosine / ACDF_PI, p = light_p + rest;
+                const double light_p = drawn ? tile[picture.tile[row + c]] * picture.density[row + c] : 0.0;
+                const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = light_p + rest;
                 const double omega = solid_angle(r, c), g = target_.row(r)[c];
                 row_above += light_p * omega;
                 if (!(g > 0.0)) return;
@@ -166,7 +172,7 @@ private:
                 row_flux += f * omega;
                 row_light += g * omega;
                 row_light_second += f * cosine * omega;
-                if (local_.company) {
+                if (!alone) {
                     both.add(f, omega, p, cosine / ACDF_PI);
                     rival.add(f, omega, g / total_, cosine / ACDF_PI);
                     return;
@@ -175,8 +181,13 @@ private:
                     ++out.support_violations;
                     return;
                 }
+                if (!sloped) {
+                    row_second += f / p * f * omega;
+                    largest = std::max(largest, f / p);
+                    return;
+                }
                 // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
-                const Slope slope = picture.slope.empty() ? Slope{} : picture.slope[row + c];
+                const Slope slope = picture.slope[row + c];
                 row_second += f / (light_p * static_cast<double>(slope.harmonic) + rest) * f * omega;
                 largest = std::max(largest, f / (light_p * static_cast<double>(slope.smallest) + rest));
             });
@@ -192,11 +203,11 @@ private:
         out.relative_variance =
             out.support_violations > 0 ? std::numeric_limits<double>::infinity() : second.value() / e / e - 1.0;
         // What is drawn around the normal lies above its horizon, all of it.
-        out.share_above_horizon = tile.empty() ? 0.0 : std::min(first_above.value() + share, 1.0);
+        out.share_above_horizon = drawn ? std::min(first_above.value() + share, 1.0) : 0.0;
         out.max_weight = largest / e;
         out.relative_variance_full_cdf = total_ / e * (light_second.value() / e) - 1.0;
         out.share_above_horizon_full_cdf = light.value() / total_;
-        if (!local_.company) return out;
+        if (alone) return out;
         out.relative_variance = both.relative_variance();
         out.relative_variance_full_cdf = rival.relative_variance();
         out.support_violations = both.violations();

@@ -38,43 +38,6 @@ std::vector<double> worth_of_tiles(const Target& target, const std::vector<Box>&
     return out;
 }
 
-struct Curves {
-    std::unique_ptr<TileCascade> cascade;
-    EncodedTree tree;
-};
-
-/// The curves at the lowest price at which they take at most `bytes`.
-Curves fit_curves(const TileTree& tiles, TileCurves& curves, std::uint64_t bytes, double most_ratio) {
-    const auto at = [&](double price) {
-        Curves out;
-        out.cascade = std::make_unique<TileCascade>(tiles, curves, price);
-        out.tree = encode_tree(out.cascade->cascade, 2.0 * price, most_ratio);
-        return out;
-    };
-    constexpr double cheapest = 1e-14; // of the sum of costs: rounding, no gain
-    double price = 1e-4;
-    Curves best;
-    for (;; price *= 0.25) {
-        curves.refine(price);
-        best = at(price);
-        if (best.tree.bytes.size() > bytes || price < cheapest) break;
-    }
-    if (best.tree.bytes.size() <= bytes) return best;
-    double low = price, high = 1.0;
-    best = at(high);
-    for (int step = 0; step < 24; ++step) {
-        const double middle = std::sqrt(low * high);
-        Curves candidate = at(middle);
-        if (candidate.tree.bytes.size() > bytes) {
-            low = middle;
-        } else {
-            high = middle;
-            best = std::move(candidate);
-        }
-    }
-    return best;
-}
-
 constexpr std::uint32_t kManyLights = 2 * ACDF_MAX_LIGHTS; // the brightest half of them is taken
 
 /// Tiles, and the rule by which they become lights. Where that of most probes finds many more lights than there may
@@ -145,14 +108,9 @@ std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cos
 /// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to, and
 /// `row(bin, costs)` the bytes of that.
 template <class Costs, class Row>
-void fill_rows(const Costs& costs, const Row& row_of, const NormalBins& bins, LocalFit& out) {
-    const std::size_t count = bins.normals.size(), width = out.tiles.splits.size();
-    out.shares.assign(count, 0.0f);
-    out.tree.roots.assign(count, ACDF_NO_ROOT);
-    for (std::size_t b = 0; b < count; ++b)
-        if (bins.weight[b] > 0.0) out.tree.roots[b] = out.shared.row_count++;
-    out.shared.codes.resize(out.shared.row_count * width);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
+void fill_rows(const Costs& costs, const Row& row_of, LocalFit& out) {
+    const std::size_t width = out.tiles.splits.size();
+    tbb::parallel_for(std::size_t{0}, out.tree.roots.size(), [&](std::size_t b) {
         if (out.tree.roots[b] == ACDF_NO_ROOT) return;
         const std::vector<double> cost = costs(b);
         double sum = 0.0;
@@ -165,64 +123,110 @@ void fill_rows(const Costs& costs, const Row& row_of, const NormalBins& bins, Lo
 
 } // namespace
 
-LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
-                   const Company& company) {
-    const auto report = [&](double share) {
-        if (progress) progress(share);
-    };
+LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const LocalSize& size,
+                         const Progress& progress, const Company& company)
+    : target_(target), bins_(bins), max_weight_(size.max_weight), progress_(progress) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
     const std::vector<LightPoint> points = light_points(target);
-    const std::vector<double> flux = irradiance(points, bins);
-    const Worth light_worth = worth(target, bins, flux);
-    std::optional<LocalCompany> beside;
-    if (company) beside.emplace(target, points, bins, flux, company);
+    flux_ = irradiance(points, bins);
+    worth_ = worth(target, bins, flux_);
+    if (company) beside_.emplace(target, points, bins, flux_, company);
     report(0.1);
-    LocalFit out;
-    const LightRule rule = divide(beside ? beside->excess(target) : target, light_worth,
-                                  std::min(size.tiles, ACDF_MAX_TILES), out.tiles);
+    rule_ =
+        divide(beside_ ? beside_->excess(target) : target, worth_, std::min(size.tiles, ACDF_MAX_TILES), tiles_);
     report(0.4);
-    const Target filled = beside ? beside->filled(target) : Target{};
-    const Target& fitted = beside ? filled : target;
-    const bool bounded = std::isfinite(size.max_weight);
-    TileCurves tile_curves(fitted, out.tiles.tiles, worth_of_tiles(target, out.tiles.tiles, light_worth),
-                           kWeightOfCells * size.max_weight);
-    constexpr double near = 1.01, any = std::numeric_limits<double>::infinity();
-    Curves curves = fit_curves(out.tiles, tile_curves, size.tree_bytes, bounded ? near : any);
+    if (beside_) filled_ = beside_->filled(target);
+    worth_of_tiles_ = worth_of_tiles(target, tiles_.tiles, worth_);
+}
+
+/// The curves at the lowest price at which they take at most `bytes`.
+LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {
+    const double any = std::numeric_limits<double>::infinity(), most_ratio = max_weight_ < any ? 1.01 : any;
+    const auto at = [&](double price) {
+        Curves out;
+        out.cascade = std::make_unique<TileCascade>(tiles_, *tile_curves_, price);
+        out.tree = encode_tree(out.cascade->cascade, 2.0 * price, most_ratio);
+        return out;
+    };
+    constexpr double cheapest = 1e-14; // of the sum of costs: rounding, no gain
+    double price = 1e-4;
+    Curves best;
+    for (;; price *= 0.25) {
+        tile_curves_->refine(price);
+        best = at(price);
+        if (best.tree.bytes.size() > bytes || price < cheapest) break;
+    }
+    if (best.tree.bytes.size() <= bytes) return best;
+    double low = price, high = 1.0;
+    best = at(high);
+    for (int step = 0; step < 24; ++step) {
+        const double middle = std::sqrt(low * high);
+        Curves candidate = at(middle);
+        if (candidate.tree.bytes.size() > bytes) {
+            low = middle;
+        } else {
+            high = middle;
+            best = std::move(candidate);
+        }
+    }
+    return best;
+}
+
+LocalFit LocalFitter::outlined(std::uint64_t tree_bytes) {
+    tile_curves_.emplace(beside_ ? filled_ : target_, tiles_.tiles, worth_of_tiles_, kWeightOfCells * max_weight_);
+    curves_ = fit_curves(tree_bytes);
     report(0.8);
-    out.lights = find_lights(target, out.tiles, *curves.cascade, tile_curves.total(), light_worth, rule);
-    out.tree = std::move(curves.tree);
-    out.shared.splits = stored_splits(out.tiles, [](const TileTree::Split& split) {
+    LocalFit out;
+    out.tiles = tiles_;
+    out.lights = find_lights(target_, tiles_, *curves_.cascade, tile_curves_->total(), worth_, rule_);
+    out.tree = curves_.tree;
+    out.shared.splits = stored_splits(tiles_, [](const TileTree::Split& split) {
         return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;
     });
     out.shared.codebook = row_codebook();
-    for (std::int32_t curve : curves.cascade->tile_curve)
+    for (std::int32_t curve : curves_.cascade->tile_curve)
         out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);
-    if (beside) {
-        const FilledTiles light(target, out.tiles, tile_curves, *curves.cascade, out.lights, *beside, bins);
-        out.records.resize(bins.normals.size(), {1.0f, 0.0f});
-        fill_rows(
-            [&](std::size_t b) {
-                std::vector<double> shares = light.shares(b);
-                for (double& share : shares) share /= tile_curves.total();
-                out.records[b] = {light.recommended_share(b, shares),
-                                  static_cast<float>(flux[b] / tile_curves.total())};
-                return shares;
-            },
-            [&](std::size_t, const std::vector<double>& shares) { return encode_row(out.tiles, shares); }, bins,
-            out);
+    const std::size_t count = bins_.normals.size();
+    out.shares.assign(count, 0.0f);
+    out.tree.roots.assign(count, ACDF_NO_ROOT);
+    for (std::size_t b = 0; b < count; ++b)
+        if (bins_.weight[b] > 0.0) out.tree.roots[b] = out.shared.row_count++;
+    out.shared.codes.resize(out.shared.row_count * tiles_.splits.size());
+    if (beside_) out.records.resize(count, {1.0f, 0.0f});
+    return out;
+}
+
+void LocalFitter::fill(LocalFit& out) const {
+    if (beside_) {
+        const FilledTiles light(target_, tiles_, *tile_curves_, *curves_.cascade, out.lights, *beside_, bins_);
+        const auto shares_of = [&](std::size_t b) {
+            std::vector<double> shares = light.shares(b);
+            for (double& share : shares) share /= tile_curves_->total();
+            out.records[b] = {light.recommended_share(b, shares),
+                              static_cast<float>(flux_[b] / tile_curves_->total())};
+            return shares;
+        };
+        const auto row = [&](std::size_t, const std::vector<double>& shares) { return encode_row(tiles_, shares); };
+        fill_rows(shares_of, row, out);
     } else {
-        const TileLight light(target, out.tiles, *curves.cascade, out.lights);
-        const TileParts parts = mixed_rows(light, bins, out.lights);
-        fill_rows([&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); },
-                  [&](std::size_t b, const std::vector<double>& costs) {
-                      if (!bounded) return encode_row(out.tiles, costs);
-                      return row_above(out, costs, light.least(bins.normals[b], costs, size.max_weight));
-                  },
-                  bins, out);
+        const TileLight light(target_, tiles_, *curves_.cascade, out.lights);
+        const TileParts parts = mixed_rows(light, bins_, out.lights);
+        const auto row = [&](std::size_t b, const std::vector<double>& costs) {
+            if (!std::isfinite(max_weight_)) return encode_row(tiles_, costs);
+            return row_above(out, costs, light.least(bins_.normals[b], costs, max_weight_));
+        };
+        fill_rows([&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); }, row, out);
     }
-    out.cascade = std::move(curves.cascade->cascade);
+    out.cascade = curves_.cascade->cascade;
     report(1.0);
+}
+
+LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
+                   const Company& company) {
+    LocalFitter fitter(target, bins, size, progress, company);
+    LocalFit out = fitter.outlined(size.tree_bytes);
+    fitter.fill(out);
     return out;
 }
 

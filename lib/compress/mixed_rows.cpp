@@ -22,6 +22,8 @@ constexpr double kLeastPart = 0.25, kLeastCosine = 0.06;
 constexpr double kVainCost = 6.0, kFewVain = 0.01, kManyVain = 0.02;
 /// Of what a bin's normals count, the corner itself.
 constexpr double kCornerShare = 0.2;
+constexpr std::size_t kNearby = 3; // normals of a triangle follow each other: nearly the same tiles are cut
+static_assert(kNearby <= TileLight::views_at_once, "");
 
 /// A normal that draws from a mixture, on a face of the octahedron that the bins divide: |x| + |y| + |z| is its
 /// number of subdivisions.
@@ -117,7 +119,7 @@ double light_weights(const std::vector<AcdfLight>& lights, const Direction& plac
 
 /// Arrays of a thread, one number a tile.
 struct MixedScratch {
-    TileView view;
+    std::array<TileView, TileLight::views_at_once> views;
     std::vector<double> mixed, raise, lower;
 };
 
@@ -136,7 +138,14 @@ public:
         s.mixed.resize(light_.size());
         s.raise.assign(light_.size(), 0.0);
         s.lower.assign(light_.size(), 0.0);
-        for (const MixedNormal& normal : normals_.near(bin)) add(normal, bin, s);
+        const std::vector<MixedNormal>& near = normals_.near(bin);
+        for (std::size_t begin = 0; begin < near.size(); begin += kNearby) {
+            const std::size_t count = std::min(kNearby, near.size() - begin);
+            std::array<Direction, kNearby> units;
+            for (std::size_t k = 0; k < count; ++k) units[k] = unit(near[begin + k].place);
+            light_.look(units.data(), count, s.views.data());
+            for (std::size_t k = 0; k < count; ++k) add(near[begin + k], s.views[k], bin, s);
+        }
         double before = 0.0, after = 0.0;
         for (std::size_t t = 0; t < out.size(); ++t) {
             const double part = double{parts_[bin][t]};
@@ -154,10 +163,13 @@ public:
     }
 
 private:
-    void add(const MixedNormal& normal, std::size_t bin, MixedScratch& s) const {
+    static Direction unit(const Direction& place) {
+        const double length = std::sqrt(dot(place, place));
+        return {place[0] / length, place[1] / length, place[2] / length};
+    }
+
+    void add(const MixedNormal& normal, const TileView& view, std::size_t bin, MixedScratch& s) const {
         const double length = std::sqrt(dot(normal.place, normal.place));
-        const Direction unit = {normal.place[0] / length, normal.place[1] / length, normal.place[2] / length};
-        light_.look(unit, s.view);
         std::fill(s.mixed.begin(), s.mixed.end(), 0.0);
         double own_weight = 0.0;
         for (std::size_t i = 0; i < normal.count; ++i) {
@@ -170,20 +182,20 @@ private:
         double irradiance = drawn, moments = drawn, sum = drawn, vain = 0.0;
         for (std::size_t t = 0; t < s.mixed.size(); ++t) {
             if (!(s.mixed[t] > 0.0)) continue;
-            const double cost = length * s.view.cost[t];
+            const double cost = length * view.cost[t];
             irradiance += cost;
             moments += cost * cost / s.mixed[t];
             sum += s.mixed[t];
-            vain += s.mixed[t] * s.view.hidden[t];
+            vain += s.mixed[t] * view.hidden[t];
         }
         if (!(irradiance > 0.0)) return;
         const double penalty = kVainCost * std::clamp((vain / sum - kFewVain) / (kManyVain - kFewVain), 0.0, 1.0);
         const double scale = own_weight * normal.frequency / (irradiance * irradiance);
         for (std::size_t t = 0; t < s.mixed.size(); ++t) {
             if (!(s.mixed[t] > 0.0)) continue;
-            const double ratio = length * s.view.cost[t] / s.mixed[t];
+            const double ratio = length * view.cost[t] / s.mixed[t];
             s.raise[t] += scale * (sum + penalty * vain) * ratio * ratio;
-            s.lower[t] += scale * moments * (1.0 + penalty * s.view.hidden[t]);
+            s.lower[t] += scale * moments * (1.0 + penalty * view.hidden[t]);
         }
     }
 

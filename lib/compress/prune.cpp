@@ -63,9 +63,8 @@ std::vector<bool> may_pay(const std::vector<Part>& parts, double price, double h
     return out;
 }
 
-void flatten(const Partition& partition, const Pruned& pruned, Flattened& out) {
+void flatten(const Partition& partition, const PruneNodes& nodes, const Pruned& pruned, Flattened& out) {
     const std::vector<Part>& parts = partition.parts();
-    const PruneNodes nodes = prune_nodes(parts, std::numeric_limits<double>::infinity(), partition.grid().filling);
     const std::vector<double> cost = shares_below(nodes, pruned);
     const Outline curves = outline(nodes, pruned, cost);
     const auto base = static_cast<std::int32_t>(out.cascade.curves.size());
@@ -88,6 +87,11 @@ void flatten(const Partition& partition, const Pruned& pruned, Flattened& out) {
             weights.push_back(static_cast<float>(part.moments.weight()));
         }
     }
+}
+
+void flatten(const Partition& partition, const Pruned& pruned, Flattened& out) {
+    const double any = std::numeric_limits<double>::infinity();
+    flatten(partition, prune_nodes(partition.parts(), any, partition.grid().filling), pruned, out);
 }
 
 void flatten_nothing(std::uint32_t axis, Flattened& out) {

@@ -50,7 +50,9 @@ struct Flattened {
     std::vector<double> cost;                ///< one a bin: the sum of the shares of its cells
 };
 
-/// Appends the curves of a pruned partition as one bin. Divisions along the same axis become one curve.
+/// Appends the curves of a pruned partition as one bin. Divisions along the same axis become one curve. `nodes`:
+/// prune_nodes of its parts, whatever the bound on weights.
+void flatten(const Partition& partition, const PruneNodes& nodes, const Pruned& pruned, Flattened& out);
 void flatten(const Partition& partition, const Pruned& pruned, Flattened& out);
 
 /// Appends a bin of one cell, for a grid without energy; `axis` is any sampled axis of the file.

@@ -10,22 +10,30 @@ namespace acdf::compress {
 
 TileCurves::TileCurves(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth,
                        double heaviest)
-    : worth_(std::move(worth)), heaviest_(heaviest), total_(integral(target)), partitions_(tiles.size()) {
+    : worth_(std::move(worth)), heaviest_(heaviest), total_(integral(target)), partitions_(tiles.size()),
+      nodes_(tiles.size()) {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
         partitions_[t] =
             std::make_unique<Partition>(grid_of(target), total_, tiles[t], std::uint8_t{TileTree::most_depth + 1});
+        look_at(t);
     });
+}
+
+void TileCurves::look_at(std::size_t tile) {
+    nodes_[tile] = prune_nodes(partitions_[tile]->parts(), heaviest_, partitions_[tile]->grid().filling);
 }
 
 void TileCurves::refine(double price) {
     tbb::parallel_for(std::size_t{0}, partitions_.size(), [&](std::size_t t) {
-        if (worth_[t] > 0.0) partitions_[t]->refine(price * kLeastBytes / (worth_[t] * total_), heaviest_);
+        if (!(worth_[t] > 0.0)) return;
+        partitions_[t]->refine(price * kLeastBytes / (worth_[t] * total_), heaviest_);
+        look_at(t);
     });
 }
 
 Pruned TileCurves::pruned(std::size_t tile, double price) const {
     const double own = worth_[tile] > 0.0 ? price / (worth_[tile] * total_) : std::numeric_limits<double>::max();
-    return prune(partitions_[tile]->parts(), own, heaviest_);
+    return prune(nodes_[tile], own);
 }
 
 TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double price)
@@ -50,7 +58,7 @@ std::int32_t TileCascade::add_tile(std::uint32_t tile) {
     const auto index = static_cast<std::int32_t>(cascade.curves.size());
     if (!pruned_[tile].divided[0] && index > 0) return -1; // the root needs a curve even so
     Flattened inside;
-    flatten(curves_.partition(tile), pruned_[tile], inside);
+    flatten(curves_.partition(tile), curves_.nodes(tile), pruned_[tile], inside);
     for (Curve& curve : inside.cascade.curves) {
         for (std::int32_t& c : curve.children)
             if (c >= 0) c += index;

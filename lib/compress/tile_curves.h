@@ -22,14 +22,18 @@ public:
     /// The integral of the target, to which all costs are normalised.
     double total() const { return total_; }
     const Partition& partition(std::size_t tile) const { return *partitions_[tile]; }
+    const PruneNodes& nodes(std::size_t tile) const { return nodes_[tile]; }
     /// Grows the partitions until divisions that pay at `price` a byte are in them.
     void refine(double price);
     Pruned pruned(std::size_t tile, double price) const;
 
 private:
+    void look_at(std::size_t tile);
+
     std::vector<double> worth_;
     double heaviest_, total_ = 0.0;
     std::vector<std::unique_ptr<Partition>> partitions_;
+    std::vector<PruneNodes> nodes_; ///< of the partitions: they are pruned at many prices
 };
 
 /// The tree of a whole environment: the splits between tiles as curves of two segments, then the curves in tiles.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace acdf::compress {
 namespace {
@@ -49,34 +50,61 @@ void TileLight::fill(const TileCascade& cascade, std::size_t tile) {
     }
 }
 
-double TileLight::across_horizon(const Tile& tile, const Direction& normal, double& hidden) {
-    double sum = 0.0, below = 0.0;
+// A point is added to the sums of all normals together, without branches: half of them would be guessed wrong.
+TileLight::AcrossHorizon TileLight::across_horizon(const Tile& tile, const double (&normals)[3][views_at_once]) {
+    AcrossHorizon out;
     for (const LightPoint& p : tile.points) {
-        const double cosine = dot(p.direction, normal);
-        if (cosine > 0.0) sum += p.amount * cosine * cosine;
-        else below += p.amount;
+        const auto [x, y, z] = p.direction;
+#if defined(__GNUC__)
+#pragma GCC unroll 1 // it becomes vectors as long as it is a loop
+#endif
+        for (std::size_t k = 0; k < views_at_once; ++k) {
+            const double cosine = x * normals[0][k] + y * normals[1][k] + z * normals[2][k];
+            const double above = cosine > 0.0 ? cosine : 0.0, below = cosine > 0.0 ? 0.0 : p.amount;
+            out.square[k] += p.amount * above * above;
+            out.hidden[k] += below;
+        }
     }
-    hidden = tile.amount > 0.0 ? below / tile.amount : 0.0;
-    return sum;
+    for (double& hidden : out.hidden) hidden = tile.amount > 0.0 ? hidden / tile.amount : 0.0;
+    return out;
 }
 
-void TileLight::look(const Direction& normal, TileView& out) const {
-    const auto [x, y, z] = normal;
-    const std::array<double, 6> squares = {x * x, y * y, z * z, x * y, y * z, z * x};
-    out.cost.assign(tile_.size(), 0.0);
-    out.hidden.assign(tile_.size(), 0.0);
+void TileLight::look(const Direction& normal, TileView& out) const { look(&normal, 1, &out); }
+
+void TileLight::look(const Direction* normals, std::size_t count, TileView* out) const {
+    double lanes[3][views_at_once], squares[views_at_once][6];
+    for (std::size_t k = 0; k < views_at_once; ++k) {
+        const auto [x, y, z] = normals[std::min(k, count - 1)];
+        lanes[0][k] = x, lanes[1][k] = y, lanes[2][k] = z;
+        const double of_normal[6] = {x * x, y * y, z * z, x * y, y * z, z * x};
+        std::copy(std::begin(of_normal), std::end(of_normal), squares[k]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        out[k].cost.assign(tile_.size(), 0.0);
+        out[k].hidden.assign(tile_.size(), 0.0);
+    }
     for (std::size_t t = 0; t < tile_.size(); ++t) {
         const Tile& tile = tile_[t];
         if (!(tile.cost > 0.0)) continue;
-        const double height = dot(tile.centre, normal);
-        if (height >= tile.reach) { // nearly everywhere
-            double sum = 0.0;
-            for (std::size_t k = 0; k < squares.size(); ++k) sum += tile.moment[k] * squares[k];
-            out.cost[t] = std::sqrt(std::max(0.0, sum));
-        } else if (height <= -tile.reach - kHorizonMargin) {
-            out.hidden[t] = 1.0;
-        } else {
-            out.cost[t] = std::sqrt(across_horizon(tile, normal, out.hidden[t]));
+        bool cut[views_at_once] = {}, any = false;
+        for (std::size_t k = 0; k < count; ++k) {
+            const double height = dot(tile.centre, normals[k]);
+            if (height >= tile.reach) { // nearly everywhere
+                double sum = 0.0;
+                for (std::size_t i = 0; i < 6; ++i) sum += tile.moment[i] * squares[k][i];
+                out[k].cost[t] = std::sqrt(std::max(0.0, sum));
+            } else if (height <= -tile.reach - kHorizonMargin) {
+                out[k].hidden[t] = 1.0;
+            } else {
+                any = cut[k] = true;
+            }
+        }
+        if (!any) continue;
+        const AcrossHorizon across = across_horizon(tile, lanes);
+        for (std::size_t k = 0; k < count; ++k) {
+            if (!cut[k]) continue;
+            out[k].cost[t] = std::sqrt(across.square[k]);
+            out[k].hidden[t] = across.hidden[k];
         }
     }
 }

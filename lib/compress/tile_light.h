@@ -33,6 +33,9 @@ public:
     /// Of all light of a tile, whatever the cosine; 0: a light, or dark.
     double whole(std::size_t tile) const { return tile_[tile].cost; }
     void look(const Direction& normal, TileView& out) const;
+    /// From up to `views_at_once` normals at once: in little more time than from one, where they are close.
+    static constexpr std::size_t views_at_once = 4;
+    void look(const Direction* normals, std::size_t count, TileView* out) const;
     /// The cost of each tile for a normal: positive wherever light in it can be seen, however little.
     std::vector<double> costs(const Direction& normal) const;
     /// The least that each tile's part of the irradiance may be taken for, so that no weight is above `max_weight`
@@ -56,8 +59,11 @@ private:
     };
 
     void fill(const TileCascade& cascade, std::size_t tile);
-    /// The square of the cost of a tile that the horizon cuts, and what of it is hidden.
-    static double across_horizon(const Tile& tile, const Direction& normal, double& hidden);
+    /// Of tiles that the horizon cuts, for each normal the square of the cost, and what of the light is hidden.
+    struct AcrossHorizon {
+        double square[views_at_once] = {}, hidden[views_at_once] = {};
+    };
+    static AcrossHorizon across_horizon(const Tile& tile, const double (&normals)[3][views_at_once]);
     /// Whether any cell with light in it reaches above the horizon.
     bool seen(std::size_t tile, const Direction& normal) const;
 
