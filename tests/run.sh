@@ -25,10 +25,16 @@ installing= # the process that installs the packages of tests
 
 step() { printf '\n== %s (%ds)\n' "$*" "$SECONDS"; }
 
+install_for_tests() {
+    tools/install_packages.sh test
+    # Daemons: as root only, as on machines that are thrown away. Tests that find none are skipped.
+    if ((EUID == 0)); then tools/install_packages.sh farm || true; fi
+}
+
 # Unpacking keeps less than one core busy.
 begin_to_install_for_tests() {
     mkdir -p build
-    tools/install_packages.sh test >build/packages.log 2>&1 &
+    install_for_tests >build/packages.log 2>&1 &
     installing=$!
     trap 'wait "$installing"' EXIT # never ended half way
 }

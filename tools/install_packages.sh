@@ -3,23 +3,18 @@
 # Used by tools/first_build.sh, tests/run.sh and tests/tools/batch/farm.sh.
 #
 #   tools/install_packages.sh SET...     those of tools/packages.txt with such a second or third word
-#   tools/install_packages.sh LIST       all of another list, one a line
 set -euo pipefail
 
-usage() { echo "usage: tools/install_packages.sh first|build|quick|test... | LIST" >&2; exit 2; }
+usage() { echo "usage: tools/install_packages.sh first|build|quick|test|farm..." >&2; exit 2; }
 
 (($# > 0)) || usage
-if [[ -f $1 ]]; then
-    wanted=$(grep -v '^#' "$1")
-else
-    list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
-    wanted=
-    for set in "$@"; do
-        of_set=$(awk -v set="$set" '!/^#/ && ($2 == set || $3 == set) { print $1 }' "$list")
-        [[ -n $of_set ]] || usage
-        wanted+=" $of_set"
-    done
-fi
+list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
+wanted=
+for set in "$@"; do
+    of_set=$(awk -v set="$set" '!/^#/ && ($2 == set || $3 == set) { print $1 }' "$list")
+    [[ -n $of_set ]] || usage
+    wanted+=" $of_set"
+done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "This script installs packages with apt-get, which this system does not have." >&2

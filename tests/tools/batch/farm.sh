@@ -3,7 +3,7 @@
 #
 #   farm.sh ninja|parallel|slurm ACDF MAKE_BATCH_PROBES
 #
-# Installs the packages of farm_packages.txt that are missing where it may (as root, on Debian), else exits with 77:
+# Installs the packages that are missing where it may (as root, on Debian), else exits with 77:
 # skipped. Every engine has to end with the bytes of one undisturbed `acdf batch`, and without litter.
 set -euo pipefail
 
@@ -34,10 +34,10 @@ fail() {
 need() {
     command -v "$1" >/dev/null && return
     if ((EUID == 0)) && command -v apt-get >/dev/null; then
-        "$root/tools/install_packages.sh" "$root/tests/tools/batch/farm_packages.txt" >"$work/install.log" 2>&1 || true
+        "$root/tools/install_packages.sh" farm >"$work/install.log" 2>&1 || true
     fi
     command -v "$1" >/dev/null && return
-    echo "SKIPPED: there is no $1; install the packages of tests/tools/batch/farm_packages.txt, or run as root on Debian"
+    echo "SKIPPED: there is no $1; run tools/install_packages.sh farm, or this as root on Debian"
     exit 77
 }
 
