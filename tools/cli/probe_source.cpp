@@ -87,8 +87,10 @@ namespace {
 ProbeTarget load(const std::string& path, const input::ProbeOptions& options, builder::TargetRows rows,
                  const Note& note) {
     ProbeTarget out;
-    out.probe = input::read_probe(path, options, rows);
-    out.target = lit(path, [&] { return rows.finish(); });
+    out.target = lit(path, [&] {
+        out.probe = input::read_probe(path, options, rows);
+        return rows.finish();
+    });
     const builder::Target::Data& made = *out.target.data();
     out.error = made.error;
     out.resampled = made.resampled();
