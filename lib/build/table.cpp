@@ -50,7 +50,8 @@ void check_options(const std::vector<std::uint32_t>& shape, const TableOptions& 
         throw OptionError("one range an axis is needed");
     std::set<std::string> seen;
     for (const std::string& name : options.names) {
-        if (name.empty() || name.size() > 15) throw OptionError("the name of an axis has 1 to 15 bytes");
+        if (name.empty() || name.size() > 15 || name.find('\0') != std::string::npos)
+            throw OptionError("the name of an axis has 1 to 15 bytes, none of them zero");
         if (!seen.insert(name).second) throw OptionError("two axes are called '" + name + "'");
     }
 }

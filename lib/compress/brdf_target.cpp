@@ -11,7 +11,8 @@
 namespace acdf::compress {
 namespace {
 
-constexpr double kBelow = -1e-9; // cos(theta_i) of what certainly lies below the horizon
+constexpr double kMostReflected = 1e26; // values below 1e18, weights of three channels of up to 1e6, the Jacobian
+constexpr double kBelow = -1e-9;        // cos(theta_i) of what certainly lies below the horizon
 
 /// Angle between a view's azimuth and the nearest of [low, high], all in radians; high - low < 2 pi.
 double least_turn(double azimuth, double low, double high) {
@@ -102,7 +103,8 @@ ViewTarget view_target(const Reflected& reflected, const HalfGrid& grid, const V
             const double wi[3] = {2.0 * dot * h[0] - wo[0], 2.0 * dot * h[1] - wo[1], 2.0 * dot * h[2] - wo[2]};
             if (dot <= 0.0 || wi[2] <= 0.0) continue;
             const double f = reflected(wo, wi) * 4.0 * dot;
-            if (!(f >= 0.0 && f < 1e18)) throw std::invalid_argument("its values are not finite, or not positive");
+            if (!(f >= 0.0 && f < kMostReflected))
+                throw std::invalid_argument("its values are not finite, or not positive");
             values[std::size_t{r} * grid.columns() + c] = f;
             albedo.add(f * grid.row_measure[r] * grid.column_measure[c]);
         }

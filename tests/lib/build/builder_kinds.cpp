@@ -207,6 +207,12 @@ TEST(BuilderBrdf, Misuse) {
     EXPECT_EQ(answers(-1.0), ErrorCode::no_energy);
     EXPECT_EQ(answers(kNan), ErrorCode::bad_source);
     EXPECT_EQ(answers(1e19), ErrorCode::bad_source);
+    EXPECT_EQ(answers(0.3), ErrorCode::none);
+    const double variance = made.accuracy.relative_variance;
+    options.channels.weights = {1e6, 1e6, 1e6};
+    EXPECT_EQ(answers(9.9e17), ErrorCode::none);
+    EXPECT_NEAR(made.accuracy.relative_variance, variance, 1e-4);
+    options.channels = {};
     EXPECT_EQ(answers(std::numeric_limits<double>::infinity()), ErrorCode::bad_source);
     given.evaluate = [](const double*, const double*, double*) { throw 3; };
     EXPECT_EQ(brdf(given, options, made).code, ErrorCode::callback_failed);
@@ -315,6 +321,7 @@ TEST(BuilderTable, BadNumbersAndMisuse) {
     refused("one stride", [](Array& a, TableOptions&) { a.strides = {4}; });
     refused("all indexed", [](Array&, TableOptions& o) { o.indexed = 2; });
     refused("names", [](Array&, TableOptions& o) { o.names = {"a", "a"}; });
+    refused("a name with a zero", [](Array&, TableOptions& o) { o.names = {std::string("a\0", 2), "b"}; });
     refused("a range", [](Array&, TableOptions& o) { o.ranges = {{0.0, 1.0}, {kNan, 1.0}}; });
     refused("an axis of no width", [](Array&, TableOptions& o) { o.ranges = {{0.0, 1.0}, {1.0, 1.0}}; });
     refused("max_weight", [](Array&, TableOptions& o) { o.max_weight = kNan; });
