@@ -37,6 +37,13 @@ bool take(std::string_view& text, std::string_view beginning) {
     text.remove_prefix(beginning.size());
     return true;
 }
+/// The end of a line, as Windows writes it, too: OpenImageIO takes what follows the first blank for numbers. The
+/// size of the file says who is right.
+bool take_line_end(std::string_view& text) {
+    while (take(text, " ") || take(text, "\r")) {
+    }
+    return take(text, "\n");
+}
 bool take(std::string_view& text, int& side) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
     if (error != std::errc() || side < 1 || side > kMostOnASide) return false;
@@ -47,13 +54,13 @@ bool take(std::string_view& text, int& side) {
 std::optional<Layout> parse(std::string_view header) {
     Layout layout;
     std::string_view rest = header;
-    if (!(take(rest, "PF\n") && take(rest, layout.width) && take(rest, " ") && take(rest, layout.height) &&
-          take(rest, "\n-1")))
+    if (!(take(rest, "PF") && take_line_end(rest) && take(rest, layout.width) && take(rest, " ") &&
+          take(rest, layout.height) && take_line_end(rest) && take(rest, "-1")))
         return std::nullopt;
     if (take(rest, "."))
         while (take(rest, "0")) {
         }
-    if (!take(rest, "\n")) return std::nullopt;
+    if (!take_line_end(rest)) return std::nullopt;
     layout.header = header.size() - rest.size();
     return layout;
 }

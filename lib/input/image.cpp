@@ -161,10 +161,13 @@ private:
             fail("it is stored rotated or flipped; turn it upright (oiiotool IN --reorient -o OUT)");
         if (!overlap(s.data, display_window(s)))
             fail("its data window lies outside its display window; crop it (oiiotool IN --fullpixels -o OUT)");
-        if (!choose_channels(s, channels_, layers_))
-            fail("its channels are " + list(s.channels) +
-                 ", where R, G, B or a single one is needed; "
-                 "rename or choose them (oiiotool IN --ch R=...,G=...,B=... -o OUT)");
+        if (!choose_channels(s, channels_, layers_)) {
+            const std::string channels = list(s.channels); // before another part is looked at
+            const bool several = file_.seek(1);
+            fail((several ? "the channels of the first of its parts are " : "its channels are ") + channels +
+                 ", where R, G, B or a single one is needed; rename or choose them (oiiotool IN " +
+                 (several ? "--subimage 1 -o OUT, or " : "") + "--ch R=...,G=...,B=... -o OUT)");
+        }
     }
 
     // A layer that nobody chose is told: the one wanted may be another.
@@ -189,9 +192,7 @@ private:
             image.rgb.assign(display_floats, 0.0f);
             read_channels(image.rgb.data() + offset(data.x - display.x, data.y - display.y, display.width),
                           display.width);
-            if (!(data == display))
-                image.warnings.push_back("the file holds " + shape(data.width, data.height) + " of " +
-                                         shape(display.width, display.height) + " pixels; the rest is black");
+            if (!(data == display)) warn_of_black(data.width, data.height, image);
             return;
         }
         std::vector<float> all(std::size_t{3} * static_cast<std::size_t>(data.width) *
@@ -204,6 +205,12 @@ private:
             std::copy_n(all.data() + offset(x0 - data.x, y - data.y, data.width), 3 * (x1 - x0),
                         image.rgb.data() + offset(x0 - display.x, y - display.y, display.width));
         image.warnings.push_back("the file holds pixels outside its display window; they are not used");
+        if (!contains(data, display)) warn_of_black(x1 - x0, y1 - y0, image);
+    }
+
+    static void warn_of_black(int width, int height, Image& image) {
+        image.warnings.push_back("the file holds " + shape(width, height) + " of " +
+                                 shape(image.width, image.height) + " pixels; the rest is black");
     }
 
     static std::size_t offset(int x, int y, int width) {
@@ -216,7 +223,8 @@ private:
     // Reads rows [y0, y1) of the data window, counted from its top, of channels [begin, end).
     void read_rows(int y0, int y1, int begin, int end, float* at, std::ptrdiff_t pixel, std::ptrdiff_t row) {
         if (!file_.read({y0, y1, begin, end, pixel, row}, at))
-            fail("its pixels cannot be read (" + file_.error() + "); the file is cut short or damaged");
+            fail("its pixels cannot be read" + (file_.error().empty() ? "" : " (" + file_.error() + ")") +
+                 "; the file is cut short or damaged");
     }
 
     // The same of the channels that are wanted, as RGB texels with rows of `row_pixels`.

@@ -83,8 +83,11 @@ TEST(FloatMap, WhatIsUnusualIsLeftToOpenImageIO) {
         write_bytes(path, header + rest);
         return is_float_map(path);
     };
-    for (const char* usual : {"PF\n4 2\n-1.0\n", "PF\n4 2\n-1\n", "PF\n4 2\n-1.000000\n", "PF\n1 8\n-1.\n"})
+    for (const char* usual : {"PF\n4 2\n-1.0\n", "PF\n4 2\n-1\n", "PF\n4 2\n-1.000000\n", "PF\n1 8\n-1.\n",
+                              "PF\r\n4 2\r\n-1.0\r\n", "PF\n4 2 \n-1.0 \n"}) {
         EXPECT_TRUE(is_ours(usual, pixels)) << usual;
+        EXPECT_FLOAT_EQ(input::read_probe(path, {input::Projection::latlong}).rgb.back(), 0.747059f) << usual;
+    }
     for (const char* other : {"PF\n4 2\n1.0\n",
                               "PF\n4 2\n-2.0\n",
                               "PF\n4 2\n-1.5\n",
@@ -93,7 +96,8 @@ TEST(FloatMap, WhatIsUnusualIsLeftToOpenImageIO) {
                               "P6\n4 8\n255\n",
                               "PF\n# by hand\n4 2\n-1.0\n",
                               "PF 4 2 -1.0\n",
-                              "PF\r\n4 2\r\n-1.0\r\n",
+                              "PF\r4 2\r-1.0\r",
+                              "PF\n4 2\n-1.0 ",
                               "PF\n4  2\n-1.0\n",
                               "PF\n-4 -2\n-1.0\n",
                               "PF\n0 0\n-1.0\n",
