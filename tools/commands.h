@@ -1,4 +1,4 @@
-// The subcommands of `acdf`: one file command_NAME.cpp each, registered by the table in main.cpp.
+// The subcommands of `acdf`: a file or a folder each, registered by the table in program.cpp.
 #pragma once
 
 #include <stdexcept>

@@ -1,45 +1,9 @@
-// The `acdf` program: a table of subcommands, and the one place where errors become exit codes.
-#include "tools/cli/help.h"
-#include "tools/cli/messages.h"
+// The program.
 #include "tools/commands.h"
-
-#include <acdf/layout.h>
-
-#include <CLI/CLI.hpp>
-
-#include <cstdio>
-#include <memory>
-#include <new>
-#include <string>
 
 #include <fcntl.h>
 
 namespace {
-
-using namespace acdf::tools;
-
-// A new subcommand: a file command_NAME.cpp, its add_NAME in commands.h, a line here.
-struct Command {
-    const char* group; // heading in `acdf --help`
-    void (*add)(CLI::App& program, int& exit_code);
-};
-
-constexpr Command commands[] = {
-    {"Start here", add_demo}, {"Make", add_env},         {"Make", add_local},       {"Make", add_brdf},
-    {"Make", add_table},      {"Inspect", add_info},     {"Inspect", add_validate}, {"Inspect", add_measure},
-    {"Inspect", add_plot},    {"Inspect", add_scanline}, {"Inspect", add_render},   {"Inspect", add_sweep},
-    {"Use", add_sample},      {"Use", add_pdf},          {"Use", add_export},       {"Use", add_completion},
-    {"Make", add_batch},
-};
-
-constexpr const char* description =
-    "Compact importance sampling of measured light and reflectance: turns probes into small adaptive CDFs (.acdf), "
-    "measures them exactly, and draws and evaluates samples.";
-
-constexpr const char* footer =
-    "`acdf COMMAND --help` explains a command, with examples.\n\n"
-    "Results go to stdout, messages to stderr; - stands for stdin or stdout.\n"
-    "Exit codes: 0 done, 1 input or I/O error (one line on stderr), 2 wrong usage, 3 `validate` found faults";
 
 // The next file opened would take the place of a stream that is closed, and messages would go into it. What takes
 // it instead cannot be read (stdin) or written (the others): using it remains an error.
@@ -48,75 +12,7 @@ void hold_closed_streams() {
         if (fcntl(stream, F_GETFD) < 0) (void)!open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
 }
 
-// Of libraries: those that it was compiled with.
-std::string version_text() {
-    return "acdf " ACDF_VERSION "\nformat " + std::to_string(ACDF_VERSION_MAJOR) + "." +
-           std::to_string(ACDF_VERSION_MINOR) + "\n" ACDF_LIBRARIES;
-}
-
-// The name with which the user called what failed: "acdf", or "acdf info".
-std::string called(const CLI::App& program) {
-    const auto parsed = program.get_subcommands();
-    return parsed.empty() ? "acdf" : "acdf " + parsed.front()->get_name();
-}
-
-// CLI11 tells an option without its value, or with commas alone, by the name of a type, which may be empty.
-std::string what_is_wrong(const CLI::ParseError& error) {
-    const std::string text = on_one_line(error.what());
-    const std::size_t option = text.find(": 1 required ");
-    return option == std::string::npos ? text : text.substr(0, option) + ": needs a value";
-}
-
-int usage_error(const CLI::App& program, const CLI::ParseError& error) {
-    const std::string name = called(program);
-    say(name + ": " + what_is_wrong(error) + "; see `" + name + " --help`");
-    return exit_usage;
-}
-
-int failure(const std::string& what) {
-    say("acdf: " + what);
-    return exit_failed;
-}
-
-int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code) {
-    try {
-        program.parse(argc, argv);
-        if (program.get_subcommands().empty()) {
-            std::fputs(program.help().c_str(), stderr);
-            return exit_usage;
-        }
-    } catch (const CLI::Success& help_or_version) {
-        return program.exit(help_or_version);
-    } catch (const CLI::ParseError& error) {
-        return usage_error(program, error);
-    } catch (const std::bad_alloc&) {
-        return failure("out of memory; a smaller input or fewer --threads would help");
-    } catch (const std::exception& error) {
-        return failure(error.what());
-    }
-    if (std::fflush(stdout) != 0 || std::ferror(stdout)) return failure("stdout: cannot write all results");
-    return exit_code;
-}
-
 } // namespace
-
-int acdf::tools::run_program(int argc, char** argv) {
-    CLI::App program(description, "acdf");
-    program.formatter(std::make_shared<HelpFormatter>());
-    program.set_version_flag("--version", version_text,
-                             "The versions of this program, of the format it writes, and of its libraries");
-    program.set_help_flag("-h,--help", "Show this help");
-    program.require_subcommand(0, 1);
-    program.footer(footer);
-    int exit_code = exit_done;
-    for (const Command& command : commands) {
-        const std::size_t before = program.get_subcommands({}).size();
-        command.add(program, exit_code);
-        const auto all = program.get_subcommands({});
-        for (std::size_t i = before; i < all.size(); ++i) all[i]->group(command.group);
-    }
-    return parse_and_run(program, argc, argv, exit_code);
-}
 
 int main(int argc, char** argv) {
     hold_closed_streams();

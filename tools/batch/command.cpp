@@ -1,5 +1,6 @@
 // acdf batch: many sources to many files.
 #include "tools/batch/gallery.h"
+#include "tools/batch/job_conversion.h"
 #include "tools/batch/jobs.h"
 #include "tools/batch/memory.h"
 #include "tools/batch/ninja.h"
@@ -8,7 +9,6 @@
 #include "tools/batch/report.h"
 #include "tools/batch/run.h"
 #include "tools/batch/shard.h"
-#include "tools/cli/conversion.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -40,10 +40,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kErrorsShown = 50;
 
-std::unique_ptr<Conversion> make_conversion(const std::string& kind) {
-    return kind == "env" ? env_conversion() : kind == "local" ? local_conversion() : brdf_conversion();
-}
-
 /// Tells errors, a line for each kind of them, and throws where there are any.
 void refuse(const std::vector<std::string>& errors) {
     if (errors.empty()) return;
@@ -67,8 +63,8 @@ void check_setting(const BatchSetting& setting, const std::vector<BatchSetting>&
     job.kind = setting.kind;
     job.options = together.options(*setting.kind, "");
     try {
-        const JobConversion checked(job, make_conversion);
-    } catch (const CLI::ParseError& error) {
+        make_conversion(job);
+    } catch (const OptionError& error) {
         throw CLI::ValidationError(std::string("--set ") + setting.kind->name, error.what());
     }
 }

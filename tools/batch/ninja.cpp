@@ -51,7 +51,7 @@ std::string absolute(const std::string& path) { return fs::absolute(path).lexica
 /// `folder`: where the build file lies.
 std::string edge(const PlannedJob& planned, bool large, const std::string& folder, const MakeConversion& make) {
     const BatchJob& job = planned.job;
-    JobConversion conversion(job, make);
+    const std::shared_ptr<Conversion> conversion = make(job);
     const bool model = job.kind == find_kind("brdf") && input::is_model(job.source);
     const std::string source = model ? job.source : absolute(job.source);
     std::string text = "build " + path_text(job.output) + ": convert" + (model ? "" : " " + path_text(source));

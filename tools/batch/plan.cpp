@@ -57,13 +57,13 @@ public:
 
     Conversion& of(const BatchJob& job) {
         if (!last_ || job.kind != job_.kind || job.options != job_.options || job.base != job_.base) {
-            auto next = std::make_unique<JobConversion>(job, make_);
-            text_ = (*next)->option_text(); // reads a scene
+            std::shared_ptr<Conversion> next = make_(job);
+            text_ = next->option_text(); // reads a scene
             last_ = std::move(next);
             job_ = job;
         }
-        (*last_)->source = job.source;
-        return **last_;
+        last_->source = job.source;
+        return *last_;
     }
 
     /// Of the last conversion.
@@ -72,7 +72,7 @@ public:
 private:
     const MakeConversion& make_;
     BatchJob job_;
-    std::unique_ptr<JobConversion> last_;
+    std::shared_ptr<Conversion> last_;
     std::string text_;
 };
 
@@ -119,18 +119,6 @@ void look_at(PlannedJob& planned, const std::string& folder, const PlanOptions& 
 
 } // namespace
 
-JobConversion::JobConversion(const BatchJob& job, const MakeConversion& make)
-    : conversion_(make(job.kind->name)), command_("", job.kind->name) {
-    command_.set_help_flag();
-    conversion_->add_options(command_);
-    std::vector<std::string> reversed(job.options.rbegin(), job.options.rend()); // as CLI11 wants it
-    command_.parse(std::move(reversed));
-    conversion_->source = job.source;
-    for (std::string* file : conversion_->files())
-        if (file != &conversion_->source) *file = (fs::path(job.base) / *file).string();
-    conversion_->check();
-}
-
 void check_options(BatchJobs& jobs, const MakeConversion& make) {
     std::map<std::vector<std::string>, std::string> seen; // what is wrong with them
     for (const BatchJob& job : jobs.jobs) {
@@ -138,8 +126,8 @@ void check_options(BatchJobs& jobs, const MakeConversion& make) {
         key.insert(key.end(), {job.kind->name, job.base});
         const auto [found, is_new] = seen.emplace(std::move(key), "");
         if (is_new) try {
-                JobConversion(job, make)->option_text(); // reads a scene
-            } catch (const CLI::ParseError& error) {
+                make(job)->option_text(); // reads a scene
+            } catch (const OptionError& error) {
                 found->second = std::string("options of ") + job.kind->name + ": " + on_one_line(error.what());
             } catch (const std::runtime_error& error) {
                 found->second = on_one_line(error.what());

@@ -4,32 +4,22 @@
 #include "tools/batch/jobs.h"
 #include "tools/cli/conversion.h"
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace acdf::tools {
 
-/// A new conversion of the kind named so.
-using MakeConversion = std::function<std::unique_ptr<Conversion>(const std::string& kind)>;
-
-/// A job's conversion with its options set. Throws CLI::ParseError where they are none of the kind's or contradict
-/// each other.
-class JobConversion {
-public:
-    JobConversion(const BatchJob& job, const MakeConversion& make);
-
-    Conversion* operator->() { return conversion_.get(); }
-    Conversion& operator*() { return *conversion_; }
-
-private:
-    std::unique_ptr<Conversion> conversion_;
-    CLI::App command_;
+/// Options of a job that are none of its kind's, or contradict each other.
+struct OptionError : std::runtime_error {
+    using std::runtime_error::runtime_error;
 };
+
+/// A job's conversion with its options set. Throws OptionError.
+using MakeConversion = std::function<std::shared_ptr<Conversion>(const BatchJob& job)>;
 
 /// A job, and whether it is to be done.
 struct PlannedJob {

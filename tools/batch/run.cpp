@@ -47,7 +47,7 @@ JobResult result_of(const PlannedJob& planned) {
 
 void convert(const BatchJob& job, const std::string& folder, const MakeConversion& make,
              const build::Progress& progress, JobResult& result) {
-    JobConversion conversion(job, make);
+    const std::shared_ptr<Conversion> conversion = make(job);
     const fs::path path = fs::path(folder) / job.output;
     fs::create_directories(path.parent_path());
     const Stopwatch watch{result.seconds}; // the job's own work

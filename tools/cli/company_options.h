@@ -3,17 +3,11 @@
 
 #include <acdf/builder.h>
 
-#include <CLI/CLI.hpp>
-
-#include <string>
+namespace CLI {
+class App;
+}
 
 namespace acdf::tools {
-
-/// "2:1" as samples of the file and of its company; false for anything else, and out of [0.001, 1000].
-bool parse_shares(const std::string& text, builder::Company& company);
-/// "cosine", "brdf", "mean" and "none"; "balance" and "power". False for anything else.
-bool parse_company(const std::string& text, builder::Company& company);
-bool parse_heuristic(const std::string& text, builder::Company& company);
 
 /// `mean`: whether there is --with mean.
 void add_company(CLI::App& command, builder::Company& company, bool mean);

@@ -2,18 +2,16 @@
 #pragma once
 
 #include "tools/commands.h"
+#include "tools/plot/local.h"
 
 #include <acdf/local.h>
 
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <string>
 #include <vector>
 
 namespace acdf::tools {
-
-using Normal = std::array<float, 3>;
 
 inline CLI::Option* add_normal(CLI::App& command, std::vector<float>& normal, const char* group,
                                const char* remark = "") {

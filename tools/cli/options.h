@@ -8,24 +8,11 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
-#include <cstdint>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
 
 namespace acdf::tools {
-
-/// "64x32": two counts from 1 to `most`.
-inline bool parse_pair(const std::string& text, std::uint32_t most, std::uint32_t& first, std::uint32_t& second) {
-    unsigned a = 0, b = 0;
-    int end = 0;
-    if (std::sscanf(text.c_str(), "%7ux%7u%n", &a, &b, &end) != 2 || static_cast<std::size_t>(end) != text.size())
-        return false;
-    first = a;
-    second = b;
-    return a >= 1 && b >= 1 && a <= most && b <= most;
-}
 
 inline CLI::Option* add_json(CLI::App& command, bool& json) {
     return command.add_flag("--json", json, "Report as JSON, for scripts: keys are stable, numbers are exact")

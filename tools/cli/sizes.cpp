@@ -63,4 +63,14 @@ std::string to_readable_size(std::uint64_t bytes) {
     return text;
 }
 
+bool parse_pair(const std::string& text, std::uint32_t most, std::uint32_t& first, std::uint32_t& second) {
+    unsigned a = 0, b = 0;
+    int end = 0;
+    if (std::sscanf(text.c_str(), "%7ux%7u%n", &a, &b, &end) != 2 || static_cast<std::size_t>(end) != text.size())
+        return false;
+    first = a;
+    second = b;
+    return a >= 1 && b >= 1 && a <= most && b <= most;
+}
+
 } // namespace acdf::tools

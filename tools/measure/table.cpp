@@ -10,7 +10,7 @@
 #include "tools/cli/noise.h"
 #include "tools/commands.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/Error.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cinttypes>

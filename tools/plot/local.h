@@ -2,7 +2,6 @@
 #pragma once
 
 #include "images/picture.h"
-#include "tools/cli/normal_option.h"
 #include "tools/plot/density.h"
 
 #include <acdf/reader.h>
@@ -12,6 +11,8 @@
 #include <vector>
 
 namespace acdf::tools {
+
+using Normal = std::array<float, 3>;
 
 struct PlottedNormal {
     LocalEnvironmentView local;

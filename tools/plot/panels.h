@@ -2,7 +2,7 @@
 #pragma once
 
 #include "images/picture.h"
-#include "tools/cli/normal_option.h"
+#include "tools/plot/local.h"
 
 #include <string>
 #include <vector>

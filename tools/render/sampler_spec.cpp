@@ -1,7 +1,6 @@
 #include "tools/render/sampler_spec.h"
 
-#include "tools/cli/company_options.h"
-#include "tools/cli/options.h"
+#include "tools/cli/company_text.h"
 #include "tools/cli/sizes.h"
 
 #include <acdf/cut.h>

@@ -75,7 +75,12 @@ protected:
     std::vector<JobResult> run(int workers, std::uint64_t memory, const BatchWatcher& watcher = {}) {
         return run_jobs(
             plan, folder / ".", {4, workers, memory},
-            [&](const std::string&) { return std::make_unique<Pretended>(stage); }, watcher);
+            [&](const BatchJob& job) {
+                auto conversion = std::make_shared<Pretended>(stage);
+                conversion->source = job.source;
+                return conversion;
+            },
+            watcher);
     }
 };
 

@@ -1,0 +1,42 @@
+#include "tools/batch/job_conversion.h"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+
+namespace acdf::tools {
+namespace {
+
+/// Options are bound to members of the conversion, and `command` must live as long.
+struct ParsedConversion {
+    std::unique_ptr<Conversion> conversion;
+    CLI::App command;
+};
+
+std::unique_ptr<Conversion> conversion_of(const std::string& kind) {
+    return kind == "env" ? env_conversion() : kind == "local" ? local_conversion() : brdf_conversion();
+}
+
+} // namespace
+
+std::shared_ptr<Conversion> make_conversion(const BatchJob& job) {
+    const auto parsed = std::make_shared<ParsedConversion>();
+    parsed->conversion = conversion_of(job.kind->name);
+    Conversion& conversion = *parsed->conversion;
+    parsed->command.name(job.kind->name);
+    parsed->command.set_help_flag();
+    conversion.add_options(parsed->command);
+    std::vector<std::string> reversed(job.options.rbegin(), job.options.rend()); // as CLI11 wants it
+    try {
+        parsed->command.parse(std::move(reversed));
+        conversion.source = job.source;
+        for (std::string* file : conversion.files())
+            if (file != &conversion.source) *file = (std::filesystem::path(job.base) / *file).string();
+        conversion.check();
+    } catch (const CLI::ParseError& error) {
+        throw OptionError(error.what());
+    }
+    return {parsed, &conversion};
+}
+
+} // namespace acdf::tools
