@@ -49,7 +49,7 @@ end_to_install_for_tests() {
 
 check_formatting() {
     find format lib tools tests docs \( -name '*.h' -o -name '*.c' -o -name '*.cpp' \) -print0 |
-        xargs -0 clang-format --dry-run -Werror
+        xargs -0 -n 50 -P "$jobs" clang-format --dry-run -Werror
 }
 
 run_sanitized_tests() {
