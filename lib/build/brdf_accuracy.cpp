@@ -78,12 +78,42 @@ void rounded(const double direction[3], float out[3]) {
     acdf_as_given(given, out);
 }
 
-/// Half-vectors around the view's azimuth; theta_h in steps of its square root. `density(wi)` is that of the view
-/// wo.
-template <typename Density>
-ViewAccuracy measure_view(const Density& density, const compress::Reflected& reflected, const compress::View& view,
-                          const double wo[3], std::uint32_t columns, std::uint32_t rows) {
-    ViewSums sums;
+/// What the relative variance of a view is made from, alone; the same sums as those of ViewSums.
+class VarianceSums {
+public:
+    void add(double f, double p, double measure, double cosine) {
+        if (cosine <= 0.0) {
+            below_.add(p * measure);
+            return;
+        }
+        above_.add(p * measure);
+        albedo_.add(f * measure);
+        if (!(f > 0.0)) return;
+        if (p > 0.0) second_.add(f * f / p * measure);
+        else ++violations_;
+    }
+    ViewAccuracy result() const {
+        ViewAccuracy out;
+        out.albedo = albedo_.value();
+        out.integral = above_.value() + below_.value();
+        out.support_violations = violations_;
+        if (!(out.albedo > 0.0)) return out;
+        out.relative_variance =
+            violations_ > 0 ? std::numeric_limits<double>::infinity()
+                            : std::max(0.0, second_.value() * out.integral / (out.albedo * out.albedo) - 1.0);
+        return out;
+    }
+
+private:
+    compress::Sum albedo_, above_, below_, second_;
+    std::uint64_t violations_ = 0;
+};
+
+/// Half-vectors around the view's azimuth; theta_h in steps of its square root. Calls visit(wi, measure) for each,
+/// row by row.
+template <typename Visit>
+void for_each_half_vector(const compress::View& view, const double wo[3], std::uint32_t columns, std::uint32_t rows,
+                          const Visit& visit) {
     std::vector<std::array<double, 2>> azimuth;
     for (std::uint32_t c = 0; c < columns; ++c) {
         const double phi = view.phi + 2.0 * ACDF_PI * (c + 0.5) / columns;
@@ -98,13 +128,13 @@ ViewAccuracy measure_view(const Density& density, const compress::Reflected& ref
             const double h[3] = {sine * azimuth[c][0], sine * azimuth[c][1], hz};
             const double dot = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
             const double wi[3] = {2.0 * dot * h[0] - wo[0], 2.0 * dot * h[1] - wo[1], 2.0 * dot * h[2] - wo[2]};
-            const double p = density(wi);
-            sums.add(wi[2] > 0.0 ? reflected(wo, wi) : 0.0, p, measure * 4.0 * std::abs(dot), wi[2]);
+            visit(wi, measure * 4.0 * std::abs(dot));
         }
     }
-    ViewAccuracy out = sums.result();
-    out.view = view;
-    return out;
+}
+
+double light_above(const compress::Reflected& reflected, const double wo[3], const double wi[3]) {
+    return wi[2] > 0.0 ? reflected(wo, wi) : 0.0;
 }
 
 } // namespace
@@ -128,9 +158,34 @@ std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compre
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
-        const auto of_view = [&](const double wi[3]) { return density(wo, wi); };
-        out[v] = measure_view(of_view, reflected, views[v], wo, columns, rows);
+        ViewSums sums;
+        for_each_half_vector(views[v], wo, columns, rows, [&](const double wi[3], double measure) {
+            sums.add(light_above(reflected, wo, wi), density(wo, wi), measure, wi[2]);
+        });
+        out[v] = sums.result();
+        out[v].view = views[v];
     });
+    return out;
+}
+
+std::vector<double> relative_variances(const std::vector<ViewDensity>& densities,
+                                       const compress::Reflected& reflected,
+                                       const std::vector<compress::View>& views, std::uint32_t columns,
+                                       std::uint32_t rows) {
+    std::vector<std::vector<ViewAccuracy>> measured(densities.size(), std::vector<ViewAccuracy>(views.size()));
+    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+        double wo[3];
+        views[v].direction(wo);
+        std::vector<VarianceSums> sums(densities.size());
+        for_each_half_vector(views[v], wo, columns, rows, [&](const double wi[3], double measure) {
+            const double f = light_above(reflected, wo, wi);
+            for (std::size_t d = 0; d < densities.size(); ++d) sums[d].add(f, densities[d](wo, wi), measure, wi[2]);
+        });
+        for (std::size_t d = 0; d < densities.size(); ++d) measured[d][v] = sums[d].result();
+    });
+    std::vector<double> out;
+    for (const std::vector<ViewAccuracy>& of_density : measured)
+        out.push_back(summary(of_density).relative_variance);
     return out;
 }
 
@@ -147,14 +202,45 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
         rounded(wo, o);
         AcdfBrdfView view; // looked up once
         const bool seen = acdf_brdf_view(&brdf, o, &view) != 0;
-        const auto of_view = [&](const double wi[3]) {
+        ViewSums sums;
+        for_each_half_vector(views[v], wo, columns, rows, [&](const double wi[3], double measure) {
             float i[3];
             rounded(wi, i);
-            return seen ? double{acdf_brdf_view_pdf(&brdf, &view, i)} : 0.0;
-        };
-        out[v] = measure_view(of_view, reflected, views[v], wo, columns, rows);
+            const double p = seen ? double{acdf_brdf_view_pdf(&brdf, &view, i)} : 0.0;
+            sums.add(light_above(reflected, wo, wi), p, measure, wi[2]);
+        });
+        out[v] = sums.result();
+        out[v].view = views[v];
     });
     return out;
+}
+
+ReflectedViews::ReflectedViews(const compress::Reflected& reflected, const std::vector<compress::View>& views,
+                               std::uint32_t columns, std::uint32_t rows)
+    : views_(views), columns_(columns), rows_(rows), light_(views.size()) {
+    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+        double wo[3];
+        views[v].direction(wo);
+        light_[v].reserve(std::size_t{columns} * rows);
+        for_each_half_vector(views[v], wo, columns, rows, [&](const double wi[3], double) {
+            light_[v].push_back(light_above(reflected, wo, wi));
+        });
+    });
+}
+
+double ReflectedViews::relative_variance(const ViewDensity& density) const {
+    std::vector<ViewAccuracy> out(views_.size());
+    tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t v) {
+        double wo[3];
+        views_[v].direction(wo);
+        VarianceSums sums;
+        const double* light = light_[v].data();
+        for_each_half_vector(views_[v], wo, columns_, rows_, [&](const double wi[3], double measure) {
+            sums.add(*light++, density(wo, wi), measure, wi[2]);
+        });
+        out[v] = sums.result();
+    });
+    return summary(out).relative_variance;
 }
 
 std::vector<ViewAccuracy> with_lost_samples(std::vector<ViewAccuracy> views) {

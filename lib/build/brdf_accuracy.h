@@ -53,6 +53,28 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
                                         const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                         std::uint32_t rows = 601);
 
+/// summary(measure_views(density, ...)).relative_variance of several densities, which throws alike: what is
+/// reflected is looked up once for all of them.
+std::vector<double> relative_variances(const std::vector<ViewDensity>& densities,
+                                       const compress::Reflected& reflected,
+                                       const std::vector<compress::View>& views, std::uint32_t columns = 251,
+                                       std::uint32_t rows = 601);
+
+/// What views reflect over a grid of measure_views, looked up once: for searches that try many densities. Takes
+/// eight bytes a view and half-vector.
+class ReflectedViews {
+public:
+    ReflectedViews(const compress::Reflected& reflected, const std::vector<compress::View>& views,
+                   std::uint32_t columns, std::uint32_t rows);
+    /// That of summary(measure_views(density, ...)), which throws alike.
+    double relative_variance(const ViewDensity& density) const;
+
+private:
+    std::vector<compress::View> views_;
+    std::uint32_t columns_, rows_;
+    std::vector<std::vector<double>> light_; ///< one a view
+};
+
 /// The same of a density that integrates to less than 1 because some of its samples are lost: what the integral
 /// lacks is variance.
 std::vector<ViewAccuracy> with_lost_samples(std::vector<ViewAccuracy> views);

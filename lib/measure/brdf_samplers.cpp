@@ -68,10 +68,10 @@ double GgxSampler::pdf(const double wo[3], const double wi[3]) const {
 
 GgxFit best_ggx(const compress::Reflected& reflected, const std::vector<compress::View>& views,
                 std::uint32_t columns, std::uint32_t rows) {
+    const build::ReflectedViews light(reflected, views, columns, rows);
     const auto cost = [&](double x) {
         const GgxSampler ggx(std::exp(x));
-        const build::ViewDensity density = [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); };
-        return build::summary(build::measure_views(density, reflected, views, columns, rows)).relative_variance;
+        return light.relative_variance([&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); });
     };
     // A coarse scan first: the cost of a lobe over a pedestal can have two valleys.
     constexpr int scan = 12;

@@ -22,22 +22,27 @@ inline double dot(const float a[3], const float b[3]) {
 }
 inline double length(const float a[3]) { return std::sqrt(dot(a, a)); }
 
+/// An angle, with what is asked of it again and again.
+struct Angle {
+    double at, sine, cosine;
+
+    explicit Angle(double radians) : at(radians), sine(std::sin(radians)), cosine(std::cos(radians)) {}
+    double sine_square() const { return 0.5 * (at - sine * cosine); } ///< the integral of the square of the sine
+};
+
 /// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where
 /// no part is below the horizon, else of quarters, down to a 500th of a radian.
-inline double clamped_cosine(const double n[3], double phi0, double phi1, double theta0, double theta1) {
-    const auto cosine = [&](double phi, double theta) {
-        return std::sin(theta) * (n[0] * std::cos(phi) + n[1] * std::sin(phi)) + n[2] * std::cos(theta);
-    };
-    const double phi = 0.5 * (phi0 + phi1), theta = 0.5 * (theta0 + theta1);
-    const double reach = 0.5 * (std::fabs(phi0 - phi1) + std::fabs(theta1 - theta0)), middle = cosine(phi, theta);
+inline double clamped_cosine(const double n[3], const Angle& phi0, const Angle& phi1, const Angle& theta0,
+                             const Angle& theta1) {
+    const Angle phi(0.5 * (phi0.at + phi1.at)), theta(0.5 * (theta0.at + theta1.at));
+    const double reach = 0.5 * (std::fabs(phi0.at - phi1.at) + std::fabs(theta1.at - theta0.at));
+    const double middle = theta.sine * (n[0] * phi.cosine + n[1] * phi.sine) + n[2] * theta.cosine;
     if (middle <= -reach) return 0.0;
     if (middle >= reach || reach < 2e-3) {
         if (middle <= 0.0) return 0.0;
-        const auto sine_square = [](double t) { return 0.5 * (t - std::sin(t) * std::cos(t)); };
-        return (n[0] * (std::sin(phi0) - std::sin(phi1)) - n[1] * (std::cos(phi0) - std::cos(phi1))) *
-                   (sine_square(theta1) - sine_square(theta0)) +
-               n[2] * (phi0 - phi1) * 0.5 *
-                   (std::sin(theta1) * std::sin(theta1) - std::sin(theta0) * std::sin(theta0));
+        return (n[0] * (phi0.sine - phi1.sine) - n[1] * (phi0.cosine - phi1.cosine)) *
+                   (theta1.sine_square() - theta0.sine_square()) +
+               n[2] * (phi0.at - phi1.at) * 0.5 * (theta1.sine * theta1.sine - theta0.sine * theta0.sine);
     }
     return clamped_cosine(n, phi0, phi, theta0, theta) + clamped_cosine(n, phi, phi1, theta0, theta) +
            clamped_cosine(n, phi0, phi, theta, theta1) + clamped_cosine(n, phi, phi1, theta, theta1);
@@ -52,17 +57,18 @@ public:
                 for (std::uint32_t c = 0; c < target.columns; ++c) squares_.push_back(square(c, r));
             return;
         }
-        const auto sine_square = [](double t) { return 0.5 * (t - std::sin(t) * std::cos(t)); };
+        for (std::uint32_t c = 0; c <= target.columns; ++c)
+            phi_.push_back(Angle(kPi - 2.0 * kPi * c / target.columns));
+        for (std::uint32_t r = 0; r <= target.rows; ++r) theta_.push_back(Angle(kPi * r / target.rows));
         for (std::uint32_t c = 0; c < target.columns; ++c) {
-            const double phi0 = phi(c), phi1 = phi(c + 1), middle = 0.5 * (phi0 + phi1);
-            columns_.push_back({std::cos(middle), std::sin(middle), std::sin(phi0) - std::sin(phi1),
-                                std::cos(phi0) - std::cos(phi1)});
+            const Angle &phi0 = phi_[c], &phi1 = phi_[c + 1], middle(0.5 * (phi0.at + phi1.at));
+            columns_.push_back({middle.cosine, middle.sine, phi0.sine - phi1.sine, phi0.cosine - phi1.cosine});
         }
         for (std::uint32_t r = 0; r < target.rows; ++r) {
-            const double theta0 = theta(r), theta1 = theta(r + 1), middle = 0.5 * (theta0 + theta1);
-            const double squares = std::sin(theta1) * std::sin(theta1) - std::sin(theta0) * std::sin(theta0);
-            rows_.push_back({std::cos(middle), std::sin(middle), sine_square(theta1) - sine_square(theta0),
-                             (phi(0) - phi(1)) * 0.5 * squares});
+            const Angle &theta0 = theta_[r], &theta1 = theta_[r + 1], middle(0.5 * (theta0.at + theta1.at));
+            const double squares = theta1.sine * theta1.sine - theta0.sine * theta0.sine;
+            rows_.push_back({middle.cosine, middle.sine, theta1.sine_square() - theta0.sine_square(),
+                             (phi_[0].at - phi_[1].at) * 0.5 * squares});
         }
     }
 
@@ -85,7 +91,7 @@ public:
         const double middle = y.sine * (n[0] * x.cosine + n[1] * x.sine) + n[2] * y.cosine;
         if (middle <= -reach) return 0.0;
         if (middle >= reach) return (n[0] * x.first - n[1] * x.second) * y.first + n[2] * y.second;
-        return clamped_cosine(n, phi(column), phi(column + 1), theta(row), theta(row + 1));
+        return clamped_cosine(n, phi_[column], phi_[column + 1], theta_[row], theta_[row + 1]);
     }
 
 private:
@@ -99,8 +105,6 @@ private:
     };
 
     bool octahedral() const { return target_.parameterization == ACDF_PARAM_OCTAHEDRAL; }
-    double phi(std::uint32_t column) const { return kPi - 2.0 * kPi * column / target_.columns; }
-    double theta(std::uint32_t row) const { return kPi * row / target_.rows; }
 
     void direction(std::uint32_t column, std::uint32_t row, int i, double d[3]) const {
         acdf_octahedral_direction((column + (i % 8 + 0.5) / 8) / target_.columns,
@@ -137,6 +141,7 @@ private:
     }
 
     const acdf::compress::Target& target_;
+    std::vector<Angle> phi_, theta_; ///< borders of columns and rows
     std::vector<Axis> columns_, rows_;
     std::vector<Square> squares_;
 };

@@ -31,28 +31,23 @@ struct Rivals {
     double ggx_alpha = 0.0, ggx = 0.0, cosine = 0.0;
 };
 
-double variance_of(const build::ViewDensity& density, const compress::Reflected& reflected,
-                   const std::vector<compress::View>& views) {
-    return build::summary(build::measure_views(density, reflected, views)).relative_variance;
-}
-
-double table_variance(const compress::Reflected& reflected, const input::Brdf& brdf, measure::BrdfTableKind kind,
-                      const std::vector<compress::View>& views, std::size_t& bytes) {
-    const measure::TabulatedBrdf table(reflected, brdf.isotropic, kind);
-    bytes = table.bytes();
-    return variance_of([&](const double wo[3], const double wi[3]) { return table.pdf(wo, wi); }, reflected, views);
-}
-
 Rivals rivals(const compress::Reflected& reflected, const input::Brdf& brdf,
               const std::vector<compress::View>& views) {
+    const measure::TabulatedBrdf mean(reflected, brdf.isotropic, measure::BrdfTableKind::mean),
+        centre(reflected, brdf.isotropic, measure::BrdfTableKind::centre);
     Rivals out;
-    out.table_mean = table_variance(reflected, brdf, measure::BrdfTableKind::mean, views, out.table_bytes);
-    out.table_centre = table_variance(reflected, brdf, measure::BrdfTableKind::centre, views, out.table_bytes);
+    out.table_bytes = mean.bytes();
     out.ggx_alpha = measure::best_ggx(reflected, views).alpha;
     const measure::GgxSampler ggx(out.ggx_alpha);
-    out.ggx =
-        variance_of([&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }, reflected, views);
-    out.cosine = variance_of(measure::CosineSampler::pdf, reflected, views);
+    const std::vector<build::ViewDensity> densities = {
+        [&](const double wo[3], const double wi[3]) { return mean.pdf(wo, wi); },
+        [&](const double wo[3], const double wi[3]) { return centre.pdf(wo, wi); },
+        [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }, measure::CosineSampler::pdf};
+    const std::vector<double> variances = build::relative_variances(densities, reflected, views);
+    out.table_mean = variances[0];
+    out.table_centre = variances[1];
+    out.ggx = variances[2];
+    out.cosine = variances[3];
     return out;
 }
 
