@@ -207,8 +207,9 @@ void File::make_tables() noexcept {
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
     if (kind() == ACDF_KIND_ENVIRONMENT) {
-        cells_ = make_cells(environment().data(), tree_units_, most, allocator_, owned_[2]);
-        if (!cells_) groups_ = make_groups(environment().data(), tree_units_, most, allocator_, owned_[2]);
+        const TreeSurvey survey(environment().data(), tree_units_);
+        cells_ = make_cells(environment().data(), survey, most, allocator_, owned_[2]);
+        if (!cells_) groups_ = make_groups(environment().data(), survey, most, allocator_, owned_[2]);
     }
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);

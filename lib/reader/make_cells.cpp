@@ -22,70 +22,86 @@ constexpr std::size_t kLeastBytes = 84;          // a cell, with its part of bot
 constexpr std::size_t kLeastDirectionBytes = 16; // of them, of the grid of directions
 // A draw stays this part of its numbers inside its piece: more than a float rounds.
 constexpr double kPart = 0x1p-21;
+constexpr KeySpan kNoKeys = {1, 0};
 // Tables for shaders may be made for minutes: no part of them may be missing.
 constexpr std::size_t kWholeWork = std::size_t{1} << 14;
+
+// The part of a cell's axis that is in one piece of the sphere.
+struct AxisPart {
+    AcdfPieceAxis axis;
+    KeySpan number, key;
+};
+struct AxisParts {
+    int count;
+    bool drawn;
+    AxisPart part[5]; // set as far as they are counted
+};
 
 class CellsMaker {
 public:
     /// total: tables that answer always.
-    CellsMaker(const AcdfEnvironment& environment, u32 tree_units, bool total)
-        : environment_(environment), sides_(acdf_environment_grid(&environment)),
-          most_steps_(2 * std::size_t{tree_units} + 64), total_(total) {}
+    CellsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, bool total)
+        : environment_(environment), survey_(survey), sides_(acdf_environment_grid(&environment)), total_(total) {}
 
     /// False where there can be no tables, or none of at most so many bytes.
     bool gather(std::size_t most_bytes);
     AcdfCells* assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block);
 
 private:
-    bool count(u32 at);
-    bool add(const Cell& cell);
-    void add_piece(const Side& azimuth, const Side& height, float pdf);
+    bool add(const Cell& cell, u32 axis, bool same);
+    bool add_whole(const Cell& cell);
+    void cut(const Cell& cell, u32 axis);
+    void add_piece(const AxisPart& azimuth, const AxisPart& height, float pdf);
     void add_whole_piece(const Side& azimuth, const Side& height, float pdf);
 
     AcdfEnvironment environment_;
+    const TreeSurvey& survey_;
     Sides sides_;
-    std::size_t most_steps_, steps_ = 0, cells_ = 0;
     bool total_;
     Growable<AcdfPiece> pieces_;
     Growable<AcdfPieceEnds> ends_;
     Growable<float> densities_;
-    Growable<KeyBox> numbers_, keys_;
+    KeyBoxes numbers_, keys_;
+    AxisParts parts_[2] = {}; ///< of the last cell's axes
 };
 
 bool CellsMaker::gather(std::size_t most_bytes) {
     const Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows},
                         false, false};
-    if (!count(environment_.root) || cells_ * kLeastBytes > most_bytes) return false;
-    const std::size_t about = cells_ + cells_ / 16 + 64; // pieces
+    if (!survey_.done()) return false;
+    const std::size_t cells = survey_.cells(), about = cells + cells / 16 + 64; // pieces
+    if (cells > kMostPieces || cells * kLeastBytes > most_bytes) return false;  // before any work is spent on them
     if (!(pieces_.reserve(about) && densities_.reserve(about) && numbers_.reserve(about) && keys_.reserve(about)))
         return false;
-    const bool done =
-        sides_.remember(most_steps_) &&
-        each_cell(environment_.tree, environment_.root, whole, [&](const Cell& cell) { return add(cell); }) &&
-        pieces_.size() <= kMostPieces;
+    const bool done = sides_.remember(survey_.most_steps()) &&
+                      each_cell(environment_.tree, environment_.root, whole,
+                                [&](const Cell& above, u32 axis, const CellPart& part, bool same) {
+                                    const Cell cell = part.in(above, axis);
+                                    return total_ ? add_whole(cell) : add(cell, axis, same);
+                                }) &&
+                      pieces_.size() <= kMostPieces;
     return done &&
            !(pieces_.failed() || ends_.failed() || densities_.failed() || numbers_.failed() || keys_.failed());
 }
 
-// Whether the cells are few enough, in proportion to the tree, and without tilts: before any work is spent on them.
-bool CellsMaker::count(u32 at) {
-    const AcdfCurve curve = acdf_curve_at(environment_.tree, at);
-    if (curve.tilts) return false;
-    for (u32 i = 0; i < curve.segments; ++i) {
-        const u32 link = acdf_curve_link(&curve, i);
-        cells_ += link == 0;
-        if (++steps_ > most_steps_ || cells_ > kMostPieces || (link != 0 && !count(at + link))) return false;
-    }
+// Where `same`, the cell is where the last one was but for `along`: the other axis is cut as it was.
+bool CellsMaker::add(const Cell& cell, u32 along, bool same) {
+    if (pieces_.size() > kMostPieces) return false;
+    const float pdf = sides_.density(cell);
+    cut(cell, along);
+    if (!same || parts_[1 - along].drawn == cell.dark) cut(cell, 1 - along);
+    for (int r = 0; r < parts_[1].count; ++r)
+        for (int c = 0; c < parts_[0].count; ++c) add_piece(parts_[0].part[c], parts_[1].part[r], pdf);
     return true;
 }
 
-bool CellsMaker::add(const Cell& cell) {
+bool CellsMaker::add_whole(const Cell& cell) {
     if (pieces_.size() > kMostPieces) return false;
     const float pdf = sides_.density(cell);
     Side columns[5], rows[2]; // set as far as they are counted
     const int column_count = sides_.azimuths(cell, columns), row_count = sides_.heights(cell, rows);
     for (int r = 0; r < row_count; ++r)
-        for (int c = 0; c < column_count; ++c) add_piece(columns[c], rows[r], pdf);
+        for (int c = 0; c < column_count; ++c) add_whole_piece(columns[c], rows[r], pdf);
     return true;
 }
 
@@ -137,9 +153,9 @@ AcdfPieceAxis narrow_axis(const Side& side, const Steps& all, bool down) {
 }
 
 // What rounding makes of the ends of a piece must be in its keys: one more on each side.
-void widen(u32& low, u32& high, u32 first, u32 last) {
-    low = low > first ? std::min(low, last) - 1 : first;
-    high = high < last ? std::max(high, first) + 1 : last;
+void widen(KeySpan& key, u32 first, u32 last) {
+    key.low = key.low > first ? std::min(key.low, last) - 1 : first;
+    key.high = key.high < last ? std::max(key.high, first) + 1 : last;
 }
 
 // Everything in a piece: no step of a number and no direction between two of them.
@@ -164,7 +180,7 @@ void CellsMaker::add_whole_piece(const Side& azimuth, const Side& height, float 
     const Steps steps[2] = {all_steps(azimuth), all_steps(height)};
     const bool drawn = pdf > 0.0f && steps[0].first <= steps[0].last && steps[1].first <= steps[1].last;
     AcdfPieceAxis axes[2];
-    KeyBox number = {{1, 1}, {0, 0}}, key;
+    KeySpan number[2] = {kNoKeys, kNoKeys}, key[2];
     for (int axis = 0; axis < 2; ++axis) {
         const Side& side = *sides[axis];
         const bool down = axis == 1 && side.piece == 1;
@@ -174,46 +190,42 @@ void CellsMaker::add_whole_piece(const Side& azimuth, const Side& height, float 
                      : few  ? narrow_axis(side, steps[axis], down)
                             : drawn_axis(side, sure, down);
         axes[axis].width = tagged(axes[axis].width, axis == 0 ? 3u : 1u, side.piece);
-        if (drawn) {
-            number.low[axis] = static_cast<u32>(steps[axis].first);
-            number.high[axis] = static_cast<u32>(steps[axis].last);
-        }
-        key.low[axis] = side.first_key();
-        key.high[axis] = side.last_key();
+        if (drawn) number[axis] = {static_cast<u32>(steps[axis].first), static_cast<u32>(steps[axis].last)};
+        key[axis] = {side.first_key(), side.last_key()};
     }
-    widen(key.low[0], key.high[0], azimuth.piece << 23, ((azimuth.piece + 1) << 23) - 1);
-    widen(key.low[1], key.high[1], height.piece << 24, ((height.piece + 1) << 24) - 1);
+    widen(key[0], azimuth.piece << 23, ((azimuth.piece + 1) << 23) - 1);
+    widen(key[1], height.piece << 24, ((height.piece + 1) << 24) - 1);
     pieces_.add({axes[0], axes[1]});
     ends_.add(ends_of(azimuth, height, steps));
     densities_.add(pdf);
-    numbers_.add(number);
-    keys_.add(key);
+    numbers_.add(number[0], number[1]);
+    keys_.add(key[0], key[1]);
 }
 
-void CellsMaker::add_piece(const Side& azimuth, const Side& height, float pdf) {
-    if (total_) return add_whole_piece(azimuth, height, pdf);
-    const Side* const sides[2] = {&azimuth, &height};
-    AcdfPieceAxis axes[2];
-    KeyBox number, key;
-    bool any[2];
-    for (int axis = 0; axis < 2; ++axis) {
-        const Side& side = *sides[axis];
+// Cuts an axis of a cell at the borders of the pieces of the sphere.
+void CellsMaker::cut(const Cell& cell, u32 axis) {
+    AxisParts& out = parts_[axis];
+    Side sides[5]; // set as far as they are counted
+    out.count = axis == 0 ? sides_.azimuths(cell, sides) : sides_.heights(cell, sides);
+    out.drawn = !cell.dark;
+    for (int i = 0; i < out.count; ++i) {
+        const Side& side = sides[i];
+        AxisPart& part = out.part[i];
         const bool down = axis == 1 && side.piece == 1; // heights are precise at the pole
         const Steps steps = steps_within(side);
-        const bool drawn = pdf > 0.0f && steps.first < steps.last;
-        axes[axis] = drawn ? drawn_axis(side, steps, down) : dark_axis(side, down);
-        any[axis] = axes[axis].width > 0.0f;
-        axes[axis].width = tagged(axes[axis].width, axis == 0 ? 3u : 1u, side.piece);
-        number.low[axis] = drawn ? static_cast<u32>(steps.first) : 1;
-        number.high[axis] = drawn ? static_cast<u32>(steps.last) : 0;
-        key.low[axis] = side.first_key();
-        key.high[axis] = side.last_key();
+        const bool drawn = out.drawn && steps.first < steps.last;
+        part.axis = drawn ? drawn_axis(side, steps, down) : dark_axis(side, down);
+        part.number = drawn ? KeySpan{static_cast<u32>(steps.first), static_cast<u32>(steps.last)} : kNoKeys;
+        part.key = part.axis.width > 0.0f ? KeySpan{side.first_key(), side.last_key()} : kNoKeys;
+        part.axis.width = tagged(part.axis.width, axis == 0 ? 3u : 1u, side.piece);
     }
-    if (!(any[0] && any[1])) key = {{1, 1}, {0, 0}};
-    pieces_.add({axes[0], axes[1]});
+}
+
+void CellsMaker::add_piece(const AxisPart& azimuth, const AxisPart& height, float pdf) {
+    pieces_.add({azimuth.axis, height.axis});
     densities_.add(pdf);
-    numbers_.add(number);
-    keys_.add(key);
+    numbers_.add(azimuth.number, height.number);
+    keys_.add(azimuth.key, height.key);
 }
 
 AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
@@ -221,8 +233,8 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
     const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
     SquaresMaker numbers, directions;
     const std::size_t others = pieces_.bytes() + densities_.bytes() + count * kLeastDirectionBytes;
-    if (others > most_bytes || !numbers.make(numbers_.data(), count, kNumberBits, work, most_bytes - others) ||
-        4 * numbers.words() > most_bytes - others || !directions.make(keys_.data(), count, sides_.key_bits(), work))
+    if (others > most_bytes || !numbers.make(numbers_, kNumberBits, work, most_bytes - others) ||
+        4 * numbers.words() > most_bytes - others || !directions.make(keys_, sides_.key_bits(), work))
         return nullptr;
     if (total_ && !(numbers.complete() && directions.complete())) return nullptr;
     std::size_t words = whole_lines(sizeof(AcdfCells) / 4) + numbers.words() + directions.words();
@@ -248,14 +260,15 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
 
 } // namespace
 
-AcdfCells* make_cells(const AcdfEnvironment& environment, u32 tree_units, std::size_t most_bytes,
+AcdfCells* make_cells(const AcdfEnvironment& environment, const TreeSurvey& survey, std::size_t most_bytes,
                       const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
-    CellsMaker maker(environment, tree_units, false);
+    CellsMaker maker(environment, survey, false);
     return maker.gather(most_bytes) ? maker.assemble(most_bytes, allocator, block) : nullptr;
 }
 
-AcdfCells* make_shader_cells(const AcdfEnvironment& environment, u32 tree_units, AcdfBlock& block) noexcept {
-    CellsMaker maker(environment, tree_units, true);
+AcdfCells* make_shader_cells(const AcdfEnvironment& environment, const TreeSurvey& survey,
+                             AcdfBlock& block) noexcept {
+    CellsMaker maker(environment, survey, true);
     return maker.gather(SIZE_MAX) ? maker.assemble(SIZE_MAX, {}, block) : nullptr;
 }
 

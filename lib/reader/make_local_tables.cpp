@@ -46,7 +46,7 @@ private:
     std::size_t most_bytes_, most_cells_, most_pieces_, cells_ = 0;
     Sides sides_;
     Growable<AcdfTilePiece> pieces_;
-    Growable<KeyBox> keys_;
+    KeyBoxes keys_;
     SquaresMaker directions_;
 };
 
@@ -58,7 +58,7 @@ bool PiecesMaker::gather() {
     if (sizeof(double) * tiles.row_count * tiles.tile_count > most_bytes_) return false;
     const Cell whole = {1.0, {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {env.columns, env.rows}, false, false};
     return sides_.remember(most_cells_) && gather(acdf_blend_root(&local_.blend), whole) &&
-           !(pieces_.failed() || keys_.failed()) && directions_.make(keys_.data(), keys_.size(), sides_.key_bits());
+           !(pieces_.failed() || keys_.failed()) && directions_.make(keys_, sides_.key_bits());
 }
 
 // The cells of all tiles below a node. A path passes at most 48 splits.
@@ -72,7 +72,9 @@ bool PiecesMaker::gather(u32 node, const Cell& box) {
     }
     const u32 tile = node & ~ACDF_TILE_FLAG, root = local_.blend.roots ? local_.blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return add(box, tile);
-    return each_cell(local_.blend.tree, root, box, [&](const Cell& cell) { return add(cell, tile); });
+    return each_cell(local_.blend.tree, root, box, [&](const Cell& above, u32 axis, const CellPart& part, bool) {
+        return add(part.in(above, axis), tile);
+    });
 }
 
 // False where there are too many cells, or more than the file has bytes, as curves may be shared. Those with tilts
@@ -100,7 +102,7 @@ bool PiecesMaker::add(const Cell& cell, u32 tile) {
                          0,
                          probability,
                          area});
-            keys_.add({{azimuth.first_key(), height.first_key()}, {azimuth.last_key(), height.last_key()}});
+            keys_.add({azimuth.first_key(), azimuth.last_key()}, {height.first_key(), height.last_key()});
         }
     return pieces_.size() <= most_pieces_;
 }

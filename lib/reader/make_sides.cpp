@@ -13,18 +13,15 @@ using u32 = std::uint32_t;
 constexpr double kMargin = 0x1p-20;
 constexpr u32 kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
 
+} // namespace
+
 // Tangent of the local azimuth between columns.
-double tangent_of(u32 column, u32 columns) {
+double Sides::tangent_of(u32 column, u32 columns) {
     const std::uint64_t eighths = 8 * std::uint64_t{column};
     const std::uint64_t quarter = (eighths + columns) / (2 * std::uint64_t{columns}); // from phi = pi down
     double sine, cosine;
     acdf_sincospi(0.5 * static_cast<double>(quarter) - 2.0 * column / columns, &sine, &cosine);
     return sine / cosine;
-}
-} // namespace
-
-double Sides::tangent(u32 column) const {
-    return column < tangents_.size() ? tangents_[column] : tangent_of(column, columns_);
 }
 
 Sides::Row Sides::row_of(u32 row, u32 rows) {
@@ -33,7 +30,6 @@ Sides::Row Sides::row_of(u32 row, u32 rows) {
     const double cap = 2.0 * s * s;
     return {acdf_row_z(row, rows), cap, kMargin * std::sqrt(cap * (2.0 - cap)) + kMargin * kMargin};
 }
-Sides::Row Sides::row(u32 row) const { return row < heights_.size() ? heights_[row] : row_of(row, rows_); }
 
 double Sides::height(const Cell& cell) const {
     if (!octahedral()) return row(cell.first[1]).z - row(cell.last[1]).z;
@@ -75,16 +71,19 @@ int Sides::azimuths(const Cell& cell, Side* out) const {
     } pieces[5] = {{0.125, 0.0, 2}, {0.375, 0.25, 1}, {0.625, 0.5, 0}, {0.875, 0.75, 3}, {1.0, 1.0, 2}};
     const u32 first = cell.first[0], last = cell.last[0];
     const double columns = columns_, low = first, high = last;
-    const double number = (cell.high[0] - cell.low[0]) / (high - low); // of a column
-    double from = low;
-    int count = 0;
-    for (const auto& piece : pieces) {
+    const auto number = [&](double at) { // only where the cell is cut: divisions take long
+        return cell.low[0] + (at - low) * ((cell.high[0] - cell.low[0]) / (high - low));
+    };
+    int count = 0, begin = 0;
+    for (int i = 0; i < 4; ++i)
+        begin += low >= pieces[i].end * columns; // without a branch: one piece as often as another
+    for (double from = low; from < high;) {
+        const auto& piece = pieces[begin + count];
         const double end = piece.end * columns, to = std::min(high, end);
-        if (!(from < to)) continue;
         Side& side = out[count++];
         side.piece = piece.quarter;
-        side.low = cell.low[0] + (from - low) * number;
-        side.high = to == high ? cell.high[0] : cell.low[0] + (to - low) * number;
+        side.low = from == low ? cell.low[0] : number(from);
+        side.high = to == high ? cell.high[0] : number(to);
         side.local[0] = 2.0 * ACDF_PI * (piece.middle - from / columns);
         side.local[1] = 2.0 * ACDF_PI * (piece.middle - to / columns);
         side.margin[0] = side.margin[1] = kMargin;
@@ -104,7 +103,9 @@ int Sides::heights(const Cell& cell, Side* out) const {
     if (octahedral()) return square_side(cell, 1, out[0]);
     const Row ends[2] = {row(cell.first[1]), row(cell.last[1])};
     const Row equator = {0.0, 1.0, kMargin};
-    const double number = (cell.high[1] - cell.low[1]) / (ends[0].z - ends[1].z); // of z
+    const auto equator_number = [&] {
+        return cell.low[1] + ends[0].z * ((cell.high[1] - cell.low[1]) / (ends[0].z - ends[1].z));
+    };
     int count = 0;
     for (u32 south = 0; south < 2; ++south) {
         if (south ? !(ends[1].z < 0.0) : !(ends[0].z > 0.0)) continue;
@@ -113,8 +114,8 @@ int Sides::heights(const Cell& cell, Side* out) const {
         Side& side = out[count++];
         side.piece = south;
         side.beyond = static_cast<double>(kSouthKeys) + 1.0;
-        side.low = row[0] == &equator ? cell.low[1] + ends[0].z * number : cell.low[1];
-        side.high = row[1] == &equator ? cell.low[1] + ends[0].z * number : cell.high[1];
+        side.low = row[0] == &equator ? equator_number() : cell.low[1];
+        side.high = row[1] == &equator ? equator_number() : cell.high[1];
         for (int i = 0; i < 2; ++i) {
             side.local[i] = row[i]->cap;
             side.margin[i] = row[i]->margin;

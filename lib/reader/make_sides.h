@@ -19,47 +19,100 @@ struct Cell {
     bool dark, tilted;
 };
 
-/// The border of a curve before segment i, or behind the last one: its cumulative value, and as a part of all.
-struct Cut {
-    std::uint32_t cumulative;
-    double part;
+/// A segment of a curve: the part of a cell that it leaves, along the curve's axis.
+struct CellPart {
+    double share;              ///< of the cell's probability
+    double low, high;          ///< random numbers
+    std::uint32_t first, last; ///< positions
+    bool dark, tilted;
+
+    Cell in(const Cell& above, std::uint32_t axis) const {
+        Cell cell = above;
+        cell.probability *= share;
+        cell.low[axis] = low;
+        cell.high[axis] = high;
+        cell.first[axis] = first;
+        cell.last[axis] = last;
+        cell.dark = dark;
+        cell.tilted = above.tilted || tilted;
+        return cell;
+    }
 };
-inline Cut cut_of(const AcdfCurve& curve, std::uint32_t i) {
-    const std::uint32_t cumulative = acdf_curve_cumulative(&curve, i);
-    return {cumulative, cumulative / static_cast<double>(acdf_curve_maximum(&curve))};
-}
 
-/// The part of the cell `above` that segment i of its curve leaves, between two cuts.
-inline Cell part_of(const Cell& above, const AcdfCurve& curve, std::uint32_t i, const Cut& low, const Cut& high) {
-    const std::uint32_t axis = acdf_curve_axis(&curve), end = acdf_curve_maximum(&curve);
-    const double width = above.high[axis] - above.low[axis];
-    Cell cell = above;
-    cell.dark = high.cumulative == low.cumulative;
-    cell.probability *= static_cast<double>(high.cumulative - low.cumulative) / end;
-    cell.low[axis] = above.low[axis] + width * low.part;
-    if (high.cumulative != end) cell.high[axis] = above.low[axis] + width * high.part;
-    AcdfRange range = {above.first[axis], above.last[axis], 0.0};
-    acdf_curve_narrow(&curve, i, &range);
-    cell.first[axis] = range.low;
-    cell.last[axis] = range.high;
-    cell.tilted = curve.tilts ? above.tilted || range.tilt != 0.0 : above.tilted;
-    return cell;
-}
+/// The segments of a curve in the cell `above` that it divides, one after the other. What is the same for all is
+/// kept by value: it is not to be read again after each store.
+class CellParts {
+public:
+    CellParts(const AcdfCurve& curve, const Cell& above, std::uint32_t first)
+        : curve_(curve), axis_(acdf_curve_axis(&curve)), cumulative_code_(ACDF_CURVE_CUMULATIVE_CODE(curve.header)),
+          position_code_(ACDF_CURVE_POSITION_CODE(curve.header)), maximum_(acdf_curve_maximum(&curve)),
+          all_(maximum_), next_(first), low_(above.low[axis_]), high_(above.high[axis_]), width_(high_ - low_),
+          end_(above.last[axis_]), origin_(position_code_ == 0 ? above.first[axis_] : 0) {
+        if (first == 0) border_ = {0, 0.0, above.first[axis_]};
+        else border_ = border(first);
+    }
+    std::uint32_t axis() const { return axis_; }
+    /// The distance to the child of the next segment; 0: it ends.
+    std::uint32_t link() const { return acdf_curve_link(&curve_, next_); }
+    CellPart next() {
+        const std::uint32_t i = next_++;
+        const Border from = border_;
+        border_ = next_ < curve_.segments ? border(next_) : Border{maximum_, 1.0, end_};
+        return {static_cast<double>(border_.cumulative - from.cumulative) / all_,
+                low_ + width_ * from.part,
+                border_.cumulative != maximum_ ? low_ + width_ * border_.part : high_,
+                from.position,
+                border_.position,
+                border_.cumulative == from.cumulative,
+                curve_.tilts && reinterpret_cast<const std::int16_t*>(curve_.tilts)[i] != 0};
+    }
 
-/// Calls add(cell) for each cell of the tree at `at`, which lies in the cell `above`, in their order, as long as it
-/// returns true. Returns whether it always did. A path passes at most 64 curves.
+private:
+    struct Border {
+        std::uint32_t cumulative;
+        double part; ///< the same as a part of all
+        std::uint32_t position;
+    };
+    Border border(std::uint32_t i) const {
+        const std::uint32_t cumulative = acdf_load(curve_.cumulative, i - 1, cumulative_code_);
+        return {cumulative, cumulative / all_, origin_ + acdf_load(curve_.positions, i - 1, position_code_)};
+    }
+
+    AcdfCurve curve_;
+    std::uint32_t axis_, cumulative_code_, position_code_, maximum_;
+    double all_; ///< the maximum
+    std::uint32_t next_;
+    double low_, high_, width_;
+    std::uint32_t end_, origin_;
+    Border border_;
+};
+
+/// Calls add(above, axis, part, same) for each cell of segments [first, last) of a curve at `at`, which divides
+/// the cell `above`, and of the curves below them, in their order, as long as it returns true. Returns whether it
+/// always did. Where `same`, `above` and `axis` are those of the call before. A path passes at most 64 curves.
 template <class Add>
-bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, const Add& add) {
-    const AcdfCurve curve = acdf_curve_at(tree, at);
-    Cut low = {0, 0.0};
-    for (std::uint32_t i = 0; i < curve.segments; ++i) {
-        const Cut high = cut_of(curve, i + 1);
-        const std::uint32_t link = acdf_curve_link(&curve, i);
-        const Cell cell = part_of(above, curve, i, low, high);
-        if (link == 0 ? !add(cell) : !each_cell(tree, at + link, cell, add)) return false;
-        low = high;
+bool each_cell(const std::uint8_t* tree, std::uint32_t at, const AcdfCurve& curve, std::uint32_t first,
+               std::uint32_t last, const Cell& above, Add& add) {
+    CellParts parts(curve, above, first);
+    bool same = false;
+    for (std::uint32_t i = first; i < last; ++i) {
+        const std::uint32_t link = parts.link();
+        const CellPart part = parts.next();
+        if (link == 0) {
+            if (!add(above, parts.axis(), part, same)) return false;
+        } else {
+            const AcdfCurve below = acdf_curve_at(tree, at + link);
+            if (!each_cell(tree, at + link, below, 0, below.segments, part.in(above, parts.axis()), add))
+                return false;
+        }
+        same = link == 0;
     }
     return true;
+}
+template <class Add>
+bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, Add&& add) {
+    const AcdfCurve curve = acdf_curve_at(tree, at);
+    return each_cell(tree, at, curve, 0, curve.segments, above, add);
 }
 
 /// The part of a cell's side that lies in one piece of the sphere: from low to high random numbers.
@@ -103,8 +156,11 @@ private:
     };
     bool octahedral() const { return acdf_grid_is_octahedral(&grid_) != 0; }
     int square_side(const Cell& cell, int axis, Side& out) const;
-    double tangent(std::uint32_t column) const;
-    Row row(std::uint32_t row) const;
+    double tangent(std::uint32_t column) const {
+        return column < tangents_.size() ? tangents_[column] : tangent_of(column, columns_);
+    }
+    static double tangent_of(std::uint32_t column, std::uint32_t columns);
+    Row row(std::uint32_t row) const { return row < heights_.size() ? heights_[row] : row_of(row, rows_); }
     static Row row_of(std::uint32_t row, std::uint32_t rows);
 
     AcdfGrid grid_;

@@ -16,19 +16,84 @@ constexpr u32 kByteBits = 8;
 constexpr u32 kMostBits = 16;         // of the grid
 constexpr std::size_t kLookedAt = 32; // cells, to choose an axis
 
+constexpr KeySpan kNone = {1, 0};
+
+struct AxisOfBlock {
+    int origin, last, shift; // keys: the first one; the last one, from there; bits that are finer than bytes
+};
+
+// Where the first `count` of sixteen boxes lie in a block, in bytes less 128: lower sides, then upper ones. Keys
+// are looked at modulo 256 steps: in small rectangles there are fewer, and those of neighbours follow.
+#ifdef ACDF_SQUARES_SSE2
+__m128i lesser(__m128i a, __m128i b) {
+    const __m128i above = _mm_cmpgt_epi32(a, b);
+    return _mm_or_si128(_mm_and_si128(above, b), _mm_andnot_si128(above, a));
+}
+
+__m128 two_spans(const KeySpan* spans, const std::uint16_t* listed) {
+    const auto* const low = reinterpret_cast<const __m64*>(spans + listed[0]);
+    const auto* const high = reinterpret_cast<const __m64*>(spans + listed[1]);
+    return _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), low), high);
+}
+
+void set_sides(const AxisOfBlock& along, const KeySpan* spans, const std::uint16_t* listed, int count,
+               std::int8_t* bytes) {
+    const __m128i origin = _mm_set1_epi32(along.origin), last = _mm_set1_epi32(along.last),
+                  zero = _mm_setzero_si128();
+    const __m128i shift = _mm_cvtsi32_si128(along.shift);
+    __m128i low[4], high[4];
+    for (int i = 0; i < 4; ++i) {
+        const __m128 first = two_spans(spans, listed + 4 * i), second = two_spans(spans, listed + 4 * i + 2);
+        const __m128i from = _mm_sub_epi32(_mm_castps_si128(_mm_shuffle_ps(first, second, 0x88)), origin);
+        const __m128i to = _mm_sub_epi32(_mm_castps_si128(_mm_shuffle_ps(first, second, 0xDD)), origin);
+        low[i] = _mm_srl_epi32(_mm_and_si128(from, _mm_cmpgt_epi32(from, zero)), shift);
+        high[i] = _mm_srl_epi32(lesser(to, last), shift);
+    }
+    const __m128i base = _mm_set1_epi8(static_cast<char>((along.origin >> along.shift & 0xFF) - 128));
+    const __m128i numbers = _mm_set_epi8(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    const __m128i there = _mm_cmpgt_epi8(_mm_set1_epi8(static_cast<char>(count)), numbers);
+    const auto bytes_of = [&](const __m128i* side, char otherwise) {
+        const __m128i packed =
+            _mm_packus_epi16(_mm_packs_epi32(side[0], side[1]), _mm_packs_epi32(side[2], side[3]));
+        return _mm_or_si128(_mm_and_si128(there, _mm_add_epi8(packed, base)),
+                            _mm_andnot_si128(there, _mm_set1_epi8(otherwise)));
+    };
+    auto* const out = reinterpret_cast<__m128i*>(bytes);
+    _mm_storeu_si128(out, bytes_of(low, 127));
+    _mm_storeu_si128(out + 1, bytes_of(high, -128));
+}
+#else
+void set_sides(const AxisOfBlock& along, const KeySpan* spans, const std::uint16_t* listed, int count,
+               std::int8_t* bytes) {
+    const int base = (along.origin >> along.shift & 0xFF) - 128;
+    for (int i = 0; i < ACDF_BLOCK_CELLS; ++i) {
+        const KeySpan& span = spans[listed[i]];
+        const int from = std::max(static_cast<int>(span.low) - along.origin, 0);
+        const int to = std::min(static_cast<int>(span.high) - along.origin, along.last);
+        bytes[i] = static_cast<std::int8_t>(i < count ? base + (from >> along.shift) : 127);
+        bytes[ACDF_BLOCK_CELLS + i] = static_cast<std::int8_t>(i < count ? base + (to >> along.shift) : -128);
+    }
+}
+#endif
+
 } // namespace
 
-bool SquaresMaker::make(const KeyBox* boxes, std::size_t count, u32 key_bits, std::size_t work_a_box,
+bool SquaresMaker::make(const KeyBoxes& boxes, u32 key_bits, std::size_t work_a_box,
                         std::size_t most_bytes) noexcept {
-    boxes_ = boxes;
+    const std::size_t count = boxes.size();
+    for (int axis = 0; axis < 2; ++axis) spans_[axis] = boxes.axis(axis);
     most_words_ = most_bytes / 4;
     work_ = work_a_box * (count + ACDF_BLOCK_CELLS);
     const Rectangle whole = {{0, 0}, {key_bits, key_bits}};
+    list_.reserve(4 * count + ACDF_BLOCK_CELLS);
     block(whole, 0); // no cells: the empty one
-    list_.reserve(4 * count);
-    for (std::size_t i = 0; i < count; ++i)
-        if (boxes[i].low[0] <= boxes[i].high[0] && boxes[i].low[1] <= boxes[i].high[1])
-            list_.add(static_cast<std::uint16_t>(i));
+    std::uint16_t* const listed = list_.add(count, 0);
+    std::size_t some = 0;
+    for (std::size_t i = 0; listed && i < count; ++i) {
+        listed[some] = static_cast<std::uint16_t>(i);
+        some += (spans_[0][i].low <= spans_[0][i].high) & (spans_[1][i].low <= spans_[1][i].high);
+    }
+    list_.cut(some);
     u32 bits = 0;
     while (bits < kMostBits && (std::size_t{3} << bits) < 2 * count) ++bits;
     grid_ = shaped(whole, 0, bits, 0);
@@ -44,29 +109,31 @@ SquaresMaker::Grid SquaresMaker::shaped(const Rectangle& rectangle, std::size_t 
     Grid grid = {
         {rectangle.origin[0], rectangle.origin[1]}, {0, 0}, {rectangle.log2[0], rectangle.log2[1]}, number};
     const std::size_t step = 1 + (list_.size() - first) / kLookedAt;
-    u32 low[2][kLookedAt], high[2][kLookedAt];
-    std::size_t count = 0;
-    for (std::size_t k = first; k < list_.size(); k += step, ++count)
+    u32 low[2][kLookedAt] = {}, high[2][kLookedAt] = {}; // those that are not set are cut by nothing
+    for (std::size_t k = first, i = 0; k < list_.size(); k += step, ++i)
         for (int axis = 0; axis < 2; ++axis) {
-            const KeyBox& box = boxes_[list_[k]];
+            const KeySpan& span = spans_[axis][list_[k]];
             const u32 end = rectangle.origin[axis] + ((1u << rectangle.log2[axis]) - 1);
-            low[axis][count] = std::max(box.low[axis], rectangle.origin[axis]);
-            high[axis][count] = std::min(box.high[axis], end);
+            low[axis][i] = std::max(span.low, rectangle.origin[axis]);
+            high[axis][i] = std::min(span.high, end);
         }
+    const auto cut_by_halving = [&](int axis) {
+        const u32 shift = grid.shift[axis];
+        u32 cuts = 0;
+        for (std::size_t k = 0; k < kLookedAt && shift > 0; ++k)
+            cuts += ((high[axis][k] >> (shift - 1)) - (low[axis][k] >> (shift - 1))) -
+                    ((high[axis][k] >> shift) - (low[axis][k] >> shift));
+        return cuts;
+    };
+    u32 cuts[2] = {cut_by_halving(0), cut_by_halving(1)};
     for (u32 i = 0; i < bits; ++i) {
-        u32 cuts[2] = {0, 0};
-        for (int axis = 0; axis < 2; ++axis) {
-            const u32 shift = grid.shift[axis];
-            for (std::size_t k = 0; k < count && shift > 0; ++k)
-                cuts[axis] += ((high[axis][k] >> (shift - 1)) - (low[axis][k] >> (shift - 1))) -
-                              ((high[axis][k] >> shift) - (low[axis][k] >> shift));
-        }
         const int axis = grid.shift[0] == 0   ? 1
                          : grid.shift[1] == 0 ? 0
                          : cuts[0] != cuts[1] ? (cuts[0] < cuts[1] ? 0 : 1)
                                               : (grid.shift[0] >= grid.shift[1] ? 0 : 1);
         --grid.shift[axis];
         ++grid.bits[axis];
+        cuts[axis] = cut_by_halving(axis);
     }
     return grid;
 }
@@ -85,19 +152,21 @@ void SquaresMaker::divide(const Grid& grid, const Rectangle& rectangle, std::siz
     Rectangle half = rectangle;
     const u32 middle = rectangle.origin[axis] + (1u << --half.log2[axis]);
     if (!list_.reserve(end + 2 * count + 1)) return;
-    std::uint16_t* lower = list_.data() + end;
-    std::uint16_t* upper = lower + count;
-    for (std::size_t i = first; i < end; ++i) {
-        const std::uint16_t cell = list_[i];
-        *lower = *upper = cell;
-        lower += boxes_[cell].low[axis] < middle;
-        upper += boxes_[cell].high[axis] >= middle;
+    const KeySpan* const spans = spans_[axis];
+    const std::uint16_t* const cells = list_.data() + first;
+    std::uint16_t* const lower = list_.data() + end;
+    std::uint16_t* const upper = lower + count;
+    std::size_t lowers = 0, uppers = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint16_t cell = cells[i];
+        lower[lowers] = upper[uppers] = cell;
+        lowers += spans[cell].low < middle;
+        uppers += spans[cell].high >= middle;
     }
-    const std::size_t lower_end = static_cast<std::size_t>(lower - list_.data());
-    list_.cut(static_cast<std::size_t>(upper - list_.data()));
+    list_.cut(end + count + uppers);
     half.origin[axis] = middle;
     divide(grid, half, end + count);
-    list_.cut(lower_end);
+    list_.cut(end + lowers);
     half.origin[axis] = rectangle.origin[axis];
     divide(grid, half, end);
     list_.cut(end);
@@ -112,9 +181,11 @@ int SquaresMaker::best_axis(const Grid& grid, const Rectangle& rectangle, std::s
     std::size_t cut[2] = {0, 0};
     const std::size_t step = 1 + (list_.size() - first) / kLookedAt;
     for (std::size_t i = first; i < list_.size(); i += step) {
-        const KeyBox& box = boxes_[list_[i]];
-        for (int axis = 0; axis < 2; ++axis)
-            cut[axis] += (box.low[axis] < middle[axis]) & (box.high[axis] >= middle[axis]);
+        for (int axis = 0; axis < 2; ++axis) { // begins below and does not end there
+            const KeySpan& span = spans_[axis][list_[i]];
+            cut[axis] += span.low < middle[axis];
+            cut[axis] -= span.high < middle[axis];
+        }
     }
     if (cut[0] != cut[1]) return cut[0] < cut[1] ? 0 : 1;
     return rectangle.log2[0] >= rectangle.log2[1] ? 0 : 1;
@@ -135,7 +206,7 @@ void SquaresMaker::refine(const Grid& grid, const Rectangle& rectangle, std::siz
 
 /// Adds a block with the cells from `first` on and returns its entry.
 u32 SquaresMaker::block(const Rectangle& rectangle, std::size_t first) {
-    const std::size_t number = block_cells_.size() / ACDF_BLOCK_CELLS;
+    const std::size_t number = block_cells_.size() / ACDF_BLOCK_CELLS, count = list_.size() - first;
     if (number >> ACDF_SQUARES_BLOCK_BITS) {
         complete_ = false;
         return kEmptyEntry;
@@ -143,25 +214,22 @@ u32 SquaresMaker::block(const Rectangle& rectangle, std::size_t first) {
     auto* const bytes = reinterpret_cast<std::int8_t*>(block_boxes_.add(ACDF_BLOCK_CELLS, 0));
     std::uint16_t* const cells = block_cells_.add(ACDF_BLOCK_CELLS, 0);
     if (!bytes || !cells) return kEmptyEntry;
+    // Always sixteen, the first one again for those that lack: nothing depends on how many there are.
+    const std::size_t end = list_.size();
+    if (!list_.reserve(end + ACDF_BLOCK_CELLS)) return kEmptyEntry;
+    std::fill_n(list_.data() + end, ACDF_BLOCK_CELLS, count > 0 ? list_[first] : std::uint16_t{0});
+    const std::uint16_t* const listed = list_.data() + first;
+    for (int i = 0; i < ACDF_BLOCK_CELLS; ++i)
+        cells[i] = static_cast<std::uint16_t>(listed[i] & -static_cast<int>(i < static_cast<int>(count)));
     u32 shift[2];
     for (int axis = 0; axis < 2; ++axis) {
         shift[axis] = rectangle.log2[axis] > kByteBits ? rectangle.log2[axis] - kByteBits : 0;
-        const u32 origin = rectangle.origin[axis], last = (1u << rectangle.log2[axis]) - 1;
-        std::int8_t* const low = bytes + 32 * axis;
-        std::int8_t* const high = low + ACDF_BLOCK_CELLS;
-        std::fill_n(low, ACDF_BLOCK_CELLS, std::int8_t{127});
-        std::fill_n(high, ACDF_BLOCK_CELLS, std::int8_t{-128});
-        // Keys are looked at modulo 256 steps: in small rectangles there are fewer, and those of neighbours follow.
-        const u32 base = origin >> shift[axis] & 0xFFu;
-        for (std::size_t i = first; i < list_.size(); ++i) {
-            const KeyBox& box = boxes_[list_[i]];
-            const u32 from = box.low[axis] > origin ? box.low[axis] - origin : 0;
-            const u32 to = std::min(box.high[axis] - origin, last);
-            low[i - first] = static_cast<std::int8_t>(static_cast<int>(base + (from >> shift[axis])) - 128);
-            high[i - first] = static_cast<std::int8_t>(static_cast<int>(base + (to >> shift[axis])) - 128);
-        }
+        const AxisOfBlock along = {static_cast<int>(rectangle.origin[axis]),
+                                   static_cast<int>((1u << rectangle.log2[axis]) - 1),
+                                   static_cast<int>(shift[axis])};
+        set_sides(along, count > 0 ? spans_[axis] : &kNone, listed, static_cast<int>(count),
+                  bytes + 2 * ACDF_BLOCK_CELLS * axis);
     }
-    std::copy(list_.data() + first, list_.data() + list_.size(), cells);
     return shift[0] << 26 | shift[1] << 21 | static_cast<u32>(number);
 }
 

@@ -13,18 +13,37 @@ namespace acdf {
 /// What the lists of blocks can name.
 constexpr std::size_t kMostPieces = 65535;
 
-/// The keys that may lead to a cell, ends included.
-struct KeyBox {
-    std::uint32_t low[2], high[2];
+/// The keys of an axis that may lead to a cell, ends included; below 2^31. None where low > high.
+struct KeySpan {
+    std::uint32_t low, high;
+};
+
+/// The keys that may lead to cells: those of each axis next to each other, as lists are divided along one.
+class KeyBoxes {
+public:
+    void add(const KeySpan& first, const KeySpan& second) noexcept {
+        spans_[0].add(first);
+        spans_[1].add(second);
+    }
+    bool reserve(std::size_t count) noexcept { return spans_[0].reserve(count) && spans_[1].reserve(count); }
+    void cut(std::size_t count) noexcept {
+        for (auto& spans : spans_) spans.cut(count);
+    }
+    std::size_t size() const noexcept { return spans_[1].size(); }
+    bool failed() const noexcept { return spans_[0].failed() || spans_[1].failed(); }
+    const KeySpan* axis(int i) const noexcept { return spans_[i].data(); }
+
+private:
+    Growable<KeySpan> spans_[2];
 };
 
 /// The arrays of an AcdfSquares.
 class SquaresMaker {
 public:
-    /// Over boxes (at most 65536) of keys of `key_bits` bits. Boxes with low > high are in no block. The work is in
-    /// proportion to `count`, whatever the boxes: where it would be more, entries name the empty block. Once there
-    /// are more than `most_bytes` it ends, too. Returns false where memory fails.
-    bool make(const KeyBox* boxes, std::size_t count, std::uint32_t key_bits, std::size_t work_a_box = kUsualWork,
+    /// Over boxes (at most 65536) of keys of `key_bits` bits. Boxes without keys of an axis are in no block. The
+    /// work is in proportion to how many there are, whatever the boxes: where it would be more, entries name the
+    /// empty block. Once there are more than `most_bytes` it ends, too. Returns false where memory fails.
+    bool make(const KeyBoxes& boxes, std::uint32_t key_bits, std::size_t work_a_box = kUsualWork,
               std::size_t most_bytes = SIZE_MAX) noexcept;
     /// Whether every entry names all boxes that it touches.
     bool complete() const noexcept { return complete_; }
@@ -55,7 +74,7 @@ private:
     void fill(const Grid& grid, const Rectangle& rectangle, std::uint32_t entry);
     int best_axis(const Grid& grid, const Rectangle& rectangle, std::size_t first) const;
 
-    const KeyBox* boxes_ = nullptr;
+    const KeySpan* spans_[2] = {nullptr, nullptr}; ///< of each axis
     Grid grid_ = {};
     std::size_t work_ = 0, most_words_ = 0; ///< work that is left
     bool complete_ = true;

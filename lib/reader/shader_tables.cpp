@@ -41,7 +41,8 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return none("it is no environment");
     if (file.description().parameterization != ACDF_PARAM_LATLONG)
         return none("its cells lie on the octahedral square; walks (--walk) do that, or --domain latlong");
-    if (!make_shader_cells(file.environment().data(), file.tree_units(), out.block_))
+    if (!make_shader_cells(file.environment().data(), TreeSurvey(file.environment().data(), file.tree_units()),
+                           out.block_))
         return none(
             "its cells tilt (--fit pdf), are more than 65535 pieces or too small at a pole, or memory is too "
             "little; make it with fewer cells");

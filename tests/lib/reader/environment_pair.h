@@ -31,7 +31,8 @@ public:
         grid_ = acdf_environment_grid(&data_);
         if (tables == Tables::own) return;
         data_.cells = nullptr;
-        data_.groups = acdf::make_groups(data_, fast.tree_units(), 8 * bytes.size() + (1u << 20), {}, block_);
+        data_.groups = acdf::make_groups(data_, acdf::TreeSurvey(data_, fast.tree_units()),
+                                         8 * bytes.size() + (1u << 20), {}, block_);
     }
     ~EnvironmentPair() { acdf::give_block({}, block_); }
     EnvironmentPair(const EnvironmentPair&) = delete;
