@@ -157,9 +157,11 @@ TEST(BuilderErrors, RowsThatGiveUp) {
     sees([](std::uint32_t, std::uint32_t, float*) -> bool { throw 7; });
 }
 
+constexpr int kStops = acdf_test::kSanitized ? 4 : 12;
+
 /// Calls `build` with a caller who cancels at the k-th call of progress, for `stops` such k spread over all that
 /// there are.
-void expect_cancellable(const std::function<Status(const Control&, Bytes&)>& build, int stops = 12) {
+void expect_cancellable(const std::function<Status(const Control&, Bytes&)>& build, int stops = kStops) {
     Bytes whole;
     std::atomic<int> calls{0}, inside{0};
     double told = 0.0;
@@ -218,7 +220,7 @@ TEST(BuilderErrors, EnvironmentsCanBeCancelled) {
         Projection projection;
         std::uint32_t side;
         int stops; // resampling takes half a second however small the map is
-    } maps[] = {{Projection::latlong, 96, 12}, {Projection::angular, 20, 2}};
+    } maps[] = {{Projection::latlong, 96, kStops}, {Projection::angular, 20, 2}};
     for (const auto& map : maps) {
         const std::vector<float> rgb = sky(map.side, map.side);
         Pixels pixels = pixels_of(rgb, map.side, map.side);
