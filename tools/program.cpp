@@ -1,6 +1,7 @@
 // The `acdf` program: a table of subcommands, and the one place where errors become exit codes.
 #include "tools/cli/help.h"
 #include "tools/cli/messages.h"
+#include "tools/cli/values.h"
 #include "tools/commands.h"
 
 #include <acdf/layout.h>
@@ -104,7 +105,10 @@ int acdf::tools::run_program(int argc, char** argv) {
         const std::size_t before = program.get_subcommands({}).size();
         command.add(program, exit_code);
         const auto all = program.get_subcommands({});
-        for (std::size_t i = before; i < all.size(); ++i) all[i]->group(command.group);
+        for (std::size_t i = before; i < all.size(); ++i) {
+            all[i]->group(command.group);
+            refuse_what_is_no_value(*all[i]);
+        }
     }
     return parse_and_run(program, argc, argv, exit_code);
 }

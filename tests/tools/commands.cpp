@@ -118,6 +118,10 @@ TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {
     expect_one_line_error(run_acdf({"sample", sky, "-n"}), 2, "--count: needs a value");
     expect_one_line_error(run_acdf({"table", sky, "-o", folder / "out", "--names", ",,"}), 2,
                           "--names: needs a value");
+    expect_one_line_error(run_acdf({"table", sky, "-o", folder / "out", "--with", ""}), 2, "--with: needs a value");
+    for (const char* seed : {"18446744073709551616", "-1", "0x10", "1e3", " 1", "+1"})
+        expect_one_line_error(run_acdf({"sample", sky, "-n", "1", "--seed", seed}), 2, seed);
+    EXPECT_EQ(run_acdf({"sample", sky, "-n", "010"}).out, run_acdf({"sample", sky, "-n", "10"}).out);
     for (const std::string& name : command_names())
         expect_one_line_error(run_acdf({name, "--no-such-option"}), 2, "acdf " + name + " --help");
     for (const std::string name : {"info", "validate", "sample", "pdf"}) {

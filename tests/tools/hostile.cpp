@@ -128,6 +128,17 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
     expect_failure({"measure", file, "--against", probe, "--rivals"}, 2, "--rivals");
     expect_failure({"measure", file, "--against", probe, "--normals", "7"}, 2, "--normals");
+    expect_failure({"measure", file, "--against", probe, "--views", "7"}, 2, "--views");
+    const std::string brdf = folder / "b.acdf";
+    ASSERT_EQ(run_acdf({"brdf", "ggx:alpha=0.5", "--budget", "4KiB", "--views", "4", "-o", brdf, "-q"}).code, 0);
+    for (const std::string option : {"--projection=latlong", "--bad-pixels=clamp", "--on-black=uniform"})
+        expect_failure({"measure", brdf, "--against", "ggx:alpha=0.5", option}, 2, option.substr(0, 5));
+    const std::string png = folder / "p.png";
+    expect_failure({"plot", brdf, "-o", png, "--place", "0,0,0"}, 2, "--place");
+    expect_failure({"plot", brdf, "-o", png, "--normal", "0,0,1"}, 1, "--normal");
+    expect_failure({"plot", probe, "-o", png, "--normal", "0,0,1"}, 1, "--normal");
+    expect_failure({"plot", probe, "-o", png, "--view", "30"}, 2, "--view");
+    expect_failure({"plot", file, "-o", png, "--probe-projection", "latlong"}, 2, "--probe-projection");
     for (const char* kind : {"env", "local"}) {
         const std::string out = folder / "l.acdf";
         expect_failure({kind, probe, "--scene-up", "y", "-o", out}, 2, "--scene-up");

@@ -1,5 +1,7 @@
 #include "tools/batch/job_conversion.h"
 
+#include "tools/cli/values.h"
+
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
@@ -26,6 +28,7 @@ std::shared_ptr<Conversion> make_conversion(const BatchJob& job) {
     parsed->command.name(job.kind->name);
     parsed->command.set_help_flag();
     conversion.add_options(parsed->command);
+    refuse_what_is_no_value(parsed->command);
     std::vector<std::string> reversed(job.options.rbegin(), job.options.rend()); // as CLI11 wants it
     try {
         parsed->command.parse(std::move(reversed));

@@ -23,6 +23,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <map>
 #include <memory>
 
@@ -101,13 +102,17 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
 }
 
 /// An option that has no say for a kind is a mistake of whoever gave it.
-void refuse_options_of_local_files(const MeasureArguments& options) {
-    const auto fail = [](const char* option) {
-        throw CLI::ValidationError(option, "is for files of local environments");
+void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kind) {
+    const auto refuse = [&](std::initializer_list<const char*> names, const char* of) {
+        for (const char* option : names)
+            if (options.command->get_option(option)->count() > 0)
+                throw CLI::ValidationError(option, std::string("is for files of ") + of);
     };
-    if (options.rivals) fail("--rivals");
-    for (const char* option : {"--normals", "--scene"})
-        if (options.command->get_option(option)->count() > 0) fail(option);
+    if (kind != ACDF_KIND_LOCAL) refuse({"--rivals", "--normals", "--scene"}, "local environments");
+    if (kind != ACDF_KIND_TABLE) refuse({"--with"}, "tables");
+    if (kind != ACDF_KIND_BRDF) refuse({"--views"}, "BRDFs");
+    if (kind == ACDF_KIND_TABLE || kind == ACDF_KIND_BRDF)
+        refuse({"--projection", "--bad-pixels", "--on-black"}, "environments");
 }
 
 void run(const MeasureArguments& options) {
@@ -115,9 +120,7 @@ void run(const MeasureArguments& options) {
         if (options.mesh.empty() && options.command->get_option(option)->count() > 0)
             throw CLI::ValidationError(option, "is of the mesh given by --scene");
     const LoadedFile loaded = load_file(options.file);
-    if (loaded.file.kind() != ACDF_KIND_TABLE && !options.other.empty())
-        throw CLI::ValidationError("--with", "is for files of tables");
-    if (loaded.file.kind() != ACDF_KIND_LOCAL) refuse_options_of_local_files(options);
+    refuse_options_of_other_kinds(options, loaded.file.kind());
     switch (loaded.file.kind()) {
     case ACDF_KIND_TABLE:
         return measure_table(options.file, loaded.file, options.source, options.other, options.json, options.quiet);

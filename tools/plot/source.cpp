@@ -108,13 +108,21 @@ void load_local(const PlotArguments& options, Plotted& source) {
     add_variance(file, source.title);
 }
 
-void load_stored(const PlotArguments& options, Plotted& source) {
-    source.stored = load_file(options.file);
-    if (source.stored.file.kind() == ACDF_KIND_BRDF) return load_brdf(options, source);
-    if (!options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
-    if (source.stored.file.kind() == ACDF_KIND_LOCAL) return load_local(options, source);
+/// Options that have no say for a kind of file; ACDF_KIND_ENVIRONMENT: or for a probe.
+void refuse_options_of_other_kinds(const PlotArguments& options, AcdfKind kind) {
+    if (kind != ACDF_KIND_BRDF && !options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
+    if (kind == ACDF_KIND_LOCAL) return;
     if (!options.place.empty()) throw CLI::ValidationError("--place", "is for local environments with places");
     refuse_normal(options.file, options.normal);
+}
+
+void load_stored(const PlotArguments& options, Plotted& source) {
+    if (options.input.projection != input::Projection::automatic)
+        throw CLI::ValidationError("--probe-projection", "is for probes, not for .acdf files");
+    source.stored = load_file(options.file);
+    refuse_options_of_other_kinds(options, source.stored.file.kind());
+    if (source.stored.file.kind() == ACDF_KIND_BRDF) return load_brdf(options, source);
+    if (source.stored.file.kind() == ACDF_KIND_LOCAL) return load_local(options, source);
     if (source.stored.file.kind() != ACDF_KIND_ENVIRONMENT)
         fail_kind(options.file, source.stored.file, "plot",
                   "environments and BRDFs, as `acdf env` and `acdf brdf` make them");
@@ -154,7 +162,7 @@ Plotted load_plotted(const PlotArguments& options) {
         load_stored(options, source);
         return source;
     }
-    if (!options.place.empty()) throw CLI::ValidationError("--place", "is for local environments with places");
+    refuse_options_of_other_kinds(options, ACDF_KIND_ENVIRONMENT);
     load_image(options, source);
     return source;
 }
