@@ -1,7 +1,10 @@
 // What every option that takes a number with a fraction is checked by.
 #pragma once
 
-#include <CLI/CLI.hpp>
+// Before validators, which lack it.
+#include <CLI/Error.hpp>
+
+#include <CLI/Validators.hpp>
 
 #include <cstdio>
 #include <limits>

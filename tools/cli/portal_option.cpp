@@ -6,6 +6,8 @@
 #include "tools/render/portals.h"
 #include "tools/render/scene_file.h"
 
+#include <CLI/CLI.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

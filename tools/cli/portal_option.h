@@ -3,10 +3,12 @@
 
 #include <acdf/builder.h>
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace acdf::tools {
 

@@ -5,6 +5,8 @@
 
 #include "input/instances.h"
 
+#include <CLI/CLI.hpp>
+
 #include <map>
 
 namespace acdf::tools {

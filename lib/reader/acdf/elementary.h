@@ -20,7 +20,11 @@
 #define ACDF_OUTLINE ACDF_FN
 #elif defined(__GNUC__)
 #define ACDF_INLINE static inline __attribute__((always_inline))
+#ifdef __OPTIMIZE__
 #define ACDF_OUTLINE static __attribute__((noinline, unused))
+#else /* when not optimising, gcc compiles static functions that nothing calls as well, unless they are inline */
+#define ACDF_OUTLINE ACDF_FN
+#endif
 #else
 #define ACDF_INLINE ACDF_FN
 #define ACDF_OUTLINE ACDF_FN
