@@ -1,18 +1,18 @@
 // The complete file with one thing changed: what breaks a rule.
 #pragma once
 
+#include "tests/lib/reader/action.h"
 #include "tests/lib/reader/files.h"
 #include "tests/lib/reader/planes.h"
 
 #include <acdf/reader.h>
 
-#include <functional>
 #include <limits>
 #include <vector>
 
 namespace acdf_test {
 // Changes the complete file, then makes the CRCs right again.
-inline std::function<Bytes()> changed(std::function<void(Bytes&)> change) {
+inline Action<Bytes()> changed(Action<void(Bytes&)> change) {
     return [change] {
         Bytes file = complete_file().encode();
         change(file);
@@ -22,23 +22,23 @@ inline std::function<Bytes()> changed(std::function<void(Bytes&)> change) {
 }
 
 // One number of the file, `at` bytes into a chunk's payload or table record.
-inline std::function<Bytes()> header_field(std::size_t at, int size, std::uint64_t value) {
+inline Action<Bytes()> header_field(std::size_t at, int size, std::uint64_t value) {
     return changed([=](Bytes& file) { set(file, at, size, value); });
 }
-inline std::function<Bytes()> record_field(const char* type, std::size_t at, int size, std::uint64_t value) {
+inline Action<Bytes()> record_field(const char* type, std::size_t at, int size, std::uint64_t value) {
     return changed([=](Bytes& file) { set(file, record_of(file, type) + at, size, value); });
 }
-inline std::function<Bytes()> payload_field(const char* type, std::size_t at, int size, std::uint64_t value) {
+inline Action<Bytes()> payload_field(const char* type, std::size_t at, int size, std::uint64_t value) {
     return changed([=](Bytes& file) { set(file, payload_of(file, type) + at, size, value); });
 }
-inline std::function<Bytes()> payload_double(const char* type, std::size_t at, double value) {
+inline Action<Bytes()> payload_double(const char* type, std::size_t at, double value) {
     std::uint64_t bits;
     std::memcpy(&bits, &value, 8);
     return payload_field(type, at, 8, bits);
 }
 
 // The same for a table whose third axis no curve splits.
-inline std::function<Bytes()> third_axis(std::size_t at, int size, std::uint64_t value) {
+inline Action<Bytes()> third_axis(std::size_t at, int size, std::uint64_t value) {
     return [=] {
         Bytes file = spare_file().encode();
         set(file, payload_of(file, "DESC") + 64 + 2 * 48 + at, size, value);
@@ -48,14 +48,14 @@ inline std::function<Bytes()> third_axis(std::size_t at, int size, std::uint64_t
 }
 
 // One number of DESC of the table.
-inline std::function<Bytes()> table_field(std::size_t at, int size, std::uint64_t value) {
+inline Action<Bytes()> table_field(std::size_t at, int size, std::uint64_t value) {
     return [=] {
         FileSpec file = table_file();
         set(file.chunks[0].raw, at, size, value);
         return file.encode();
     };
 }
-inline std::function<Bytes()> table_range(double low, double high) { // of the first sampled axis
+inline Action<Bytes()> table_range(double low, double high) { // of the first sampled axis
     return [=] {
         FileSpec file = table_file();
         for (const auto& [at, value] : {std::pair{32, low}, {40, high}}) {
@@ -67,7 +67,7 @@ inline std::function<Bytes()> table_range(double low, double high) { // of the f
     };
 }
 
-inline std::function<Bytes()> table_shares(float first) { // of six bins, the others together a half
+inline Action<Bytes()> table_shares(float first) { // of six bins, the others together a half
     return [=] {
         FileSpec file = table_file();
         file.chunks[1].raw =
@@ -77,7 +77,7 @@ inline std::function<Bytes()> table_shares(float first) { // of six bins, the ot
 }
 
 // Changes the parts before they become a file.
-inline std::function<Bytes()> rebuilt(std::function<void(FileSpec&)> change) {
+inline Action<Bytes()> rebuilt(Action<void(FileSpec&)> change) {
     return [change] {
         FileSpec file = complete_file();
         change(file);
@@ -85,7 +85,7 @@ inline std::function<Bytes()> rebuilt(std::function<void(FileSpec&)> change) {
     };
 }
 // The same of a file on the octahedral square.
-inline std::function<Bytes()> octahedral_axes(std::function<void(FileSpec&)> change) {
+inline Action<Bytes()> octahedral_axes(Action<void(FileSpec&)> change) {
     return [change] {
         EnvironmentSpec spec = complete_environment();
         spec.octahedral = true;
@@ -94,7 +94,7 @@ inline std::function<Bytes()> octahedral_axes(std::function<void(FileSpec&)> cha
         return file.encode();
     };
 }
-inline std::function<Bytes()> with_tree(std::function<void(std::vector<CurveSpec>&)> change) {
+inline Action<Bytes()> with_tree(Action<void(std::vector<CurveSpec>&)> change) {
     return [change] {
         EnvironmentSpec spec = complete_environment();
         change(spec.tree.curves);
@@ -102,8 +102,8 @@ inline std::function<Bytes()> with_tree(std::function<void(std::vector<CurveSpec
     };
 }
 // And then one number of TREE.
-inline std::function<Bytes()> with_tree(std::function<void(std::vector<CurveSpec>&)> change, std::size_t at,
-                                        int size, std::uint64_t value) {
+inline Action<Bytes()> with_tree(Action<void(std::vector<CurveSpec>&)> change, std::size_t at, int size,
+                                 std::uint64_t value) {
     return [=] {
         Bytes file = with_tree(change)();
         set(file, payload_of(file, "TREE") + at, size, value);
@@ -113,7 +113,7 @@ inline std::function<Bytes()> with_tree(std::function<void(std::vector<CurveSpec
 }
 
 // Curve 1 of the complete file with its number of segments in the long form.
-inline std::function<Bytes()> long_count(std::uint64_t segments) {
+inline Action<Bytes()> long_count(std::uint64_t segments) {
     return payload_field("TREE", 12, 6, segments << 16 | 0x1D1);
 }
 
@@ -125,7 +125,7 @@ inline CurveSpec split(std::uint32_t axis, const std::vector<std::uint32_t>& pos
 }
 
 // One path leads to curve 2, which splits [3, 6] at 3 + step.
-inline std::function<Bytes()> one_byte_below_3_to_6(std::uint32_t step) {
+inline Action<Bytes()> one_byte_below_3_to_6(std::uint32_t step) {
     return with_tree([step](std::vector<CurveSpec>& curves) {
         curves[1].children = {-1, -1};
         curves[2] = split(0, {3 + step});
@@ -134,7 +134,7 @@ inline std::function<Bytes()> one_byte_below_3_to_6(std::uint32_t step) {
     });
 }
 
-inline std::function<Bytes()> curves_of_two_bytes(std::size_t count) {
+inline Action<Bytes()> curves_of_two_bytes(std::size_t count) {
     return [count] {
         EnvironmentSpec spec;
         spec.tree.curves.assign(count, CurveSpec());

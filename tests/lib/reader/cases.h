@@ -1,11 +1,11 @@
 // Files that break one rule each.
 #pragma once
 
+#include "tests/lib/reader/action.h"
 #include "tests/lib/reader/builder.h"
 
 #include <acdf/reader.h>
 
-#include <functional>
 #include <vector>
 
 namespace acdf_test {
@@ -13,7 +13,7 @@ namespace acdf_test {
 struct Case {
     int rule;
     const char* name;
-    std::function<Bytes()> make;
+    Action<Bytes()> make;
     acdf::Limits limits = {};
 };
 

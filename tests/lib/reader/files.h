@@ -1,9 +1,8 @@
 // Small files from which the tests of the reader make broken ones.
 #pragma once
 
+#include "tests/lib/reader/action.h"
 #include "tests/lib/reader/random.h"
-
-#include <functional>
 
 namespace acdf_test {
 
@@ -93,7 +92,7 @@ inline Bytes truncated(Bytes file, std::size_t size) {
     return file;
 }
 
-inline std::function<Bytes()> metadata_file(const Metadata& metadata) {
+inline Action<Bytes()> metadata_file(const Metadata& metadata) {
     return [metadata] {
         EnvironmentSpec spec = complete_environment();
         spec.metadata = metadata;
@@ -102,7 +101,7 @@ inline std::function<Bytes()> metadata_file(const Metadata& metadata) {
 }
 
 /// META last and compressed; `change(raw, stored, raw_length)` before it is written.
-inline std::function<Bytes()> zlib_metadata(std::function<void(Bytes&, Bytes&, std::uint64_t&)> change) {
+inline Action<Bytes()> zlib_metadata(Action<void(Bytes&, Bytes&, std::uint64_t&)> change) {
     return [change] {
         FileSpec spec = complete_file();
         Bytes raw = spec.chunks[3].raw, stored = deflated(raw);

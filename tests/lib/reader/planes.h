@@ -1,11 +1,11 @@
 // Codec 2 from SPEC.md §4 alone: the planes of a tree in preorder, and files that hold them.
 #pragma once
 
+#include "tests/lib/reader/action.h"
 #include "tests/lib/reader/files.h"
 
 #include <algorithm>
 #include <array>
-#include <functional>
 
 namespace acdf_test {
 
@@ -63,7 +63,7 @@ inline EnvironmentSpec preorder_environment() {
 }
 
 /// `spec` with TREE as planes; `change(streams, raw_length)` before they are written.
-using PlaneChange = std::function<void(PlaneStreams&, std::uint64_t&)>;
+using PlaneChange = Action<void(PlaneStreams&, std::uint64_t&)>;
 inline FileSpec as_planes(EnvironmentSpec spec, const PlaneChange& change = {}) {
     FileSpec file = spec.file();
     PlaneStreams streams = planes_of(spec.tree.curves);

@@ -7,7 +7,7 @@
 namespace acdf_test {
 namespace {
 
-std::function<Bytes()> changed(std::function<void(BrdfSpec&)> change) {
+Action<Bytes()> changed(Action<void(BrdfSpec&)> change) {
     return [change] {
         BrdfSpec spec = shared_brdf();
         change(spec);
@@ -16,7 +16,7 @@ std::function<Bytes()> changed(std::function<void(BrdfSpec&)> change) {
 }
 
 /// One number of a chunk, counted as BrdfSpec::file has them.
-std::function<Bytes()> field(std::size_t chunk, std::size_t at, int size, std::uint64_t value) {
+Action<Bytes()> field(std::size_t chunk, std::size_t at, int size, std::uint64_t value) {
     return [=] {
         FileSpec file = shared_brdf().file();
         set(file.chunks[chunk].raw, at, size, value);

@@ -132,7 +132,7 @@ std::vector<Case> plane_cases() {
     const auto streams = [](PlaneChange change) {
         return [change] { return as_planes(preorder_environment(), change).encode(); };
     };
-    const auto bytes = [](std::function<void(Bytes&)> change) {
+    const auto bytes = [](Action<void(Bytes&)> change) {
         return [change] {
             FileSpec file = as_planes(preorder_environment());
             change(file.chunks[2].raw);

@@ -21,14 +21,14 @@ Bytes company_chunk(std::uint32_t kind, std::uint32_t records, float flux) {
     }
     return raw;
 }
-std::function<Bytes()> company(FileSpec file, Bytes raw, const std::function<void(Bytes&)>& change = {}) {
+Action<Bytes()> company(FileSpec file, Bytes raw, const Action<void(Bytes&)>& change = {}) {
     return [=]() mutable {
         if (change) change(raw);
         file.chunks.push_back({"COMP", raw, 1, false});
         return file.encode();
     };
 }
-std::function<Bytes()> company_field(std::size_t at, int size, std::uint64_t value) {
+Action<Bytes()> company_field(std::size_t at, int size, std::uint64_t value) {
     return company(complete_file(), company_chunk(ACDF_COMPANY_COSINE, 1, 0.0f),
                    [=](Bytes& raw) { set(raw, at, size, value); });
 }

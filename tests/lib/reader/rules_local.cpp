@@ -12,8 +12,8 @@ namespace acdf_test {
 
 namespace {
 
-using Make = std::function<Bytes()>;
-using Change = std::function<void(LocalSpec&)>;
+using Make = Action<Bytes()>;
+using Change = Action<void(LocalSpec&)>;
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
@@ -27,12 +27,12 @@ Make with(LocalSpec (*make)(), Change change) {
 }
 Make shared(Change change) { return with(shared_local, std::move(change)); }
 Make lit(Change change) { return with(lit_local, std::move(change)); }
-Make light(std::function<void(LightSpec&)> change) {
+Make light(Action<void(LightSpec&)> change) {
     return lit([=](LocalSpec& spec) { change(spec.lights[0]); });
 }
 
 // Changes the payload of a chunk.
-Make payload(LocalSpec (*make)(), const char* type, std::function<void(Bytes&)> change) {
+Make payload(LocalSpec (*make)(), const char* type, Action<void(Bytes&)> change) {
     return [=] {
         FileSpec file = make().file();
         for (ChunkSpec& chunk : file.chunks)
@@ -60,7 +60,7 @@ Make beside(FileSpec (*make)(), const char* type, const Bytes& raw) {
 }
 
 // Axes anew; `bins` of them.
-Make axes(LocalSpec (*make)(), std::uint32_t bins, std::function<void(std::vector<AxisSpec>&)> change) {
+Make axes(LocalSpec (*make)(), std::uint32_t bins, Action<void(std::vector<AxisSpec>&)> change) {
     return [=] {
         LocalSpec spec = make();
         spec.bins.resize(bins, {no_root, 0.0f});

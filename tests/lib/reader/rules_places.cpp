@@ -12,22 +12,22 @@ namespace acdf_test {
 
 namespace {
 
-using Make = std::function<Bytes()>;
+using Make = Action<Bytes()>;
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-Make changed(LocalSpec (*make)(), std::function<void(PlacesSpec&)> change) {
+Make changed(LocalSpec (*make)(), Action<void(PlacesSpec&)> change) {
     return [=] {
         LocalSpec spec = make();
         change(*spec.places);
         return spec.encode();
     };
 }
-Make placed(std::function<void(PlacesSpec&)> change) { return changed(placed_local, std::move(change)); }
-Make regional(std::function<void(PlacesSpec&)> change) { return changed(regional_local, std::move(change)); }
+Make placed(Action<void(PlacesSpec&)> change) { return changed(placed_local, std::move(change)); }
+Make regional(Action<void(PlacesSpec&)> change) { return changed(regional_local, std::move(change)); }
 
 // Changes the payload of PLAC.
-Make payload(std::function<void(Bytes&)> change) {
+Make payload(Action<void(Bytes&)> change) {
     return [=] {
         FileSpec file = placed_local().file();
         change(file.chunks.back().raw);

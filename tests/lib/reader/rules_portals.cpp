@@ -12,11 +12,11 @@ namespace acdf_test {
 
 namespace {
 
-using MakePortals = std::function<Bytes()>;
+using MakePortals = Action<Bytes()>;
 
 constexpr float no_bound = std::numeric_limits<float>::infinity();
 
-MakePortals windowed(std::function<void(PortalsSpec&)> change) {
+MakePortals windowed(Action<void(PortalsSpec&)> change) {
     return [=] {
         LocalSpec spec = windowed_local();
         change(*spec.portals);
@@ -25,7 +25,7 @@ MakePortals windowed(std::function<void(PortalsSpec&)> change) {
 }
 
 // Changes the payload of PORT.
-MakePortals portal_payload(std::function<void(Bytes&)> change) {
+MakePortals portal_payload(Action<void(Bytes&)> change) {
     return [=] {
         FileSpec file = windowed_local().file();
         change(file.chunks.back().raw);
