@@ -36,6 +36,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/moved.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_queue.h

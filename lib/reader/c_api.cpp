@@ -120,6 +120,7 @@ int acdf_table(const AcdfFile* file, AcdfTable* out) {
 }
 
 AcdfKind acdf_kind(const AcdfFile* file) { return file->file.kind(); }
+int acdf_memory(const AcdfFile* file, AcdfMove* moves) { return file->file.memory(moves); }
 uint64_t acdf_table_bytes(const AcdfFile* file) { return file->file.table_bytes(); }
 uint64_t acdf_size(const AcdfFile* file) { return file->file.size(); }
 const AcdfHeader* acdf_header(const AcdfFile* file) { return &file->file.header(); }

@@ -235,6 +235,14 @@ Text File::metadata(const char* key) const noexcept {
     return {};
 }
 
+int File::memory(AcdfMove* moves) const noexcept {
+    int count = 0;
+    moves[count++] = {bytes_, static_cast<std::size_t>(size_), nullptr};
+    for (int i = 1; i < 3; ++i)
+        if (owned_[i].data) moves[count++] = {owned_[i].data, owned_[i].bytes, nullptr};
+    return count;
+}
+
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,

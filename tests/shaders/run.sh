@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, draws and evaluates COUNT times on a device, and compares
-# with the reader. DEVICE: c, opencl, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
+# with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
 # on a lat-long grid; or what is walked: local, local_square, square (the octahedral one), walk (the first one again), brdf
 # and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment name another source than that of tests, the size of the
 # file, and the share of a BRDF that follows the cosine. MADE names a folder for files that several devices take: DEVICE "file"
@@ -81,6 +81,17 @@ on_opencl() {
     HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" $walk || status=$?
     [ "$status" != 77 ] || exit 77
     [ "$status" = 0 ]
+    check 0
+}
+
+on_cuda() {
+    local nvcc
+    nvcc=$(PATH=$PATH:/usr/local/cuda/bin command -v nvcc) || skip "no nvcc"
+    nvidia-smi -L >/dev/null 2>&1 || skip "no graphics card of NVIDIA's"
+    make_file
+    export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
+    "$nvcc" -std=c++17 -O2 --fmad=false $defines -I"$work" "$here/cuda.cu" -o "$work/device"
+    "$work/device" "$work"
     check 0
 }
 
@@ -172,13 +183,14 @@ file)
     ;;
 c) on_c ;;
 opencl) on_opencl ;;
+cuda) on_cuda ;;
 glslang) on_glslang ;;
 kernels) on_kernels ;;
 webgl) on_browser webgl glsl 4 ;;
 mesa) on_mesa ;;
 webgpu) on_browser webgpu wgsl 4 ;;
 *)
-    echo "usage: run.sh file|c|opencl|glslang|kernels|webgl|mesa|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
+    echo "usage: run.sh file|c|opencl|cuda|glslang|kernels|webgl|mesa|webgpu ACDF COMPARE MAKE_SKY COUNT [FORM]" >&2
     exit 2
     ;;
 esac

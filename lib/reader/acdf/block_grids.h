@@ -47,23 +47,33 @@ ACDF_FN4(ACDF_U32, acdf_squares_entry, ACDF_TABLES, tables, ACDF_U32, squares, A
     return entry;
 }
 
+/* The highest bit of each byte: whether that of a is at least that of b; bytes are signed. */
+ACDF_FN2(ACDF_U32, acdf_bytes_reach, ACDF_U32, a, ACDF_U32, b) {
+    ACDF_LET(ACDF_U32, difference) = (a | 0x80808080u) - (b & 0x7F7F7F7Fu);
+    return ((~a) & b) | ((~(a ^ b)) & difference);
+}
+/* The same: whether each byte of a place lies from low to high. */
+ACDF_FN3(ACDF_U32, acdf_bytes_within, ACDF_U32, place, ACDF_U32, low, ACDF_U32, high) {
+    return acdf_bytes_reach(place, low) & acdf_bytes_reach(high, place);
+}
+/* These bits as the four lowest ones: no sum of the product carries. */
+ACDF_FN1(ACDF_U32, acdf_four_bits, ACDF_U32, bytes) { return (((bytes >> 7u) & 0x01010101u) * 0x01020408u) >> 24u; }
+/* A byte four times, less 128 as those of boxes are. */
+ACDF_FN1(ACDF_U32, acdf_four_bytes, ACDF_U32, number) { return (number ^ 0x80u) * 0x01010101u; }
+
 /* Bit i: whether cell i of the block whose boxes stand at a word may hold the point; never of those that it lacks.
  */
 ACDF_FN4(ACDF_U32, acdf_boxes_around, ACDF_TABLES, tables, ACDF_U32, boxes, ACDF_U32, byte0, ACDF_U32, byte1) {
+    ACDF_LET(ACDF_U32, place0) = acdf_four_bytes(byte0);
+    ACDF_LET(ACDF_U32, place1) = acdf_four_bytes(byte1);
     ACDF_VAR(ACDF_U32, mask) = 0u;
     ACDF_VAR(ACDF_U32, word) = 0u;
-    for (word = 0u; word < 4u; word = word + 1u) { /* numbers less 128 become numbers again by their high bit */
-        ACDF_LET(ACDF_U32, low0) = ACDF_WORD(tables, boxes + word) ^ 0x80808080u;
-        ACDF_LET(ACDF_U32, high0) = ACDF_WORD(tables, boxes + word + 4u) ^ 0x80808080u;
-        ACDF_LET(ACDF_U32, low1) = ACDF_WORD(tables, boxes + word + 8u) ^ 0x80808080u;
-        ACDF_LET(ACDF_U32, high1) = ACDF_WORD(tables, boxes + word + 12u) ^ 0x80808080u;
-        ACDF_VAR(ACDF_U32, shift) = 0u;
-        for (shift = 0u; shift < 32u; shift = shift + 8u) {
-            if (((low0 >> shift) & 0xFFu) <= byte0 && byte0 <= ((high0 >> shift) & 0xFFu) &&
-                ((low1 >> shift) & 0xFFu) <= byte1 && byte1 <= ((high1 >> shift) & 0xFFu)) {
-                mask = mask | (1u << (word * 4u + (shift >> 3u)));
-            }
-        }
+    for (word = 0u; word < 4u; word = word + 1u) {
+        ACDF_LET(ACDF_U32, within0) =
+            acdf_bytes_within(place0, ACDF_WORD(tables, boxes + word), ACDF_WORD(tables, boxes + word + 4u));
+        ACDF_LET(ACDF_U32, within1) =
+            acdf_bytes_within(place1, ACDF_WORD(tables, boxes + word + 8u), ACDF_WORD(tables, boxes + word + 12u));
+        mask = mask | (acdf_four_bits(within0 & within1) << (word * 4u));
     }
     return mask;
 }

@@ -190,7 +190,8 @@ ACDF_FN AcdfDirectionSample acdf_brdf_view_about(const AcdfBrdf* brdf, const Acd
 }
 
 /* acdf_brdf_sample by a walk. */
-ACDF_OUTLINE AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, const float wo[3], double u0, double u1) {
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_brdf_walk(const AcdfBrdf* brdf, const float wo[3], double u0,
+                                                       double u1) {
     const AcdfDirectionSample nothing = {{0.0f, 0.0f, 0.0f}, 0.0f};
     AcdfBrdfView view;
     return acdf_brdf_view(brdf, wo, &view) ? acdf_brdf_view_walk(brdf, &view, u0, u1) : nothing;

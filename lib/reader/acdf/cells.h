@@ -55,6 +55,19 @@ typedef struct AcdfPieceEnds {
     float cap[2];
 } AcdfPieceEnds;
 
+/* Piece `number` of those at `pieces`. */
+ACDF_INLINE const AcdfPiece* acdf_piece_of(const uint32_t* pieces, uint32_t number, AcdfPiece* loaded) {
+#ifdef ACDF_ON_GPU
+    const AcdfFourWords* words = (const AcdfFourWords*)(const void*)pieces + 2 * (size_t)number;
+    const AcdfFourWords both[2] = {words[0], words[1]};
+    memcpy(loaded, both, sizeof *loaded);
+    return loaded;
+#else
+    (void)loaded;
+    return (const AcdfPiece*)(const void*)pieces + number;
+#endif
+}
+
 /* ---- drawing ---------------------------------------------------------------------------------------- */
 
 /* Numbers in [0, 1) in steps of 2^-52, which are the bits of their fractions where 1 is added. Returns 0 for
@@ -79,6 +92,7 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
     const uint32_t* tables = (const uint32_t*)(const void*)cells;
     const uint16_t* found;
     uint64_t n[2];
+    AcdfPiece loaded;
     AcdfVector drawn;
     float along, height;
     uint32_t mask;
@@ -86,7 +100,7 @@ ACDF_INLINE int acdf_cells_sample(const AcdfCells* cells, double u0, double u1, 
     mask = acdf_squares_find(tables, &cells->numbers, (uint32_t)(n[0] >> 21), (uint32_t)(n[1] >> 21), &found);
     for (; mask; mask &= mask - 1) {
         const uint32_t cell = found[acdf_lowest_bit(mask)];
-        const AcdfPiece* piece = (const AcdfPiece*)(const void*)(tables + cells->pieces) + cell;
+        const AcdfPiece* piece = acdf_piece_of(tables + cells->pieces, cell, &loaded);
         const float d0 = acdf_draw_distance(n[0], piece->azimuth.low);
         const float d1 = acdf_draw_distance(n[1], piece->height.low);
         const uint32_t width0 = acdf_float_bits(piece->azimuth.width),
@@ -135,13 +149,14 @@ ACDF_INLINE int acdf_direction_place(uint32_t octahedral, const float direction[
 ACDF_INLINE int acdf_cells_pdf(const AcdfCells* cells, const float direction[3], float* pdf) {
     const uint32_t* tables = (const uint32_t*)(const void*)cells;
     const uint16_t* found;
+    AcdfPiece loaded;
     AcdfPlace place;
     uint32_t mask;
     if (!acdf_direction_place(cells->octahedral, direction, &place)) return 0;
     mask = acdf_squares_find(tables, &cells->directions, place.key0, place.key1, &found);
     for (; mask; mask &= mask - 1) {
         const uint32_t cell = found[acdf_lowest_bit(mask)];
-        const AcdfPiece* piece = (const AcdfPiece*)(const void*)(tables + cells->pieces) + cell;
+        const AcdfPiece* piece = acdf_piece_of(tables + cells->pieces, cell, &loaded);
         /* How far it is from `origin`, in the direction of growing cap and falling azimuth. */
         const float d0 = piece->azimuth.origin - place.slope, d1 = place.cap - piece->height.origin;
         const float width0 = -(piece->azimuth.width * piece->azimuth.slope);

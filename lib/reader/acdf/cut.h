@@ -165,7 +165,7 @@ ACDF_FN void acdf_cut_share_lights(const AcdfLocal* local, const AcdfCut* cut, A
 }
 
 /* Divides a part at its split: it becomes the lower half, and the last part is the upper one. */
-ACDF_FN void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
+ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCut* cut, int number) {
     const int count = cut->count - 1;
     AcdfCutPart *part = &cut->part[number], *upper = &cut->part[cut->count];
     const AcdfSplit* split = &local->blend.splits[part->node];
@@ -240,8 +240,8 @@ ACDF_FN void acdf_cut_middle(const AcdfLocal* local, const uint32_t box[2][2], f
 /* A direction from which a part is lit much: of its brightest light, where lights give it more than all else; else
  * the middle of the tile that is reached where the walk always takes the half to which the nearest bin gives more.
  * Returns the tile's number. */
-ACDF_FN uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut, int number,
-                                float direction[3]) {
+ACDF_CALLED uint32_t acdf_cut_heart(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                                    int number, float direction[3]) {
     const AcdfCutPart* part = &cut->part[number];
     const uint16_t* codebook = local->blend.tiles->codebook;
     uint32_t node = part->node, box[2][2], k;

@@ -32,10 +32,16 @@ ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
     }
 }
 
+/* Number by number: of a mixture that is copied as a whole, and then given other weights, nvcc 13.0 sums the old
+ * ones. */
 ACDF_FN AcdfMixture acdf_cut_mixture(const AcdfLocalPoint* point, const AcdfCutPart* part) {
-    AcdfMixture mix = point->mix;
+    AcdfMixture mix;
     int i;
-    for (i = 0; i < mix.count; ++i) mix.weight[i] = part->weight[i];
+    mix.count = point->mix.count;
+    for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
+        mix.row[i] = point->mix.row[i];
+        mix.weight[i] = i < mix.count ? part->weight[i] : 0.0;
+    }
     return mix;
 }
 
@@ -155,8 +161,8 @@ ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* 
 }
 
 /* Density per steradian with which acdf_cut_sample draws `direction` (unit); of cuts that are finished. */
-ACDF_FN float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                           const float direction[3]) {
+ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                               const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     double p;
@@ -177,8 +183,8 @@ ACDF_FN float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, 
 
 /* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
  * no direction) where the cut is empty. */
-ACDF_FN AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                                            double u0, double u1) {
+ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                const AcdfCut* cut, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
     const AcdfCutPart* part;

@@ -10,15 +10,34 @@
 #include <stdint.h>
 #include <string.h>
 
+/* What is compiled now is code for a GPU, not that of the host around it. */
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
+#define ACDF_ON_GPU 1
+#endif
+
 #ifndef ACDF_FN
+#if defined(__CUDACC__) || defined(__HIPCC__)
+#define ACDF_FN static inline __host__ __device__
+#else
 #define ACDF_FN static inline
 #endif
-/* Functions that are faster as a part of what calls them, and what is rarely called from such. */
+#endif
+#if defined(__GNUC__)
+#define ACDF_UNUSED __attribute__((unused))
+#else
+#define ACDF_UNUSED
+#endif
+/* Functions that are faster as a part of what calls them, and what is rarely called from such. Of the latter, those
+ * of _ON_CPU are taken in by kernels, too: what gets the address of a variable keeps it out of registers.
+ * ACDF_CALLED is what kernels call, but processors need not: it would take minutes to compile. */
 #ifndef ACDF_INLINE
-#if defined(__CUDACC__)
+#if defined(__CUDACC__) || defined(__HIPCC__)
 #define ACDF_INLINE static __forceinline__ __host__ __device__
-#define ACDF_OUTLINE ACDF_FN
-#elif defined(__GNUC__)
+#define ACDF_OUTLINE static __noinline__ ACDF_UNUSED __host__ __device__
+#define ACDF_OUTLINE_ON_CPU ACDF_FN
+#define ACDF_CALLED ACDF_OUTLINE
+#else
+#if defined(__GNUC__)
 #define ACDF_INLINE static inline __attribute__((always_inline))
 #ifdef __OPTIMIZE__
 #define ACDF_OUTLINE static __attribute__((noinline, unused))
@@ -28,6 +47,9 @@
 #else
 #define ACDF_INLINE ACDF_FN
 #define ACDF_OUTLINE ACDF_FN
+#endif
+#define ACDF_OUTLINE_ON_CPU ACDF_OUTLINE
+#define ACDF_CALLED ACDF_FN
 #endif
 #endif
 
@@ -68,7 +90,7 @@ ACDF_FN double acdf_clamp(double x, double low, double high) { return x < low ? 
 /* The floats of v. Where a caller rounds doubles to v and is inlined, gcc 12 (x86 without AVX, from -O2 on) takes a
  * pair of them that becomes doubles again for what was rounded. What it reads from memory it takes as it is. */
 ACDF_INLINE void acdf_as_given(const float v[3], float out[3]) {
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+#if defined(__GNUC__) && !defined(__clang__) && !defined(ACDF_ON_GPU)
     volatile float given[3];
 #else
     float given[3];
@@ -79,6 +101,14 @@ ACDF_INLINE void acdf_as_given(const float v[3], float out[3]) {
 }
 
 #define ACDF_PI 3.14159265358979323846
+
+#ifdef ACDF_ON_GPU
+/* Words that are loaded at once: where each thread reads elsewhere, it is loads that count, not bytes. (Kernels are
+ * C++.) */
+typedef struct alignas(16) AcdfFourWords {
+    uint32_t x, y, z, w;
+} AcdfFourWords;
+#endif
 
 /* Polynomials of degree 7 and 3 in q, summed as a tree: short chains of dependent operations. */
 ACDF_FN double acdf_polynomial4(double q, double c0, double c1, double c2, double c3) {

@@ -302,8 +302,8 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
 
 /* Draws by the row of a place or through its windows, of which there are some. The density is that of the direction
  * as it was rounded. */
-ACDF_OUTLINE AcdfDirectionSample acdf_local_window_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                          double* u) {
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_window_sample(const AcdfLocal* local,
+                                                                 const AcdfLocalPoint* point, double* u) {
     AcdfDirectionSample out;
     if (acdf_windows_choose(&point->windows, u)) acdf_windows_sample(&point->windows, u, out.direction);
     else out = acdf_local_row_sample(local, point, u);

@@ -1,8 +1,12 @@
-// The qualifier of C++ functions that are called in kernels, for example __host__ __device__.
+// The qualifier of C++ functions that are called in kernels: that of CUDA and HIP, or another one.
 #pragma once
 
 #ifndef ACDF_METHOD
+#if defined(__CUDACC__) || defined(__HIPCC__)
+#define ACDF_METHOD __host__ __device__
+#else
 #define ACDF_METHOD
+#endif
 #endif
 
 // Of what is inlined wherever it is called: what is returned by a call goes through memory

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <acdf/allocator.h>
+#include <acdf/moved.h>
 #include <acdf/views.h>
 
 #include <cstddef>
@@ -112,6 +113,10 @@ public:
                                  : brdf_tables_  ? brdf_tables_->words
                                                  : 0};
     }
+
+    /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
+    /// many there are (acdf/moved.h).
+    int memory(AcdfMove* moves) const noexcept;
 
     /// Metadata pairs; `count` is 0 where the file carries none.
     std::uint32_t metadata_count() const noexcept { return metadata_count_; }

@@ -74,7 +74,12 @@ ACDF_OUTLINE AcdfDirectionSample acdf_environment_other_sample(const AcdfEnviron
 ACDF_INLINE AcdfDirectionSample acdf_environment_sample(const AcdfEnvironment* env, double u0, double u1) {
     AcdfDirectionSample out;
     if (env->cells && acdf_cells_sample(env->cells, u0, u1, &out)) return out;
+#ifdef ACDF_ON_GPU
+    const AcdfEnvironment rare = *env; /* what is called gets its address: *env stays in registers */
+    return acdf_environment_other_sample(&rare, u0, u1);
+#else
     return acdf_environment_other_sample(env, u0, u1);
+#endif
 }
 
 /* Where a direction falls: its cell and, if `strata` is not null, the random numbers that lead there; if that
@@ -117,7 +122,13 @@ ACDF_OUTLINE float acdf_environment_other_pdf(const AcdfEnvironment* env, const 
 ACDF_INLINE float acdf_environment_pdf(const AcdfEnvironment* env, const float direction[3]) {
     float pdf;
     if (env->cells && acdf_cells_pdf(env->cells, direction, &pdf)) return pdf;
+#ifdef ACDF_ON_GPU
+    const AcdfEnvironment rare = *env; /* as above */
+    const float given[3] = {direction[0], direction[1], direction[2]};
+    return acdf_environment_other_pdf(&rare, given);
+#else
     return acdf_environment_other_pdf(env, direction);
+#endif
 }
 
 /* The random numbers u[2] for which acdf_environment_sample returns `direction`. Returns 1, or 0 (and u

@@ -18,9 +18,16 @@ typedef struct AcdfShortCurve {
 } AcdfShortCurve;
 
 ACDF_FN uint64_t acdf_eight_bytes(const uint8_t* at) {
+#ifdef ACDF_ON_GPU /* which has no loads at odd places: two or three words instead of eight bytes */
+    const uint32_t* words = (const uint32_t*)(const void*)((uintptr_t)at & ~(uintptr_t)3);
+    const uint32_t shift = 8u * (uint32_t)((uintptr_t)at & 3u);
+    const uint64_t low = words[0] | (uint64_t)words[1] << 32, high = words[shift ? 2 : 1];
+    return shift ? low >> shift | high << (64u - shift) : low;
+#else
     uint64_t bytes;
     memcpy(&bytes, at, sizeof bytes);
     return bytes;
+#endif
 }
 
 /* Returns 0 where the curve is none, or stands so near to the end of the tree (of `units` of two bytes) that eight
@@ -46,7 +53,9 @@ ACDF_INLINE uint32_t acdf_first_above(uint64_t bytes, uint32_t key, uint32_t las
     const uint64_t difference = (keys | high) - (bytes & ~high); /* bit 7: of the lower seven bits */
     const uint64_t not_above = (keys & ~bytes) | (~(keys ^ bytes) & difference);
     const uint64_t above = (~not_above & high) | (uint64_t)0x80 << 8 * last;
-#if defined(__GNUC__) && !defined(__CUDACC__)
+#if defined(ACDF_ON_GPU) && defined(__NVCC__)
+    return ((uint32_t)__ffsll((long long)above) - 1u) & 56u;
+#elif defined(__GNUC__)
     return (uint32_t)__builtin_ctzll(above) & 56u;
 #else
     uint32_t shift = 0;

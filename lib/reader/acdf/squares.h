@@ -54,6 +54,15 @@ ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byt
     const __m128i out1 =
         _mm_or_si128(_mm_cmpgt_epi8(_mm_load_si128(box + 2), at1), _mm_cmpgt_epi8(at1, _mm_load_si128(box + 3)));
     return (uint32_t)_mm_movemask_epi8(_mm_or_si128(out0, out1)) ^ 0xFFFFu;
+#elif defined(ACDF_ON_GPU)
+    const AcdfFourWords* box = (const AcdfFourWords*)(const void*)boxes;
+    const AcdfFourWords low0 = box[0], high0 = box[1], low1 = box[2], high1 = box[3];
+    const uint32_t at0 = acdf_four_bytes(byte0), at1 = acdf_four_bytes(byte1);
+    const uint32_t x = acdf_bytes_within(at0, low0.x, high0.x) & acdf_bytes_within(at1, low1.x, high1.x);
+    const uint32_t y = acdf_bytes_within(at0, low0.y, high0.y) & acdf_bytes_within(at1, low1.y, high1.y);
+    const uint32_t z = acdf_bytes_within(at0, low0.z, high0.z) & acdf_bytes_within(at1, low1.z, high1.z);
+    const uint32_t w = acdf_bytes_within(at0, low0.w, high0.w) & acdf_bytes_within(at1, low1.w, high1.w);
+    return acdf_four_bits(x) | acdf_four_bits(y) << 4 | acdf_four_bits(z) << 8 | acdf_four_bits(w) << 12;
 #else
     return acdf_boxes_around(boxes, 0, byte0, byte1);
 #endif
@@ -61,12 +70,14 @@ ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byt
 
 /* Number of the lowest bit that is set; one is. */
 ACDF_INLINE uint32_t acdf_lowest_bit(uint32_t mask) {
-#if defined(__CUDACC__) || !defined(__GNUC__)
+#if defined(ACDF_ON_GPU) && defined(__NVCC__)
+    return (uint32_t)__ffs((int)mask) - 1u;
+#elif defined(__GNUC__)
+    return (uint32_t)__builtin_ctz(mask);
+#else
     uint32_t i = 0;
     while (!(mask >> i & 1u)) ++i;
     return i;
-#else
-    return (uint32_t)__builtin_ctz(mask);
 #endif
 }
 

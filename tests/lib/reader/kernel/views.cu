@@ -1,18 +1,21 @@
-// The C++ views and the product in a kernel: compiled for devices by clang, with no toolkit but these lines.
+// The C++ views and the product in a kernel: compiled for devices by nvcc; or by clang, with no toolkit but these lines.
+#ifndef __NVCC__
+#ifndef __HIP__ // whose compilers tell by __HIPCC__
 #define __CUDACC__ 1
+#endif
 #define __host__ __attribute__((host))
 #define __device__ __attribute__((device))
 #define __global__ __attribute__((global))
 #define __forceinline__ inline __attribute__((always_inline))
+#define __noinline__ __attribute__((noinline))
 #pragma clang force_cuda_host_device begin
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 #pragma clang force_cuda_host_device end
+#endif
 
-#define ACDF_FN static inline __host__ __device__
-#define ACDF_METHOD __host__ __device__
 #include <acdf/product.h>
 #include <acdf/views.h>
 

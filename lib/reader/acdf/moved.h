@@ -1,0 +1,102 @@
+/* Views of an open file whose memory was copied to another place: a GPU, another process, an archive of the
+ * caller's. Freestanding, valid C99 and C++17.
+ *
+ *   AcdfMove moves[ACDF_MAX_MOVES];
+ *   int i, count = acdf_memory(file, moves);          // what the views of an open file point into
+ *   for (i = 0; i < count; ++i) moves[i].to = ...;    // a copy of moves[i].bytes bytes at moves[i].from
+ *   acdf_move_environment(&sky, moves, count);        // `sky` now is for where the copies are
+ *
+ * Copies are aligned to 64 bytes, and are followed by up to 3 bytes that may be read, of any value. Nothing is read
+ * or written here but the view. Pointers that are null stay null; others all point into a file's memory. */
+#ifndef ACDF_MOVED_H
+#define ACDF_MOVED_H
+
+#include <acdf/brdf.h>
+#include <acdf/local.h>
+#include <acdf/table.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Memory of an open file, and its copy. */
+typedef struct AcdfMove {
+    const void* from;
+    size_t bytes; /* > 0 */
+    const void* to;
+} AcdfMove;
+
+/* The file's bytes, what was inflated of them, and runtime tables. */
+enum { ACDF_MAX_MOVES = 3 };
+
+/* Where what is at `pointer` lies in the copies. */
+static inline const void* acdf_moved(const void* pointer, const AcdfMove* moves, int count) {
+    const uintptr_t at = (uintptr_t)pointer;
+    int i;
+    for (i = 0; i < count; ++i)
+        if (at - (uintptr_t)moves[i].from < moves[i].bytes)
+            return (const void*)((uintptr_t)moves[i].to + (at - (uintptr_t)moves[i].from));
+    return 0; /* also of arrays without elements */
+}
+#define ACDF_MOVE(type, pointer) (pointer) = (const type*)acdf_moved((pointer), moves, count)
+
+/* Points a view into the copies, of which there are `count`. */
+static inline void acdf_move_environment(AcdfEnvironment* environment, const AcdfMove* moves, int count) {
+    ACDF_MOVE(uint8_t, environment->tree);
+    ACDF_MOVE(AcdfCells, environment->cells);
+    ACDF_MOVE(AcdfCompany, environment->company);
+    ACDF_MOVE(AcdfGroups, environment->groups);
+}
+
+/* The same of what bins share: a part of the following. */
+static inline void acdf_move_blend(AcdfBlend* blend, const AcdfMove* moves, int count) {
+    ACDF_MOVE(AcdfTiles, blend->tiles);
+    ACDF_MOVE(AcdfSplit, blend->splits);
+    ACDF_MOVE(uint32_t, blend->roots);
+    ACDF_MOVE(uint8_t, blend->rows);
+    ACDF_MOVE(uint8_t, blend->tree);
+}
+
+/* The same of a local environment. */
+static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int count) {
+    acdf_move_blend(&local->blend, moves, count);
+    acdf_move_environment(&local->environment, moves, count);
+    ACDF_MOVE(AcdfBin, local->bins);
+    ACDF_MOVE(AcdfLight, local->lights);
+    ACDF_MOVE(AcdfLocalTables, local->tables);
+    ACDF_MOVE(AcdfCompany, local->company);
+    ACDF_MOVE(AcdfPlaces, local->places.header);
+    ACDF_MOVE(AcdfPlaceSplit, local->places.splits);
+    ACDF_MOVE(uint16_t, local->places.columns);
+    ACDF_MOVE(uint16_t, local->places.set_of_row);
+    ACDF_MOVE(uint8_t, local->places.rows);
+    ACDF_MOVE(AcdfPortals, local->portals.header);
+    ACDF_MOVE(AcdfPortal, local->portals.portals);
+    ACDF_MOVE(AcdfPortalMap, local->portals.maps);
+    ACDF_MOVE(uint32_t, local->portals.sums);
+    ACDF_MOVE(uint8_t, local->portals.rows);
+}
+
+/* The same of a BRDF. */
+static inline void acdf_move_brdf(AcdfBrdf* brdf, const AcdfMove* moves, int count) {
+    acdf_move_blend(&brdf->blend, moves, count);
+    ACDF_MOVE(uint8_t, brdf->tree);
+    ACDF_MOVE(AcdfBin, brdf->bins);
+    ACDF_MOVE(AcdfViews, brdf->views);
+    ACDF_MOVE(float, brdf->nodes);
+    ACDF_MOVE(AcdfBrdfTables, brdf->tables);
+}
+
+/* The same of a table. */
+static inline void acdf_move_table(AcdfTable* table, const AcdfMove* moves, int count) {
+    ACDF_MOVE(uint8_t, table->tree);
+    ACDF_MOVE(AcdfBin, table->bins);
+    ACDF_MOVE(AcdfAxis, table->axes);
+    ACDF_MOVE(AcdfCompany, table->company);
+}
+#undef ACDF_MOVE
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,17 @@
+// Time of what `acdf export --target c` writes. `tables`: its words, on the device.
+#pragma once
+
+#include "timing.h"
+
+#include <cstdint>
+
+namespace acdf_cuda {
+
+Timed time_exported_cells_draw(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_cells_density(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_walk_draw(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_walk_density(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_brdf_draw(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_brdf_density(const std::uint32_t* tables, const Asked& asked);
+
+} // namespace acdf_cuda

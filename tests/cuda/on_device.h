@@ -1,0 +1,55 @@
+// An open file's memory on a GPU, and its views there. What a renderer does that has CUDA.
+#pragma once
+
+#include "device_array.h"
+
+#include <acdf/moved.h>
+#include <acdf/reader.h>
+
+namespace acdf_cuda {
+
+/// A copy of all that a file's views point into. They are kernels' parameters by value, valid while this lives; the
+/// file may be closed.
+class DeviceFile {
+public:
+    explicit DeviceFile(const acdf::File& file) : count_(file.memory(moves_)) {
+        for (int i = 0; i < count_; ++i) {
+            void* to = nullptr;
+            require(cudaMalloc(&to, moves_[i].bytes + 3), "memory");
+            require(cudaMemcpy(to, moves_[i].from, moves_[i].bytes, cudaMemcpyHostToDevice), "copy");
+            moves_[i].to = to;
+        }
+    }
+    ~DeviceFile() {
+        for (int i = 0; i < count_; ++i) cudaFree(const_cast<void*>(moves_[i].to));
+    }
+    DeviceFile(const DeviceFile&) = delete;
+    DeviceFile& operator=(const DeviceFile&) = delete;
+
+    acdf::EnvironmentView operator()(const acdf::EnvironmentView& view) const {
+        AcdfEnvironment data = view.data();
+        acdf_move_environment(&data, moves_, count_);
+        return acdf::EnvironmentView(data);
+    }
+    acdf::LocalEnvironmentView operator()(const acdf::LocalEnvironmentView& view) const {
+        AcdfLocal data = view.data();
+        acdf_move_local(&data, moves_, count_);
+        return acdf::LocalEnvironmentView(data);
+    }
+    acdf::BrdfView operator()(const acdf::BrdfView& view) const {
+        AcdfBrdf data = view.data();
+        acdf_move_brdf(&data, moves_, count_);
+        return acdf::BrdfView(data);
+    }
+    acdf::TableView operator()(const acdf::TableView& view) const {
+        AcdfTable data = view.data();
+        acdf_move_table(&data, moves_, count_);
+        return acdf::TableView(data);
+    }
+
+private:
+    AcdfMove moves_[ACDF_MAX_MOVES];
+    int count_;
+};
+
+} // namespace acdf_cuda

@@ -1,0 +1,37 @@
+#include "views_timed.h"
+
+namespace acdf_cuda {
+namespace {
+
+constexpr unsigned kDraws = 16;
+
+/// As many draws at one point.
+struct Draws {
+    acdf::LocalEnvironmentView view;
+    Asked asked;
+    __device__ float operator()(unsigned i) const {
+        float n[3], sum = 0.0f;
+        asked.normal(i, n);
+        const AcdfLocalPoint point = view.at(n);
+        for (unsigned k = 0; k < kDraws; ++k) {
+            const float2 u = asked.numbers[(i + k * (kCalls / kDraws)) % kCalls];
+            const AcdfDirectionSample s = view.sample(point, u.x, u.y);
+            sum += s.direction[0] + s.direction[1] + s.direction[2] + s.pdf;
+        }
+        return sum;
+    }
+};
+
+} // namespace
+
+Timed time_draw(const acdf::LocalEnvironmentView& view, const Asked& asked) {
+    return time(DrawAt<acdf::LocalEnvironmentView>{view, asked});
+}
+Timed time_draws(const acdf::LocalEnvironmentView& view, const Asked& asked) {
+    return time(Draws{view, asked}, kDraws);
+}
+Timed time_density(const acdf::LocalEnvironmentView& view, const Asked& asked) {
+    return time(DensityAt<acdf::LocalEnvironmentView>{view, asked});
+}
+
+} // namespace acdf_cuda
