@@ -2,6 +2,7 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/help.h"
 #include "tools/cli/messages.h"
+#include "tools/cli/normal_option.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/cli/probe_options.h"

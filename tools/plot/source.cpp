@@ -3,8 +3,10 @@
 #include "build/format_names.h"
 #include "input/file_name.h"
 #include "tools/cli/file_input.h"
+#include "tools/cli/normal_option.h"
 #include "tools/cli/probe_source.h"
 #include "tools/cli/sizes.h"
+#include "tools/commands.h"
 #include "tools/plot/panels.h"
 
 #include <CLI/CLI.hpp>

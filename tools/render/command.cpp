@@ -6,6 +6,7 @@
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
+#include "tools/cli/sizes.h"
 #include "tools/commands.h"
 #include "tools/plot/image.h"
 #include "tools/render/images.h"
