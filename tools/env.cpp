@@ -248,12 +248,14 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->transform(one_of(shapes))
         ->option_text("NAME [tree]")
         ->group("Fit");
-    const std::map<std::string, int> orders{{"auto", 0}, {"phi", 1}, {"z", 2}};
+    enum class First { either, phi, z };
+    const std::map<std::string, First> orders{{"auto", First::either}, {"phi", First::phi}, {"z", First::z}};
     command
-        .add_option_function<int>(
+        .add_option_function<First>(
             "--order",
-            [&fit](int order) {
-                if (order != 0) fit.order = order == 1 ? builder::Order::phi : builder::Order::z;
+            [&fit](First first) {
+                if (first != First::either)
+                    fit.order = first == First::phi ? builder::Order::phi : builder::Order::z;
             },
             "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
             "file is "
