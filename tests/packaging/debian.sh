@@ -94,7 +94,7 @@ CHECK
 
 # Pages and completions.
 for page in acdf acdf-env acdf-completion; do
-    zcat "root/usr/share/man/man1/$page.1.gz" | grep -q '^.SH DESCRIPTION'
+    zgrep -q '^.SH DESCRIPTION' "root/usr/share/man/man1/$page.1.gz"
 done
 completions=root/usr/share/bash-completion/completions/acdf
 bash -c 'source "$0"; COMP_WORDS=(acdf env --bud); COMP_CWORD=2; _acdf; [[ ${COMPREPLY[*]} == --budget ]]' "$completions"

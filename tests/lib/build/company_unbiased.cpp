@@ -37,14 +37,18 @@ Probe real_probe(const std::string& name) {
     return out;
 }
 
-/// Eight of them: real ones, each else a synthetic one in its place.
-std::vector<Probe> eight_probes() {
-    std::vector<Probe> out = probes();
+/// Real ones. Where they are missing the first two synthetic ones take their place; the others have lights of a few
+/// texels, and where a horizon cuts these, sums over texels are off by more than kSummation.
+std::vector<Probe> compared_probes() {
+    const std::vector<Probe> synthetic = probes();
     const char* names[] = {"grace_probe.hdr", "city.exr",      "noon_grass_1k.hdr", "venice_sunset_1k.hdr",
                            "beach_probe.hdr", "courtyard.exr", "studio.exr",        "sunset.exr"};
-    for (std::size_t i = 0; i < out.size(); ++i)
-        if (Probe real = real_probe(names[i]); !real.radiance.empty()) out[i] = std::move(real);
-    if (acdf_test::kSanitized) out.resize(2);
+    std::vector<Probe> out;
+    for (const char* name : names) {
+        if (acdf_test::kSanitized && out.size() == 2) break;
+        if (Probe real = real_probe(name); !real.radiance.empty()) out.push_back(std::move(real));
+        else if (out.size() < 2) out.push_back(synthetic[out.size()]);
+    }
     return out;
 }
 
@@ -84,7 +88,8 @@ public:
 TEST(CompanyUnbiased, AtEachOf200NormalsForEveryProbeFitAndCompany) {
     Scores all;
     std::mt19937_64 random(77);
-    for (const Probe& probe : eight_probes()) {
+    const std::vector<Probe> compared = compared_probes();
+    for (const Probe& probe : compared) {
         std::vector<Vector> at;
         std::vector<double> wanted;
         for (int i = 0; i < kNormals; ++i) {
@@ -123,7 +128,7 @@ TEST(CompanyUnbiased, AtEachOf200NormalsForEveryProbeFitAndCompany) {
     }
     // 4 standard errors: of so many normal numbers 0.8 are beyond, more than 5 in one of 2000 runs; 5.5 in one of
     // 2000.
-    EXPECT_GT(all.count_, acdf_test::kSanitized ? 3000.0 : 12000.0);
+    EXPECT_GT(all.count_, 1500.0 * static_cast<double>(compared.size()));
     EXPECT_LE(all.beyond_, 5);
     EXPECT_LT(all.largest_, 5.5);
     std::printf("%g comparisons: %d beyond 4 standard errors, largest %.2f, mean square %.3f\n", all.count_,
