@@ -188,6 +188,10 @@ test_slurm() {
         echo "SKIPPED: slurmd has to be started as root"
         exit 77
     fi
+    if [[ -z $(ls -A /sys/fs/cgroup 2>/dev/null) ]]; then
+        echo "SKIPPED: slurmd needs control groups, and none are mounted on /sys/fs/cgroup"
+        exit 77
+    fi
     start_slurm
     write_interrupted_acdf
     local job
