@@ -27,58 +27,7 @@ double hashed(std::uint32_t x) {
     return x * 0x1p-32;
 }
 
-/// Sums of one view.
-class ViewSums {
-public:
-    void add(double f, double p, double measure, double cosine) {
-        if (cosine <= 0.0) {
-            below_.add(p * measure);
-            return;
-        }
-        above_.add(p * measure);
-        albedo_.add(f * measure);
-        square_p_.add(p * p * measure);
-        cross_.add(p * f * measure);
-        square_f_.add(f * f * measure);
-        if (!(f > 0.0)) return;
-        if (!(p > 0.0)) {
-            ++violations_;
-            return;
-        }
-        second_.add(f * f / p * measure);
-        log_.add(f * std::log(f / p) * measure);
-        largest_ = std::max(largest_, f / p);
-    }
-    ViewAccuracy result() const {
-        ViewAccuracy out;
-        const double e = albedo_.value();
-        out.albedo = e;
-        // Of what was summed: the sum is off by a thousandth, and no share is more than 1.
-        out.integral = above_.value() + below_.value();
-        out.share_above_horizon = out.integral > 0.0 ? above_.value() / out.integral : 0.0;
-        if (!(e > 0.0)) return out;
-        out.relative_variance = violations_ > 0 ? std::numeric_limits<double>::infinity()
-                                                : std::max(0.0, second_.value() * out.integral / (e * e) - 1.0);
-        out.square_error = square_p_.value() - 2.0 * cross_.value() / e + square_f_.value() / (e * e);
-        out.kl_divergence = log_.value() / e - std::log(e / out.integral);
-        out.max_weight = largest_ / e;
-        out.support_violations = violations_;
-        return out;
-    }
-
-private:
-    compress::Sum albedo_, above_, below_, second_, square_p_, cross_, square_f_, log_;
-    double largest_ = 0.0;
-    std::uint64_t violations_ = 0;
-};
-
-/// A direction as the reader takes it.
-void rounded(const double direction[3], float out[3]) {
-    const float given[3] = {float(direction[0]), float(direction[1]), float(direction[2])};
-    acdf_as_given(given, out);
-}
-
-/// What the relative variance of a view is made from, alone; the same sums as those of ViewSums.
+/// What the relative variance of a view is made from.
 class VarianceSums {
 public:
     void add(double f, double p, double measure, double cosine) {
@@ -94,13 +43,15 @@ public:
     }
     ViewAccuracy result() const {
         ViewAccuracy out;
-        out.albedo = albedo_.value();
+        const double e = albedo_.value();
+        out.albedo = e;
+        // Of what was summed: the sum is off by a thousandth, and no share is more than 1.
         out.integral = above_.value() + below_.value();
+        out.share_above_horizon = out.integral > 0.0 ? above_.value() / out.integral : 0.0;
         out.support_violations = violations_;
-        if (!(out.albedo > 0.0)) return out;
-        out.relative_variance =
-            violations_ > 0 ? std::numeric_limits<double>::infinity()
-                            : std::max(0.0, second_.value() * out.integral / (out.albedo * out.albedo) - 1.0);
+        if (!(e > 0.0)) return out;
+        out.relative_variance = violations_ > 0 ? std::numeric_limits<double>::infinity()
+                                                : std::max(0.0, second_.value() * out.integral / (e * e) - 1.0);
         return out;
     }
 
@@ -108,6 +59,41 @@ private:
     compress::Sum albedo_, above_, below_, second_;
     std::uint64_t violations_ = 0;
 };
+
+/// All sums of one view.
+class ViewSums {
+public:
+    void add(double f, double p, double measure, double cosine) {
+        variance_.add(f, p, measure, cosine);
+        if (cosine <= 0.0) return;
+        square_p_.add(p * p * measure);
+        cross_.add(p * f * measure);
+        square_f_.add(f * f * measure);
+        if (!(f > 0.0) || !(p > 0.0)) return;
+        log_.add(f * std::log(f / p) * measure);
+        largest_ = std::max(largest_, f / p);
+    }
+    ViewAccuracy result() const {
+        ViewAccuracy out = variance_.result();
+        const double e = out.albedo;
+        if (!(e > 0.0)) return out;
+        out.square_error = square_p_.value() - 2.0 * cross_.value() / e + square_f_.value() / (e * e);
+        out.kl_divergence = log_.value() / e - std::log(e / out.integral);
+        out.max_weight = largest_ / e;
+        return out;
+    }
+
+private:
+    VarianceSums variance_;
+    compress::Sum square_p_, cross_, square_f_, log_;
+    double largest_ = 0.0;
+};
+
+/// A direction as the reader takes it.
+void rounded(const double direction[3], float out[3]) {
+    const float given[3] = {float(direction[0]), float(direction[1]), float(direction[2])};
+    acdf_as_given(given, out);
+}
 
 /// Half-vectors around the view's azimuth; theta_h in steps of its square root. Calls visit(wi, measure) for each,
 /// row by row.

@@ -1,4 +1,5 @@
 // Views of memory that was copied elsewhere, whose file is closed.
+#include "tests/cuda/moved_views.h"
 #include "tests/lib/reader/golden_files.h"
 
 #include <acdf/reader.h>
@@ -30,25 +31,9 @@ public:
     Copies(const Copies&) = delete;
     Copies& operator=(const Copies&) = delete;
 
-    acdf::EnvironmentView operator()(const acdf::EnvironmentView& view) const {
-        AcdfEnvironment data = view.data();
-        acdf_move_environment(&data, moves_, count_);
-        return acdf::EnvironmentView(data);
-    }
-    acdf::LocalEnvironmentView operator()(const acdf::LocalEnvironmentView& view) const {
-        AcdfLocal data = view.data();
-        acdf_move_local(&data, moves_, count_);
-        return acdf::LocalEnvironmentView(data);
-    }
-    acdf::BrdfView operator()(const acdf::BrdfView& view) const {
-        AcdfBrdf data = view.data();
-        acdf_move_brdf(&data, moves_, count_);
-        return acdf::BrdfView(data);
-    }
-    acdf::TableView operator()(const acdf::TableView& view) const {
-        AcdfTable data = view.data();
-        acdf_move_table(&data, moves_, count_);
-        return acdf::TableView(data);
+    template <class View>
+    View operator()(const View& view) const {
+        return acdf_test::moved(view, moves_, count_);
     }
 
 private:
