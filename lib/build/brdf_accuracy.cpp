@@ -202,9 +202,10 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
 }
 
 ReflectedViews::ReflectedViews(const compress::Reflected& reflected, const std::vector<compress::View>& views,
-                               std::uint32_t columns, std::uint32_t rows)
-    : views_(views), columns_(columns), rows_(rows), light_(views.size()) {
-    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+                               std::uint32_t columns, std::uint32_t rows, std::size_t most_kept)
+    : reflected_(reflected), views_(views), columns_(columns), rows_(rows),
+      light_(std::min(views.size(), most_kept / (std::size_t{columns} * rows))) {
+    tbb::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
         light_[v].reserve(std::size_t{columns} * rows);
@@ -220,9 +221,10 @@ double ReflectedViews::relative_variance(const ViewDensity& density) const {
         double wo[3];
         views_[v].direction(wo);
         VarianceSums sums;
-        const double* light = light_[v].data();
+        const double* light = v < light_.size() ? light_[v].data() : nullptr;
         for_each_half_vector(views_[v], wo, columns_, rows_, [&](const double wi[3], double measure) {
-            sums.add(*light++, density(wo, wi), measure, wi[2]);
+            const double f = light ? *light++ : light_above(reflected_, wo, wi);
+            sums.add(f, density(wo, wi), measure, wi[2]);
         });
         out[v] = sums.result();
     });

@@ -60,19 +60,20 @@ std::vector<double> relative_variances(const std::vector<ViewDensity>& densities
                                        const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                        std::uint32_t rows = 601);
 
-/// What views reflect over a grid of measure_views, looked up once: for searches that try many densities. Takes
-/// eight bytes a view and half-vector.
+/// What views reflect over a grid of measure_views, looked up once: for searches that try many densities. Of the
+/// first views at most `most_kept` numbers are kept (256 MiB); of others they are looked up each time.
 class ReflectedViews {
 public:
     ReflectedViews(const compress::Reflected& reflected, const std::vector<compress::View>& views,
-                   std::uint32_t columns, std::uint32_t rows);
+                   std::uint32_t columns, std::uint32_t rows, std::size_t most_kept = std::size_t{1} << 25);
     /// That of summary(measure_views(density, ...)), which throws alike.
     double relative_variance(const ViewDensity& density) const;
 
 private:
+    compress::Reflected reflected_;
     std::vector<compress::View> views_;
     std::uint32_t columns_, rows_;
-    std::vector<std::vector<double>> light_; ///< one a view
+    std::vector<std::vector<double>> light_; ///< of the first views
 };
 
 /// The same of a density that integrates to less than 1 because some of its samples are lost: what the integral

@@ -38,6 +38,25 @@ BrdfAccuracy accuracy_of(const Sampler& sampler, const Reflected& light, const s
                                  views, columns, rows));
 }
 
+/// Whether what is reflected is looked up for one density, for several, or once for a search.
+TEST(MeasureBrdfRivals, VariancesAreTheSameHoweverLightIsLookedUp) {
+    const auto brdf = acdf::input::model_brdf("ggx:alpha=0.3");
+    const Reflected light = light_of(*brdf);
+    const std::vector<View> views = random_views(3, true);
+    const GgxSampler ggx(0.4);
+    const std::vector<ViewDensity> densities = {
+        CosineSampler::pdf, [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }};
+    const std::vector<double> together = relative_variances(densities, light, views, 20, 30);
+    ASSERT_EQ(together.size(), 2u);
+    for (std::size_t d = 0; d < densities.size(); ++d) {
+        const double alone = summary(measure_views(densities[d], light, views, 20, 30)).relative_variance;
+        EXPECT_GT(alone, 0.0);
+        EXPECT_EQ(together[d], alone);
+        for (const std::size_t most_kept : {std::size_t{0}, std::size_t{1200}, std::size_t{1} << 25})
+            EXPECT_EQ(ReflectedViews(light, views, 20, 30, most_kept).relative_variance(densities[d]), alone);
+    }
+}
+
 TEST(MeasureBrdfRivals, CosineSamplesAsItsDensity) {
     for (const double c : cosines) expect_samples_as_its_density(CosineSampler{}, view_at(c), at("cosine", c));
     const double wo[3] = {0.0, 0.0, 1.0}, u[2] = {0.25, 0.36};
