@@ -5,9 +5,9 @@
 
 namespace acdf::images {
 
-/// Reads portable float maps as nearly all are: "PF", width and height and "-1" (little-endian numbers, taken as
-/// they are) on a line each, RGB, and as many bytes as that makes. It opens no other file, and does not say why:
-/// OpenImageIO tells what that is, or what is wrong with it.
+/// Reads portable float maps: "PF" (RGB) or "Pf" (grey), width, height and scale, and as many bytes as that makes.
+/// Numbers are little-endian where the scale is negative, and are multiplied with its absolute value. It opens no
+/// other file, and does not say why: OpenImageIO tells what that is, or what is wrong with it.
 const ImageReader& float_map_reader();
 
 } // namespace acdf::images

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace {
@@ -76,6 +78,59 @@ TEST(FloatMap, IsReadAsAProbe) {
     EXPECT_TRUE(probe.warnings.empty());
 }
 
+/// A number as a map stores it.
+std::string stored(float number, bool large_first) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &number, sizeof bits);
+    std::string bytes;
+    for (unsigned i = 0; i < 4; ++i) bytes += static_cast<char>(bits >> 8 * (large_first ? 3 - i : i));
+    return bytes;
+}
+
+struct Form {
+    const char *type, *scale;
+    bool large_first;
+};
+constexpr Form kForms[] = {{"PF", "-1.0", false}, {"PF", "1.0", true}, {"PF", "-2.5", false}, {"PF", "3e-1", true},
+                           {"Pf", "-1.0", false}, {"Pf", "1.0", true}, {"Pf", "-0.3", false}, {"Pf", "7", true}};
+
+std::string map_of(const Form& form, const std::string& line_end) {
+    std::string bytes = form.type + line_end + "7 5" + line_end + form.scale + line_end;
+    std::vector<float> numbers = texels();
+    if (form.type[1] == 'f') numbers.resize(kWidth * kHeight);
+    for (const float number : numbers) bytes += stored(number, form.large_first);
+    return bytes;
+}
+
+std::vector<float> read_all(const images::ImageReader& reader, const std::string& path, images::Header& header) {
+    std::string error;
+    void* image = reader.open(path, 1, header, error);
+    EXPECT_TRUE(image) << error;
+    if (!image) return {};
+    const auto channels = static_cast<std::size_t>(header.channel_count);
+    std::vector<float> out(channels * kWidth * kHeight);
+    const auto pixel = static_cast<std::ptrdiff_t>(channels * sizeof(float));
+    EXPECT_TRUE(
+        reader.read(image, {0, kHeight, 0, header.channel_count, pixel, kWidth * pixel}, out.data(), error));
+    reader.close(image);
+    return out;
+}
+
+TEST(FloatMap, ChannelsScalesAndOrdersOfBytesAreReadAsByOpenImageIO) {
+    const Folder folder;
+    const std::string path = folder.file("a.pfm");
+    for (const Form& form : kForms) {
+        SCOPED_TRACE(std::string(form.type) + " " + form.scale);
+        write_bytes(path, map_of(form, "\n"));
+        images::Header ours, theirs;
+        const std::vector<float> numbers = read_all(images::float_map_reader(), path, ours);
+        EXPECT_EQ(numbers, read_all(images::module().reader, path, theirs));
+        EXPECT_EQ(ours.channels, theirs.channels);
+        write_bytes(path, map_of(form, "\r\n")); // of which OpenImageIO takes the last byte for a pixel's first
+        EXPECT_EQ(numbers, read_all(images::float_map_reader(), path, ours));
+    }
+}
+
 TEST(FloatMap, WhatIsUnusualIsLeftToOpenImageIO) {
     const Folder folder;
     const std::string path = folder.file("a.pfm"), pixels(12 * 8, '\x3F');
@@ -83,44 +138,22 @@ TEST(FloatMap, WhatIsUnusualIsLeftToOpenImageIO) {
         write_bytes(path, header + rest);
         return is_float_map(path);
     };
-    for (const char* usual : {"PF\n4 2\n-1.0\n", "PF\n4 2\n-1\n", "PF\n4 2\n-1.000000\n", "PF\n1 8\n-1.\n",
-                              "PF\r\n4 2\r\n-1.0\r\n", "PF\n4 2 \n-1.0 \n"}) {
+    for (const char* usual :
+         {"PF\n4 2\n-1.0\n", "PF\n4 2\n-1\n", "PF\n4 2\n-1.000000\n", "PF\n1 8\n-1.\n", "PF\r\n4 2\r\n-1.0\r\n",
+          "PF\n4 2 \n-1.0 \n", "PF\n# by hand\n4 2\n-1.0\n", "PF\r\n# 9\r\n4 2\r\n-1.0\r\n", "PF 4 2 -1.0\n",
+          "PF\r4 2\r-1.0\r", "PF\n4 2\n-1.0 ", "PF\n4  2\n-1.0\n"}) {
         EXPECT_TRUE(is_ours(usual, pixels)) << usual;
         EXPECT_FLOAT_EQ(input::read_probe(path, {input::Projection::latlong}).rgb.back(), 0.747059f) << usual;
     }
-    for (const char* other : {"PF\n4 2\n1.0\n",
-                              "PF\n4 2\n-2.0\n",
-                              "PF\n4 2\n-1.5\n",
-                              "PF\n4 2\n-10\n",
-                              "Pf\n4 6\n-1.0\n",
-                              "P6\n4 8\n255\n",
-                              "PF\n# by hand\n4 2\n-1.0\n",
-                              "PF 4 2 -1.0\n",
-                              "PF\r4 2\r-1.0\r",
-                              "PF\n4 2\n-1.0 ",
-                              "PF\n4  2\n-1.0\n",
-                              "PF\n-4 -2\n-1.0\n",
-                              "PF\n0 0\n-1.0\n",
-                              "PF\n8\n-1.0\n",
-                              "PF\n4 3\n-1.0\n",
-                              "PF\n4 1\n-1.0\n",
-                              "PF\n65537 1\n-1.0\n",
-                              "PF\n99999999999 2\n-1.0\n",
-                              "PF\n4 2\n-1.0",
-                              "PF",
-                              ""})
+    for (const char* other :
+         {"P6\n4 8\n255\n", "Pf\n4 6\n-1.0\nx", "PF\n4 2\n-1.0x\n", "PF\n4 2\n0\n", "PF\n4 2\n-nan\n",
+          "PF\n4 2\n-inf\n", "PF\n4 2\n-1e99\n", "PF\n# without an end", "PF\n-4 -2\n-1.0\n", "PF\n0 0\n-1.0\n",
+          "PF\n8\n-1.0\n", "PF\n4 3\n-1.0\n", "PF\n4 1\n-1.0\n", "PF\n65537 1\n-1.0\n", "PF\n99999999999 2\n-1.0\n",
+          "PF\n4 2\n-1.0", "PF", ""})
         EXPECT_FALSE(is_ours(other, pixels)) << other;
     EXPECT_FALSE(is_ours("PF\n4 2\n-1.0\n", pixels.substr(1)));
     EXPECT_FALSE(is_float_map(folder.file("missing.pfm")));
     EXPECT_FALSE(is_float_map(folder.file("")));
-    // Big-endian and scaled numbers, which it understands.
-    const std::string one("\x3F\x80\0\0", 4), two("\0\0\0\x40", 4);
-    std::string large, scaled;
-    for (int i = 0; i < 24; ++i) large += one, scaled += two;
-    write_bytes(path, "PF\n4 2\n1.0\n" + large);
-    EXPECT_EQ(input::read_probe(path).rgb, std::vector<float>(24, 1.0f));
-    write_bytes(path, "PF\n4 2\n-2.0\n" + scaled);
-    EXPECT_EQ(input::read_probe(path).rgb, std::vector<float>(24, 4.0f));
 }
 
 } // namespace
