@@ -153,9 +153,23 @@ std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
     return options.places.local_bytes > 0 ? options.places.local_bytes : budget / kLocalPart;
 }
 
-[[noreturn]] void out_of_reach(std::uint64_t budget, std::uint64_t least) {
-    throw std::runtime_error("a size of " + std::to_string(budget) +
-                             " bytes is out of reach; the least that can be had is about " + std::to_string(least));
+/// A size is too small.
+struct OutOfReach : std::runtime_error {
+    OutOfReach(std::uint64_t budget, std::uint64_t least)
+        : std::runtime_error("a size of " + std::to_string(budget) +
+                             " bytes is out of reach; the least that can be had is about " +
+                             std::to_string(least)) {}
+};
+
+/// Of a file that has bins, but nothing in them: known before anything is fitted.
+std::uint64_t bytes_of_bins(const compress::Target& target, const Source& source, const LocalOptions& options,
+                            const NormalBins& bins) {
+    compress::LocalFit nothing;
+    nothing.shares.assign(bins.normals.size(), 0.0f);
+    nothing.tree.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
+    if (options.company) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
+    const LocalDraft draft = shared_draft(nothing, target, source, options, bins);
+    return compress::store(draft.tree, draft.description).size();
 }
 
 /// The file in which what is there without places has `local` bytes.
@@ -185,7 +199,7 @@ void add_places(LocalDraft& draft, const compress::Target& target, const LocalOp
                                                        }))
         draft.description.chunks.push_back(std::move(chunk));
     const std::uint64_t made = compress::store(draft.tree, draft.description).size();
-    if (made > budget) out_of_reach(budget, made); // a single cell, or a map of portals, is more than is left
+    if (made > budget) throw OutOfReach(budget, made); // a single cell, or a map of portals, is more than is left
 }
 
 /// At most `whole_budget` bytes before compression, and nearly as many.
@@ -193,6 +207,8 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
                   std::uint64_t whole_budget, double max_weight, const Progress& progress) {
     const std::uint64_t budget = local_budget(options, whole_budget);
     const NormalBins bins = bins_for(options, double(budget));
+    if (const std::uint64_t least = bytes_of_bins(target, source, options, bins); least > budget)
+        throw OutOfReach(whole_budget, whole_of(options, least));
     compress::LocalSize size = size_for(options, bins, double(budget));
     if (max_weight > 0.0) size.max_weight = max_weight;
     std::optional<compress::LocalFitter> fitter; // of so many tiles
@@ -212,7 +228,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
         const std::int64_t next = static_cast<std::int64_t>(size.tree_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
-            if (size.tiles <= 2) out_of_reach(whole_budget, whole_of(options, bytes));
+            if (size.tiles <= 2) throw OutOfReach(whole_budget, whole_of(options, bytes));
             size.tiles = size.tiles * 3 / 4;
             fitter.reset();
             size.tree_bytes = size_for(options, bins, double(budget)).tree_bytes;
@@ -237,20 +253,27 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
 Local build_to_variance(const compress::Target& target, const Source& source, const LocalOptions& options,
                         const Progress& progress) {
     double share = 0.0; // steps of the search are of about the same size
-    const auto at = [&](double bytes) {
-        return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes),
-                               [&](double, const char*) { // no news, but a chance to cancel
-                                   if (progress) progress(share, "searching");
-                               });
+    const auto at = [&](double bytes) -> std::optional<Local> {
+        const auto searching = [&](double, const char*) { // no news, but a chance to cancel
+            if (progress) progress(share, "searching");
+        };
+        try {
+            return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), searching);
+        } catch (const OutOfReach&) {
+            return std::nullopt; // bins alone may take more
+        }
+    };
+    const auto reaches = [&](const std::optional<Local>& made) {
+        return made && made->accuracy.relative_variance <= options.goal.variance;
     };
     constexpr double largest = 64.0 * 1048576.0;
     double low = 16384.0, high = 65536.0;
-    Local best = at(high);
-    while (best.accuracy.relative_variance > options.goal.variance) {
+    std::optional<Local> best = at(high);
+    while (!reaches(best)) {
         if (high >= largest)
             throw std::runtime_error("a relative variance of " + option_number(options.goal.variance) +
                                      " is out of reach; 64 MiB have " +
-                                     option_number(best.accuracy.relative_variance));
+                                     (best ? option_number(best->accuracy.relative_variance) : "no room"));
         low = high;
         high = std::min(4.0 * high, largest);
         best = at(high);
@@ -258,15 +281,14 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
     for (int step = 0; step < 7; ++step) {
         share = 0.3 + 0.1 * step;
         const double middle = std::sqrt(low * high);
-        Local candidate = at(middle);
-        if (candidate.accuracy.relative_variance > options.goal.variance) {
-            low = middle;
-        } else {
+        if (std::optional<Local> candidate = at(middle); reaches(candidate)) {
             high = middle;
             best = std::move(candidate);
+        } else {
+            low = middle;
         }
     }
-    return best;
+    return std::move(*best);
 }
 
 Local build_separate(const compress::Target& target, const Source& source, const LocalOptions& options,

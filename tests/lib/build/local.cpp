@@ -74,6 +74,29 @@ TEST(LocalFiles, BudgetsTooSmallAreRefused) {
     EXPECT_THROW(build(options), std::runtime_error);
 }
 
+TEST(LocalFiles, BudgetsThatBinsAloneExceedAreRefusedBeforeAnyWork) {
+    build::LocalOptions options;
+    options.subdivisions = 64;
+    options.goal.budget = 32768;
+    bool begun = false;
+    const build::Progress progress = [&](double, const char*) { begun = true; };
+    EXPECT_THROW(build::build_local(probe(), {}, options, progress), std::runtime_error);
+    EXPECT_FALSE(begun);
+}
+
+TEST(LocalFiles, TargetVarianceIsSearchedForAmongSizesThatBinsLeave) {
+    build::LocalOptions options;
+    options.subdivisions = 46; // 66 KiB: the search begins below it, and meets it again
+    options.scene = {{{0.0f, 0.0f, 1.0f}, 1.0}};
+    options.goal = {Goal::Kind::variance, 0, 0, 10.0};
+    const Target small = acdf_test::texel_target(
+        16, 8, [](std::uint32_t c, std::uint32_t r) { return c == 3 && r == 2 ? 50.0 : 1.0; });
+    const build::Local local = build::build_local(small, {}, options);
+    EXPECT_LE(local.accuracy.relative_variance, 10.0);
+    EXPECT_GT(local.bytes.size(), 65536u);
+    EXPECT_LT(local.bytes.size(), 80000u);
+}
+
 TEST(LocalFiles, TargetVarianceIsReachedByNoMoreThanItTakes) {
     build::LocalOptions options;
     const double goal = acdf_test::kSanitized ? 0.05 : 0.03; // a smaller file is found as this one is
