@@ -323,7 +323,7 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "acdf plot room.acdf -o floor.png --place 0.5,1,0 --normal 0,0,1\n"
                     "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
                     "acdf plot nickel.acdf -o lobe.png --view 60\n"
-                    "acdf plot sky.acdf -o sky.exr --width 4096"));
+                    "acdf plot sky.acdf -o density.exr --width 4096"));
     command.callback([options, &command, &exit_code] {
         check_mesh(command, *options);
         run(*options);
