@@ -1,6 +1,7 @@
 // Local environment files many times at once. What a single call waits for, memory and the splits on the way to a
 // tile, is asked for by several of them side by side; the operations are the same ones, on any processor.
-#include <acdf/wavefront.h>
+#include "local_wavefront.h"
+#include "environment_wavefront.h"
 
 #include <algorithm>
 
@@ -69,10 +70,38 @@ void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count)
     for (std::size_t k = 0; k < count; ++k) acdf_local_ahead(&local, acdf_local_tile(local.tables, lane[k].tile));
 }
 
+// Whether vectors serve a file, and a point of such.
+bool serves_waves(const AcdfLocal& local) {
+    return local.tables && local.tables->corners && local.cosine_share == 0.0 && local.blend.tiles->tile_count > 1;
+}
+bool serves_waves(const AcdfLocalPoint& point) {
+    return point.what == ACDF_LOCAL_BLEND && point.mix.count == kRows && point.place.count == 0 &&
+           point.windows.count == 0;
+}
+
 } // namespace
+
+LocalWavefront::LocalWavefront(const LocalEnvironmentView& view, Instructions most) noexcept : local_(view.data()) {
+    if (serves_waves(local_)) instructions_ = std::min(most, instructions_of_this_processor());
+}
+
+void LocalWavefront::sample(const AcdfLocalPoint& point, const double (*u)[2], std::size_t count,
+                            DirectionSample* out) const noexcept {
+#if ACDF_WAVEFRONT_X86
+    if (instructions_ != Instructions::none && serves_waves(point)) {
+        if (instructions_ == Instructions::avx512) return local_sample_avx512(local_, point, u, count, out);
+        return local_sample_avx2(local_, point, u, count, out);
+    }
+#endif
+    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_local_sample_at(&local_, &point, u[i][0], u[i][1]);
+}
 
 void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std::size_t count,
                             DirectionSample* out) const noexcept {
+#if ACDF_WAVEFRONT_X86
+    if (instructions_ == Instructions::avx512) return local_sample_avx512(local_, normals, u, count, out);
+    if (instructions_ == Instructions::avx2) return local_sample_avx2(local_, normals, u, count, out);
+#endif
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     Lane lane[kBlock];
     for (std::size_t first = 0; first < count; first += kBlock) {

@@ -1,5 +1,5 @@
-// Local environments many times at once: the same bits as one by one, on frozen and random files of both grids,
-// with and without runtime tables.
+// Local environments many times at once, of a normal each or at one point: the same bits as one by one, with each
+// set of instructions, on frozen and random files of both grids, with and without runtime tables.
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
@@ -8,9 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace {
@@ -25,6 +29,8 @@ struct LocalWave {
     explicit LocalWave(std::size_t count) : normals(3 * count), directions(3 * count), u(2 * count) {
         std::mt19937_64 random(5);
         std::uniform_real_distribution<double> uniform(0.0, 1.0);
+        const double infinity = std::numeric_limits<double>::infinity();
+        const double ends[] = {0.0, 1.0, -0.0, 1.0 - 0x1p-53, 0x1p-149, std::nan(""), infinity, -infinity};
         const auto direction = [&](float* out) {
             const double z = 2.0 * uniform(random) - 1.0, phi = 6.3 * uniform(random), r = std::sqrt(1.0 - z * z);
             out[0] = static_cast<float>(r * std::cos(phi));
@@ -39,12 +45,31 @@ struct LocalWave {
             if (i % 11 == 3) std::memcpy(&normals[3 * i], edge_normal(random).data(), 3 * sizeof(float));
             if (i % 23 == 4) normals[3 * i] = std::nanf("");
             if (i % 13 == 5) directions[3 * i + i % 3] *= 3.0f;
+            if (i % 17 == 6) u[2 * i + i % 2] = ends[random() % std::size(ends)];
+            if (i % 29 == 8) normals[3 * i + i % 3] = static_cast<float>(ends[random() % std::size(ends)]);
+            if (i % 31 == 9) directions[3 * i + i % 3] = static_cast<float>(ends[random() % std::size(ends)]);
         }
     }
 };
 
-void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t count) {
-    const acdf::LocalWavefront wavefront(view);
+constexpr acdf::Instructions kEach[] = {acdf::Instructions::none, acdf::Instructions::avx2,
+                                        acdf::Instructions::avx512};
+
+void expect_one_point(const acdf::LocalEnvironmentView& view, const acdf::LocalWavefront& wavefront,
+                      const AcdfLocalPoint& point, const double (*u)[2], std::size_t count) {
+    std::vector<acdf::DirectionSample> samples(count + 1, {{7.0f, 7.0f, 7.0f}, 7.0f});
+    wavefront.sample(point, u, count, samples.data());
+    for (std::size_t i = 0; i < count; ++i) {
+        const acdf::DirectionSample s = view.sample(point, u[i][0], u[i][1]);
+        ASSERT_EQ(std::memcmp(&s, &samples[i], sizeof s), 0) << i;
+    }
+    EXPECT_EQ(samples[count].pdf, 7.0f);
+}
+
+void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t count, acdf::Instructions most) {
+    SCOPED_TRACE(std::to_string(count) + " at once, instructions up to " + std::to_string(int(most)));
+    const acdf::LocalWavefront wavefront(view, most);
+    EXPECT_LE(wavefront.instructions(), most);
     const LocalWave asked(count);
     const auto* normals = reinterpret_cast<const float(*)[3]>(asked.normals.data());
     const auto* directions = reinterpret_cast<const float(*)[3]>(asked.directions.data());
@@ -62,6 +87,12 @@ void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t c
     }
     EXPECT_EQ(samples[count].pdf, 7.0f);
     EXPECT_EQ(pdfs[count], 7.0f);
+    for (std::size_t i = 0; i < count; i += 40)
+        expect_one_point(view, wavefront, view.at(normals[i]), u + i, std::min(count - i, i % 67));
+}
+
+void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t count) {
+    for (const acdf::Instructions most : kEach) expect_the_local_view(view, count, most);
 }
 
 /// As large files have them, which leave pieces out: a copy of the tables without those.
@@ -81,7 +112,7 @@ struct NoPieces {
 
 void expect_all(const acdf::File& file) {
     const acdf::LocalEnvironmentView view = file.local();
-    for (const std::size_t count : {0u, 1u, 5u, 700u}) expect_the_local_view(view, count);
+    for (const std::size_t count : {0u, 1u, 5u, 64u, 700u}) expect_the_local_view(view, count);
     if (!view.data().tables) return;
     const NoPieces large(view.data());
     expect_the_local_view(acdf::LocalEnvironmentView(large.local), 700);
@@ -100,17 +131,23 @@ TEST(LocalWavefront, IsTheViewOnGoldenFiles) {
 }
 
 TEST(LocalWavefront, IsTheViewOnRandomFiles) {
-    int with_tables = 0;
-    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    int with_tables = 0, by_vectors = 0;
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
         RandomOptions options = varied_local_options(seed);
         options.octahedral = seed % 5 == 4;
         SCOPED_TRACE(seed);
-        const LoadedLocal loaded(RandomLocal(seed, options).make());
+        LocalSpec spec = RandomLocal(seed, options).make();
+        if (seed % 4 > 0) spec.cosine_share = 0.0f; // vectors serve no others
+        const LoadedLocal loaded(spec);
         with_tables += loaded.light().tables != nullptr;
+        by_vectors += acdf::LocalWavefront(loaded.file.local()).instructions() != acdf::Instructions::none;
         expect_all(loaded.file);
         if (HasFatalFailure()) return;
     }
     EXPECT_GT(with_tables, 15);
+#if defined(__x86_64__)
+    EXPECT_EQ(by_vectors > 5, __builtin_cpu_supports("avx2") != 0);
+#endif
 }
 
 } // namespace

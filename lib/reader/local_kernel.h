@@ -1,0 +1,320 @@
+// Draws of LocalWavefront over vectors of ACDF_WIDTH doubles, by the extensions of GCC and Clang. Included by one
+// source a set of instructions, compiled for it; nothing here may be inline with external linkage, lest the linker
+// picks code that the processor does not have.
+//
+// Each function is that of the same name in acdf/tile_tables.h, acdf/local.h and acdf/row_heights.h, a lane an
+// element, operation by operation: results agree bit for bit. Lanes are those of a block that draw from the
+// mixture, one after the other, and then those that draw a light. Normals on edges of triangles and draws next to
+// borders are left to the functions of acdf/local.h.
+#pragma once
+
+#include "local_curves.h"
+#include "local_points.h"
+#include "local_wavefront.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+/// Lanes on their way through the splits.
+struct Walks {
+    std::size_t count;
+    alignas(64) double weight[kRows][kRoom], part[kRows][kRoom], x[2][kRoom], chosen[kRoom];
+    alignas(64) double whole[kRows][kRoom], mixture[kRoom], sum[kRoom]; // of their points
+    alignas(64) long long row[kRows][kRoom], node[kRoom], lane[kRoom];
+};
+
+// ---- numbers ---------------------------------------------------------------------------------------------------
+
+/* acdf_local_draw_light of the lanes of a mask, into cells; of tiles the numbers of the lights. */
+ACDF_LANE void draw_lights(const AcdfLocal& local, const Points& p, const Vector u[2], unsigned mask, Integer lane,
+                           Cells* cells) {
+    Vector x = u[0] * p.sum, weight = all(0.0), number = all(0.0);
+    Mask active = all_lanes();
+    for (std::uint32_t k = 0; k < local.light_count;) {
+        for (std::uint32_t end = std::min(k + 8, local.light_count); k < end; ++k) {
+            const Mask taken = both(active, less(all(0.0), p.light[k]));
+            x = choose(taken, x - weight, x);
+            weight = choose(taken, p.light[k], weight);
+            number = choose(taken, all((double)k), number);
+            active = without(active, both(taken, less(x, weight)));
+        }
+        if ((lanes(active) & mask) == 0) break;
+    }
+    const std::size_t at = cells->count;
+    store_packed(&cells->u[0][at], unit_interval(x / weight), mask);
+    store_packed(&cells->u[1][at], u[1], mask);
+    store_packed(&cells->probability[at], positive(weight / p.sum), mask);
+    store_packed(&cells->lane[at], lane, mask);
+    store_packed(&cells->tile[at], truncated(number), mask);
+    cells->count += (std::size_t)__builtin_popcount(mask);
+}
+
+/* acdf_tile_walk_begin of the lanes of a mask. */
+ACDF_LANE void begin_walks(const Points& p, const Vector u[2], unsigned mask, Integer lane, Walks* walks) {
+    const std::size_t at = walks->count;
+    for (int i = 0; i < kRows; ++i) {
+        store_packed(&walks->weight[i][at], p.weight[i], mask);
+        store_packed(&walks->row[i][at], p.row[i], mask);
+    }
+    store_packed(&walks->x[0][at], u[0] * p.sum - p.lights, mask);
+    store_packed(&walks->x[1][at], u[1] * p.mixture, mask);
+    store_packed(&walks->mixture[at], p.mixture, mask);
+    store_packed(&walks->sum[at], p.sum, mask);
+    store_packed(&walks->lane[at], lane, mask);
+    walks->count += (std::size_t)__builtin_popcount(mask);
+}
+
+// ---- splits ----------------------------------------------------------------------------------------------------
+
+constexpr std::uint8_t kAllLower = 255; // the code that gives all to the lower half
+
+/* acdf_tile_walk_step of a vector. Returns whether any lane goes on. Lanes at a tile stay what they are, as if all
+ * were given to the lower half: its sum is `chosen` then, and the quotient 1. */
+ACDF_LANE bool step(const double* codes, const AcdfSplit* splits, Walks* w, std::size_t at) {
+    const Integer node = loaded(&w->node[at]), place = node & 0x7FFF, split = loaded_from(splits, place);
+    const Mask ended = has(node, ACDF_TILE_FLAG), axis1 = has(split, 1);
+    Vector code[kRows][2], half[2], weight[kRows];
+    for (int i = 0; i < kRows; ++i) {
+        alignas(64) long long byte[ACDF_WIDTH];
+        const double* from[ACDF_WIDTH];
+        stored(byte,
+               choose(ended, Integer{} + (long long)(std::uintptr_t)&kAllLower, loaded(&w->row[i][at]) + place));
+        for (int k = 0; k < ACDF_WIDTH; ++k) from[k] = codes + 2 * std::size_t{*(const std::uint8_t*)byte[k]};
+        gather_pairs(from, code[i]);
+        weight[i] = loaded(&w->weight[i][at]);
+    }
+    for (int k = 0; k < 2; ++k)
+        half[k] = (weight[0] * code[0][k] + weight[1] * code[1][k]) + weight[2] * code[2][k];
+    const Vector x[2] = {loaded(&w->x[0][at]), loaded(&w->x[1][at])}, along = choose(axis1, x[1], x[0]);
+    const Mask upper = without(less(all(0.0), half[1]), less(along, half[0]));
+    const Vector taken = choose(upper, half[1], half[0]);
+    const Vector other = choose(axis1, x[0], x[1]) * (taken / loaded(&w->chosen[at]));
+    const Vector left = along - choose(upper, half[0], all(0.0));
+    for (int i = 0; i < kRows; ++i) {
+        const Vector given = choose(upper, code[i][1], code[i][0]);
+        stored(&w->weight[i][at], weight[i] * given);
+        stored(&w->part[i][at], loaded(&w->part[i][at]) * given);
+    }
+    stored(&w->x[0][at], choose(axis1, other, left));
+    stored(&w->x[1][at], choose(axis1, left, other));
+    stored(&w->chosen[at], taken);
+    const Integer child = choose(upper, split >> 16, split) >> 32 & 0xFFFF, reached = choose(ended, node, child);
+    stored(&w->node[at], reached);
+    return lanes(has(reached, ACDF_TILE_FLAG)) + 1 != 1u << ACDF_WIDTH;
+}
+
+ACDF_LANE void walk(const AcdfLocalTables& tables, Walks* w) {
+    const std::uint32_t* const words = acdf_local_words(&tables);
+    const double* const codes = acdf_tile_codes(words, &tables.tiles);
+    const AcdfSplit* const splits = acdf_tile_splits(words, &tables.tiles);
+    std::size_t live[kRoom / ACDF_WIDTH], count = 0;
+    for (std::size_t at = 0; at < w->count; at += ACDF_WIDTH) {
+        for (int i = 0; i < kRows; ++i) {
+            stored(&w->whole[i][at], loaded(&w->weight[i][at]));
+            stored(&w->part[i][at], all(1.0));
+        }
+        stored(&w->chosen[at], loaded(&w->mixture[at]));
+        stored(&w->node[at], Integer{} + tables.tiles.root);
+        live[count++] = at;
+    }
+    /* What stands behind the last lane walks too, along the rows of the first. */
+    for (std::size_t i = w->count; i < count * ACDF_WIDTH; ++i)
+        for (int k = 0; k < kRows; ++k) w->row[k][i] = w->row[k][0];
+    while (count > 0) {
+        std::size_t left = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t at = live[k];
+            live[left] = at;
+            left += step(codes, splits, w, at);
+        }
+        count = left;
+    }
+}
+
+/* acdf_tile_walk_end, acdf_local_drawn_tile and acdf_local_tile_probability of all lanes, into cells behind others.
+ */
+ACDF_LANE void end_walks(const Walks& w, Cells* cells) {
+    for (std::size_t at = 0, to = cells->count; at < w.count; at += ACDF_WIDTH, to += ACDF_WIDTH) {
+        const Vector chosen = loaded(&w.chosen[at]), mixture = loaded(&w.mixture[at]);
+        for (int k = 0; k < 2; ++k) {
+            const Vector x = loaded(&w.x[k][at]), left = x / chosen;
+            stored(&cells->u[k][to], select(x < chosen, select(left > 0.0, left, all(0.0)), all(1.0)));
+        }
+        Vector given = all(0.0);
+        for (int i = 0; i < kRows; ++i) given += loaded(&w.whole[i][at]) * loaded(&w.part[i][at]);
+        stored(&cells->probability[to], positive(mixture / loaded(&w.sum[at]) * positive(given / mixture)));
+        stored(&cells->lane[to], loaded(&w.lane[at]));
+        stored(&cells->tile[to], loaded(&w.node[at]) & ~(long long)ACDF_TILE_FLAG);
+    }
+    cells->count += w.count;
+}
+
+/* Enters the tiles, and draws in them. */
+ACDF_LANE void enter_tiles(const AcdfLocal& local, Cells* cells) {
+    for (std::size_t i = 0; i < cells->count; ++i) {
+        const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells->tile[i]);
+        for (int axis = 0; axis < 2; ++axis) {
+            cells->low[axis][i] = tile->low[axis];
+            cells->high[axis][i] = tile->high[axis];
+        }
+        acdf_local_ahead(&local, tile);
+        cells->curve[i] = tile->root == ACDF_NO_ROOT ? -1 : (long long)tile->root;
+        cells->tilted[i] = false;
+    }
+    for (std::size_t i = cells->count; i % kLanes > 0; ++i) { /* these are placed, too */
+        for (int axis = 0; axis < 2; ++axis) cells->low[axis][i] = cells->high[axis][i] = 0;
+        cells->curve[i] = -1;
+    }
+    draw_inside(local.blend.tree, local.environment.tree_units, cells);
+}
+
+// ---- directions ------------------------------------------------------------------------------------------------
+
+/// Halves of kLanes cells, and what is to be drawn of them.
+struct Drawn {
+    Vector angle[2], cap[2], pdf[2];
+    Longs quarter[2], south[2];
+    Integer refused[2];
+};
+
+/* acdf_area_pdf of doubles that are floats already. */
+ACDF_LANE Vector area_pdf(Vector p, double columns, Vector area) {
+    const Vector pdf = p * columns / area;
+    return select(pdf >= 3.402823466e38, all((double)3.402823466e38f),
+                  select(pdf > 1.17549435e-38, pdf, all((double)1.17549435e-38f)));
+}
+
+/* acdf_row_place of half of some lanes, in doubles. */
+ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, std::size_t at, int half, Drawn* out) {
+    const double columns = local.environment.columns, border = columns * (ACDF_FLOAT_BORDER / (2.0 * ACDF_PI));
+    const double* const z = acdf_local_heights(local.tables);
+    const Vector low = converted(loaded(&cells.low[0][at])), high = converted(loaded(&cells.high[0][at])),
+                 width = high - low;
+    const Vector west = loaded(&cells.u[0][at]) * width, x = low + west;
+    const Vector z0 = (Vector)loaded_from(z, loaded(&cells.low[1][at])),
+                 z1 = (Vector)loaded_from(z, loaded(&cells.high[1][at]));
+    const Vector height = z0 + loaded(&cells.u[1][at]) * (z1 - z0), cap = 1.0 - absolute(height);
+    const Vector from_north = z0 - height, from_south = height - z1;
+    const Vector nearest = select(from_north < from_south, from_north, from_south);
+    const Vector turn = 1.0 - x * (2.0 / columns), quarter = whole(2.0 * turn + 4.5) - 4.0;
+    out->refused[half] = (west < border) | (high - x < border) |
+                         (cap < (double)(ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER)) |
+                         (nearest * nearest < 2.0 * ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER * cap);
+    out->angle[half] = (turn - 0.5 * quarter) * ACDF_PI;
+    out->cap[half] = cap;
+    out->quarter[half] = (Longs)truncated(quarter + 4.0) & 3u;
+    out->south[half] = (Longs)(height < 0.0) & 1u;
+    out->pdf[half] = area_pdf(loaded(&cells.probability[at]), columns, 2.0 * ACDF_PI * width * (z0 - z1));
+}
+
+/* acdf_fold_place: the angle is the place across the square, the cap that along it. */
+ACDF_LANE void fold_place(const AcdfLocal& local, const Cells& cells, std::size_t at, int half, Drawn* out) {
+    const double steps[2] = {(double)local.environment.columns, (double)local.environment.rows};
+    Vector width[2], place[2];
+    out->refused[half] = Integer{};
+    for (int axis = 0; axis < 2; ++axis) {
+        const Vector low = converted(loaded(&cells.low[axis][at]));
+        const double border = steps[axis] * ACDF_FOLD_BORDER;
+        width[axis] = converted(loaded(&cells.high[axis][at])) - low;
+        const Vector from = loaded(&cells.u[axis][at]) * width[axis];
+        out->refused[half] |= (from < border) | (width[axis] - from < border);
+        place[axis] = 2.0 * (low + from) / steps[axis];
+    }
+    out->angle[half] = 1.0 - place[0];
+    out->cap[half] = place[1] - 1.0;
+    out->pdf[half] =
+        area_pdf(loaded(&cells.probability[at]), steps[0], 2.0 * ACDF_PI * width[0] * (2.0 * width[1] / steps[1]));
+}
+
+/* acdf_local_place of all cells. Returns the lanes that are not answered. */
+ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, AcdfDirectionSample* out) {
+    std::uint64_t lost = 0;
+    for (std::size_t first = 0; first < cells.count; first += kLanes) {
+        Drawn d;
+        Floats direction[3];
+        AcdfDirectionSample drawn[kLanes];
+        for (int half = 0; half < 2; ++half) {
+            const std::size_t at = first + ACDF_WIDTH * (std::size_t)half;
+            if (local.tables->octahedral) fold_place(local, cells, at, half, &d);
+            else row_place(local, cells, at, half, &d);
+        }
+        const Floats angle = to_floats((Doubles)d.angle[0], (Doubles)d.angle[1]);
+        const Floats cap = to_floats((Doubles)d.cap[0], (Doubles)d.cap[1]);
+        if (local.tables->octahedral) square_direction(angle, cap, direction);
+        else
+            piece_direction(angle, cap, low_words(d.quarter[0], d.quarter[1]), low_words(d.south[0], d.south[1]),
+                            direction);
+        store_samples(direction, to_floats((Doubles)d.pdf[0], (Doubles)d.pdf[1]), drawn);
+        const std::uint32_t refused = bits(d.refused[0]) | bits(d.refused[1]) << ACDF_WIDTH;
+        for (std::size_t i = 0; i < kLanes && first + i < cells.count; ++i) {
+            const std::size_t lane = (std::size_t)cells.lane[first + i];
+            out[lane] = drawn[i];
+            lost |= (std::uint64_t)((refused >> i & 1u) | (std::uint32_t)cells.tilted[first + i]) << lane;
+        }
+    }
+    return lost;
+}
+
+// ---- all of an array -------------------------------------------------------------------------------------------
+
+/* Draws of up to kBlock lanes; `at(lane, count, points)` sets the points of a vector from a lane on, of which
+ * `count` are there; `alone(lane)` draws singly. */
+template <class At, class Alone>
+ACDF_LANE void draw_block(const AcdfLocal& local, const At& at, const Alone& alone, const double (*u)[2],
+                          std::size_t count, AcdfDirectionSample* out) {
+    Walks walks;
+    Cells cells;
+    Points room;
+    std::uint64_t lost = 0;
+    walks.count = cells.count = 0;
+    for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
+        const std::size_t more = std::min<std::size_t>(count - first, ACDF_WIDTH);
+        const unsigned there = (1u << more) - 1u;
+        double last[ACDF_WIDTH][2] = {};
+        Doubles given[2];
+        const Integer lane = numbers_from(first);
+        if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
+        load_pairs(more < ACDF_WIDTH ? last : u + first, given);
+        const Points& p = at(first, more, &room);
+        const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
+        const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.lights)) & served;
+        lost |= (std::uint64_t)(served ^ there) << first;
+        begin_walks(p, v, served ^ light, lane, &walks);
+        if (light) draw_lights(local, p, v, light, lane, &cells);
+    }
+    for (std::size_t i = 0; i < cells.count; ++i) cells.tile[i] = local.lights[cells.tile[i]].tile;
+    walk(*local.tables, &walks);
+    end_walks(walks, &cells);
+    enter_tiles(local, &cells);
+    lost |= place_cells(local, cells, out);
+    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+}
+
+ACDF_LANE void sample_all(const AcdfLocal& local, const float (*normals)[3], const double (*u)[2],
+                          std::size_t count, AcdfDirectionSample* out) {
+    for (std::size_t first = 0; first < count; first += kBlock, normals += kBlock, u += kBlock, out += kBlock)
+        draw_block(
+            local,
+            [&](std::size_t lane, std::size_t there, Points* p) -> const Points& {
+                float last[ACDF_WIDTH][3] = {};
+                if (there < ACDF_WIDTH) std::memcpy(last, normals + lane, there * sizeof *normals);
+                points_of(local, there < ACDF_WIDTH ? last : normals + lane, p);
+                return *p;
+            },
+            [&](std::size_t lane) { out[lane] = acdf_local_sample(&local, normals[lane], u[lane][0], u[lane][1]); },
+            u, std::min(count - first, kBlock), out);
+}
+ACDF_LANE void sample_all(const AcdfLocal& local, const AcdfLocalPoint& point, const double (*u)[2],
+                          std::size_t count, AcdfDirectionSample* out) {
+    Points points;
+    points_of(local, point, &points);
+    for (std::size_t first = 0; first < count; first += kBlock, u += kBlock, out += kBlock)
+        draw_block(
+            local, [&](std::size_t, std::size_t, Points*) -> const Points& { return points; },
+            [&](std::size_t lane) { out[lane] = acdf_local_sample_at(&local, &point, u[lane][0], u[lane][1]); }, u,
+            std::min(count - first, kBlock), out);
+}
+
+} // namespace
