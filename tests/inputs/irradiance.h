@@ -25,28 +25,12 @@ inline double length(const float a[3]) { return std::sqrt(dot(a, a)); }
 /// An angle, with what is asked of it again and again.
 struct Angle {
     double at, sine, cosine;
+    double sine_square; ///< the integral of the square of the sine
 
-    explicit Angle(double radians) : at(radians), sine(std::sin(radians)), cosine(std::cos(radians)) {}
-    double sine_square() const { return 0.5 * (at - sine * cosine); } ///< the integral of the square of the sine
-};
-
-/// The integral of max(0, n . omega) over a box of phi (falling) and theta, n of unit length: in closed form where
-/// no part is below the horizon, else of quarters, down to a 500th of a radian.
-inline double clamped_cosine(const double n[3], const Angle& phi0, const Angle& phi1, const Angle& theta0,
-                             const Angle& theta1) {
-    const Angle phi(0.5 * (phi0.at + phi1.at)), theta(0.5 * (theta0.at + theta1.at));
-    const double reach = 0.5 * (std::fabs(phi0.at - phi1.at) + std::fabs(theta1.at - theta0.at));
-    const double middle = theta.sine * (n[0] * phi.cosine + n[1] * phi.sine) + n[2] * theta.cosine;
-    if (middle <= -reach) return 0.0;
-    if (middle >= reach || reach < 2e-3) {
-        if (middle <= 0.0) return 0.0;
-        return (n[0] * (phi0.sine - phi1.sine) - n[1] * (phi0.cosine - phi1.cosine)) *
-                   (theta1.sine_square() - theta0.sine_square()) +
-               n[2] * (phi0.at - phi1.at) * 0.5 * (theta1.sine * theta1.sine - theta0.sine * theta0.sine);
+    explicit Angle(double radians)
+        : at(radians), sine(std::sin(radians)), cosine(std::cos(radians)), sine_square(0.5 * (at - sine * cosine)) {
     }
-    return clamped_cosine(n, phi0, phi, theta0, theta) + clamped_cosine(n, phi, phi1, theta0, theta) +
-           clamped_cosine(n, phi0, phi, theta, theta1) + clamped_cosine(n, phi, phi1, theta, theta1);
-}
+};
 
 class ExactIrradiance {
 public:
@@ -57,19 +41,12 @@ public:
                 for (std::uint32_t c = 0; c < target.columns; ++c) squares_.push_back(square(c, r));
             return;
         }
-        for (std::uint32_t c = 0; c <= target.columns; ++c)
-            phi_.push_back(Angle(kPi - 2.0 * kPi * c / target.columns));
-        for (std::uint32_t r = 0; r <= target.rows; ++r) theta_.push_back(Angle(kPi * r / target.rows));
-        for (std::uint32_t c = 0; c < target.columns; ++c) {
-            const Angle &phi0 = phi_[c], &phi1 = phi_[c + 1], middle(0.5 * (phi0.at + phi1.at));
-            columns_.push_back({middle.cosine, middle.sine, phi0.sine - phi1.sine, phi0.cosine - phi1.cosine});
-        }
-        for (std::uint32_t r = 0; r < target.rows; ++r) {
-            const Angle &theta0 = theta_[r], &theta1 = theta_[r + 1], middle(0.5 * (theta0.at + theta1.at));
-            const double squares = theta1.sine * theta1.sine - theta0.sine * theta0.sine;
-            rows_.push_back({middle.cosine, middle.sine, theta1.sine_square() - theta0.sine_square(),
-                             (phi_[0].at - phi_[1].at) * 0.5 * squares});
-        }
+        for (reach_ = 0.5 * (2.0 * kPi / target.columns + kPi / target.rows); reach_ / parts_ >= 2e-3;) parts_ *= 2;
+        const double steps = 2.0 * parts_; // middles are wanted, too
+        for (std::uint32_t i = 0; i <= 2 * parts_ * target.columns; ++i)
+            phi_.push_back(Angle(kPi - 2.0 * kPi * i / (steps * target.columns)));
+        for (std::uint32_t i = 0; i <= 2 * parts_ * target.rows; ++i)
+            theta_.push_back(Angle(kPi * i / (steps * target.rows)));
     }
 
     /// The integral of L max(0, n . omega) for a normal of any length.
@@ -86,25 +63,34 @@ public:
         const double size = length(normal);
         const double n[3] = {normal[0] / size, normal[1] / size, normal[2] / size};
         if (octahedral()) return of_square(n, column, row);
-        const Axis &x = columns_[column], &y = rows_[row];
-        const double reach = 0.5 * (2.0 * kPi / target_.columns + kPi / target_.rows);
-        const double middle = y.sine * (n[0] * x.cosine + n[1] * x.sine) + n[2] * y.cosine;
-        if (middle <= -reach) return 0.0;
-        if (middle >= reach) return (n[0] * x.first - n[1] * x.second) * y.first + n[2] * y.second;
-        return clamped_cosine(n, phi_[column], phi_[column + 1], theta_[row], theta_[row + 1]);
+        return of_box(n, 2 * parts_ * column, 2 * parts_ * row, 2 * parts_);
     }
 
 private:
-    /// Of one column or row: of its middle, and the two parts of the closed form of a box.
-    struct Axis {
-        double cosine, sine, first, second;
-    };
     /// Of one texel of the octahedral square: the sum of its 8 x 8 directions, and how far they are from its mean.
     struct Square {
         double sum[3] = {0.0, 0.0, 0.0}, reach = 0.0;
     };
 
     bool octahedral() const { return target_.parameterization == ACDF_PARAM_OCTAHEDRAL; }
+
+    /// Over so many steps of phi and theta: in closed form where no part is below the horizon, else of quarters,
+    /// down to a 500th of a radian.
+    double of_box(const double n[3], std::uint32_t i, std::uint32_t j, std::uint32_t steps) const {
+        const std::uint32_t half = steps / 2;
+        const Angle &phi = phi_[i + half], &theta = theta_[j + half];
+        const double reach = reach_ * steps / (2.0 * parts_);
+        const double middle = theta.sine * (n[0] * phi.cosine + n[1] * phi.sine) + n[2] * theta.cosine;
+        if (middle <= -reach) return 0.0;
+        if (middle < reach && half > 1)
+            return of_box(n, i, j, half) + of_box(n, i + half, j, half) + of_box(n, i, j + half, half) +
+                   of_box(n, i + half, j + half, half);
+        if (middle <= 0.0) return 0.0;
+        const Angle &phi0 = phi_[i], &phi1 = phi_[i + steps], &theta0 = theta_[j], &theta1 = theta_[j + steps];
+        return (n[0] * (phi0.sine - phi1.sine) - n[1] * (phi0.cosine - phi1.cosine)) *
+                   (theta1.sine_square - theta0.sine_square) +
+               n[2] * (phi0.at - phi1.at) * 0.5 * (theta1.sine * theta1.sine - theta0.sine * theta0.sine);
+    }
 
     void direction(std::uint32_t column, std::uint32_t row, int i, double d[3]) const {
         acdf_octahedral_direction((column + (i % 8 + 0.5) / 8) / target_.columns,
@@ -141,8 +127,9 @@ private:
     }
 
     const acdf::compress::Target& target_;
-    std::vector<Angle> phi_, theta_; ///< borders of columns and rows
-    std::vector<Axis> columns_, rows_;
+    double reach_ = 0.0;             ///< no part of a texel is farther from its middle
+    std::uint32_t parts_ = 1;        ///< of each axis of a texel, a power of two: so that they reach less than that
+    std::vector<Angle> phi_, theta_; ///< borders and middles of these parts
     std::vector<Square> squares_;
 };
 
