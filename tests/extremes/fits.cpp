@@ -24,12 +24,17 @@ protected:
     const Target& target() const { return GetParam().target; }
 };
 
-std::vector<std::uint8_t> stored(const Target& target, const acdf::compress::FitOptions& options, AcdfCodec codec) {
+std::vector<std::uint8_t> stored(const Target& target, const acdf::compress::FitOptions& options,
+                                 const acdf::compress::EncodedTree& tree, AcdfCodec codec = ACDF_CODEC_NONE) {
     auto description =
         acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
     description.fit = options.fit;
     description.total = acdf::compress::integral(target);
-    return acdf::compress::store(acdf::compress::fit(target, options).tree, description, codec);
+    return acdf::compress::store(tree, description, codec);
+}
+
+std::vector<std::uint8_t> stored(const Target& target, const acdf::compress::FitOptions& options) {
+    return stored(target, options, acdf::compress::fit(target, options).tree);
 }
 
 TEST_P(Extreme, EveryFitIsADensityThatCoversIt) {
@@ -41,7 +46,7 @@ TEST_P(Extreme, WeightsAreFiniteAndEveryNumberDrawsSomething) {
     const double numbers[] = {0.0, 1.0, 1.0 - 0x1p-24, 0x1p-149, 0x1p-24, 0.5, 0.25, 1.0 / 3, -1.0, 2.0, NAN};
     for (const NamedFit& fit : all_fits(9, 7, 60)) {
         SCOPED_TRACE(fit.name);
-        const auto bytes = stored(target(), fit.options, ACDF_CODEC_NONE);
+        const auto bytes = stored(target(), fit.options);
         acdf::File file;
         ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
         const acdf::EnvironmentView view = file.environment();
@@ -60,11 +65,12 @@ TEST_P(Extreme, WeightsAreFiniteAndEveryNumberDrawsSomething) {
 
 TEST_P(Extreme, CodecsChangeNoSample) {
     for (const NamedFit& fit : all_fits(9, 7, 60)) {
-        const auto plain = stored(target(), fit.options, ACDF_CODEC_NONE);
+        const auto tree = acdf::compress::fit(target(), fit.options).tree;
+        const auto plain = stored(target(), fit.options, tree);
         acdf::File file;
         ASSERT_TRUE(acdf::File::from_memory(plain.data(), plain.size(), file).ok());
         for (const AcdfCodec codec : {ACDF_CODEC_ZLIB, ACDF_CODEC_PLANES}) {
-            const auto packed = stored(target(), fit.options, codec);
+            const auto packed = stored(target(), fit.options, tree, codec);
             acdf::File other;
             const acdf::Status status = acdf::File::from_memory(packed.data(), packed.size(), other);
             ASSERT_TRUE(status.ok()) << fit.name << ": " << status.message;
@@ -88,7 +94,7 @@ TEST(ExtremeConstant, IsOneCellWithoutVariance) {
     for (const double value : {1e-44, 1e-30, 1.0, 65504.0, 1e30}) {
         const Target target = texel_target(128, 64, [=](std::uint32_t, std::uint32_t) { return value; });
         acdf::compress::FitOptions options;
-        const auto bytes = stored(target, options, ACDF_CODEC_NONE);
+        const auto bytes = stored(target, options);
         acdf::File file;
         ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
         const auto accuracy = acdf::build::measure_environment(file, target);
@@ -105,7 +111,7 @@ TEST(ExtremeRange, MoreCellsNeverHurt) {
         for (const std::uint32_t cells : {1u, 4u, 16u, 64u, 256u, 1024u}) {
             acdf::compress::FitOptions options;
             options.goal.cells = cells;
-            const auto bytes = stored(t.target, options, ACDF_CODEC_NONE);
+            const auto bytes = stored(t.target, options);
             acdf::File file;
             ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
             const double variance = acdf::build::measure_environment(file, t.target).relative_variance;

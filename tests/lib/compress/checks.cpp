@@ -181,6 +181,7 @@ void expect_chi_square(const char* what, const std::vector<std::uint32_t>& obser
 
 /// What a direction rounded to float (by less than 2^-22 radians) may change in a cell's tilted density.
 double rounding_bound(const Cell& cell, const Place& place, const Target& target) {
+    if (cell.range[0].tilt == 0.0 && cell.range[1].tilt == 0.0) return 0.0;
     const auto z_of = [&](double row) { return std::cos(kPi * row / target.rows); };
     const auto share = [](const AcdfRange& range, double t, double error) {
         const double density = std::max(1.0 - std::abs(range.tilt), 1.0 + range.tilt * (2.0 * t - 1.0));
