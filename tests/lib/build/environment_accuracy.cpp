@@ -23,24 +23,12 @@ constexpr int kSteps = 64; // subsamples of a texel along phi and along z
 /// All fields but the cells, slowly: f/p and the rest at 4096 places of every texel.
 Accuracy quadrature(const EnvironmentView& view, const Target& target) {
     Accuracy a;
-    const auto visit = [&](const auto& add) {
-        for (std::uint32_t r = 0; r < target.rows; ++r) {
-            const double z0 = std::cos(kPi * r / target.rows), z1 = std::cos(kPi * (r + 1.0) / target.rows);
-            for (std::uint32_t c = 0; c < target.columns; ++c)
-                for (int j = 0; j < kSteps; ++j)
-                    for (int i = 0; i < kSteps; ++i) {
-                        const double phi = kPi - 2.0 * kPi * (c + (i + 0.5) / kSteps) / target.columns;
-                        const double z = z0 + (z1 - z0) * (j + 0.5) / kSteps;
-                        float direction[3];
-                        acdf_test::direction_of(phi, z, direction);
-                        add(double{target.row(r)[c]}, double{view.pdf(direction)},
-                            (z0 - z1) * 2.0 * kPi / target.columns / (kSteps * kSteps));
-                    }
-        }
-    };
-    visit([&](double f, double, double area) { a.total += f * area; });
+    for (std::uint32_t r = 0; r < target.rows; ++r)
+        for (std::uint32_t c = 0; c < target.columns; ++c)
+            a.total += double{target.row(r)[c]} * 2.0 * kPi / target.columns *
+                       (std::cos(kPi * r / target.rows) - std::cos(kPi * (r + 1.0) / target.rows));
     double second = 0.0, square = 0.0, violated = 0.0;
-    visit([&](double f, double p, double area) {
+    const auto add = [&](double f, double p, double area) {
         const double perfect = f / a.total;
         square += (p - perfect) * (p - perfect) * area;
         if (f > 0.0 && p == 0.0) violated += 1.0 / (kSteps * kSteps);
@@ -48,7 +36,20 @@ Accuracy quadrature(const EnvironmentView& view, const Target& target) {
         second += perfect * perfect / p * area;
         a.kl_divergence += perfect * std::log(perfect / p) * area;
         a.max_weight = std::max(a.max_weight, perfect / p);
-    });
+    };
+    for (std::uint32_t r = 0; r < target.rows; ++r) {
+        const double z0 = std::cos(kPi * r / target.rows), z1 = std::cos(kPi * (r + 1.0) / target.rows);
+        for (std::uint32_t c = 0; c < target.columns; ++c)
+            for (int j = 0; j < kSteps; ++j)
+                for (int i = 0; i < kSteps; ++i) {
+                    const double phi = kPi - 2.0 * kPi * (c + (i + 0.5) / kSteps) / target.columns;
+                    const double z = z0 + (z1 - z0) * (j + 0.5) / kSteps;
+                    float direction[3];
+                    acdf_test::direction_of(phi, z, direction);
+                    add(double{target.row(r)[c]}, double{view.pdf(direction)},
+                        (z0 - z1) * 2.0 * kPi / target.columns / (kSteps * kSteps));
+                }
+    }
     a.relative_variance = second - 1.0;
     a.rms_pdf_error = std::sqrt(square / (4.0 * kPi));
     a.support_violations = static_cast<std::uint64_t>(std::lround(violated));

@@ -95,6 +95,13 @@ Summed sum_over(const Map& map, const std::vector<float>& rgb, bool bilinear, co
         for (int x = 0; x < map.width; ++x) {
             const double omega = build::texel_solid_angle(map, x, y);
             if (!(omega > 0.0)) continue;
+            double around[3][3], most = 0.0;
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i) {
+                    around[j][i] = bilinear || (i == 1 && j == 1) ? value(x, y, x + i - 1, y + j - 1) : 0.0;
+                    most = std::max(most, around[j][i]);
+                }
+            if (!(most > 0.0)) continue;
             double weights = 0.0, sum = 0.0, square = 0.0, dark = 0.0;
             for (int i = 0; i < points * points + 9; ++i) {
                 const bool corner = i >= points * points; // or the middle, or that of a side: f is largest at one
@@ -106,12 +113,12 @@ Summed sum_over(const Map& map, const std::vector<float>& rgb, bool bilinear, co
                 const double u = (x + std::clamp(s, 1e-3, 1.0 - 1e-3)) / map.width,
                              v = (y + std::clamp(t, 1e-3, 1.0 - 1e-3)) / map.height;
                 if (!build::to_direction(map, u, v, d)) continue;
-                double f = value(x, y, x, y);
+                double f = around[1][1];
                 if (bilinear) {
-                    const int x0 = s < 0.5 ? x - 1 : x, y0 = t < 0.5 ? y - 1 : y;
-                    const double a = x + s - 0.5 - x0, b = y + t - 0.5 - y0;
-                    f = (1 - b) * ((1 - a) * value(x, y, x0, y0) + a * value(x, y, x0 + 1, y0)) +
-                        b * ((1 - a) * value(x, y, x0, y0 + 1) + a * value(x, y, x0 + 1, y0 + 1));
+                    const int i0 = s < 0.5 ? 0 : 1, j0 = t < 0.5 ? 0 : 1;
+                    const double a = s + 0.5 - i0, b = t + 0.5 - j0;
+                    f = (1 - b) * ((1 - a) * around[j0][i0] + a * around[j0][i0 + 1]) +
+                        b * ((1 - a) * around[j0 + 1][i0] + a * around[j0 + 1][i0 + 1]);
                 }
                 const float direction[3] = {static_cast<float>(d.x), static_cast<float>(d.y),
                                             static_cast<float>(d.z)};

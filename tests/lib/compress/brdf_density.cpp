@@ -61,14 +61,18 @@ std::vector<double> expected_bins(const acdf::BrdfView& brdf, const View& view) 
     double wo[3];
     view.direction(wo);
     const float o[3] = {float(wo[0]), float(wo[1]), float(wo[2])};
-    constexpr int rows = kSanitized ? 500 : 1500, columns = kSanitized ? 300 : 900;
+    constexpr int rows = 500, columns = 300;
+    std::array<std::array<double, 2>, columns> azimuths;
+    for (int c = 0; c < columns; ++c) {
+        const double phi = 2.0 * kPi * (c + 0.5) / columns;
+        azimuths[std::size_t(c)] = {std::cos(phi), std::sin(phi)};
+    }
     for (int r = 0; r < rows; ++r) {
         const double t = (r + 0.5) / rows, theta = 0.5 * kPi * t * t;
         const double sine = std::sin(theta), cosine = std::cos(theta);
         const double measure = sine * kPi * t / rows * 2.0 * kPi / columns;
-        for (int c = 0; c < columns; ++c) {
-            const double phi = 2.0 * kPi * (c + 0.5) / columns;
-            const double h[3] = {sine * std::cos(phi), sine * std::sin(phi), cosine};
+        for (const auto& azimuth : azimuths) {
+            const double h[3] = {sine * azimuth[0], sine * azimuth[1], cosine};
             const double dot = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
             const double wi[3] = {2.0 * dot * h[0] - wo[0], 2.0 * dot * h[1] - wo[1], 2.0 * dot * h[2] - wo[2]};
             const float i[3] = {float(wi[0]), float(wi[1]), float(wi[2])};
