@@ -147,47 +147,16 @@ struct Places {
     Floats along[kBlock / kLanes], cap[kBlock / kLanes];
 };
 
-ACDF_LANE Words whole(Floats x) { return (Words) __builtin_convertvector(x, Signed); }
-
-ACDF_LANE void place_of(const Floats w[3], Floats cap, Signed refused, Floats* along, Words key[2]) {
-    const Signed steep = absolute(w[1]) > absolute(w[0]);
-    const Floats minor = select(steep, -w[0], w[1]), major = select(steep, w[1], w[0]), slope = minor / major;
-    const Words quarter = ((Words)steep & 1u) | (((Words)major >> 30) & 2u);
-    const Floats step = select(refused, Floats{}, slope * ACDF_SLOPE_STEPS + ACDF_SLOPE_STEPS);
-    key[0] = ((quarter << 23) + whole(step)) & ACDF_DIRECTION_MASK;
-    key[1] =
-        (whole(select(refused, Floats{}, cap * ACDF_CAP_STEPS)) ^ (0u - ((Words)w[2] >> 31))) & ACDF_DIRECTION_MASK;
-    *along = arc_tangent(slope);
-}
-
-ACDF_LANE void square_place(const Floats w[3], Floats* cap, Signed refused, Floats* along, Words key[2]) {
-    const Floats r = root(*cap), ax = absolute(w[0]), ay = absolute(w[1]);
-    const Floats minor = 0.63661977f * arc_tangent(least(ax, ay) / most(ax, ay)) * r, major = r - minor;
-    const Signed south = w[2]<0.0f, steep = ay> ax;
-    const Floats more = select(south, 1.0f - minor, major), less = select(south, 1.0f - major, minor);
-    *along = (Floats)((Words)select(steep, less, more) | ((Words)w[0] & 0x80000000u));
-    *cap = (Floats)((Words)select(steep, more, less) | ((Words)w[1] & 0x80000000u));
-    const Floats last = Floats{} + ACDF_SQUARE_LAST;
-    key[0] = whole(select(refused, Floats{}, least((1.0f - *along) * ACDF_SQUARE_HALF, last)));
-    key[1] = whole(select(refused, Floats{}, least((1.0f + *cap) * ACDF_SQUARE_HALF, last)));
-}
-
-/* acdf_direction_place. Returns the lanes of which floats do not tell. */
-ACDF_LANE std::uint32_t direction_place(const AcdfCells* cells, const Search& s, const float (*directions)[3],
+/* Where directions lie, and the blocks of them. Returns the lanes of which floats do not tell. */
+ACDF_LANE std::uint32_t find_directions(const AcdfCells* cells, const Search& s, const float (*directions)[3],
                                         std::size_t first, Places* places, Sought* sought) {
-    Floats w[3], along;
+    Floats w[3];
     Words key[2];
     load_vectors(directions + first, w);
-    const Floats sin2 = w[0] * w[0] + w[1] * w[1], length2 = sin2 + w[2] * w[2];
-    const Signed refused = ((Words)length2 - 0x3F7FF972u > 0x000009D4u) | ((Words)sin2 < 0x2B800000u);
-    Floats cap = sin2 * (2.0f - length2) / (1.0f + absolute(w[2]) * (1.5f - 0.5f * length2));
-    cap = least(cap, Floats{} + 1.0f);
-    if (cells->octahedral) square_place(w, &cap, refused, &along, key);
-    else place_of(w, cap, refused, &along, key);
-    places->along[first / kLanes] = along;
-    places->cap[first / kLanes] = cap;
+    const std::uint32_t refused = bits(direction_place(cells->octahedral != 0, w, &places->along[first / kLanes],
+                                                       &places->cap[first / kLanes], key));
     find_blocks(s, key[0], key[1], sought, first);
-    return bits(refused) << first;
+    return refused << first;
 }
 
 /* acdf_cells_pdf of lanes by the cells that were found. Returns those that it does not answer. */
@@ -210,7 +179,7 @@ ACDF_LANE void pdf_block(const AcdfEnvironment& env, const Search& s, const floa
     Places places;
     std::uint32_t lost = 0;
     for (std::size_t first = 0; first < kBlock; first += kLanes)
-        lost |= direction_place(env.cells, s, w, first, &places, &sought);
+        lost |= find_directions(env.cells, s, w, first, &places, &sought);
     find_cells(s, &sought);
     for (std::size_t first = 0; first < kBlock; first += kLanes)
         lost |= densities(env.cells, s, sought, places, first, out);

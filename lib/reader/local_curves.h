@@ -11,13 +11,15 @@ namespace {
 
 constexpr std::size_t kBlock = 64, kRoom = kBlock + ACDF_WIDTH; // lanes, and what is written behind them
 
-/// Lanes in tiles, and then in cells.
+/// Lanes in tiles, and then in cells: random numbers are drawn with, or squares are looked for.
 struct Cells {
     std::size_t count;
-    alignas(64) double u[2][kRoom], probability[kRoom], product[kRoom]; // of the tile, of the curves in it
-    alignas(64) long long low[2][kRoom], high[2][kRoom], curve[kRoom];  // below 0: there is none
+    alignas(64) double u[2][kRoom];
+    alignas(64) long long square[2][kRoom];
+    alignas(64) double probability[kRoom], product[kRoom];             // of the tile, of the curves in it
+    alignas(64) long long low[2][kRoom], high[2][kRoom], curve[kRoom]; // curve: below 0 there is none
     long long lane[kRoom], tile[kRoom];
-    bool tilted[kRoom];
+    bool lost[kRoom]; // left to the single call
 };
 
 constexpr std::uint32_t kCurveUnits = 20; // up to which a curve that vectors take is read
@@ -61,68 +63,105 @@ ACDF_LANE Integer segment_of(const Curves& c, Integer key) {
     return choose(c.pairs, pair, byte);
 }
 
-/* The rest of acdf_tree_draw from a curve on, of a lane. */
-__attribute__((noinline)) void draw_on(const std::uint8_t* tree, std::size_t i, Cells* cells) {
+/* The rest of acdf_tree_draw, or of acdf_tree_locate, from a curve on, of a lane. */
+template <bool Finds>
+__attribute__((noinline)) void follow(const std::uint8_t* tree, std::size_t i, Cells* cells) {
     AcdfRange range[2];
     double u[2];
+    std::uint32_t square[2];
+    const auto at = (std::uint32_t)cells->curve[i];
     for (int axis = 0; axis < 2; ++axis) {
         range[axis] = {(std::uint32_t)cells->low[axis][i], (std::uint32_t)cells->high[axis][i], 0.0};
-        u[axis] = cells->u[axis][i];
+        if (Finds) square[axis] = (std::uint32_t)cells->square[axis][i];
+        else u[axis] = cells->u[axis][i];
     }
-    cells->product[i] = acdf_tree_sample_on(tree, (std::uint32_t)cells->curve[i], u, range, cells->product[i]);
+    double& product = cells->product[i];
+    if (Finds) product = acdf_tree_find_on(tree, at, square, range, nullptr, product);
+    else product = acdf_tree_sample_on(tree, at, u, range, product);
     for (int axis = 0; axis < 2; ++axis) {
         cells->low[axis][i] = range[axis].low;
         cells->high[axis][i] = range[axis].high;
-        cells->u[axis][i] = u[axis];
+        if (!Finds) cells->u[axis][i] = u[axis];
     }
-    cells->tilted[i] = range[0].tilt != 0.0 || range[1].tilt != 0.0;
+    cells->lost[i] = range[0].tilt != 0.0 || range[1].tilt != 0.0;
     cells->curve[i] = -1;
 }
 
-/* A step of acdf_tree_draw of a vector. Returns whether any lane goes on. Lanes that have another curve are added
- * to a list, without a branch that nobody can guess. */
-ACDF_LANE bool draw_step(const std::uint8_t* tree, std::uint32_t units, Cells* cells, std::size_t at,
-                         long long** odd) {
+/// The state of a vector of cells.
+struct Here {
+    Vector u[2];
+    Integer low[2], high[2], curve;
+    Vector maximum; // of the cumulative values
+    Vector scaled;  // of draws: the number in their steps
+};
+
+/* The segment that a number leads to, and the one that holds a square. */
+ACDF_LANE Integer drawn_segment(const Curves& c, Here* here) {
+    here->scaled = choose(c.axis1, here->u[1], here->u[0]) * here->maximum;
+    here->scaled = choose(less(here->scaled, here->maximum), here->scaled, here->maximum * (1.0 - 0x1p-53));
+    return segment_of(c, truncated(here->scaled));
+}
+ACDF_LANE Integer found_segment(const Curves& c, const Cells& cells, const Here& here, std::size_t at) {
+    const Integer square = choose(c.axis1, loaded(&cells.square[1][at]), loaded(&cells.square[0][at]));
+    const Integer step = square - choose(c.axis1, here.low[1], here.low[0]);
+    const Integer key = choose(has(step, ~0xFFll), Integer{} + 255, step);
+    const Integer beyond = shifted_left(~Integer{}, c.inner << 3);
+    const Integer segment = 8 - bytes_above(loaded_at(c.positions) | beyond, key);
+    return choose(less(converted(segment), converted(c.inner)), segment, c.inner);
+}
+
+/* A step of acdf_tree_draw or acdf_tree_locate of a vector. Returns whether any lane goes on. Lanes that have
+ * another curve are added to a list, without a branch that nobody can guess. */
+template <bool Finds>
+ACDF_LANE bool curve_step(const std::uint8_t* tree, std::uint32_t units, Cells* cells, std::size_t at,
+                          long long** odd) {
     Curves c;
-    const Integer curve = loaded(&cells->curve[at]);
-    const Mask ended = has(curve, -0x7FFFFFFFFFFFFFFF - 1);
-    const Mask served = curves_at(tree, units, choose(ended, Integer{}, curve), &c), taken = without(served, ended);
-    const Vector u[2] = {loaded(&cells->u[0][at]), loaded(&cells->u[1][at])};
-    const Integer low[2] = {loaded(&cells->low[0][at]), loaded(&cells->low[1][at])};
-    const Integer high[2] = {loaded(&cells->high[0][at]), loaded(&cells->high[1][at])};
-    const Vector maximum = choose(c.pairs, all(65535.0), all(255.0));
-    Vector scaled = choose(c.axis1, u[1], u[0]) * maximum;
-    scaled = choose(less(scaled, maximum), scaled, maximum * (1.0 - 0x1p-53));
-    const Integer segment = segment_of(c, truncated(scaled));
+    Here here;
+    for (int axis = 0; axis < 2; ++axis) {
+        if (!Finds) here.u[axis] = loaded(&cells->u[axis][at]);
+        here.low[axis] = loaded(&cells->low[axis][at]);
+        here.high[axis] = loaded(&cells->high[axis][at]);
+    }
+    here.curve = loaded(&cells->curve[at]);
+    const Mask ended = has(here.curve, -0x7FFFFFFFFFFFFFFF - 1);
+    const Mask served = curves_at(tree, units, choose(ended, Integer{}, here.curve), &c);
+    const Mask taken = without(served, ended);
+    here.maximum = choose(c.pairs, all(65535.0), all(255.0));
+    const Integer segment = Finds ? found_segment(c, *cells, here, at) : drawn_segment(c, &here);
     const Mask first = equal(segment, Integer{}), last = equal(segment, c.inner);
     const Integer values = loaded_at(c.cumulative + shifted_left(segment - 1, c.code));
     const Integer value_mask = choose(c.pairs, Integer{} + 0xFFFF, Integer{} + 0xFF);
     const Integer below = choose(first, Integer{}, values & value_mask);
     const Integer above = choose(last, value_mask, shifted_right(values, (c.code + 1) << 3) & value_mask);
-    const Vector width = converted(above - below), left = (scaled - converted(below)) / width;
+    const Vector width = converted(above - below);
     const Integer knots = loaded_at(c.positions + segment - 1);
-    const Integer origin = choose(c.axis1, low[1], low[0]), end = choose(c.axis1, high[1], high[0]);
+    const Integer origin = choose(c.axis1, here.low[1], here.low[0]);
+    const Integer end = choose(c.axis1, here.high[1], here.high[0]);
     const Integer from = origin + choose(first, Integer{}, knots & 0xFF);
     const Integer to = choose(last, end, origin + (knots >> 8 & 0xFF));
     const Integer link = loaded_at(c.links + shifted_left(segment, c.link_shift)) & c.link_mask;
-    const Mask here[2] = {without(taken, c.axis1), both(taken, c.axis1)};
+    const Mask stops = equal(link, Integer{}), on[2] = {without(taken, c.axis1), both(taken, c.axis1)};
     for (int axis = 0; axis < 2; ++axis) {
-        stored(&cells->u[axis][at], choose(here[axis], left, u[axis]));
-        stored(&cells->low[axis][at], choose(here[axis], from, low[axis]));
-        stored(&cells->high[axis][at], choose(here[axis], to, high[axis]));
+        if (!Finds)
+            stored(&cells->u[axis][at], choose(on[axis], (here.scaled - converted(below)) / width, here.u[axis]));
+        stored(&cells->low[axis][at], choose(on[axis], from, here.low[axis]));
+        stored(&cells->high[axis][at], choose(on[axis], to, here.high[axis]));
     }
     const Vector product = loaded(&cells->product[at]);
-    stored(&cells->product[at], choose(taken, product * (width / maximum), product));
-    const Integer next = choose(equal(link, Integer{}), ~Integer{}, curve + link);
-    stored(&cells->curve[at], choose(taken, next, curve));
+    stored(&cells->product[at], choose(taken, product * (width / here.maximum), product));
+    stored(&cells->curve[at], choose(taken, choose(stops, ~Integer{}, here.curve + link), here.curve));
     const unsigned others = lanes(without(without(all_lanes(), served), ended));
     store_packed(*odd, numbers_from(at), others);
     *odd += __builtin_popcount(others);
-    return lanes(without(taken, equal(link, Integer{}))) != 0;
+    if (Finds) /* curves below what has no probability: the single call tells */
+        for (unsigned none = lanes(both(without(taken, stops), equal(above, below))); none; none &= none - 1)
+            cells->lost[at + acdf_lowest_bit(none)] = true;
+    return lanes(without(taken, stops)) != 0;
 }
 
-/* acdf_local_draw_inside of all cells, of which those up to the end of a vector are set. */
-ACDF_LANE void draw_inside(const std::uint8_t* tree, std::uint32_t units, Cells* cells) {
+/* The curves of all cells, of which those up to the end of a vector are set; `product` becomes what they give. */
+template <bool Finds>
+ACDF_LANE void follow_all(const std::uint8_t* tree, std::uint32_t units, Cells* cells) {
     std::size_t live[kRoom / ACDF_WIDTH], count = 0;
     for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH) {
         stored(&cells->product[at], all(1.0));
@@ -130,7 +169,7 @@ ACDF_LANE void draw_inside(const std::uint8_t* tree, std::uint32_t units, Cells*
     }
     if (units < 2 * kCurveUnits) {
         for (std::size_t i = 0; i < cells->count; ++i)
-            if (cells->curve[i] >= 0) draw_on(tree, i, cells);
+            if (cells->curve[i] >= 0) follow<Finds>(tree, i, cells);
         count = 0;
     }
     while (count > 0) {
@@ -139,14 +178,11 @@ ACDF_LANE void draw_inside(const std::uint8_t* tree, std::uint32_t units, Cells*
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t at = live[k];
             live[left] = at;
-            left += draw_step(tree, units, cells, at, &end);
+            left += curve_step<Finds>(tree, units, cells, at, &end);
         }
-        for (const long long* i = odd; i < end; ++i) draw_on(tree, (std::size_t)*i, cells);
+        for (const long long* i = odd; i < end; ++i) follow<Finds>(tree, (std::size_t)*i, cells);
         count = left;
     }
-    for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH)
-        stored(&cells->probability[at],
-               positive(loaded(&cells->probability[at]) * positive(loaded(&cells->product[at]))));
 }
 
 } // namespace

@@ -8,8 +8,7 @@
 // borders are left to the functions of acdf/local.h.
 #pragma once
 
-#include "local_curves.h"
-#include "local_points.h"
+#include "local_tiles.h"
 #include "local_wavefront.h"
 
 #include <algorithm>
@@ -151,23 +150,13 @@ ACDF_LANE void end_walks(const Walks& w, Cells* cells) {
     cells->count += w.count;
 }
 
-/* Enters the tiles, and draws in them. */
-ACDF_LANE void enter_tiles(const AcdfLocal& local, Cells* cells) {
-    for (std::size_t i = 0; i < cells->count; ++i) {
-        const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells->tile[i]);
-        for (int axis = 0; axis < 2; ++axis) {
-            cells->low[axis][i] = tile->low[axis];
-            cells->high[axis][i] = tile->high[axis];
-        }
-        acdf_local_ahead(&local, tile);
-        cells->curve[i] = tile->root == ACDF_NO_ROOT ? -1 : (long long)tile->root;
-        cells->tilted[i] = false;
-    }
-    for (std::size_t i = cells->count; i % kLanes > 0; ++i) { /* these are placed, too */
-        for (int axis = 0; axis < 2; ++axis) cells->low[axis][i] = cells->high[axis][i] = 0;
-        cells->curve[i] = -1;
-    }
-    draw_inside(local.blend.tree, local.environment.tree_units, cells);
+/* Draws in tiles: acdf_local_draw_inside. */
+ACDF_LANE void draw_inside(const AcdfLocal& local, Cells* cells) {
+    enter_tiles(local, cells);
+    follow_all<false>(local.blend.tree, local.environment.tree_units, cells);
+    for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH)
+        stored(&cells->probability[at],
+               positive(loaded(&cells->probability[at]) * positive(loaded(&cells->product[at]))));
 }
 
 // ---- directions ------------------------------------------------------------------------------------------------
@@ -178,13 +167,6 @@ struct Drawn {
     Longs quarter[2], south[2];
     Integer refused[2];
 };
-
-/* acdf_area_pdf of doubles that are floats already. */
-ACDF_LANE Vector area_pdf(Vector p, double columns, Vector area) {
-    const Vector pdf = p * columns / area;
-    return select(pdf >= 3.402823466e38, all((double)3.402823466e38f),
-                  select(pdf > 1.17549435e-38, pdf, all((double)1.17549435e-38f)));
-}
 
 /* acdf_row_place of half of some lanes, in doubles. */
 ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, std::size_t at, int half, Drawn* out) {
@@ -198,7 +180,7 @@ ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, std::size_t
     const Vector height = z0 + loaded(&cells.u[1][at]) * (z1 - z0), cap = 1.0 - absolute(height);
     const Vector from_north = z0 - height, from_south = height - z1;
     const Vector nearest = select(from_north < from_south, from_north, from_south);
-    const Vector turn = 1.0 - x * (2.0 / columns), quarter = whole(2.0 * turn + 4.5) - 4.0;
+    const Vector turn = 1.0 - x * (2.0 / columns), quarter = whole_part(2.0 * turn + 4.5) - 4.0;
     out->refused[half] = (west < border) | (high - x < border) |
                          (cap < (double)(ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER)) |
                          (nearest * nearest < 2.0 * ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER * cap);
@@ -206,7 +188,7 @@ ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, std::size_t
     out->cap[half] = cap;
     out->quarter[half] = (Longs)truncated(quarter + 4.0) & 3u;
     out->south[half] = (Longs)(height < 0.0) & 1u;
-    out->pdf[half] = area_pdf(loaded(&cells.probability[at]), columns, 2.0 * ACDF_PI * width * (z0 - z1));
+    out->pdf[half] = area_pdf(loaded(&cells.probability[at]), columns, row_area(width, z0, z1));
 }
 
 /* acdf_fold_place: the angle is the place across the square, the cap that along it. */
@@ -224,8 +206,7 @@ ACDF_LANE void fold_place(const AcdfLocal& local, const Cells& cells, std::size_
     }
     out->angle[half] = 1.0 - place[0];
     out->cap[half] = place[1] - 1.0;
-    out->pdf[half] =
-        area_pdf(loaded(&cells.probability[at]), steps[0], 2.0 * ACDF_PI * width[0] * (2.0 * width[1] / steps[1]));
+    out->pdf[half] = area_pdf(loaded(&cells.probability[at]), steps[0], fold_area(width[0], width[1], steps[1]));
 }
 
 /* acdf_local_place of all cells. Returns the lanes that are not answered. */
@@ -251,7 +232,7 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
         for (std::size_t i = 0; i < kLanes && first + i < cells.count; ++i) {
             const std::size_t lane = (std::size_t)cells.lane[first + i];
             out[lane] = drawn[i];
-            lost |= (std::uint64_t)((refused >> i & 1u) | (std::uint32_t)cells.tilted[first + i]) << lane;
+            lost |= (std::uint64_t)((refused >> i & 1u) | (std::uint32_t)cells.lost[first + i]) << lane;
         }
     }
     return lost;
@@ -287,7 +268,7 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const At& at, const Alone& alo
     for (std::size_t i = 0; i < cells.count; ++i) cells.tile[i] = local.lights[cells.tile[i]].tile;
     walk(*local.tables, &walks);
     end_walks(walks, &cells);
-    enter_tiles(local, &cells);
+    draw_inside(local, &cells);
     lost |= place_cells(local, cells, out);
     for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
 }
@@ -296,23 +277,16 @@ ACDF_LANE void sample_all(const AcdfLocal& local, const float (*normals)[3], con
                           std::size_t count, AcdfDirectionSample* out) {
     for (std::size_t first = 0; first < count; first += kBlock, normals += kBlock, u += kBlock, out += kBlock)
         draw_block(
-            local,
-            [&](std::size_t lane, std::size_t there, Points* p) -> const Points& {
-                float last[ACDF_WIDTH][3] = {};
-                if (there < ACDF_WIDTH) std::memcpy(last, normals + lane, there * sizeof *normals);
-                points_of(local, there < ACDF_WIDTH ? last : normals + lane, p);
-                return *p;
-            },
+            local, PointsOf{local, normals},
             [&](std::size_t lane) { out[lane] = acdf_local_sample(&local, normals[lane], u[lane][0], u[lane][1]); },
             u, std::min(count - first, kBlock), out);
 }
 ACDF_LANE void sample_all(const AcdfLocal& local, const AcdfLocalPoint& point, const double (*u)[2],
                           std::size_t count, AcdfDirectionSample* out) {
-    Points points;
-    points_of(local, point, &points);
+    const OnePoint points(local, point);
     for (std::size_t first = 0; first < count; first += kBlock, u += kBlock, out += kBlock)
         draw_block(
-            local, [&](std::size_t, std::size_t, Points*) -> const Points& { return points; },
+            local, points,
             [&](std::size_t lane) { out[lane] = acdf_local_sample_at(&local, &point, u[lane][0], u[lane][1]); }, u,
             std::min(count - first, kBlock), out);
 }

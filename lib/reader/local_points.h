@@ -6,6 +6,8 @@
 
 #include <acdf/local.h>
 
+#include <cstring>
+
 namespace {
 
 constexpr int kRows = 3; // of nearly all normals: those on edges of triangles have fewer
@@ -13,13 +15,15 @@ constexpr int kRows = 3; // of nearly all normals: those on edges of triangles h
 /// Of lanes that are not served the rows are some of the table, and all else is any number.
 struct Points {
     Integer served, row[kRows]; // rows: addresses of their codes
-    Vector weight[kRows], lights, mixture, sum, light[ACDF_MAX_LIGHTS];
+    Vector weight[kRows], normal[3], length, lights, mixture, sum, light[ACDF_MAX_LIGHTS];
 };
 
 /* acdf_local_sum by the normals in the scale of the weights. The horizon cuts few lights: those are weighed again.
  */
-ACDF_LANE void weigh_lights(const AcdfLocal& local, const Vector normal[3], Vector length, Points* out) {
+ACDF_LANE void weigh_lights(const AcdfLocal& local, Points* out) {
     const AcdfLightPair* pair = acdf_local_lights(local.tables);
+    const Vector* const normal = out->normal;
+    const Vector length = out->length;
     Vector height[ACDF_MAX_LIGHTS];
     std::uint64_t cut = 0;
     for (std::uint32_t k = 0; k < local.light_count; k += 2, ++pair)
@@ -59,7 +63,7 @@ ACDF_LANE void load_corners(const AcdfLocalTables& tables, Integer number, Vecto
            (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(&tables), &tables.tiles, 0);
 }
 
-ACDF_LANE Vector whole(Vector x) { // of x in [0, 2^31)
+ACDF_LANE Vector whole_part(Vector x) { // of x in [0, 2^31)
 #if ACDF_WIDTH == 8
     return (Vector)_mm512_roundscale_pd((__m512d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
 #else
@@ -70,14 +74,14 @@ ACDF_LANE Vector whole(Vector x) { // of x in [0, 2^31)
 /* acdf_local_at by tables of corners; what those do not serve is not served. Small whole numbers are doubles. */
 ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points* out) {
     const double n = local.subdivisions, side = 2.0 * n + 1.0;
-    Vector v[3], a[3], base[3], length, share, normal[3], sign[3], corner[kRows];
+    Vector v[3], a[3], base[3], length, share, sign[3], corner[kRows];
     load_transposed(normals, v);
     const Vector sum = (absolute(v[0]) + absolute(v[1])) + absolute(v[2]);
     Integer served = (sum > 0.0) & (sum < 0x1p1000); // below: finite floats
     Vector over = all(n);
     for (int i = 0; i < 3; ++i) {
         a[i] = absolute(v[i]) / sum * n;
-        base[i] = whole(a[i]);
+        base[i] = whole_part(a[i]);
         over -= base[i];
         sign[i] = one_if(v[i] < 0.0);
     }
@@ -95,21 +99,42 @@ ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Poin
                                                                                  &local.tables->tiles, 0);
     for (int i = 0; i < kRows; ++i) out->row[i] = select(served, out->row[i], any_row);
     const Vector scale = n / sum, size = root((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
-    for (int i = 0; i < 3; ++i) normal[i] = scale * v[i];
-    weigh_lights(local, normal, scale * size, out);
+    for (int i = 0; i < 3; ++i) out->normal[i] = scale * v[i];
+    out->length = scale * size;
+    weigh_lights(local, out);
     out->served = served & (out->sum > 0.0);
 }
 
 /* One point in all lanes, which serves_waves has approved. */
 ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Points* out) {
-    Vector normal[3];
     for (int i = 0; i < kRows; ++i) {
         out->row[i] = Integer{} + (long long)(std::uintptr_t)point.codes[i];
         out->weight[i] = all(point.mix.weight[i]);
-        normal[i] = all(point.normal[i]);
+        out->normal[i] = all(point.normal[i]);
     }
-    weigh_lights(local, normal, all(point.length), out);
+    out->length = all(point.length);
+    weigh_lights(local, out);
     out->served = ~Integer{};
 }
+
+/// The points of a vector of normals from a lane on, of which `count` are there; and one point in all lanes.
+struct PointsOf {
+    const AcdfLocal& local;
+    const float (*normals)[3];
+    __attribute__((always_inline)) const Points& operator()(std::size_t lane, std::size_t count,
+                                                            Points* room) const {
+        float last[ACDF_WIDTH][3] = {};
+        if (count < ACDF_WIDTH) std::memcpy(last, normals + lane, count * sizeof *normals);
+        points_of(local, count < ACDF_WIDTH ? last : normals + lane, room);
+        return *room;
+    }
+};
+struct OnePoint {
+    Points points;
+    OnePoint(const AcdfLocal& local, const AcdfLocalPoint& point) { points_of(local, point, &points); }
+    __attribute__((always_inline)) const Points& operator()(std::size_t, std::size_t, Points*) const {
+        return points;
+    }
+};
 
 } // namespace

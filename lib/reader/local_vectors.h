@@ -17,6 +17,11 @@ ACDF_LANE Mask has(Integer x, long long some) {
     return _mm512_test_epi64_mask((__m512i)x, _mm512_set1_epi64(some));
 }
 ACDF_LANE Mask equal(Integer a, Integer b) { return _mm512_cmpeq_epi64_mask((__m512i)a, (__m512i)b); }
+ACDF_LANE Mask negative(Integer x) { return _mm512_movepi64_mask((__m512i)x); }
+ACDF_LANE Integer widened(Signed x, int half) {
+    return (Integer)_mm512_cvtepi32_epi64(half ? _mm512_extracti64x4_epi64((__m512i)x, 1)
+                                               : _mm512_castsi512_si256((__m512i)x));
+}
 ACDF_LANE Mask both(Mask a, Mask b) { return _kand_mask8(a, b); }
 ACDF_LANE Mask either(Mask a, Mask b) { return _kor_mask8(a, b); }
 ACDF_LANE Mask without(Mask a, Mask b) { return _kandn_mask8(b, a); } /* a and not b */
@@ -35,6 +40,11 @@ ACDF_LANE Mask less(Vector a, Vector b) { return _mm256_cmp_pd((__m256d)a, (__m2
 ACDF_LANE Mask equal(Integer a, Integer b) { return (Mask)_mm256_cmpeq_epi64((__m256i)a, (__m256i)b); }
 ACDF_LANE Mask without(Mask a, Mask b) { return _mm256_andnot_pd(b, a); }
 ACDF_LANE Mask has(Integer x, long long some) { return without(all_lanes(), equal(x & some, Integer{})); }
+ACDF_LANE Mask negative(Integer x) { return (Mask)x; } /* their highest bits tell */
+ACDF_LANE Integer widened(Signed x, int half) {
+    return (Integer)_mm256_cvtepi32_epi64(half ? _mm256_extracti128_si256((__m256i)x, 1)
+                                               : _mm256_castsi256_si128((__m256i)x));
+}
 ACDF_LANE Mask both(Mask a, Mask b) { return _mm256_and_pd(a, b); }
 ACDF_LANE Mask either(Mask a, Mask b) { return _mm256_or_pd(a, b); }
 ACDF_LANE unsigned lanes(Mask mask) { return (unsigned)_mm256_movemask_pd(mask); }
@@ -47,6 +57,19 @@ ACDF_LANE Integer choose(Mask mask, Integer yes, Integer no) {
 #endif
 
 // ---- memory ----------------------------------------------------------------------------------------------------
+
+ACDF_LANE Vector loaded(const double* from) {
+    Vector x;
+    __builtin_memcpy(&x, from, sizeof x);
+    return x;
+}
+ACDF_LANE Integer loaded(const long long* from) {
+    Integer x;
+    __builtin_memcpy(&x, from, sizeof x);
+    return x;
+}
+ACDF_LANE void stored(double* to, Vector x) { __builtin_memcpy(to, &x, sizeof x); }
+ACDF_LANE void stored(long long* to, Integer x) { __builtin_memcpy(to, &x, sizeof x); }
 
 /* Eight bytes at each address: by what takes least on processors of 2023, which for four lanes is not to gather. */
 ACDF_LANE Integer loaded_at(Integer address) {
@@ -68,6 +91,13 @@ template <class T>
 ACDF_LANE Integer loaded_from(const T* array, Integer index) {
     static_assert(sizeof(T) == 8, "of eight bytes each");
     return loaded_at(index * 8 + (long long)(std::uintptr_t)array);
+}
+
+ACDF_LANE Integer two_bytes_at(Integer address) {
+    alignas(64) long long at[ACDF_WIDTH], value[ACDF_WIDTH];
+    stored(at, address);
+    for (int i = 0; i < ACDF_WIDTH; ++i) value[i] = *(const std::uint16_t*)at[i];
+    return loaded(value);
 }
 
 // ---- bytes in 64 bits ------------------------------------------------------------------------------------------
@@ -157,19 +187,6 @@ ACDF_LANE void store_packed(double* out, Vector x, unsigned mask) {
 ACDF_LANE void store_packed(long long* out, Integer x, unsigned mask) {
     store_packed((double*)(void*)out, (Vector)x, mask);
 }
-
-ACDF_LANE Vector loaded(const double* from) {
-    Vector x;
-    __builtin_memcpy(&x, from, sizeof x);
-    return x;
-}
-ACDF_LANE Integer loaded(const long long* from) {
-    Integer x;
-    __builtin_memcpy(&x, from, sizeof x);
-    return x;
-}
-ACDF_LANE void stored(double* to, Vector x) { __builtin_memcpy(to, &x, sizeof x); }
-ACDF_LANE void stored(long long* to, Integer x) { __builtin_memcpy(to, &x, sizeof x); }
 
 /* The numbers of lanes from one on. */
 ACDF_LANE Integer numbers_from(std::size_t first) {

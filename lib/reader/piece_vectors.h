@@ -41,4 +41,45 @@ ACDF_LANE Floats arc_tangent(Floats t) {
     return t * (low + q2 * q2 * high);
 }
 
+ACDF_LANE Words whole(Floats x) { return (Words) __builtin_convertvector(x, Signed); }
+
+ACDF_LANE void place_of(const Floats w[3], Floats cap, Signed refused, Floats* along, Words key[2]) {
+    const Signed steep = absolute(w[1]) > absolute(w[0]);
+    const Floats minor = select(steep, -w[0], w[1]), major = select(steep, w[1], w[0]), slope = minor / major;
+    const Words quarter = ((Words)steep & 1u) | (((Words)major >> 30) & 2u);
+    const Floats step = select(refused, Floats{}, slope * ACDF_SLOPE_STEPS + ACDF_SLOPE_STEPS);
+    key[0] = ((quarter << 23) + whole(step)) & ACDF_DIRECTION_MASK;
+    key[1] =
+        (whole(select(refused, Floats{}, cap * ACDF_CAP_STEPS)) ^ (0u - ((Words)w[2] >> 31))) & ACDF_DIRECTION_MASK;
+    *along = arc_tangent(slope);
+}
+
+ACDF_LANE void square_place(const Floats w[3], Floats* cap, Signed refused, Floats* along, Words key[2]) {
+    const Floats r = root(*cap), ax = absolute(w[0]), ay = absolute(w[1]);
+    const Floats minor = 0.63661977f * arc_tangent(least(ax, ay) / most(ax, ay)) * r, major = r - minor;
+    const Signed south = w[2]<0.0f, steep = ay> ax;
+    const Floats more = select(south, 1.0f - minor, major), less = select(south, 1.0f - major, minor);
+    *along = (Floats)((Words)select(steep, less, more) | ((Words)w[0] & 0x80000000u));
+    *cap = (Floats)((Words)select(steep, more, less) | ((Words)w[1] & 0x80000000u));
+    const Floats last = Floats{} + ACDF_SQUARE_LAST;
+    key[0] = whole(select(refused, Floats{}, least((1.0f - *along) * ACDF_SQUARE_HALF, last)));
+    key[1] = whole(select(refused, Floats{}, least((1.0f + *cap) * ACDF_SQUARE_HALF, last)));
+}
+
+/* Lanes of whose directions floats do not tell. */
+ACDF_LANE Signed are_not_directions(Floats sin2, Floats length2) {
+    return ((Words)length2 - 0x3F7FF972u > 0x000009D4u) | ((Words)sin2 < 0x2B800000u);
+}
+
+/* acdf_direction_place: local azimuth, or place across the square, cap or place along it, and keys. Returns the
+ * lanes of which floats do not tell. */
+ACDF_LANE Signed direction_place(bool octahedral, const Floats w[3], Floats* along, Floats* cap, Words key[2]) {
+    const Floats sin2 = w[0] * w[0] + w[1] * w[1], length2 = sin2 + w[2] * w[2];
+    const Signed refused = are_not_directions(sin2, length2);
+    *cap = least(sin2 * (2.0f - length2) / (1.0f + absolute(w[2]) * (1.5f - 0.5f * length2)), Floats{} + 1.0f);
+    if (octahedral) square_place(w, cap, refused, along, key);
+    else place_of(w, *cap, refused, along, key);
+    return refused;
+}
+
 } // namespace

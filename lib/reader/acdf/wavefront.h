@@ -62,6 +62,9 @@ public:
                 DirectionSample* out) const noexcept;
     /// LocalEnvironmentView::pdf of normals[i] and directions[i] into out[i], i < count.
     void pdf(const float (*normals)[3], const float (*directions)[3], std::size_t count, float* out) const noexcept;
+    /// LocalEnvironmentView::pdf of a shading point and directions[i] into out[i], i < count.
+    void pdf(const AcdfLocalPoint& point, const float (*directions)[3], std::size_t count,
+             float* out) const noexcept;
 
     /// Those that serve.
     Instructions instructions() const noexcept { return instructions_; }

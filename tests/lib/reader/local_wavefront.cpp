@@ -56,14 +56,20 @@ constexpr acdf::Instructions kEach[] = {acdf::Instructions::none, acdf::Instruct
                                         acdf::Instructions::avx512};
 
 void expect_one_point(const acdf::LocalEnvironmentView& view, const acdf::LocalWavefront& wavefront,
-                      const AcdfLocalPoint& point, const double (*u)[2], std::size_t count) {
+                      const AcdfLocalPoint& point, const double (*u)[2], const float (*directions)[3],
+                      std::size_t count) {
     std::vector<acdf::DirectionSample> samples(count + 1, {{7.0f, 7.0f, 7.0f}, 7.0f});
+    std::vector<float> pdfs(count + 1, 7.0f);
     wavefront.sample(point, u, count, samples.data());
+    wavefront.pdf(point, directions, count, pdfs.data());
     for (std::size_t i = 0; i < count; ++i) {
         const acdf::DirectionSample s = view.sample(point, u[i][0], u[i][1]);
         ASSERT_EQ(std::memcmp(&s, &samples[i], sizeof s), 0) << i;
+        const float pdf = view.pdf(point, directions[i]);
+        ASSERT_EQ(std::memcmp(&pdf, &pdfs[i], sizeof pdf), 0) << i;
     }
     EXPECT_EQ(samples[count].pdf, 7.0f);
+    EXPECT_EQ(pdfs[count], 7.0f);
 }
 
 void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t count, acdf::Instructions most) {
@@ -88,7 +94,7 @@ void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t c
     EXPECT_EQ(samples[count].pdf, 7.0f);
     EXPECT_EQ(pdfs[count], 7.0f);
     for (std::size_t i = 0; i < count; i += 40)
-        expect_one_point(view, wavefront, view.at(normals[i]), u + i, std::min(count - i, i % 67));
+        expect_one_point(view, wavefront, view.at(normals[i]), u + i, directions + i, std::min(count - i, i % 67));
 }
 
 void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t count) {

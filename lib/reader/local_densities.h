@@ -1,0 +1,227 @@
+// Densities of LocalWavefront over vectors, operation by operation as in acdf/local.h; see local_kernel.h.
+#pragma once
+
+#include "local_tiles.h"
+#include "local_wavefront.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+// ---- squares ---------------------------------------------------------------------------------------------------
+
+ACDF_LANE Floats with_sign(Floats size, Floats of) {
+    return (Floats)(((Words)size & 0x7FFFFFFFu) | ((Words)of & 0x80000000u));
+}
+
+/* acdf_turn_float */
+ACDF_LANE Floats turn_of(Floats y, Floats x) {
+    const Floats ax = absolute(x), ay = absolute(y), one = Floats{} + 1.0f;
+    const Floats level = with_sign(one, ax - ay), east = with_sign(one, x);
+    const Floats eighth = arc_tangent(least(ay, ax) / most(ay, ax)) * (float)(0.5 / ACDF_PI);
+    const Floats quarter = (0.125f - 0.125f * level) + level * eighth;
+    return with_sign((0.25f - 0.25f * east) + east * quarter, y);
+}
+
+/* acdf_sure_step, into the lanes from one on. Returns those that are sure. */
+ACDF_LANE Signed sure_step(Floats place, float border, Signed refused, long long* square) {
+    const Signed step = __builtin_convertvector(select(refused, Floats{}, place), Signed);
+    const Floats inside = place - __builtin_convertvector(step, Floats);
+    for (int half = 0; half < 2; ++half) stored(square + ACDF_WIDTH * half, widened(step, half));
+    return (inside > border) & (inside < 1.0f - border);
+}
+
+/* acdf_row_square, or acdf_fold_square, of kLanes lanes from one on. Returns those of which floats do not tell. */
+ACDF_LANE std::uint32_t find_squares(const AcdfLocal& local, const float (*directions)[3], std::size_t first,
+                                     Cells* cells) {
+    const auto columns = (float)local.environment.columns, rows = (float)local.environment.rows;
+    Floats w[3], place[2];
+    Signed refused, sure;
+    float border[2];
+    load_vectors(directions, w);
+    if (local.tables->octahedral) {
+        Floats across, along;
+        Words key[2];
+        refused = direction_place(true, w, &across, &along, key);
+        place[0] = columns * (0.5f - 0.5f * across);
+        place[1] = rows * (0.5f + 0.5f * along);
+        border[0] = columns * 2.0f * ACDF_FOLD_BORDER;
+        border[1] = rows * 2.0f * ACDF_FOLD_BORDER;
+    } else {
+        const Floats sin2 = w[0] * w[0] + w[1] * w[1];
+        const float step = 2.0f * ACDF_FLOAT_BORDER * (float)(0.5 / ACDF_PI);
+        refused = are_not_directions(sin2, sin2 + w[2] * w[2]);
+        place[0] = columns * (0.5f - turn_of(w[1], w[0]));
+        place[1] = rows * 2.0f * turn_of(root(sin2), w[2]);
+        border[0] = columns * step;
+        border[1] = rows * 2.0f * step;
+    }
+    sure = ~refused;
+    for (int axis = 0; axis < 2; ++axis)
+        sure &= sure_step(place[axis], border[axis], refused, &cells->square[axis][first]);
+    for (int axis = 0; axis < 2; ++axis) /* of others any that the grid has */
+        for (std::size_t half = 0; half < 2; ++half) {
+            long long* const square = &cells->square[axis][first + ACDF_WIDTH * half];
+            stored(square, loaded(square) & widened(sure, (int)half));
+        }
+    return bits(~sure);
+}
+
+/* acdf_tile_at of a vector. */
+ACDF_LANE void find_tiles(const AcdfLocalTables& tables, Cells* cells, std::size_t at) {
+    const std::uint32_t* const words = acdf_local_words(&tables);
+    const AcdfTileTables& t = tables.tiles;
+    const Integer square[2] = {loaded(&cells->square[0][at]), loaded(&cells->square[1][at])};
+    const Integer entry = ((square[1] >> t.shift[1]) << t.bits0) + (square[0] >> t.shift[0]);
+    const Integer key[2] = {square[0] << 3 | 7, square[1] << 3 | 7};
+    const Integer base = Integer{} + (long long)(std::uintptr_t)(words + t.grid);
+    Integer node = two_bytes_at(base + entry * 2);
+    for (;;) {
+        const Mask ended = has(node, ACDF_TILE_FLAG);
+        if (lanes(ended) + 1 == 1u << ACDF_WIDTH) break;
+        const Integer split = loaded_from(acdf_tile_splits(words, &t), node & 0x7FFF), place = split & 0xFFFFFFFF;
+        const Mask below = negative(choose(has(split, 1), key[1], key[0]) - place);
+        const Integer child = choose(below, split, split >> 16) >> 32 & 0xFFFF;
+        node = choose(ended, node, child);
+    }
+    stored(&cells->tile[at], node & 0x7FFF);
+}
+
+// ---- probabilities ---------------------------------------------------------------------------------------------
+
+/// Points of lanes.
+struct Seen {
+    alignas(64) double weight[kRows][kRoom], mixture[kRoom], sum[kRoom], normal[3][kRoom], length[kRoom];
+    alignas(64) long long row[kRows][kRoom];
+};
+
+ACDF_LANE void keep(const Points& p, std::size_t at, Seen* seen) {
+    for (int i = 0; i < kRows; ++i) {
+        stored(&seen->weight[i][at], p.weight[i]);
+        stored(&seen->row[i][at], p.row[i]);
+        stored(&seen->normal[i][at], p.normal[i]);
+    }
+    stored(&seen->mixture[at], p.mixture);
+    stored(&seen->sum[at], p.sum);
+    stored(&seen->length[at], p.length);
+}
+
+/* What the mixture gives to the tile of a lane: acdf_tile_share_rows. */
+ACDF_LANE double share_of(const AcdfLocalTables& tables, const Seen& seen, std::size_t i, std::uint32_t tile) {
+    AcdfMixture mix;
+    const std::uint8_t* row[kRows];
+    for (int k = 0; k < kRows; ++k) {
+        mix.weight[k] = seen.weight[k][i];
+        row[k] = (const std::uint8_t*)seen.row[k][i];
+    }
+    return acdf_tile_share_rows(acdf_local_words(&tables), &tables.tiles, &mix, row, kRows,
+                                acdf_local_tile(&tables, tile), 0);
+}
+
+/* Of a tile to which the mixture gives nothing: that of its light. */
+__attribute__((noinline)) double light_probability(const AcdfLocal& local, const Seen& seen, std::size_t i,
+                                                   std::uint32_t tile) {
+    const std::uint32_t light = acdf_local_light_of(&local, tile);
+    if (light == 0) return 0.0;
+    AcdfLocalPoint point;
+    for (int k = 0; k < 3; ++k) point.normal[k] = seen.normal[k][i];
+    point.length = seen.length[i];
+    point.place.count = 0;
+    const double probability = acdf_local_light_weight(&local, &point, light - 1) / seen.sum[i];
+    return probability > 0.0 ? acdf_positive(probability) : 0.0;
+}
+
+/* acdf_local_found_tile and acdf_local_tile_probability of all cells. */
+ACDF_LANE void weigh_tiles(const AcdfLocal& local, const Seen& seen, Cells* cells) {
+    for (std::size_t i = 0; i < cells->count; ++i)
+        cells->product[i] = share_of(*local.tables, seen, i, (std::uint32_t)cells->tile[i]);
+    for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH) {
+        const Vector mixture = loaded(&seen.mixture[at]), given = loaded(&cells->product[at]);
+        stored(&cells->probability[at], positive(mixture / loaded(&seen.sum[at]) * positive(given / mixture)));
+        const std::size_t more = std::min<std::size_t>(cells->count - at, ACDF_WIDTH);
+        unsigned none = ~lanes(less(all(0.0), given)) & ((1u << more) - 1u);
+        for (; none; none &= none - 1) {
+            const std::size_t i = at + acdf_lowest_bit(none);
+            cells->probability[i] = light_probability(local, seen, i, (std::uint32_t)cells->tile[i]);
+        }
+    }
+}
+
+/* acdf_local_cell_pdf of kLanes cells. */
+ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, std::size_t first) {
+    Vector out[2];
+    for (std::size_t half = 0; half < 2; ++half) {
+        const std::size_t at = first + ACDF_WIDTH * half;
+        const Integer low = loaded(&cells.low[1][at]), high = loaded(&cells.high[1][at]);
+        const Vector width = converted(loaded(&cells.high[0][at])) - converted(loaded(&cells.low[0][at]));
+        const Vector given = loaded(&cells.probability[at]), product = loaded(&cells.product[at]);
+        const Mask some = both(less(all(0.0), given), less(all(0.0), product));
+        const double* const z = acdf_local_heights(local.tables);
+        const Vector area = local.tables->octahedral
+                                ? fold_area(width, converted(high) - converted(low), local.environment.rows)
+                                : row_area(width, (Vector)loaded_from(z, low), (Vector)loaded_from(z, high));
+        out[half] =
+            choose(some, area_pdf(positive(given * positive(product)), local.environment.columns, area), all(0.0));
+    }
+    return to_floats((Doubles)out[0], (Doubles)out[1]);
+}
+
+// ---- all of an array -------------------------------------------------------------------------------------------
+
+/* Densities of up to kBlock lanes; `at` and `alone` as in draw_block. */
+template <class At, class Alone>
+ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& alone, const float (*directions)[3],
+                             std::size_t count, float* out) {
+    Seen seen;
+    Cells cells;
+    Points room;
+    std::uint64_t lost = 0;
+    cells.count = count;
+    for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
+        const std::size_t more = std::min<std::size_t>(count - first, ACDF_WIDTH);
+        const Points& p = at(first, more, &room);
+        keep(p, first, &seen);
+        lost |= (std::uint64_t)(~bits(p.served) & ((1u << more) - 1u)) << first;
+    }
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const std::size_t more = std::min(count - first, kLanes);
+        float last[kLanes][3] = {};
+        if (more < kLanes) std::memcpy(last, directions + first, more * sizeof *directions);
+        const std::uint32_t refused = find_squares(local, more < kLanes ? last : directions + first, first, &cells);
+        lost |= (std::uint64_t)(refused & ((1u << more) - 1u)) << first;
+        for (std::size_t half = 0; half < kLanes; half += ACDF_WIDTH)
+            find_tiles(*local.tables, &cells, first + half);
+    }
+    enter_tiles(local, &cells);
+    weigh_tiles(local, seen, &cells);
+    follow_all<true>(local.blend.tree, local.environment.tree_units, &cells);
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        alignas(64) float told[kLanes];
+        *(Floats*)told = cell_densities(local, cells, first);
+        std::memcpy(out + first, told, std::min(count - first, kLanes) * sizeof *out);
+    }
+    for (std::size_t i = 0; i < count; ++i) lost |= (std::uint64_t)cells.lost[i] << i;
+    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+}
+
+ACDF_LANE void pdf_all(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
+                       std::size_t count, float* out) {
+    for (std::size_t first = 0; first < count;
+         first += kBlock, normals += kBlock, directions += kBlock, out += kBlock)
+        density_block(
+            local, PointsOf{local, normals},
+            [&](std::size_t lane) { out[lane] = acdf_local_pdf(&local, normals[lane], directions[lane]); },
+            directions, std::min(count - first, kBlock), out);
+}
+ACDF_LANE void pdf_all(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
+                       std::size_t count, float* out) {
+    const OnePoint points(local, point);
+    for (std::size_t first = 0; first < count; first += kBlock, directions += kBlock, out += kBlock)
+        density_block(
+            local, points,
+            [&](std::size_t lane) { out[lane] = acdf_local_pdf_at(&local, &point, directions[lane]); }, directions,
+            std::min(count - first, kBlock), out);
+}
+
+} // namespace
