@@ -100,9 +100,12 @@ private:
     void look_at_partitions() {
         sizer_.forget();
         nodes_.clear();
-        for (const auto& partition : partitions_)
+        begins_.clear();
+        for (const auto& partition : partitions_) {
             nodes_.push_back(partition ? prune_nodes(partition->parts(), heaviest_, partition->grid().filling)
                                        : PruneNodes{});
+            begins_.push_back(partition ? begins_of(partition->parts()) : std::vector<std::uint32_t>{});
+        }
     }
 
     std::vector<Pruned> pruned(double price) const {
@@ -138,7 +141,7 @@ private:
     bool sized_beyond(const std::vector<Pruned>& trees, const std::vector<const Trial*>& known, Trial& out) {
         std::vector<PrunedBin> bins;
         for (std::size_t bin = 0; bin < trees.size(); ++bin)
-            bins.push_back({partitions_[bin] ? &partitions_[bin]->parts() : nullptr, &nodes_[bin], &trees[bin]});
+            bins.push_back({&nodes_[bin], &begins_[bin], &trees[bin]});
         std::vector<const SizedTree*> known_trees;
         for (const Trial* trial : known) known_trees.push_back(&trial->tree);
         out.tree = sizer_.tree(bins, stored_price(out.price), known_trees);
@@ -333,6 +336,7 @@ private:
     std::size_t lit_ = 0;                              ///< bins that have energy
     double excess_ = 0.0, cost_ = 1.0, heaviest_ = 0.0;
     std::vector<PruneNodes> nodes_; ///< of the partitions
+    std::vector<std::vector<std::uint32_t>> begins_;
     TreeSizer sizer_;
 };
 

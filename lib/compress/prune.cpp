@@ -18,6 +18,14 @@ PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest, const Fi
     return out;
 }
 
+std::vector<std::uint32_t> begins_of(const std::vector<Part>& parts) {
+    std::vector<std::uint32_t> out(parts.size(), 0);
+    for (const Part& part : parts)
+        for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k)
+            out[k] = parts[k].box.begin[static_cast<std::size_t>(part.split)];
+    return out;
+}
+
 Pruned prune(const PruneNodes& nodes, double price) {
     Pruned out;
     out.divided.assign(nodes.size(), 0);

@@ -27,6 +27,9 @@ using PruneNodes = std::vector<PruneNode>;
 
 PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest, const Filling* filling = nullptr);
 
+/// For each part but the first, where it begins on the axis along which the part above it is divided.
+std::vector<std::uint32_t> begins_of(const std::vector<Part>& parts);
+
 /// A partition pruned at one price.
 struct Pruned {
     std::vector<std::uint8_t> divided; ///< one a part: whether its division stays

@@ -12,10 +12,10 @@
 
 namespace acdf::compress {
 
-/// A bin that is pruned: what is in `parts` is told by `nodes`.
+/// A bin that is pruned.
 struct PrunedBin {
-    const std::vector<Part>* parts; ///< null: it has nothing to sample
-    const PruneNodes* nodes;
+    const PruneNodes* nodes;                  ///< empty: it has nothing to sample
+    const std::vector<std::uint32_t>* begins; ///< begins_of the parts of `nodes`
     const Pruned* pruned;
 };
 
@@ -42,15 +42,18 @@ public:
     /// At `price` a byte, as encode_tree takes it. Curves are taken from one of `known` that is divided alike.
     SizedTree tree(const std::vector<PrunedBin>& bins, double price, const std::vector<const SizedTree*>& known);
     std::uint64_t bytes(const SizedTree& tree) const;
-    /// The partitions have changed: nothing of before counts.
+    /// The partitions have changed: nothing of before counts, and no tree of before may be known to tree().
     void forget();
 
 private:
     struct Bin;
+    struct Roundings;
 
     std::shared_ptr<const SizedTree::Curves> curves_of(const std::vector<PrunedBin>& bins);
+    std::uint32_t add_roundings();
 
     std::vector<Bin> bins_;
+    std::vector<Roundings> roundings_; ///< of all curves since forget()
     double most_ratio_;
 };
 

@@ -179,6 +179,7 @@ TEST(PartitionGrowth, AVarianceIsSearchedForWithinABoundOfBytes) {
 struct Bins {
     std::vector<Partition> partitions;
     std::vector<PruneNodes> nodes;
+    std::vector<std::vector<std::uint32_t>> begins;
     std::vector<Pruned> pruned;
 
     Bins(const std::vector<Target>& targets, double finest) {
@@ -186,15 +187,16 @@ struct Bins {
             partitions.push_back(partition_of(target));
             partitions.back().refine(finest, kNoBound);
             nodes.push_back(prune_nodes(partitions.back().parts(), kNoBound));
+            begins.push_back(begins_of(partitions.back().parts()));
         }
         nodes.emplace_back();
+        begins.emplace_back();
     }
     std::vector<PrunedBin> at(double price) {
         pruned.clear();
         for (const PruneNodes& n : nodes) pruned.push_back(prune(n, price));
         std::vector<PrunedBin> out;
-        for (std::size_t b = 0; b < nodes.size(); ++b)
-            out.push_back({b < partitions.size() ? &partitions[b].parts() : nullptr, &nodes[b], &pruned[b]});
+        for (std::size_t b = 0; b < nodes.size(); ++b) out.push_back({&nodes[b], &begins[b], &pruned[b]});
         return out;
     }
     Cascade cascade() const {
