@@ -1,5 +1,5 @@
-// Where a test program finds the module that lib/images opens (lib/images/module.cpp).
+// Where a test program finds the modules that lib/images opens (lib/images/module.cpp).
 extern "C" {
-extern const char acdf_images_module_path[];
-const char acdf_images_module_path[] = ACDF_IMAGES_MODULE;
+extern const char acdf_images_folder[];
+const char acdf_images_folder[] = ACDF_IMAGES_FOLDER;
 }

@@ -1,4 +1,4 @@
-// Portable float maps, the plainest of images: read without the module.
+// Portable float maps, the plainest of images: read without a library.
 #pragma once
 
 #include "images/module.h"

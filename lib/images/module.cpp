@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-// Where the module is, if the program says so: tests do, which lie in many folders.
-extern "C" __attribute__((weak)) const char acdf_images_module_path[];
+// Where modules are, if the program says so: tests do, which lie in many folders.
+extern "C" __attribute__((weak)) const char acdf_images_folder[];
 
 namespace acdf::images {
 namespace {
@@ -19,12 +19,12 @@ namespace {
 }
 
 // Beside the program as it is installed, wherever that is: never a name that the loader would search for.
-std::string module_path() {
-    if (acdf_images_module_path) return acdf_images_module_path;
+std::string path_of(const std::string& module) {
+    if (acdf_images_folder) return (std::filesystem::path(acdf_images_folder) / module).string();
     std::error_code error;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (error) fail(ACDF_IMAGES_MODULE, "/proc/self/exe: " + error.message());
-    return (program.parent_path() / ACDF_IMAGES_MODULE).lexically_normal().string();
+    if (error) fail(module, "/proc/self/exe: " + error.message());
+    return (program.parent_path() / ACDF_IMAGES_FOLDER / module).lexically_normal().string();
 }
 
 std::string loader_error() {
@@ -32,15 +32,17 @@ std::string loader_error() {
     return text ? text : "no reason given";
 }
 
-const Module& load() {
-    const std::string path = module_path();
+/// The table of functions of a module whose file is `name`.so.
+template <class Table>
+const Table& load(const std::string& name) {
+    const std::string path = path_of(name + ".so");
     void* library = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (!library) fail(path, loader_error());
-    void* symbol = dlsym(library, kGetModule);
+    void* symbol = dlsym(library, (name + "_module").c_str());
     if (!symbol) fail(path, loader_error());
-    GetModule get = nullptr;
+    const Table* (*get)() = nullptr;
     std::memcpy(&get, &symbol, sizeof get);
-    const Module* loaded = get();
+    const Table* loaded = get();
     if (std::strcmp(loaded->version, ACDF_VERSION) != 0)
         fail(path, std::string("it is of version ") + loaded->version + ", not " ACDF_VERSION);
     return *loaded;
@@ -48,8 +50,14 @@ const Module& load() {
 
 } // namespace
 
+// Once in all threads; after a failure the next call tries again.
 const Module& module() {
-    static const Module& loaded = load(); // once in all threads; after a failure the next call tries again
+    static const Module& loaded = load<Module>("acdf_images");
+    return loaded;
+}
+
+const ReaderModule& openexr_module() {
+    static const ReaderModule& loaded = load<ReaderModule>("acdf_openexr");
     return loaded;
 }
 

@@ -1,6 +1,6 @@
-// What the program and the module that holds OpenImageIO say to each other. OpenImageIO brings some 250 shared
-// libraries, which take longer to load than most commands to run: the module is opened when the first image is that
-// we cannot read ourselves.
+// What the program and the modules that hold OpenImageIO and OpenEXR say to each other. OpenImageIO brings some 250
+// shared libraries, which take longer to load than most commands to run: its module is opened when the first image
+// is that neither we nor OpenEXR alone can read.
 #pragma once
 
 #include "images/picture.h"
@@ -72,10 +72,13 @@ struct ImageReader {
 /// A table of functions and plain data, no classes with virtual functions: those would need their type information
 /// to be one in program and module. Nothing of ours is thrown through it; what the standard library throws
 /// (std::bad_alloc) is.
-struct Module {
+struct ReaderModule {
     const char* version; ///< of acdf: a module of another version is refused
-    ImageReader reader;  ///< of every format that OpenImageIO reads
+    ImageReader reader;
+};
 
+/// The module of OpenImageIO, whose reader is of every format that it reads.
+struct Module : ReaderModule {
     /// An image file in memory. False and `error` where it cannot be made.
     bool (*encode)(const Picture& picture, const Encoding& encoding, std::vector<std::uint8_t>& bytes,
                    std::string& error);
@@ -91,13 +94,14 @@ struct Module {
                       const float colour[3]);
 };
 
-/// What the module exports, as extern "C".
-using GetModule = const Module* (*)();
-constexpr const char* kGetModule = "acdf_images_module";
-
-/// Opened on the first call, by any thread, and kept. The file is at ACDF_IMAGES_MODULE from the running program's
-/// folder; a program that lies elsewhere defines acdf_images_module_path (module.cpp). Throws std::runtime_error
-/// that names the file where it is missing, damaged or of another version.
+/// Opened on the first call, by any thread, and kept. The file is at ACDF_IMAGES_FOLDER from the running program's
+/// folder; a program that lies elsewhere defines acdf_images_folder (module.cpp). Throws std::runtime_error that
+/// names the file where it is missing, damaged or of another version. It exports, as extern "C", a function without
+/// arguments that returns a pointer to its table: acdf_images_module.
 const Module& module();
+
+/// The same of the module that reads usual OpenEXR files, which exports acdf_openexr_module: opening what else
+/// there is returns null.
+const ReaderModule& openexr_module();
 
 } // namespace acdf::images

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # installed_program.sh BUILD MAKE_SKY: installs the program alone, moves it elsewhere, and reads an image with it. The
-# program itself is not linked with OpenImageIO: its module, which lies beside it, is.
+# program itself is not linked with OpenImageIO or OpenEXR: its modules, which lie beside it, are.
 set -euo pipefail
 build=$1 make_sky=$2
 work=$build/program
@@ -11,27 +11,37 @@ cd "$work"
 cmake --install "$build" --prefix "$work/installed" --component tools >install.log
 mv installed prefix
 module=$(find prefix -name acdf_images.so)
-diff <(find prefix -type f | sort) <(printf '%s\n' prefix/bin/acdf "$module" | sort)
+openexr=$(find prefix -name acdf_openexr.so)
+diff <(find prefix -type f | sort) <(printf '%s\n' prefix/bin/acdf "$module" "$openexr" | sort)
 
 needed() { readelf -d "$1" | grep NEEDED; }
 needed "$module" | grep -q OpenImageIO
-needed prefix/bin/acdf | grep -q libstdc++
-if needed prefix/bin/acdf | grep OpenImageIO; then
-    echo "acdf is linked with OpenImageIO" >&2
+needed "$openexr" | grep -q OpenEXR
+if needed "$openexr" | grep OpenImageIO; then
+    echo "the module of OpenEXR is linked with OpenImageIO" >&2
     exit 1
 fi
-if grep -aq "$build[[:print:]]*acdf_images[.]so" prefix/bin/acdf; then
-    echo "acdf would look for its module in the build tree, $build" >&2
+needed prefix/bin/acdf | grep -q libstdc++
+if needed prefix/bin/acdf | grep -E 'OpenImageIO|OpenEXR'; then
+    echo "acdf is linked with a library of images" >&2
+    exit 1
+fi
+if grep -aq "$build[[:print:]]*lib[[:print:]]*/acdf" prefix/bin/acdf; then
+    echo "acdf would look for its modules in the build tree, $build" >&2
     exit 1
 fi
 
-"$make_sky" sky.exr
-prefix/bin/acdf env sky.exr -o sky.acdf --quiet
-prefix/bin/acdf validate sky.acdf
-rm "$module"
-prefix/bin/acdf info sky.acdf >info.txt
-if prefix/bin/acdf env sky.exr -o again.acdf --quiet 2>error.txt; then
-    echo "an image was read without the module" >&2
-    exit 1
-fi
-grep -q "$work/$module: " error.txt
+read_without() { # MODULE IMAGE: which needs it
+    "$make_sky" "$2"
+    prefix/bin/acdf env "$2" -o sky.acdf --quiet --force
+    prefix/bin/acdf validate sky.acdf
+    rm "$1"
+    prefix/bin/acdf info sky.acdf >info.txt
+    if prefix/bin/acdf env "$2" -o again.acdf --quiet 2>error.txt; then
+        echo "$2 was read without $1" >&2
+        exit 1
+    fi
+    grep -q "$work/$1: " error.txt
+}
+read_without "$module" sky.tif
+read_without "$openexr" sky.exr

@@ -42,7 +42,8 @@ bool has(const std::set<std::string>& names, const std::string& beginning) {
 class Startup : public testing::Test {
 protected:
     Folder folder;
-    std::string sky = folder / "sky.acdf", image = folder / "sky.exr", table = folder / "table.npy";
+    std::string sky = folder / "sky.acdf", image = folder / "sky.tif", exr = folder / "sky.exr",
+                table = folder / "table.npy";
 
     void SetUp() override {
         write_bytes(sky, small_environment());
@@ -51,11 +52,12 @@ protected:
         npy.resize(127, ' ');
         write_text(table, npy + "\n" + std::string("\0\0\x80\x3F\0\0\0\x40\0\0\x40\x40\0\0\x80\x40", 16)); // 1 to 4
     }
-    /// 32 x 16 texels; opens the module in this process.
-    void write_image() {
+    /// 32 x 16 texels, as OpenImageIO alone reads them and as OpenEXR does; opens the module in this process.
+    void write_images() {
         std::vector<float> rgb(32 * 16 * 3);
         for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = 1.0f + static_cast<float>(i / 3 % 7);
         write_rgb(image, 32, 16, rgb);
+        write_rgb(exr, 32, 16, rgb);
     }
     /// The program as it is installed, in another place.
     std::string copied_program() {
@@ -63,18 +65,23 @@ protected:
         fs::copy_file(ACDF_PROGRAM, folder / "moved/bin/acdf");
         return folder / "moved/bin/acdf";
     }
-    /// Where that one looks for the module.
-    std::string place_of_module() {
-        const fs::path way = fs::path(ACDF_IMAGES_MODULE).lexically_relative(fs::path(ACDF_PROGRAM).parent_path());
+    /// Where that one looks for a module.
+    std::string place_of(const std::string& module) {
+        const fs::path way = fs::path(module).lexically_relative(fs::path(ACDF_PROGRAM).parent_path());
         const fs::path place = (fs::path(folder / "moved/bin") / way).lexically_normal();
         fs::create_directories(place.parent_path());
         return fs::canonical(place.parent_path()) / place.filename();
     }
     void expect_refused(const std::string& program, const std::string& why) {
-        const std::string module = place_of_module();
-        const std::vector<std::string> commands[] = {{"env", image, "-o", folder / "x.acdf", "-q"},
-                                                     {"plot", sky, "-o", folder / "x.png", "-q"},
-                                                     {"batch", image, "-o", folder / "out", "-q"}};
+        expect_refused(program, place_of(ACDF_IMAGES_MODULE), why,
+                       {{"env", image, "-o", folder / "x.acdf", "-q"},
+                        {"plot", sky, "-o", folder / "x.png", "-q"},
+                        {"batch", image, "-o", folder / "out", "-q"}});
+        expect_refused(program, place_of(ACDF_OPENEXR_MODULE), why,
+                       {{"env", exr, "-o", folder / "x.acdf", "-q"}, {"batch", exr, "-o", folder / "out", "-q"}});
+    }
+    void expect_refused(const std::string& program, const std::string& module, const std::string& why,
+                        const std::vector<std::vector<std::string>>& commands) {
         for (const std::vector<std::string>& command : commands) {
             const Result result = run_acdf(command, "", program);
             EXPECT_EQ(result.code, 1) << command[0];
@@ -115,7 +122,7 @@ TEST_F(Startup, LoadsNoLibraryForImagesWhereThereIsNone) {
 }
 
 TEST_F(Startup, LoadsThemWhereThereIs) {
-    write_image();
+    write_images();
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"env", image, "-o", folder / "x.acdf", "-q"},
           {"plot", sky, "-o", folder / "x.png", "-q"},
@@ -123,37 +130,61 @@ TEST_F(Startup, LoadsThemWhereThereIs) {
         const std::set<std::string> names = loaded_by(command);
         EXPECT_TRUE(has(names, "libOpenImageIO")) << command[0];
         EXPECT_TRUE(has(names, "acdf_images")) << command[0];
+        EXPECT_FALSE(has(names, "acdf_openexr")) << command[0];
     }
 }
 
-TEST_F(Startup, TheProgramAndItsModuleMayBeMovedTogether) {
-    write_image();
+TEST_F(Startup, LoadsNoMoreThanOpenExrWhereThatIsEnough) {
+    write_images();
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"env", exr, "-o", folder / "x.acdf", "-q"},
+          {"batch", exr, "-o", folder / "out", "--dry-run", "--json"}}) {
+        const std::set<std::string> names = loaded_by(command);
+        EXPECT_TRUE(has(names, "acdf_openexr")) << command[0];
+        EXPECT_FALSE(has(names, "acdf_images")) << command[0];
+        EXPECT_LT(names.size(), 25u) << command[0];
+    }
+    const std::string hdr = folder / "sky.hdr";
+    write_rgb(hdr, 32, 16, std::vector<float>(32 * 16 * 3, 1.0f));
+    const std::set<std::string> names = loaded_by({"env", hdr, "-o", folder / "y.acdf", "-q"});
+    EXPECT_FALSE(has(names, "acdf_")); // which needs neither
+}
+
+TEST_F(Startup, TheProgramAndItsModulesMayBeMovedTogether) {
+    write_images();
     const std::string program = copied_program();
-    fs::copy_file(ACDF_IMAGES_MODULE, place_of_module());
-    const Result result = run_acdf({"env", image, "-o", folder / "x.acdf"}, "", program);
-    EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_EQ(run_acdf({"env", image, "-o", folder / "y.acdf"}).code, 0);
-    EXPECT_EQ(read_text(folder / "x.acdf"), read_text(folder / "y.acdf"));
+    fs::copy_file(ACDF_IMAGES_MODULE, place_of(ACDF_IMAGES_MODULE));
+    fs::copy_file(ACDF_OPENEXR_MODULE, place_of(ACDF_OPENEXR_MODULE));
+    for (const std::string& probe : {image, exr}) {
+        const Result result = run_acdf({"env", probe, "-o", folder / "x.acdf", "--force"}, "", program);
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(run_acdf({"env", probe, "-o", folder / "y.acdf", "--force"}).code, 0);
+        EXPECT_EQ(read_text(folder / "x.acdf"), read_text(folder / "y.acdf"));
+    }
 }
 
 TEST_F(Startup, AMissingModuleIsNamed) {
-    write_image();
+    write_images();
     const std::string program = copied_program();
     expect_refused(program, "No such file");
     EXPECT_EQ(run_acdf({"info", sky}, "", program).code, 0);
 }
 
 TEST_F(Startup, ADamagedModuleIsNamed) {
-    write_image();
-    write_text(place_of_module(), "no library");
+    write_images();
+    const auto damage = [&](const std::string& bytes) {
+        for (const char* module : {ACDF_IMAGES_MODULE, ACDF_OPENEXR_MODULE}) write_text(place_of(module), bytes);
+    };
+    damage("no library");
     expect_refused(copied_program(), "too short");
-    write_text(place_of_module(), std::string(4096, 'x'));
+    damage(std::string(4096, 'x'));
     expect_refused(folder / "moved/bin/acdf", "invalid ELF header");
 }
 
 TEST_F(Startup, AModuleOfAnotherVersionIsNamed) {
-    write_image();
-    fs::copy_file(ACDF_OTHER_MODULE, place_of_module());
+    write_images();
+    for (const char* module : {ACDF_IMAGES_MODULE, ACDF_OPENEXR_MODULE})
+        fs::copy_file(ACDF_OTHER_MODULE, place_of(module));
     expect_refused(copied_program(), "it is of version 0.0, not ");
 }
 

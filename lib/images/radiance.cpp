@@ -1,0 +1,179 @@
+#include "images/radiance.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace acdf::images {
+namespace {
+
+constexpr int kFewestColumns = 8, kMostColumns = 32767, kMostPictureRows = 1 << 16;
+constexpr std::size_t kLongestLine = 100, kMostLines = 100;
+
+struct Radiance {
+    std::ifstream file;
+    int width = 0, height = 0;
+    std::streamoff pixels = 0; ///< where they begin
+    int next = 0;              ///< the row that the file stands at
+    std::vector<unsigned char> row;
+};
+
+/// A line without its end; none where there is none, or a long one.
+std::optional<std::string> line_of(std::istream& file) {
+    std::string line;
+    for (int c; line.size() < kLongestLine && (c = file.get()) != std::char_traits<char>::eof();) {
+        if (c == '\n') return line;
+        line.push_back(static_cast<char>(c));
+    }
+    return std::nullopt;
+}
+
+bool begins_with(std::string_view line, std::string_view beginning) {
+    return line.substr(0, beginning.size()) == beginning;
+}
+
+/// Whether a line of the header changes nothing of how pixels are taken.
+bool is_harmless(std::string_view line) {
+    return begins_with(line, "#") || begins_with(line, "EXPOSURE=") || begins_with(line, "PRIMARIES=") ||
+           line == "GAMMA=1" || line == "GAMMA=1.0";
+}
+
+bool take_number(std::string_view& text, std::string_view before, int& number) {
+    if (!begins_with(text, before)) return false;
+    text.remove_prefix(before.size());
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return error == std::errc();
+}
+
+bool read_header(Radiance& picture) {
+    if (line_of(picture.file) != "#?RADIANCE") return false;
+    bool encoded = false;
+    for (std::size_t i = 0; i < kMostLines; ++i) {
+        const auto line = line_of(picture.file);
+        if (!line) return false;
+        if (line->empty()) break;
+        if (*line == "FORMAT=32-bit_rle_rgbe") encoded = true;
+        else if (!is_harmless(*line)) return false;
+    }
+    const auto line = line_of(picture.file);
+    std::string_view size = line ? *line : std::string_view{};
+    picture.pixels = picture.file.tellg();
+    return encoded && take_number(size, "-Y ", picture.height) && take_number(size, " +X ", picture.width) &&
+           size.empty() && picture.height >= 1 && picture.height <= kMostPictureRows &&
+           picture.width >= kFewestColumns && picture.width <= kMostColumns;
+}
+
+void* open_radiance(const std::string& path, int, Header& header, std::string&) {
+    std::error_code error; // a pipe is not looked into
+    if (!std::filesystem::is_regular_file(path, error)) return nullptr;
+    auto picture = std::make_unique<Radiance>();
+    picture->file.open(path, std::ios::binary);
+    if (!read_header(*picture)) return nullptr;
+    picture->row.resize(4 * static_cast<std::size_t>(picture->width));
+    header = {};
+    header.format = "hdr";
+    header.data = header.display = {0, 0, picture->width, picture->height};
+    header.channel_count = 3;
+    header.channels = {"R", "G", "B"};
+    header.floating = true;
+    header.sample_bytes = sizeof(float);
+    return picture.release();
+}
+
+void close_radiance(void* image) { std::unique_ptr<Radiance>(static_cast<Radiance*>(image)); }
+
+bool seek_radiance(void*, int part, Header&) { return part == 0; }
+
+/// One of the four components of a row: runs of a byte, and bytes as they are.
+bool read_component(std::streambuf& bytes, unsigned char* at, unsigned char* end) {
+    while (at < end) {
+        const int code = bytes.sbumpc();
+        if (code < 1) return false; // the end, or a run of none
+        const int count = code > 128 ? code - 128 : code;
+        if (count > end - at) return false;
+        if (code > 128) {
+            const int value = bytes.sbumpc();
+            if (value < 0) return false;
+            std::memset(at, value, static_cast<std::size_t>(count));
+        } else if (bytes.sgetn(reinterpret_cast<char*>(at), count) != count) {
+            return false;
+        }
+        at += count;
+    }
+    return true;
+}
+
+bool next_row(Radiance& picture) {
+    std::streambuf& bytes = *picture.file.rdbuf();
+    const auto width = static_cast<std::size_t>(picture.width);
+    for (const int expected : {2, 2, picture.width >> 8, picture.width & 255})
+        if (bytes.sbumpc() != expected) return false;
+    for (std::size_t component = 0; component < 4; ++component)
+        if (!read_component(bytes, picture.row.data() + component * width,
+                            picture.row.data() + (component + 1) * width))
+            return false;
+    ++picture.next;
+    return true;
+}
+
+/// What a component is multiplied by, for each byte of the exponent.
+std::array<float, 256> make_scales() {
+    std::array<float, 256> scales{};
+    for (int e = 1; e < 256; ++e) scales[static_cast<std::size_t>(e)] = std::ldexp(1.0f, e - (128 + 8));
+    return scales;
+}
+
+void decode(const Radiance& picture, const Rows& rows, unsigned char* pixel) {
+    static const std::array<float, 256> scales = make_scales();
+    const auto width = static_cast<std::size_t>(picture.width);
+    const unsigned char* const exponent = picture.row.data() + 3 * width;
+    for (std::size_t x = 0; x < width; ++x, pixel += rows.pixel_stride)
+        for (int channel = rows.first_channel; channel < rows.last_channel; ++channel) {
+            const float value = static_cast<float>(picture.row[static_cast<std::size_t>(channel) * width + x]) *
+                                scales[exponent[x]];
+            std::memcpy(pixel + static_cast<std::size_t>(channel - rows.first_channel) * sizeof value, &value,
+                        sizeof value);
+        }
+}
+
+bool read_radiance(void* image, const Rows& rows, float* to, std::string& error) {
+    Radiance& picture = *static_cast<Radiance*>(image);
+    if (rows.first_row < picture.next) {
+        picture.file.clear();
+        picture.file.seekg(picture.pixels);
+        picture.next = 0;
+    }
+    auto* line = reinterpret_cast<unsigned char*>(to);
+    while (picture.next < rows.last_row) {
+        if (!next_row(picture)) {
+            error = "a row is damaged, or encoded in another way";
+            return false;
+        }
+        if (picture.next <= rows.first_row) continue;
+        decode(picture, rows, line);
+        line += rows.row_stride;
+    }
+    return true;
+}
+
+// It is upright and linear: nothing has to be said.
+std::string text_of_radiance(const void*, const char*) { return ""; }
+int integer_of_radiance(const void*, const char*, int otherwise) { return otherwise; }
+float real_of_radiance(const void*, const char*, float otherwise) { return otherwise; }
+
+} // namespace
+
+const ImageReader& radiance_reader() {
+    static const ImageReader functions = {open_radiance,    close_radiance,      seek_radiance,   read_radiance,
+                                          text_of_radiance, integer_of_radiance, real_of_radiance};
+    return functions;
+}
+
+} // namespace acdf::images
