@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdlib>
 #include <fstream>
 
 #include <sys/stat.h>
@@ -114,6 +115,26 @@ TEST_F(Hostile, RadianceBeyondFloatsIsToldWithItsFile) {
         expect_failure(
             {"env", bright, "--channel", "rgb", "--domain", "octahedral", "--projection", projection, "-o", file},
             1, "bright.pfm: radiance");
+}
+
+TEST_F(Hostile, DamagedPicturesAreToldInOneLine) { // and not by libpng, too
+    ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
+    const std::string picture = folder / "probe.png", damaged = folder / "damaged.png", out = folder / "out.acdf";
+    ASSERT_EQ(run_acdf({"plot", file, "-o", picture, "-q", "--no-legend", "--width", "64"}).code, 0);
+    const std::string bytes = read_text(picture);
+    const auto write = [&](const std::string& text) { std::ofstream(damaged, std::ios::binary) << text; };
+    // libpng leaves functions of OpenImageIO behind by longjmp, and what they have allocated.
+    const char* const options = std::getenv("ASAN_OPTIONS");
+    const std::string before = options ? options : "";
+    setenv("ASAN_OPTIONS", (before + ":detect_leaks=0").c_str(), 1);
+    write(bytes.substr(0, bytes.size() / 2));
+    expect_failure({"env", damaged, "-q", "-o", out}, 1, "damaged.png: its pixels cannot be read");
+    setenv("ASAN_OPTIONS", before.c_str(), 1);
+    // Between IHDR and the rest a text with a wrong checksum, of which libpng warns.
+    write(bytes.substr(0, 33) + std::string("\0\0\0\3tEXta\0b1234", 15) + bytes.substr(33));
+    const Result made = run_acdf({"env", damaged, "-q", "-o", out});
+    EXPECT_EQ(made.code, 0);
+    EXPECT_EQ(made.err, "");
 }
 
 TEST_F(Hostile, NamesOfChoicesAreTold) {

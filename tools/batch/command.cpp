@@ -177,7 +177,7 @@ std::vector<JobResult> run_with_progress(const BatchArguments& options, const st
         if (result) ++ended;
         if (result && result->status == JobResult::Status::failed) {
             ++failed;
-            std::fprintf(stderr, "%sacdf: %s\n", terminal ? "\r\033[K" : "",
+            std::fprintf(to_person(), "%sacdf: %s\n", terminal ? "\r\033[K" : "",
                          on_one_line(told_in_batch(result->error)).c_str());
         }
         const std::string text = std::to_string(ended) + " of " + std::to_string(due) + " jobs" +

@@ -3,7 +3,6 @@
 #include "reader/utf8.h"
 
 #include <cstdint>
-#include <cstdio>
 
 namespace acdf::tools {
 namespace {
@@ -14,7 +13,11 @@ bool is_control(const std::uint8_t* s, std::uint64_t length) {
     return s[0] == 0xC2 && s[1] < 0xA0;
 }
 
+std::FILE* const stderr_at_start = stderr;
+
 } // namespace
+
+std::FILE* to_person() { return stderr_at_start; }
 
 std::string printable(const std::string& text) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
@@ -42,7 +45,7 @@ std::string on_one_line(std::string text) {
     return printable(text);
 }
 
-void say(const std::string& text) { std::fprintf(stderr, "%s\n", on_one_line(text).c_str()); }
+void say(const std::string& text) { std::fprintf(to_person(), "%s\n", on_one_line(text).c_str()); }
 
 void put(const std::string& text) { std::fputs(printable(text).c_str(), stdout); }
 

@@ -2,6 +2,7 @@
 // move the cursor, change colours or end the line.
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 namespace acdf::tools {
@@ -11,6 +12,9 @@ std::string printable(const std::string& text);
 
 /// The same on one line: line ends become spaces.
 std::string on_one_line(std::string text);
+
+/// stderr as the program found it: libraries that read images do not get to it (images/openimageio/quiet.h).
+std::FILE* to_person();
 
 /// One line on stderr.
 void say(const std::string& text);

@@ -1,9 +1,10 @@
 #include "tools/cli/progress.h"
 
+#include "tools/cli/messages.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <mutex>
 #include <string>
 
@@ -19,10 +20,10 @@ constexpr int bar_width = 30;
 
 void draw(double fraction, const char* what, double elapsed) {
     const int full = static_cast<int>(fraction * bar_width);
-    std::fprintf(stderr, "\r\033[K%s%s %3d%% %s%s", std::string(static_cast<std::size_t>(full), '#').c_str(),
+    std::fprintf(to_person(), "\r\033[K%s%s %3d%% %s%s", std::string(static_cast<std::size_t>(full), '#').c_str(),
                  std::string(static_cast<std::size_t>(bar_width - full), '.').c_str(),
                  static_cast<int>(100.0 * fraction), what, time_left(fraction, elapsed).c_str());
-    std::fflush(stderr);
+    std::fflush(to_person());
 }
 
 } // namespace
@@ -63,7 +64,7 @@ ProgressBar::ProgressBar(bool quiet) {
 }
 
 ProgressBar::~ProgressBar() {
-    if (state_ && state_->visible) std::fputs("\r\033[K", stderr);
+    if (state_ && state_->visible) std::fputs("\r\033[K", to_person());
 }
 
 build::Progress ProgressBar::callback() {

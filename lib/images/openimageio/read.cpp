@@ -1,4 +1,5 @@
 #include "parts.h"
+#include "quiet.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -31,6 +32,7 @@ Header header_of(const OIIO::ImageInput& input) {
 } // namespace
 
 void* open_image(const std::string& path, int threads, Header& header, std::string& error) {
+    const Quiet quiet;
     std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
     error = OIIO::geterror();
     if (!input) return nullptr;
@@ -42,6 +44,7 @@ void* open_image(const std::string& path, int threads, Header& header, std::stri
 void close_image(void* image) { std::unique_ptr<OIIO::ImageInput>(static_cast<OIIO::ImageInput*>(image)); }
 
 bool seek_part(void* image, int part, Header& header) {
+    const Quiet quiet;
     OIIO::ImageInput& input = input_of(image);
     if (!input.seek_subimage(part, 0)) {
         input.geterror(); // there being no such part is no error
@@ -52,6 +55,7 @@ bool seek_part(void* image, int part, Header& header) {
 }
 
 bool read_rows(void* image, const Rows& rows, float* to, std::string& error) {
+    const Quiet quiet;
     OIIO::ImageInput& input = input_of(image);
     const OIIO::ImageSpec& s = input.spec();
     const int part = input.current_subimage(), begin = s.y + rows.first_row, end = s.y + rows.last_row;
