@@ -200,12 +200,12 @@ private:
         const double e = flux.value();
         if (!(e > 0.0)) return {};
         out.irradiance = e;
-        out.relative_variance =
-            out.support_violations > 0 ? std::numeric_limits<double>::infinity() : second.value() / e / e - 1.0;
+        out.relative_variance = out.support_violations > 0 ? std::numeric_limits<double>::infinity()
+                                                           : std::max(0.0, second.value() / e / e - 1.0);
         // What is drawn around the normal lies above its horizon, all of it.
         out.share_above_horizon = drawn ? std::min(first_above.value() + share, 1.0) : 0.0;
         out.max_weight = largest / e;
-        out.relative_variance_full_cdf = total_ / e * (light_second.value() / e) - 1.0;
+        out.relative_variance_full_cdf = std::max(0.0, total_ / e * (light_second.value() / e) - 1.0);
         out.share_above_horizon_full_cdf = light.value() / total_;
         if (alone) return out;
         out.relative_variance = both.relative_variance();

@@ -55,7 +55,7 @@ FullCdf::Draw FullCdf::sample(float u0, float u1) const {
 }
 
 double FullCdf::pdf(std::uint32_t column, std::uint32_t row) const {
-    return double{function_[std::size_t{row} * columns_ + column]} / total_;
+    return total_ > 0.0 ? double{function_[std::size_t{row} * columns_ + column]} / total_ : 0.0;
 }
 
 std::uint64_t FullCdf::bytes() const {

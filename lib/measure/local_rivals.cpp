@@ -2,6 +2,7 @@
 
 #include "compress/sum.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace acdf::measure {
@@ -18,7 +19,7 @@ struct Hemisphere {
     double radiance2_cosine = 0.0; ///< of L^2 cos
 
     double relative_to_square(double second_moment) const {
-        return irradiance > 0.0 ? second_moment / (irradiance * irradiance) - 1.0 : 0.0;
+        return irradiance > 0.0 ? std::max(0.0, second_moment / (irradiance * irradiance) - 1.0) : 0.0;
     }
 };
 

@@ -162,7 +162,7 @@ double TilingOnTheFly::relative_variance(const float n[3]) const {
             if (cosine2[c] > 0.0) second.add(cosine2[c] * target_.row_measure[r] / of_row[c]);
     }
     const double mean = irradiance.value();
-    return mean > 0.0 ? total * second.value() / (mean * mean) - 1.0 : 0.0;
+    return mean > 0.0 ? std::max(0.0, total * second.value() / (mean * mean) - 1.0) : 0.0;
 }
 
 std::uint64_t TilingOnTheFly::bytes() const {

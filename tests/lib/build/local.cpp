@@ -142,6 +142,19 @@ TEST(LocalFiles, MeasuresWhatSamplesHave) {
     }
 }
 
+TEST(LocalFiles, NoVarianceIsBelowZero) { // where rounding alone is left
+    build::LocalOptions options;
+    options.goal.budget = 8192;
+    const Target sky = acdf_test::texel_target(1, 1, [](std::uint32_t, std::uint32_t) { return 1.0; });
+    const build::Local local = build::build_local(sky, {}, options);
+    for (const build::NormalAccuracy& a :
+         build::measure_normals(load(local), sky, build::test_normals(options.scene, 64))) {
+        EXPECT_GE(a.relative_variance, 0.0);
+        EXPECT_LT(a.relative_variance, 1e-12);
+        EXPECT_GE(a.relative_variance_full_cdf, 0.0);
+    }
+}
+
 TEST(LocalFiles, TreesOfTheirOwnCoverAllNormalsOfABin) {
     for (AcdfFit fit : {ACDF_FIT_UNIFORM, ACDF_FIT_CDF, ACDF_FIT_VARIANCE}) {
         const build::Local local = build(separate(fit));

@@ -74,6 +74,13 @@ TEST(FullCdf, FillsATexelEvenly) {
     EXPECT_GT(acdf_test::chi_square(observed, std::vector<double>(33 * 33, 1.0 / (33 * 33))).p_value, 0.001);
 }
 
+TEST(FullCdf, LightBelowWhatFloatsHoldIsNeverDrawn) {
+    const Target faint = acdf_test::texel_target(
+        32, 16, [](std::uint32_t c, std::uint32_t r) { return c == 3 && r == 3 ? 1.4e-45 : 0.0; });
+    EXPECT_EQ(FullCdf(faint).pdf(3, 3), 0.0);
+    EXPECT_EQ(acdf::measure::full_cdf_relative_variance(faint), INFINITY);
+}
+
 TEST(FullCdf, SizeIsEightBytesATexel) {
     const Target t = acdf_test::noise_target(512, 256, 1);
     EXPECT_NEAR(static_cast<double>(FullCdf(t).bytes()) / (512 * 256), 8.0, 0.05);
