@@ -1,7 +1,6 @@
 """SPEC.md §6, §6.1 to §6.4: numbers, the sphere, and environments."""
+import ctypes
 import math
-
-import numpy as np
 
 from .tree import fraction_drawn, slope
 
@@ -11,8 +10,7 @@ NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 
 def f32(v):
-    with np.errstate(over="ignore"):  # beyond them all: infinite
-        return float(np.float32(v))
+    return ctypes.c_float(v).value  # beyond them all: infinite
 
 
 def pdf32(v):
