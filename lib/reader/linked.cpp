@@ -4,6 +4,7 @@
 
 #include <acdf/wavefront.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -28,19 +29,11 @@ void put(const DirectionSample& sample, std::size_t i, float* directions, float*
     pdfs[i] = sample.pdf;
 }
 
-// Calls serve(j, i) for each of `count` items i, of the place j that serves it; place(j) before its first one.
-template <class Place, class Serve>
-void for_each_item(std::size_t count, std::size_t each, Place&& place, Serve&& serve) {
-    for (std::size_t i = 0, j = 0; i < count; ++j) {
-        place(j);
-        const std::size_t end = each < count - i ? i + each : count;
-        for (; i < end; ++i) serve(j, i);
-    }
-}
+// Calls serve(j, i) for each of `count` items i, of the place j that serves it.
 template <class Serve>
 void for_each_item(std::size_t count, std::size_t each, Serve&& serve) {
-    for_each_item(
-        count, each, [](std::size_t) {}, serve);
+    for (std::size_t i = 0, j = 0; i < count; ++j)
+        for (const std::size_t end = each < count - i ? i + each : count; i < end; ++i) serve(j, i);
 }
 
 // Draws `count` directions by draw(first, n, drawn), some of them at once.
@@ -119,12 +112,15 @@ int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t eac
         });
         return 1;
     }
-    AcdfLocalPoint point; // looked up once, it serves several
-    for_each_item(
-        count, each, [&](size_t j) { acdf_local_at(&file->local, normals + 3 * j, &point); },
-        [&](size_t, size_t i) {
-            put(acdf_local_sample_at(&file->local, &point, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
-        });
+    const acdf::LocalEnvironmentView view = file->file.local();
+    const acdf::LocalWavefront wavefront(view);
+    for (size_t j = 0, first = 0; first < count; first += each, ++j) { // a point, looked up once, serves several
+        const AcdfLocalPoint point = view.at(normals + 3 * j);
+        draw_in_waves(std::min(each, count - first), directions + 3 * first, pdfs + first,
+                      [&](size_t from, size_t n, DirectionSample* drawn) {
+                          wavefront.sample(point, pairs_at(u, first + from), n, drawn);
+                      });
+    }
     return 1;
 }
 
@@ -136,10 +132,11 @@ int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t 
             .pdf(vectors_at(normals, 0), vectors_at(directions, 0), count, pdfs);
         return 1;
     }
-    AcdfLocalPoint point;
-    for_each_item(
-        count, each, [&](size_t j) { acdf_local_at(&file->local, normals + 3 * j, &point); },
-        [&](size_t, size_t i) { pdfs[i] = acdf_local_pdf_at(&file->local, &point, directions + 3 * i); });
+    const acdf::LocalEnvironmentView view = file->file.local();
+    const acdf::LocalWavefront wavefront(view);
+    for (size_t j = 0, first = 0; first < count; first += each, ++j)
+        wavefront.pdf(view.at(normals + 3 * j), vectors_at(directions, first), std::min(each, count - first),
+                      pdfs + first);
     return 1;
 }
 

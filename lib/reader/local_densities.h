@@ -134,13 +134,14 @@ __attribute__((noinline)) double light_probability(const AcdfLocal& local, const
 
 /* acdf_local_found_tile and acdf_local_tile_probability of all cells. */
 ACDF_LANE void weigh_tiles(const AcdfLocal& local, const Seen& seen, Cells* cells) {
+    alignas(64) double given[kRoom];
     for (std::size_t i = 0; i < cells->count; ++i)
-        cells->product[i] = share_of(*local.tables, seen, i, (std::uint32_t)cells->tile[i]);
+        given[i] = share_of(*local.tables, seen, i, (std::uint32_t)cells->tile[i]);
     for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH) {
-        const Vector mixture = loaded(&seen.mixture[at]), given = loaded(&cells->product[at]);
-        stored(&cells->probability[at], positive(mixture / loaded(&seen.sum[at]) * positive(given / mixture)));
+        const Vector mixture = loaded(&seen.mixture[at]), share = loaded(&given[at]);
+        stored(&cells->probability[at], positive(mixture / loaded(&seen.sum[at]) * positive(share / mixture)));
         const std::size_t more = std::min<std::size_t>(cells->count - at, ACDF_WIDTH);
-        unsigned none = ~lanes(less(all(0.0), given)) & ((1u << more) - 1u);
+        unsigned none = ~lanes(less(all(0.0), share)) & ((1u << more) - 1u);
         for (; none; none &= none - 1) {
             const std::size_t i = at + acdf_lowest_bit(none);
             cells->probability[i] = light_probability(local, seen, i, (std::uint32_t)cells->tile[i]);
@@ -149,20 +150,20 @@ ACDF_LANE void weigh_tiles(const AcdfLocal& local, const Seen& seen, Cells* cell
 }
 
 /* acdf_local_cell_pdf of kLanes cells. */
-ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, std::size_t first) {
+ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t first) {
     Vector out[2];
     for (std::size_t half = 0; half < 2; ++half) {
         const std::size_t at = first + ACDF_WIDTH * half;
-        const Integer low = loaded(&cells.low[1][at]), high = loaded(&cells.high[1][at]);
-        const Vector width = converted(loaded(&cells.high[0][at])) - converted(loaded(&cells.low[0][at]));
-        const Vector given = loaded(&cells.probability[at]), product = loaded(&cells.product[at]);
-        const Mask some = both(less(all(0.0), given), less(all(0.0), product));
+        const Integer low = loaded(&done.low[1][at]), high = loaded(&done.high[1][at]);
+        const Vector width = converted(loaded(&done.high[0][at])) - converted(loaded(&done.low[0][at]));
+        const Vector given = (Vector)loaded_from(cells.probability, loaded(&done.number[at]));
+        const Mask some = both(less(all(0.0), given), less(all(0.0), loaded(&done.product[at])));
         const double* const z = acdf_local_heights(local.tables);
         const Vector area = local.tables->octahedral
                                 ? fold_area(width, converted(high) - converted(low), local.environment.rows)
                                 : row_area(width, (Vector)loaded_from(z, low), (Vector)loaded_from(z, high));
         out[half] =
-            choose(some, area_pdf(positive(given * positive(product)), local.environment.columns, area), all(0.0));
+            choose(some, area_pdf(probabilities(cells, done, at), local.environment.columns, area), all(0.0));
     }
     return to_floats((Doubles)out[0], (Doubles)out[1]);
 }
@@ -175,6 +176,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
                              std::size_t count, float* out) {
     Seen seen;
     Cells cells;
+    Boxes live, done;
     Points room;
     std::uint64_t lost = 0;
     cells.count = count;
@@ -193,15 +195,18 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
         for (std::size_t half = 0; half < kLanes; half += ACDF_WIDTH)
             find_tiles(*local.tables, &cells, first + half);
     }
-    enter_tiles(local, &cells);
+    enter_tiles<true>(local, cells, &live, &done);
     weigh_tiles(local, seen, &cells);
-    follow_all<true>(local.blend.tree, local.environment.tree_units, &cells);
+    find_cells<true>(local, &live, &done);
     for (std::size_t first = 0; first < count; first += kLanes) {
         alignas(64) float told[kLanes];
-        *(Floats*)told = cell_densities(local, cells, first);
-        std::memcpy(out + first, told, std::min(count - first, kLanes) * sizeof *out);
+        *(Floats*)told = cell_densities(local, cells, done, first);
+        for (std::size_t i = 0; i < kLanes && first + i < count; ++i) {
+            const auto lane = (std::size_t)done.number[first + i];
+            out[lane] = told[i];
+            lost |= (std::uint64_t)done.lost[first + i] << lane;
+        }
     }
-    for (std::size_t i = 0; i < count; ++i) lost |= (std::uint64_t)cells.lost[i] << i;
     for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
 }
 

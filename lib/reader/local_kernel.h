@@ -63,6 +63,8 @@ ACDF_LANE void begin_walks(const Points& p, const Vector u[2], unsigned mask, In
     store_packed(&walks->sum[at], p.sum, mask);
     store_packed(&walks->lane[at], lane, mask);
     walks->count += (std::size_t)__builtin_popcount(mask);
+    for (std::size_t i = at; i < walks->count; ++i)
+        for (int k = 0; k < kRows; ++k) ACDF_PREFETCH((const std::uint8_t*)walks->row[k][i]);
 }
 
 // ---- splits ----------------------------------------------------------------------------------------------------
@@ -76,11 +78,11 @@ ACDF_LANE bool step(const double* codes, const AcdfSplit* splits, Walks* w, std:
     const Mask ended = has(node, ACDF_TILE_FLAG), axis1 = has(split, 1);
     Vector code[kRows][2], half[2], weight[kRows];
     for (int i = 0; i < kRows; ++i) {
-        alignas(64) long long byte[ACDF_WIDTH];
+        const std::uint8_t* byte[ACDF_WIDTH];
         const double* from[ACDF_WIDTH];
-        stored(byte,
-               choose(ended, Integer{} + (long long)(std::uintptr_t)&kAllLower, loaded(&w->row[i][at]) + place));
-        for (int k = 0; k < ACDF_WIDTH; ++k) from[k] = codes + 2 * std::size_t{*(const std::uint8_t*)byte[k]};
+        pointers_of(
+            choose(ended, Integer{} + (long long)(std::uintptr_t)&kAllLower, loaded(&w->row[i][at]) + place), byte);
+        for (int k = 0; k < ACDF_WIDTH; ++k) from[k] = codes + 2 * std::size_t{*byte[k]};
         gather_pairs(from, code[i]);
         weight[i] = loaded(&w->weight[i][at]);
     }
@@ -150,15 +152,6 @@ ACDF_LANE void end_walks(const Walks& w, Cells* cells) {
     cells->count += w.count;
 }
 
-/* Draws in tiles: acdf_local_draw_inside. */
-ACDF_LANE void draw_inside(const AcdfLocal& local, Cells* cells) {
-    enter_tiles(local, cells);
-    follow_all<false>(local.blend.tree, local.environment.tree_units, cells);
-    for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH)
-        stored(&cells->probability[at],
-               positive(loaded(&cells->probability[at]) * positive(loaded(&cells->product[at]))));
-}
-
 // ---- directions ------------------------------------------------------------------------------------------------
 
 /// Halves of kLanes cells, and what is to be drawn of them.
@@ -169,15 +162,16 @@ struct Drawn {
 };
 
 /* acdf_row_place of half of some lanes, in doubles. */
-ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, std::size_t at, int half, Drawn* out) {
+ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t at, int half,
+                         Drawn* out) {
     const double columns = local.environment.columns, border = columns * (ACDF_FLOAT_BORDER / (2.0 * ACDF_PI));
     const double* const z = acdf_local_heights(local.tables);
-    const Vector low = converted(loaded(&cells.low[0][at])), high = converted(loaded(&cells.high[0][at])),
+    const Vector low = converted(loaded(&done.low[0][at])), high = converted(loaded(&done.high[0][at])),
                  width = high - low;
-    const Vector west = loaded(&cells.u[0][at]) * width, x = low + west;
-    const Vector z0 = (Vector)loaded_from(z, loaded(&cells.low[1][at])),
-                 z1 = (Vector)loaded_from(z, loaded(&cells.high[1][at]));
-    const Vector height = z0 + loaded(&cells.u[1][at]) * (z1 - z0), cap = 1.0 - absolute(height);
+    const Vector west = loaded(&done.u[0][at]) * width, x = low + west;
+    const Vector z0 = (Vector)loaded_from(z, loaded(&done.low[1][at])),
+                 z1 = (Vector)loaded_from(z, loaded(&done.high[1][at]));
+    const Vector height = z0 + loaded(&done.u[1][at]) * (z1 - z0), cap = 1.0 - absolute(height);
     const Vector from_north = z0 - height, from_south = height - z1;
     const Vector nearest = select(from_north < from_south, from_north, from_south);
     const Vector turn = 1.0 - x * (2.0 / columns), quarter = whole_part(2.0 * turn + 4.5) - 4.0;
@@ -188,38 +182,40 @@ ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, std::size_t
     out->cap[half] = cap;
     out->quarter[half] = (Longs)truncated(quarter + 4.0) & 3u;
     out->south[half] = (Longs)(height < 0.0) & 1u;
-    out->pdf[half] = area_pdf(loaded(&cells.probability[at]), columns, row_area(width, z0, z1));
+    out->pdf[half] = area_pdf(probabilities(cells, done, at), columns, row_area(width, z0, z1));
 }
 
 /* acdf_fold_place: the angle is the place across the square, the cap that along it. */
-ACDF_LANE void fold_place(const AcdfLocal& local, const Cells& cells, std::size_t at, int half, Drawn* out) {
+ACDF_LANE void fold_place(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t at, int half,
+                          Drawn* out) {
     const double steps[2] = {(double)local.environment.columns, (double)local.environment.rows};
     Vector width[2], place[2];
     out->refused[half] = Integer{};
     for (int axis = 0; axis < 2; ++axis) {
-        const Vector low = converted(loaded(&cells.low[axis][at]));
+        const Vector low = converted(loaded(&done.low[axis][at]));
         const double border = steps[axis] * ACDF_FOLD_BORDER;
-        width[axis] = converted(loaded(&cells.high[axis][at])) - low;
-        const Vector from = loaded(&cells.u[axis][at]) * width[axis];
+        width[axis] = converted(loaded(&done.high[axis][at])) - low;
+        const Vector from = loaded(&done.u[axis][at]) * width[axis];
         out->refused[half] |= (from < border) | (width[axis] - from < border);
         place[axis] = 2.0 * (low + from) / steps[axis];
     }
     out->angle[half] = 1.0 - place[0];
     out->cap[half] = place[1] - 1.0;
-    out->pdf[half] = area_pdf(loaded(&cells.probability[at]), steps[0], fold_area(width[0], width[1], steps[1]));
+    out->pdf[half] = area_pdf(probabilities(cells, done, at), steps[0], fold_area(width[0], width[1], steps[1]));
 }
 
 /* acdf_local_place of all cells. Returns the lanes that are not answered. */
-ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, AcdfDirectionSample* out) {
+ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, const Boxes& done,
+                                    AcdfDirectionSample* out) {
     std::uint64_t lost = 0;
-    for (std::size_t first = 0; first < cells.count; first += kLanes) {
+    for (std::size_t first = 0; first < done.count; first += kLanes) {
         Drawn d;
         Floats direction[3];
         AcdfDirectionSample drawn[kLanes];
         for (int half = 0; half < 2; ++half) {
             const std::size_t at = first + ACDF_WIDTH * (std::size_t)half;
-            if (local.tables->octahedral) fold_place(local, cells, at, half, &d);
-            else row_place(local, cells, at, half, &d);
+            if (local.tables->octahedral) fold_place(local, cells, done, at, half, &d);
+            else row_place(local, cells, done, at, half, &d);
         }
         const Floats angle = to_floats((Doubles)d.angle[0], (Doubles)d.angle[1]);
         const Floats cap = to_floats((Doubles)d.cap[0], (Doubles)d.cap[1]);
@@ -229,10 +225,10 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
                             direction);
         store_samples(direction, to_floats((Doubles)d.pdf[0], (Doubles)d.pdf[1]), drawn);
         const std::uint32_t refused = bits(d.refused[0]) | bits(d.refused[1]) << ACDF_WIDTH;
-        for (std::size_t i = 0; i < kLanes && first + i < cells.count; ++i) {
-            const std::size_t lane = (std::size_t)cells.lane[first + i];
+        for (std::size_t i = 0; i < kLanes && first + i < done.count; ++i) {
+            const std::size_t lane = (std::size_t)cells.lane[done.number[first + i]];
             out[lane] = drawn[i];
-            lost |= (std::uint64_t)((refused >> i & 1u) | (std::uint32_t)cells.lost[first + i]) << lane;
+            lost |= (std::uint64_t)((refused >> i & 1u) | (std::uint32_t)done.lost[first + i]) << lane;
         }
     }
     return lost;
@@ -247,6 +243,7 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const At& at, const Alone& alo
                           std::size_t count, AcdfDirectionSample* out) {
     Walks walks;
     Cells cells;
+    Boxes live, done;
     Points room;
     std::uint64_t lost = 0;
     walks.count = cells.count = 0;
@@ -268,8 +265,9 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const At& at, const Alone& alo
     for (std::size_t i = 0; i < cells.count; ++i) cells.tile[i] = local.lights[cells.tile[i]].tile;
     walk(*local.tables, &walks);
     end_walks(walks, &cells);
-    draw_inside(local, &cells);
-    lost |= place_cells(local, cells, out);
+    enter_tiles<false>(local, cells, &live, &done);
+    find_cells<false>(local, &live, &done);
+    lost |= place_cells(local, cells, done, out);
     for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
 }
 

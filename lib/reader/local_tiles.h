@@ -7,22 +7,48 @@
 
 namespace {
 
-/* Enters the tiles, whose curves are asked for. */
-ACDF_LANE void enter_tiles(const AcdfLocal& local, Cells* cells) {
-    for (std::size_t i = 0; i < cells->count; ++i) {
-        const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells->tile[i]);
-        for (int axis = 0; axis < 2; ++axis) {
-            cells->low[axis][i] = tile->low[axis];
-            cells->high[axis][i] = tile->high[axis];
-        }
+/// Lanes in tiles.
+struct Cells {
+    std::size_t count;
+    alignas(64) double u[2][kRoom], probability[kRoom]; // of the tile
+    alignas(64) long long square[2][kRoom], lane[kRoom], tile[kRoom];
+};
+
+/* Enters the tiles, whose curves are asked for: those that are cells are done. */
+template <bool Finds>
+ACDF_LANE void enter_tiles(const AcdfLocal& local, const Cells& cells, Boxes* live, Boxes* done) {
+    live->count = done->count = 0;
+    for (std::size_t i = 0; i < cells.count; ++i) {
+        const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]);
+        Boxes* const to = tile->root == ACDF_NO_ROOT ? done : live;
+        const std::size_t at = to->count++;
         acdf_local_ahead(&local, tile);
-        cells->curve[i] = tile->root == ACDF_NO_ROOT ? -1 : (long long)tile->root;
-        cells->lost[i] = false;
+        for (int axis = 0; axis < 2; ++axis) {
+            if (Finds) to->square[axis][at] = cells.square[axis][i];
+            else to->u[axis][at] = cells.u[axis][i];
+            to->low[axis][at] = tile->low[axis];
+            to->high[axis][at] = tile->high[axis];
+        }
+        to->product[at] = 1.0;
+        to->curve[at] = tile->root;
+        to->number[at] = (long long)i;
     }
-    for (std::size_t i = cells->count; i % kLanes > 0; ++i) { /* these are placed, too */
-        for (int axis = 0; axis < 2; ++axis) cells->low[axis][i] = cells->high[axis][i] = 0;
-        cells->curve[i] = -1;
+}
+
+/* Follows the curves of all tiles. What stands behind the last cell is one of the file, too. */
+template <bool Finds>
+ACDF_LANE void find_cells(const AcdfLocal& local, Boxes* live, Boxes* done) {
+    follow_all<Finds>(local.blend.tree, local.environment.tree_units, live, done);
+    for (std::size_t i = done->count; i % kLanes > 0; ++i) {
+        done->number[i] = 0;
+        for (int axis = 0; axis < 2; ++axis) done->low[axis][i] = done->high[axis][i] = 0;
     }
+}
+
+/* Their probabilities, by those of the tiles, which are above 0, as are the products. */
+ACDF_LANE Vector probabilities(const Cells& cells, const Boxes& done, std::size_t at) {
+    return positive((Vector)loaded_from(cells.probability, loaded(&done.number[at])) *
+                    positive(loaded(&done.product[at])));
 }
 
 /* acdf_area_pdf of doubles that are floats already. */

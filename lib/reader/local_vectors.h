@@ -93,10 +93,27 @@ ACDF_LANE Integer loaded_from(const T* array, Integer index) {
     return loaded_at(index * 8 + (long long)(std::uintptr_t)array);
 }
 
-ACDF_LANE Integer two_bytes_at(Integer address) {
-    alignas(64) long long at[ACDF_WIDTH], value[ACDF_WIDTH];
+/* Addresses one by one: of eight lanes it takes least to store them. */
+template <class T>
+ACDF_LANE void pointers_of(Integer address, const T* out[ACDF_WIDTH]) {
+#if ACDF_WIDTH == 8
+    alignas(64) long long at[ACDF_WIDTH];
     stored(at, address);
-    for (int i = 0; i < ACDF_WIDTH; ++i) value[i] = *(const std::uint16_t*)at[i];
+    for (int i = 0; i < ACDF_WIDTH; ++i) out[i] = (const T*)at[i];
+#else
+    const __m128i half[2] = {_mm256_castsi256_si128((__m256i)address),
+                             _mm256_extracti128_si256((__m256i)address, 1)};
+    for (int i = 0; i < 2; ++i) {
+        out[2 * i] = (const T*)_mm_cvtsi128_si64(half[i]);
+        out[2 * i + 1] = (const T*)_mm_extract_epi64(half[i], 1);
+    }
+#endif
+}
+ACDF_LANE Integer two_bytes_at(Integer address) {
+    const std::uint16_t* at[ACDF_WIDTH];
+    alignas(64) long long value[ACDF_WIDTH];
+    pointers_of(address, at);
+    for (int i = 0; i < ACDF_WIDTH; ++i) value[i] = *at[i];
     return loaded(value);
 }
 

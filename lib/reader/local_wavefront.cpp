@@ -12,7 +12,8 @@ namespace {
 using u32 = std::uint32_t;
 
 constexpr std::size_t kBlock = 16, kSideBySide = 4;
-constexpr int kRows = 3; // of nearly all normals: those on edges of triangles have fewer
+constexpr std::size_t kFewest = 6; // fewer wait for each other as long as single calls do
+constexpr int kRows = 3;           // of nearly all normals: those on edges of triangles have fewer
 
 /// Where a draw or a density is, of those that are side by side.
 struct Lane {
@@ -88,7 +89,7 @@ LocalWavefront::LocalWavefront(const LocalEnvironmentView& view, Instructions mo
 void LocalWavefront::sample(const AcdfLocalPoint& point, const double (*u)[2], std::size_t count,
                             DirectionSample* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ != Instructions::none && serves_waves(point)) {
+    if (instructions_ != Instructions::none && count >= kFewest && serves_waves(point)) {
         if (instructions_ == Instructions::avx512) return local_sample_avx512(local_, point, u, count, out);
         return local_sample_avx2(local_, point, u, count, out);
     }
@@ -130,7 +131,7 @@ void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std
 void LocalWavefront::pdf(const AcdfLocalPoint& point, const float (*directions)[3], std::size_t count,
                          float* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ != Instructions::none && !local_.tables->pieces && serves_waves(point)) {
+    if (instructions_ != Instructions::none && count >= kFewest && !local_.tables->pieces && serves_waves(point)) {
         if (instructions_ == Instructions::avx512) return local_pdf_avx512(local_, point, directions, count, out);
         return local_pdf_avx2(local_, point, directions, count, out);
     }

@@ -2,7 +2,7 @@
 // many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
-//   bench_local --count point|draw|pdf FILE N [walk]     N calls and nothing else, for callgrind
+//   bench_local --count point|draw|pdf FILE N [walk|waves]     N calls and nothing else, for callgrind; waves: AVX2
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
@@ -61,14 +61,16 @@ struct Compared {
     const acdf_bench::FullTable& full;
     const LocalEnvironmentView &plain, &fast;
     const Questions& q;
+    LocalWavefront waves[3] = {LocalWavefront(fast, Instructions::none), LocalWavefront(fast, Instructions::avx2),
+                               LocalWavefront(fast, Instructions::avx512)};
 };
 
 /// Calls of a wave from one on, into memory of its own.
-using Wave = std::function<void(std::size_t first, std::size_t count)>;
+using Wave = std::function<void(const LocalWavefront& wavefront, std::size_t first, std::size_t count)>;
 
 template <class Ask, class Full>
 void report(const char* what, const Compared& all, std::size_t shared, const Ask& ask, const Full& full,
-            const Wave& wave = nullptr) {
+            const Wave& wave) {
     std::vector<Candidate> rows = {{"",
                                     [&](std::size_t first, std::size_t count) {
                                         for (std::size_t i = first; i < first + count; ++i) full(i);
@@ -76,15 +78,16 @@ void report(const char* what, const Compared& all, std::size_t shared, const Ask
                                    each(all.plain, all.q, shared, ask),
                                    each(all.fast, all.q, shared, ask)};
     if (wave)
-        rows.push_back({"", [&](std::size_t first, std::size_t count) {
-                            for (std::size_t i = 0; i < count; i += kWave)
-                                wave(first + i, std::min(kWave, count - i));
-                        }});
+        for (const LocalWavefront& wavefront : all.waves)
+            rows.push_back({"", [&](std::size_t first, std::size_t count) {
+                                for (std::size_t i = 0; i < count; i += kWave)
+                                    wave(wavefront, first + i, std::min(kWave, count - i));
+                            }});
     acdf_bench::take_turns(rows, {});
     std::printf("| %s | %.1f |", what, rows[0].least);
     for (std::size_t i = 1; i < rows.size(); ++i)
         std::printf(" %.1f (%.2f) |", rows[i].least, rows[i].least / rows[0].least);
-    std::puts(wave ? "" : " |");
+    std::puts(wave ? "" : " | | |");
     std::fflush(stdout);
 }
 
@@ -105,7 +108,8 @@ bool run(const char* path) {
     const Questions q(plain);
     std::printf(
         "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
-        "table's) | full table | walked | with tables | many at once |\n|---|---|---|---|---|\n",
+        "table's) | full table | walked | with tables | many, no vectors | many, AVX2 | many, AVX-512 "
+        "|\n|---|---|---|---|---|---|---|\n",
         static_cast<unsigned long long>(tables.size()), latlong ? "" : ", octahedral",
         static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
     const Compared all = {full, plain, fast, q};
@@ -122,36 +126,62 @@ bool run(const char* path) {
     const auto full_draw = [&](std::size_t i) { keep(full.sample(q.u[i][0], q.u[i][1])); };
     const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
     const auto full_drawn = [&](std::size_t i) { keep(full.pdf(q.drawn[i].data())); };
-    const LocalWavefront wavefront(fast);
     std::vector<DirectionSample> samples(kWave);
     std::vector<float> densities(kWave);
     const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals.data());
-    const Wave draws = [&](std::size_t first, std::size_t n) {
-        wavefront.sample(normals + first, reinterpret_cast<const double(*)[2]>(q.wide.data()) + first, n,
-                         samples.data());
+    const auto* u = reinterpret_cast<const double(*)[2]>(q.wide.data());
+    const auto* directions_drawn = reinterpret_cast<const float(*)[3]>(q.drawn.data());
+    const Wave draws = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+        wavefront.sample(normals + first, u + first, n, samples.data());
+    };
+    const Wave shared_draws = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+        for (std::size_t i = first; i < first + n; i += kShared)
+            wavefront.sample(fast.at(normals[i]), u + i, kShared, &samples[i - first]);
+    };
+    const Wave shared_densities = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+        for (std::size_t i = first; i < first + n; i += kShared)
+            wavefront.pdf(fast.at(normals[i]), directions_drawn + i, kShared, &densities[i - first]);
     };
     const auto of = [&](const Directions& directions) -> Wave {
-        return [&](std::size_t first, std::size_t n) {
+        return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
             wavefront.pdf(normals + first, reinterpret_cast<const float(*)[3]>(directions.data()) + first, n,
                           densities.data());
         };
     };
-    report("shading point (full table: a draw)", all, 1, nothing, full_draw);
+    report("shading point (full table: a draw)", all, 1, nothing, full_draw, nullptr);
     report("shading point and draw", all, 1, draw, full_draw, draws);
-    report("one of 16 draws at a point", all, kShared, draw, full_draw);
+    report("one of 16 draws at a point", all, kShared, draw, full_draw, shared_draws);
     report("shading point and density of a uniform direction", all, 1, anywhere, full_anywhere, of(q.anywhere));
     report("shading point and density of a drawn direction", all, 1, drawn, full_drawn, of(q.drawn));
-    report("one of 16 densities at a point", all, kShared, drawn, full_drawn);
+    report("one of 16 densities at a point", all, kShared, drawn, full_drawn, shared_densities);
     return true;
 }
 
-bool count(char** arguments, bool walk) {
+/// N calls many at once; 'r': draws, else densities.
+void count_waves(const LocalWavefront& wavefront, const Questions& q, char what, std::size_t calls) {
+    std::vector<DirectionSample> samples(kWave);
+    std::vector<float> densities(kWave);
+    for (std::size_t first = 0; first < calls; first += kWave) {
+        const std::size_t k = first % kCalls, n = std::min(kWave, calls - first);
+        const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals[k].data());
+        if (what == 'r')
+            wavefront.sample(normals, reinterpret_cast<const double(*)[2]>(q.wide[k].data()), n, samples.data());
+        else wavefront.pdf(normals, reinterpret_cast<const float(*)[3]>(q.anywhere[k].data()), n, densities.data());
+    }
+}
+
+bool count(char** arguments, const char* how) {
     File file;
-    if (!open(arguments[1], !walk, file)) return false;
+    if (!open(arguments[1], std::strcmp(how, "walk") != 0, file)) return false;
     const LocalEnvironmentView view = file.local();
     const Questions q(view);
     const char what = arguments[0][1]; // point, draw, pdf
-    for (std::size_t i = 0, calls = std::strtoull(arguments[2], nullptr, 10); i < calls; ++i) {
+    const std::size_t calls = std::strtoull(arguments[2], nullptr, 10);
+    if (std::strcmp(how, "waves") == 0) {
+        count_waves(LocalWavefront(view, Instructions::avx2), q, what, calls);
+        return true;
+    }
+    for (std::size_t i = 0; i < calls; ++i) {
         const std::size_t k = i % kCalls;
         const AcdfLocalPoint point = view.at(q.normals[k].data());
         if (what == 'o') keep(point);
@@ -164,7 +194,7 @@ bool count(char** arguments, bool walk) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc >= 5 && std::strcmp(argv[1], "--count") == 0) return count(argv + 2, argc > 5) ? 0 : 1;
+    if (argc >= 5 && std::strcmp(argv[1], "--count") == 0) return count(argv + 2, argc > 5 ? argv[5] : "") ? 0 : 1;
     for (int i = 1; i < argc; ++i)
         if (!run(argv[i])) {
             std::fprintf(stderr, "%s: no local environment file\n", argv[i]);

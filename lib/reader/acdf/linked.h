@@ -39,7 +39,8 @@ int acdf_invert_environment_array(const AcdfFile* file, const float* directions,
 /* Density 0, and the direction unset, where the normal is zero or NaN or nothing shines on it. */
 float acdf_draw_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]);
 float acdf_density_local(const AcdfFile* file, const float normal[3], const float direction[3]);
-/* Directions are 0 where their density is. */
+/* Directions are 0 where their density is. Arrays are served as those of environments are, by waves of normals
+ * where `each` is 1, and of draws at one shading point where it is more. */
 int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
                           float* directions, float* pdfs);
 int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,

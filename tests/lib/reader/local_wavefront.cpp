@@ -118,7 +118,7 @@ struct NoPieces {
 
 void expect_all(const acdf::File& file) {
     const acdf::LocalEnvironmentView view = file.local();
-    for (const std::size_t count : {0u, 1u, 5u, 64u, 700u}) expect_the_local_view(view, count);
+    for (const std::size_t count : {0u, 1u, 5u, 7u, 64u, 700u}) expect_the_local_view(view, count);
     if (!view.data().tables) return;
     const NoPieces large(view.data());
     expect_the_local_view(acdf::LocalEnvironmentView(large.local), 700);
