@@ -43,7 +43,7 @@ struct Growth {
 
     bool open(const Part& part) const {
         return part.split == Part::whole && divisible(part) &&
-               (part.excess() > finest || part.moments.weight() > heaviest);
+               (part.excess() > finest || part.moments.above(heaviest));
     }
 
     /// Divides a part; its children get their place later.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace acdf::compress {
@@ -40,6 +41,10 @@ struct Moments {
     double share(const Filling* filling) const;
     /// The largest f/p of the part as one cell, relative to its best density: peak over root mean square.
     double weight() const;
+    /// Whether that is above `heaviest`, infinity where it does not matter.
+    bool above(double heaviest) const {
+        return heaviest < std::numeric_limits<double>::infinity() && weight() > heaviest;
+    }
 };
 
 /// The moments of the slices of a box across one axis, by what they are.

@@ -14,7 +14,7 @@ PruneNodes prune_nodes(const std::vector<Part>& parts, double heaviest, const Fi
     out.reserve(parts.size());
     for (const Part& part : parts)
         out.push_back({part.moments.cost(), part.moments.share(filling), part.first_child,
-                       static_cast<std::uint16_t>(part.children), part.split, part.moments.weight() > heaviest});
+                       static_cast<std::uint16_t>(part.children), part.split, part.moments.above(heaviest)});
     return out;
 }
 
@@ -64,7 +64,7 @@ std::vector<bool> may_pay(const std::vector<Part>& parts, double price, double h
         if (part.split == Part::whole) continue;
         double divided = price * kKnotBytes * (part.children - 1);
         for (std::uint32_t k = part.first_child; k < part.first_child + part.children; ++k) divided += value[k];
-        const bool heavy = part.moments.weight() > heaviest;
+        const bool heavy = part.moments.above(heaviest);
         out[i] = heavy || divided < value[i] * (1.0 + rounding);
         value[i] = heavy ? divided : std::min(value[i], divided);
     }

@@ -105,17 +105,29 @@ double quantization_excess(const std::vector<double>& probability, const std::ve
     return excess;
 }
 
-Rounding rounding_to(const std::vector<double>& probability, std::uint32_t code) {
-    const std::vector<std::uint64_t> shares = apportion(probability, kMaximum[code], kSmallest[code]);
+namespace {
+
+Rounding rounding_of(const std::vector<double>& probability, const std::vector<std::uint64_t>& shares) {
     return {quantization_excess(probability, shares), worst_ratio(probability, shares)};
+}
+
+} // namespace
+
+Rounding rounding_to(const std::vector<double>& probability, std::uint32_t code) {
+    return rounding_of(probability, apportion(probability, kMaximum[code], kSmallest[code]));
 }
 
 QuantizedCurve quantize(const std::vector<double>& probability, double reach, double price, double most_ratio) {
     const auto lit = static_cast<std::uint64_t>(
         std::count_if(probability.begin(), probability.end(), [](double p) { return p > 0.0; }));
+    std::vector<std::uint64_t> shares[3]; // of the widths that were looked at
+    const auto shares_of = [&](std::uint32_t code) -> const std::vector<std::uint64_t>& {
+        if (shares[code].empty()) shares[code] = apportion(probability, kMaximum[code], kSmallest[code]);
+        return shares[code];
+    };
     const std::uint32_t code = best_width(probability.size() - 1, lit, reach, price, most_ratio,
-                                          [&](std::uint32_t c) { return rounding_to(probability, c); });
-    return accumulate(apportion(probability, kMaximum[code], kSmallest[code]), code);
+                                          [&](std::uint32_t c) { return rounding_of(probability, shares_of(c)); });
+    return accumulate(shares_of(code), code);
 }
 
 } // namespace acdf::compress
