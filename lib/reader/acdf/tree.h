@@ -147,28 +147,36 @@ ACDF_FN uint32_t acdf_curve_link(const AcdfCurve* curve, uint32_t i) {
 /* A product of 64 probabilities may underflow; what can be drawn keeps a positive one. */
 ACDF_FN double acdf_positive(double probability) { return probability > 0x1p-1000 ? probability : 0x1p-1000; }
 
+/* Draws a segment of a curve, as acdf_tree_sample does on its way. Returns the distance to its child, 0 where it
+ * ends. */
+ACDF_FN uint32_t acdf_curve_sample(const uint8_t* tree, uint32_t at, double* u, AcdfRange* range,
+                                   double* probability) {
+    const AcdfCurve curve = acdf_curve_at(tree, at);
+    const uint32_t axis = acdf_curve_axis(&curve);
+    const double maximum = (double)acdf_curve_maximum(&curve);
+    double scaled = u[axis] * maximum;
+    uint32_t i, low, width;
+    if (scaled >= maximum) scaled = maximum * (1.0 - 0x1p-53);
+    /* Segments of probability 0 are never entered: the bound lies above all equal values. */
+    i = acdf_upper_bound(curve.cumulative, curve.segments - 1, ACDF_CURVE_CUMULATIVE_CODE(curve.header),
+                         (uint32_t)scaled);
+    low = acdf_curve_cumulative(&curve, i);
+    width = acdf_curve_cumulative(&curve, i + 1) - low;
+    u[axis] = (scaled - (double)low) / (double)width;
+    *probability *= (double)width / maximum;
+    acdf_curve_narrow(&curve, i, &range[axis]);
+    return acdf_curve_link(&curve, i);
+}
+
 /* acdf_tree_sample from a curve on that is drawn with a probability. */
 ACDF_FN double acdf_tree_sample_on(const uint8_t* tree, uint32_t at, double* u, AcdfRange* range,
                                    double probability) {
-    for (;;) {
-        const AcdfCurve curve = acdf_curve_at(tree, at);
-        const uint32_t axis = acdf_curve_axis(&curve);
-        const double maximum = (double)acdf_curve_maximum(&curve);
-        double scaled = u[axis] * maximum;
-        uint32_t i, low, width, link;
-        if (scaled >= maximum) scaled = maximum * (1.0 - 0x1p-53);
-        /* Segments of probability 0 are never entered: the bound lies above all equal values. */
-        i = acdf_upper_bound(curve.cumulative, curve.segments - 1, ACDF_CURVE_CUMULATIVE_CODE(curve.header),
-                             (uint32_t)scaled);
-        low = acdf_curve_cumulative(&curve, i);
-        width = acdf_curve_cumulative(&curve, i + 1) - low;
-        u[axis] = (scaled - (double)low) / (double)width;
-        probability *= (double)width / maximum;
-        acdf_curve_narrow(&curve, i, &range[axis]);
-        link = acdf_curve_link(&curve, i);
-        if (link == 0) return acdf_positive(probability);
+    uint32_t link;
+    do {
+        link = acdf_curve_sample(tree, at, u, range, &probability);
         at += link;
-    }
+    } while (link != 0);
+    return acdf_positive(probability);
 }
 
 /* Draws a cell. In: u[axis] in [0, 1] and range[axis] = the whole axis with tilt 0, for each sampled axis.
@@ -178,28 +186,34 @@ ACDF_FN double acdf_tree_sample(const uint8_t* tree, uint32_t root, double* u, A
     return acdf_tree_sample_on(tree, root, u, range, 1.0);
 }
 
+/* Finds the segment that holds a grid square, as acdf_tree_find does on its way. Returns the distance to its child,
+ * 0 where it ends or has no probability. */
+ACDF_FN uint32_t acdf_curve_find(const uint8_t* tree, uint32_t at, const uint32_t* square, AcdfRange* range,
+                                 AcdfStratum* strata, double* probability) {
+    const AcdfCurve curve = acdf_curve_at(tree, at);
+    const uint32_t axis = acdf_curve_axis(&curve);
+    const double maximum = (double)acdf_curve_maximum(&curve);
+    const uint32_t i = acdf_curve_segment(&curve, square[axis], &range[axis]);
+    const uint32_t low = acdf_curve_cumulative(&curve, i);
+    const uint32_t width = acdf_curve_cumulative(&curve, i + 1) - low;
+    *probability = *probability > 0.0 && width > 0 ? acdf_positive(*probability * ((double)width / maximum)) : 0.0;
+    acdf_curve_narrow(&curve, i, &range[axis]);
+    if (strata) {
+        strata[axis].low += strata[axis].width * ((double)low / maximum);
+        strata[axis].width *= (double)width / maximum;
+    }
+    return width == 0 ? 0 : acdf_curve_link(&curve, i);
+}
+
 /* acdf_tree_find from a curve on that is found with a probability. */
 ACDF_FN double acdf_tree_find_on(const uint8_t* tree, uint32_t at, const uint32_t* square, AcdfRange* range,
                                  AcdfStratum* strata, double probability) {
-    for (;;) {
-        const AcdfCurve curve = acdf_curve_at(tree, at);
-        const uint32_t axis = acdf_curve_axis(&curve);
-        const double maximum = (double)acdf_curve_maximum(&curve);
-        const uint32_t i = acdf_curve_segment(&curve, square[axis], &range[axis]);
-        const uint32_t low = acdf_curve_cumulative(&curve, i);
-        const uint32_t width = acdf_curve_cumulative(&curve, i + 1) - low;
-        uint32_t link;
-        probability *= (double)width / maximum;
-        acdf_curve_narrow(&curve, i, &range[axis]);
-        if (strata) {
-            strata[axis].low += strata[axis].width * ((double)low / maximum);
-            strata[axis].width *= (double)width / maximum;
-        }
-        if (width == 0) return 0.0;
-        link = acdf_curve_link(&curve, i);
-        if (link == 0) return acdf_positive(probability);
+    uint32_t link;
+    do {
+        link = acdf_curve_find(tree, at, square, range, strata, &probability);
         at += link;
-    }
+    } while (link != 0);
+    return probability;
 }
 
 /* Finds the cell that holds the unit grid square at[axis], at[axis] in [0, resolution). `range` as in
