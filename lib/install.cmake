@@ -24,6 +24,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/company.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_wave.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_c.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_words.h

@@ -56,6 +56,12 @@ acdf::ProductSample sample(const AcdfLocal& light, const AnyLobe& lobe, const Ac
 }
 
 template <class AnyLobe>
+void samples(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* point, std::size_t count,
+             const double (*u)[2], AcdfDirectionSample* out) noexcept {
+    acdf::ProductSampler<AnyLobe>(light, lobe).sample(point_in<AnyLobe>(point), count, u, out);
+}
+
+template <class AnyLobe>
 float pdf(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* point,
           const float direction[3]) noexcept {
     return acdf::ProductSampler<AnyLobe>(light, lobe).pdf(point_in<AnyLobe>(point), direction);
@@ -71,6 +77,10 @@ AcdfDirectionSample acdf_product_sample(const AcdfLocal* light, const AcdfBrdf* 
                                         double u0, double u1) {
     return sample(*light, acdf::BrdfLobe(*brdf), point, u0, u1);
 }
+void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
+                          const double (*u)[2], AcdfDirectionSample* out) {
+    samples(*light, acdf::BrdfLobe(*brdf), point, count, u, out);
+}
 float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                        const float direction[3]) {
     return pdf(*light, acdf::BrdfLobe(*brdf), point, direction);
@@ -83,6 +93,10 @@ void acdf_product_lobe_at(const AcdfLocal* light, const AcdfLobe* lobe, int part
 AcdfDirectionSample acdf_product_lobe_sample(const AcdfLocal* light, const AcdfLobe* lobe,
                                              const AcdfProductPoint* point, double u0, double u1) {
     return sample(*light, CLobe(*lobe), point, u0, u1);
+}
+void acdf_product_lobe_samples(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
+                               size_t count, const double (*u)[2], AcdfDirectionSample* out) {
+    samples(*light, CLobe(*lobe), point, count, u, out);
 }
 float acdf_product_lobe_pdf(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
                             const float direction[3]) {

@@ -90,11 +90,30 @@ void add(const AcdfLocal& light, const AnyLobe& lobe, const std::string& name, c
                            for (const auto& u : all[i].u) sink = sampler.sample(points[i], u[0], u[1]).pdf;
                    },
                    double{kPoints * kDraws}});
+    out.push_back({name + ", `sample` of 16 at once, 64 parts",
+                   [=, &all] {
+                       ProductSample drawn[kDraws];
+                       for (std::size_t i = 0; i < kPoints; ++i) {
+                           sampler.sample(points[i], kDraws, all[i].u, drawn);
+                           for (const ProductSample& s : drawn) sink = s.pdf;
+                       }
+                   },
+                   double{kPoints * kDraws}});
     out.push_back({name + ", `at` of 64 parts and 16 samples there, a sample",
                    [=, &all] {
                        for (const Place& place : all) {
                            const auto point = sampler.at(place.frame, place.wo);
                            for (const auto& u : place.u) sink = sampler.sample(point, u[0], u[1]).pdf;
+                       }
+                   },
+                   double{kPoints * kDraws}});
+    out.push_back({name + ", `at` of 64 parts and 16 samples at once, a sample",
+                   [=, &all] {
+                       ProductSample drawn[kDraws];
+                       for (const Place& place : all) {
+                           const auto point = sampler.at(place.frame, place.wo);
+                           sampler.sample(point, kDraws, place.u, drawn);
+                           for (const ProductSample& s : drawn) sink = s.pdf;
                        }
                    },
                    double{kPoints * kDraws}});

@@ -71,6 +71,29 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     return acdf_brdf_density(brdf, p, range, &place, wi);
 }
 
+/* The same of wi[i] into out[i], i < count: they wait for memory together. */
+ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
+                                 float* out) {
+    enum { TOGETHER = 16 };
+    AcdfBrdfPlace place[TOGETHER];
+    uint32_t cell[TOGETHER];
+    int found[TOGETHER];
+    size_t first, i;
+    if (!brdf->tables || !brdf->tables->grid) {
+        for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_pdf(brdf, view, wi[i]);
+        return;
+    }
+    for (first = 0; first < count; first += TOGETHER) {
+        const size_t some = count - first < TOGETHER ? count - first : (size_t)TOGETHER;
+        for (i = 0; i < some; ++i) {
+            found[i] = acdf_brdf_pair_find(brdf, view, wi[first + i], &place[i], &cell[i]);
+            if (found[i]) ACDF_PREFETCH(acdf_brdf_parts(brdf->tables, cell[i], view->lower));
+        }
+        for (i = 0; i < some; ++i)
+            out[first + i] = found[i] ? acdf_brdf_pair_found(brdf, view, cell[i], &place[i]) : 0.0f;
+    }
+}
+
 /* Density per steradian with which acdf_brdf_sample draws wi for wo. 0 where none falls, for wo below the surface
  * and for directions that are NaN or not of unit length. */
 ACDF_FN float acdf_brdf_pdf(const AcdfBrdf* brdf, const float wo[3], const float wi[3]) {

@@ -18,19 +18,33 @@ ACDF_INLINE double acdf_brdf_pair_share(const AcdfBrdf* brdf, const AcdfBrdfView
     return (view->pair[0] * part[0] + view->pair[1] * part[1]) / (view->pair[0] + view->pair[1]);
 }
 
+/* Finds where wi lies, and its cell, of tables that have a grid. Returns 0 where none falls. */
+ACDF_INLINE int acdf_brdf_pair_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
+                                    AcdfBrdfPlace* place, uint32_t* cell) {
+    uint32_t square[2];
+    double sign;
+    if (!acdf_brdf_place(brdf, view, wi, place, &sign)) return 0;
+    square[0] = acdf_brdf_step(place->position[0], brdf->columns);
+    square[1] = acdf_brdf_step(place->position[1], brdf->rows);
+    *cell = acdf_brdf_find_cell(brdf->tables, square);
+    return 1;
+}
+
+/* The density there. */
+ACDF_INLINE float acdf_brdf_pair_found(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t cell,
+                                       const AcdfBrdfPlace* place) {
+    double p = acdf_brdf_pair_share(brdf, view, cell); /* NaN where no view weighs anything */
+    if (!(p > 0.0)) return 0.0f;
+    p = acdf_brdf_mean_density(brdf, acdf_positive(p), acdf_brdf_area(brdf->tables, cell), place);
+    return acdf_brdf_positive(p);
+}
+
 /* acdf_brdf_view_pdf, of tables that have a grid. */
 ACDF_INLINE float acdf_brdf_pair_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3]) {
     AcdfBrdfPlace place;
-    uint32_t square[2], cell;
-    double sign, p;
-    if (!acdf_brdf_place(brdf, view, wi, &place, &sign)) return 0.0f;
-    square[0] = acdf_brdf_step(place.position[0], brdf->columns);
-    square[1] = acdf_brdf_step(place.position[1], brdf->rows);
-    cell = acdf_brdf_find_cell(brdf->tables, square);
-    p = acdf_brdf_pair_share(brdf, view, cell); /* NaN where no view weighs anything */
-    if (!(p > 0.0)) return 0.0f;
-    p = acdf_brdf_mean_density(brdf, acdf_positive(p), acdf_brdf_area(brdf->tables, cell), &place);
-    return acdf_brdf_positive(p);
+    uint32_t cell;
+    return acdf_brdf_pair_find(brdf, view, wi, &place, &cell) ? acdf_brdf_pair_found(brdf, view, cell, &place)
+                                                              : 0.0f;
 }
 
 #ifdef ACDF_BRDF_GUESSES

@@ -35,7 +35,7 @@ typedef struct AcdfCutPart {
 typedef struct AcdfCutSplit {
     uint32_t place;   /* axis and position, as in AcdfSplit */
     int16_t child[2]; /* another split; or the complement of a part's number */
-    double lower;     /* the lower child's share of the two */
+    double border;    /* numbers of its axis from here on draw the upper child */
 } AcdfCutSplit;
 
 typedef struct AcdfCut {

@@ -8,6 +8,27 @@
 extern "C" {
 #endif
 
+/* Tells each split which random numbers its children share; share[~i] is that of part i, share[i] of split i. */
+ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
+    /* Of splits and parts, as shares are: low and high on axis 0, on axis 1. Each in an array of its own: what is
+     * stored in pieces and loaded as a whole would be waited for. */
+    double numbers[4][2 * ACDF_CUT_MAX_PARTS];
+    int i, k;
+    for (k = 0; k < 4; ++k) numbers[k][ACDF_CUT_MAX_PARTS] = (double)(k & 1);
+    for (i = 0; i < cut->count - 1; ++i) {
+        AcdfCutSplit* split = &cut->split[i];
+        const uint32_t axis = split->place & 1u;
+        const int at = ACDF_CUT_MAX_PARTS + i;
+        const int child[2] = {ACDF_CUT_MAX_PARTS + split->child[0], ACDF_CUT_MAX_PARTS + split->child[1]};
+        const double low = numbers[2 * axis][at], high = numbers[2 * axis + 1][at];
+        const double lower = share[split->child[0]], upper = share[split->child[1]];
+        const double border = low + (high - low) * (lower / (lower + upper));
+        split->border = upper > 0.0 && border < high ? border : high; /* numbers are below 1 */
+        for (k = 0; k < 4; ++k) numbers[k][child[0]] = numbers[k][child[1]] = numbers[k][at];
+        numbers[2 * axis + 1][child[0]] = numbers[2 * axis][child[1]] = split->border;
+    }
+}
+
 /* Makes the cut ready to be drawn from: to be called when all parts have their probabilities, which need not add up
  * to 1. Parts without light get none. Where nothing is left the cut is emptied. */
 ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
@@ -24,12 +45,9 @@ ACDF_FN void acdf_cut_finish(AcdfCut* cut) {
         return;
     }
     for (i = 0; i < cut->count; ++i) cut->part[i].probability = share[~i] /= sum;
-    for (i = cut->count - 2; i >= 0; --i) { /* a split's children stand behind it */
-        AcdfCutSplit* split = &cut->split[i];
-        const double lower = share[split->child[0]], whole = lower + share[split->child[1]];
-        share[i] = whole;
-        split->lower = whole > 0.0 ? lower / whole : 1.0;
-    }
+    for (i = cut->count - 2; i >= 0; --i) /* a split's children stand behind it */
+        share[i] = share[cut->split[i].child[0]] + share[cut->split[i].child[1]];
+    acdf_cut_borders(cut, share);
 }
 
 /* Number by number: of a mixture that is copied as a whole, and then given other weights, nvcc 13.0 sums the old
@@ -54,13 +72,22 @@ ACDF_FN void acdf_cut_range(const AcdfCutPart* part, AcdfRange range[2]) {
     }
 }
 
+/* What random numbers of a part's mixture are of all that it gives, which is returned. */
+ACDF_INLINE double acdf_cut_of_all(const AcdfMixture* mix, const double* u, double from[2]) {
+    const double whole = acdf_mixture_sum(mix);
+    from[0] = u[0] * whole;
+    from[1] = u[1] * whole;
+    return whole;
+}
+
 /* Draws a tile of a part from its mixture; *inside becomes its share of that. */
 ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutPart* part,
                                       const AcdfMixture* mix, double* u, AcdfRange* range, double* inside) {
     if (acdf_local_tabled(local, point)) {
         const uint32_t* words = acdf_local_words(local->tables);
         const AcdfTileTables* tables = &local->tables->tiles;
-        const double whole = acdf_mixture_sum(mix), from[2] = {u[0] * whole, u[1] * whole};
+        double from[2];
+        const double whole = acdf_cut_of_all(mix, u, from);
         const uint32_t tile = acdf_tile_draw(words, tables, mix, point->codes, part->entry, from, u, inside);
         acdf_tile_range(acdf_tile_record(words, tables, tile), range);
         *inside = acdf_positive(*inside / whole);
@@ -87,98 +114,161 @@ ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint
     return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
-/* Draws a part: u becomes what is left of the random numbers. They are kept as what they are of the probability of
- * the box so far, as in acdf_blend_sample_rows: nothing is divided on the way. */
+/* The random numbers that draw a part, or one of those below a split: from low to high of axis 0, of axis 1. */
+typedef struct AcdfCutNumbers {
+    double bound[2][2];
+} AcdfCutNumbers;
+
+ACDF_INLINE AcdfCutNumbers acdf_cut_all_numbers(void) {
+    const AcdfCutNumbers all = {{{0.0, 1.0}, {0.0, 1.0}}};
+    return all;
+}
+
+/* One step towards the part that numbers draw; returns the child. No branch depends on the numbers. */
+ACDF_INLINE int acdf_cut_step(const AcdfCut* cut, int child, const double u[2], AcdfCutNumbers* numbers) {
+    const AcdfCutSplit* split = &cut->split[child];
+    const uint32_t axis = split->place & 1u, upper = (uint32_t)(u[axis] >= split->border);
+    numbers->bound[axis][upper ^ 1u] = split->border;
+    return split->child[upper];
+}
+
+/* A number in [0, 1) of what is given. */
+ACDF_INLINE double acdf_cut_number(double u) {
+    const double most = 1.0 - 0x1p-53, x = acdf_unit_interval(u);
+    return x < most ? x : most;
+}
+
+/* What numbers are of those that draw the same part. */
+ACDF_INLINE void acdf_cut_numbers_left(const AcdfCutNumbers* numbers, double u[2]) {
+    int i;
+    for (i = 0; i < 2; ++i) {
+        const double width = numbers->bound[i][1] - numbers->bound[i][0], x = u[i] - numbers->bound[i][0];
+        u[i] = x < width ? x / width : 1.0;
+    }
+}
+
+/* Draws a part by numbers in [0, 1): u becomes what is left of the random numbers. Which half comes next is left to
+ * a branch here: where it is guessed, the next split is not waited for. */
 ACDF_FN const AcdfCutPart* acdf_cut_draw(const AcdfCut* cut, double u[2]) {
-    int child = cut->count > 1 ? 0 : ~0, i;
-    double chosen = 1.0;
+    AcdfCutNumbers numbers = acdf_cut_all_numbers();
+    int child = cut->count > 1 ? 0 : ~0;
     while (child >= 0) {
         const AcdfCutSplit* split = &cut->split[child];
-        const uint32_t axis = split->place & 7u;
-        const double lower = split->lower, low = chosen * lower;
-        if (u[axis] < low || !(lower < 1.0)) {
-            u[axis ^ 1u] *= lower;
-            chosen = low;
+        const uint32_t axis = split->place & 1u;
+        if (u[axis] < split->border) {
+            numbers.bound[axis][1] = split->border;
             child = split->child[0];
         } else {
-            u[axis] -= low;
-            u[axis ^ 1u] *= 1.0 - lower;
-            chosen -= low;
+            numbers.bound[axis][0] = split->border;
             child = split->child[1];
         }
     }
-    for (i = 0; i < 2; ++i) u[i] = u[i] < chosen ? u[i] / chosen : 1.0;
+    acdf_cut_numbers_left(&numbers, u);
     return &cut->part[~child];
+}
+
+/* Whether u0 in [0, 1] draws a light of a part, not from its mixture. */
+ACDF_INLINE int acdf_cut_draws_light(const AcdfCutPart* part, double u0) {
+    return (part->lights > 0.0) & ((u0 * part->sum < part->lights) | !(part->sum > part->lights));
+}
+
+/* Draws that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
+ACDF_FN uint32_t acdf_cut_draw_light(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
+                                     AcdfRange* range, double* probability) {
+    uint32_t k = part->first_light, chosen = part->end_light;
+    double x = u[0] * part->sum, weight = 0.0;
+    for (; k < part->end_light; ++k) {
+        if (!(cut->light[k] > 0.0)) continue;
+        if (chosen < part->end_light) x -= weight;
+        chosen = k;
+        weight = cut->light[k];
+        if (x < weight) break;
+    }
+    u[0] = acdf_unit_interval(x / weight);
+    for (k = 0; k < 2; ++k) {
+        range[k].low = local->lights[chosen].low[k];
+        range[k].high = local->lights[chosen].high[k];
+    }
+    *probability = acdf_positive(part->probability * (weight / part->sum));
+    return local->lights[chosen].tile;
+}
+
+/* u0 as a number of the part's mixture alone, where it draws from that. */
+ACDF_INLINE double acdf_cut_number_of_mixture(const AcdfCutPart* part, double u0) {
+    return acdf_unit_interval((u0 * part->sum - part->lights) / (part->sum - part->lights));
+}
+
+/* The probability of a tile that is `inside` of the part's mixture. */
+ACDF_INLINE double acdf_cut_tile_probability(const AcdfCutPart* part, const AcdfMixture* mix, double inside) {
+    return acdf_positive(part->probability * (acdf_mixture_sum(mix) / part->sum * inside));
 }
 
 /* Draws a cell of a part; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                     const AcdfCutPart* part, double* u, AcdfRange* range) {
-    double x = u[0] * part->sum, probability = part->probability;
+    double probability;
     uint32_t tile;
-    if (part->lights > 0.0 && (x < part->lights || !(part->sum > part->lights))) {
-        uint32_t k = part->first_light, chosen = part->end_light;
-        double weight = 0.0;
-        for (; k < part->end_light; ++k) {
-            if (!(cut->light[k] > 0.0)) continue;
-            if (chosen < part->end_light) x -= weight;
-            chosen = k;
-            weight = cut->light[k];
-            if (x < weight) break;
-        }
-        u[0] = acdf_unit_interval(x / weight);
-        tile = local->lights[chosen].tile;
-        for (k = 0; k < 2; ++k) {
-            range[k].low = local->lights[chosen].low[k];
-            range[k].high = local->lights[chosen].high[k];
-        }
-        probability = acdf_positive(probability * (weight / part->sum));
+    if (acdf_cut_draws_light(part, u[0])) {
+        tile = acdf_cut_draw_light(local, cut, part, u, range, &probability);
     } else {
         const AcdfMixture mix = acdf_cut_mixture(point, part);
-        double inside;
-        u[0] = acdf_unit_interval((x - part->lights) / (part->sum - part->lights));
-        tile = acdf_cut_sample_tile(local, point, part, &mix, u, range, &inside);
-        probability = acdf_positive(probability * (acdf_mixture_sum(&mix) / part->sum * inside));
+        u[0] = acdf_cut_number_of_mixture(part, u[0]);
+        tile = acdf_cut_sample_tile(local, point, part, &mix, u, range, &probability);
+        probability = acdf_cut_tile_probability(part, &mix, probability);
     }
     return acdf_local_draw_inside(local, tile, probability, u, range);
 }
 
-/* Finds the cell of a grid square in a part. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_cut_find_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
-                                  const AcdfCutPart* part, const uint32_t* square, AcdfRange* range) {
-    const AcdfMixture mix = acdf_cut_mixture(point, part);
-    double probability;
+/* The probability of a tile that is `inside` of the part's mixture; 0 where no sample can fall. */
+ACDF_FN double acdf_cut_found_probability(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part,
+                                          const AcdfMixture* mix, uint32_t tile, double inside) {
     uint32_t light = part->first_light;
-    const uint32_t tile = acdf_cut_find_tile(local, point, part, &mix, square, range, &probability);
-    if (probability > 0.0) {
-        probability = acdf_positive(part->probability * (acdf_mixture_sum(&mix) / part->sum * probability));
-    } else { /* no row gives a light any probability */
-        while (light < part->end_light && local->lights[light].tile < tile) ++light;
-        if (light == part->end_light || local->lights[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
-        probability = acdf_positive(part->probability * (cut->light[light] / part->sum));
+    if (!(part->probability > 0.0)) return 0.0;
+    if (inside > 0.0) return acdf_cut_tile_probability(part, mix, inside);
+    /* No row gives a light any probability. */
+    while (light < part->end_light && local->lights[light].tile < tile) ++light;
+    if (light == part->end_light || local->lights[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
+    return acdf_positive(part->probability * (cut->light[light] / part->sum));
+}
+
+/* The part that holds a grid square. */
+ACDF_FN const AcdfCutPart* acdf_cut_find(const AcdfCut* cut, const uint32_t* square) {
+    int child = cut->count > 1 ? 0 : ~0;
+    while (child >= 0) {
+        const AcdfCutSplit* split = &cut->split[child];
+        child = split->child[square[split->place & 7u] >= split->place >> 3];
     }
-    return acdf_local_find_inside(local, tile, probability, square, range);
+    return &cut->part[~child];
 }
 
 /* Density per steradian with which acdf_cut_sample draws `direction` (unit); of cuts that are finished. */
 ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    const AcdfCutPart* part;
+    AcdfMixture mix;
     AcdfRange range[2];
     double p;
-    uint32_t square[2];
-    const AcdfCutPart* part;
-    int child = cut->count > 1 ? 0 : ~0;
+    uint32_t square[2], tile;
     if (cut->count == 0 || !acdf_local_square(&grid, direction, square)) return 0.0f;
-    while (child >= 0) {
-        const AcdfCutSplit* split = &cut->split[child];
-        child = split->child[square[split->place & 7u] >= split->place >> 3];
-    }
-    part = &cut->part[~child];
+    part = acdf_cut_find(cut, square);
     if (!(part->probability > 0.0)) return 0.0f;
+    mix = acdf_cut_mixture(point, part);
     acdf_cut_range(part, range);
-    p = acdf_cut_find_part(local, point, cut, part, square, range);
+    tile = acdf_cut_find_tile(local, point, part, &mix, square, range, &p);
+    p = acdf_cut_found_probability(local, cut, part, &mix, tile, p);
+    p = acdf_local_find_inside(local, tile, p, square, range);
     return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
+}
+
+/* The direction that what is left of the random numbers picks in a cell of probability p. */
+ACDF_INLINE AcdfDirectionSample acdf_cut_place(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                               const AcdfCut* cut, const AcdfGrid* grid, const AcdfRange range[2],
+                                               const double u[2], double p) {
+    AcdfDirectionSample out = acdf_local_place(local, point, grid, range, u, p);
+    /* A slope makes the density depend on where the rounded direction lies. */
+    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
+    return out;
 }
 
 /* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
@@ -191,15 +281,12 @@ ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const Ac
     AcdfRange range[2];
     double u[2], p;
     if (cut->count == 0) return out;
-    u[0] = acdf_unit_interval(u0);
-    u[1] = acdf_unit_interval(u1);
+    u[0] = acdf_cut_number(u0);
+    u[1] = acdf_cut_number(u1);
     part = acdf_cut_draw(cut, u);
     acdf_cut_range(part, range);
     p = acdf_cut_sample_part(local, point, cut, part, u, range);
-    out = acdf_local_place(local, point, &grid, range, u, p);
-    /* A slope makes the density depend on where the rounded direction lies. */
-    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
-    return out;
+    return acdf_cut_place(local, point, cut, &grid, range, u, p);
 }
 
 #ifdef __cplusplus

@@ -5,6 +5,7 @@
 #include <acdf/brdf.h>
 #include <acdf/method.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace acdf {
@@ -58,6 +59,10 @@ public:
         return acdf_brdf_view_sample(&data_, &point, u0, u1);
     }
 
+    /// `pdf` of wi[i] into out[i], i < count. Lobes need not have this.
+    ACDF_METHOD void pdfs(const Point& point, const float (*wi)[3], std::size_t count, float* out) const noexcept {
+        acdf_brdf_view_pdfs(&data_, &point, wi, count, out);
+    }
     /// About what `sample` draws, in less time, with the density there. Lobes need not have this.
     ACDF_METHOD ProductSample about(const Point& point, double u0, double u1) const noexcept {
         return acdf_brdf_view_about(&data_, &point, u0, u1);
@@ -77,6 +82,19 @@ template <class AnyLobe>
 ACDF_METHOD ProductSample lobe_about(const AnyLobe& lobe, const typename AnyLobe::Point& point, double u0,
                                      double u1, long) noexcept {
     return lobe.sample(point, u0, u1);
+}
+
+/// Densities of several directions: `pdfs` where it has that, else `pdf`.
+template <class AnyLobe>
+ACDF_METHOD auto lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
+                           std::size_t count, float* out, int) noexcept
+    -> decltype(lobe.pdfs(point, wi, count, out)) {
+    lobe.pdfs(point, wi, count, out);
+}
+template <class AnyLobe>
+ACDF_METHOD void lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
+                           std::size_t count, float* out, long) noexcept {
+    for (std::size_t i = 0; i < count; ++i) out[i] = lobe.pdf(point, wi[i]);
 }
 
 /// A renderer's own BRDF as a lobe. Callables over unit vectors in the surface's frame, wo above the surface:

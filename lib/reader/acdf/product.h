@@ -16,7 +16,7 @@
 // density is that of the mixture.
 #pragma once
 
-#include <acdf/cut_sample.h>
+#include <acdf/cut_wave.h>
 #include <acdf/lobe.h>
 #include <acdf/part_queue.h>
 #include <acdf/part_rating.h>
@@ -73,6 +73,9 @@ public:
     /// Draws a direction; u0 and u1 in [0, 1]. pdf in sr^-1; 0 where nothing is drawn: it counts as 0, as do
     /// directions below the surface.
     ACDF_METHOD ProductSample sample(const Point& point, double u0, double u1) const noexcept;
+    /// The same of u[i] into out[i], i < count, to the bit: in less time where a point is drawn from several times.
+    ACDF_METHOD void sample(const Point& point, std::size_t count, const double (*u)[2],
+                            ProductSample* out) const noexcept;
     /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
     /// of the lobe's own sampler is.
     ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept {
@@ -93,12 +96,15 @@ private:
 
     ACDF_METHOD static float bounded(float x) noexcept;
     ACDF_METHOD LobeGuides guides(const Point& point) const noexcept;
-    ACDF_METHOD void look(const Point& point, int part, PartRating& rating) const noexcept;
+    ACDF_METHOD void look(const Point& point, int count, const int* parts, PartRating* ratings) const noexcept;
     ACDF_METHOD Division halve(Point& point, const LobeGuides& guides, int part,
                                PartRating* ratings) const noexcept;
     ACDF_METHOD void divide(Point& point, const LobeGuides& guides, PartRating* ratings) const noexcept;
     ACDF_METHOD float light_pdf(const Point& point, const float direction[3]) const noexcept;
     ACDF_METHOD float density(const Point& point, const float direction[3], float light) const noexcept;
+    ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
+    ACDF_METHOD void sample_wave(const Point& point, std::size_t count, const double (*u)[2],
+                                 ProductSample* out) const noexcept;
 
     AcdfLocal light_;
     bool local_; ///< or an environment alone
@@ -115,41 +121,49 @@ template <class AnyLobe>
 ACDF_METHOD LobeGuides ProductSampler<AnyLobe>::guides(const Point& point) const noexcept {
     const AcdfGrid grid = acdf_environment_grid(&light_.environment);
     LobeGuides out;
+    float world[8][3], light[8];
     out.drawn = parts_ < 32 ? 4 : 8;
     for (int i = 0; i < out.drawn; ++i) {
         const int reversed = (i & 1) << 2 | (i & 2) | i >> 2; // the points of Hammersley, moved off the borders
         const ProductSample s = lobe_about(lobe_, point.lobe, (i + 0.5) / out.drawn, (reversed + 0.5) / 8.0, 0);
         if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
-        float world[3];
         std::uint32_t square[2];
-        point.frame.to_world(s.direction, world);
-        if (!acdf_local_square(&grid, world, square)) continue;
+        point.frame.to_world(s.direction, world[out.count]);
+        if (!acdf_local_square(&grid, world[out.count], square)) continue;
         const float value = bounded(lobe_.value(point.lobe, s.direction, s.pdf)), pdf = bounded(s.pdf);
         if (!(value > 0.0f && pdf > 0.0f)) continue;
         for (int axis = 0; axis < 2; ++axis) out.square[axis][out.count] = square[axis];
         out.value[out.count] = value;
         out.pdf[out.count] = pdf;
-        const double light = double{acdf_local_light_pdf(&light_, &point.light, world)};
-        const double weight = light * double{value} / double{pdf};
-        out.weights += weight;
-        out.squares += weight * weight;
         if (value > out.brightest) out.brightest = value;
         ++out.count;
+    }
+    acdf_cut_pdf_wave(&light_, &point.light, &point.cut, world, static_cast<std::size_t>(out.count), light);
+    for (int i = 0; i < out.count; ++i) {
+        const double weight = double{light[i]} * double{out.value[i]} / double{out.pdf[i]};
+        out.weights += weight;
+        out.squares += weight * weight;
     }
     return out;
 }
 
-/// The lobe at the heart of a part.
+/// The lobe at the hearts of some parts.
 template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::look(const Point& point, int part, PartRating& rating) const noexcept {
-    float world[3], wi[3];
-    rating.tile = acdf_cut_heart(&light_, &point.light, &point.cut, part, world);
-    point.frame.to_local(world, wi);
-    rating.value = rating.pdf = 0.0f;
-    if (!(wi[2] > 0.0f)) return;
-    const float pdf = lobe_.pdf(point.lobe, wi);
-    rating.value = bounded(lobe_.value(point.lobe, wi, pdf));
-    rating.pdf = bounded(pdf);
+ACDF_METHOD void ProductSampler<AnyLobe>::look(const Point& point, int count, const int* parts,
+                                               PartRating* ratings) const noexcept {
+    float wi[at_once][3], pdf[at_once];
+    for (int i = 0; i < count; ++i) {
+        float world[3];
+        ratings[parts[i]].tile = acdf_cut_heart(&light_, &point.light, &point.cut, parts[i], world);
+        point.frame.to_local(world, wi[i]);
+    }
+    lobe_pdfs(lobe_, point.lobe, wi, static_cast<std::size_t>(count), pdf, 0);
+    for (int i = 0; i < count; ++i) {
+        PartRating& rating = ratings[parts[i]];
+        const bool above = wi[i][2] > 0.0f;
+        rating.value = above ? bounded(lobe_.value(point.lobe, wi[i], pdf[i])) : 0.0f;
+        rating.pdf = above ? bounded(pdf[i]) : 0.0f;
+    }
 }
 
 /// Divides a part; all is known of its halves then but the lobe at the heart of one of them.
@@ -175,7 +189,8 @@ template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::divide(Point& point, const LobeGuides& guides,
                                                  PartRating* ratings) const noexcept {
     AcdfCut& cut = point.cut;
-    look(point, 0, ratings[0]);
+    int chosen[at_once] = {0}, count = acdf_cut_divisible(&cut, 0);
+    look(point, 1, chosen, ratings);
     ratings[0].guides = (1u << guides.count) - 1u;
     ratings[0].solid_angle = static_cast<float>(4.0 * ACDF_PI);
     ratings[0].rate(guides);
@@ -185,14 +200,11 @@ ACDF_METHOD void ProductSampler<AnyLobe>::divide(Point& point, const LobeGuides&
         cut.part[0].sum * double{guides.brightest > 0.0f ? guides.brightest : ratings[0].value};
     PartQueue queue(most_light * most_light * (4.0 * ACDF_PI));
     const int most = parts_ < ACDF_CUT_MAX_PARTS ? parts_ : ACDF_CUT_MAX_PARTS;
-    int chosen[at_once] = {0}, count = acdf_cut_divisible(&cut, 0);
     while (count > 0) {
         Division division[at_once];
         for (int i = 0; i < count; ++i) division[i] = halve(point, guides, chosen[i], ratings);
-        for (int i = 0; i < count; ++i) {
-            const int part = division[i].unknown ? division[i].upper : division[i].lower;
-            look(point, part, ratings[part]);
-        }
+        for (int i = 0; i < count; ++i) chosen[i] = division[i].unknown ? division[i].upper : division[i].lower;
+        look(point, count, chosen, ratings);
         for (int i = 0; i < count; ++i) {
             const int number[2] = {division[i].lower, division[i].upper};
             PartRating &low = ratings[number[0]], &high = ratings[number[1]];
@@ -268,7 +280,13 @@ ACDF_METHOD float ProductSampler<AnyLobe>::density(const Point& point, const flo
     float wi[3];
     if (!(point.share >= 0.0)) return 0.0f;
     point.frame.to_local(direction, wi);
-    const double pdf = (1.0 - point.share) * double{light} + point.share * double{lobe_.pdf(point.lobe, wi)};
+    return mixed(point, light, lobe_.pdf(point.lobe, wi));
+}
+
+/// The same where the lobe's is known, too.
+template <class AnyLobe>
+ACDF_METHOD float ProductSampler<AnyLobe>::mixed(const Point& point, float light, float lobe) noexcept {
+    const double pdf = (1.0 - point.share) * double{light} + point.share * double{lobe};
     if (!(pdf > 0.0)) return 0.0f;
     return static_cast<float>(acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38));
 }
@@ -294,6 +312,57 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     }
     if (out.pdf > 0.0f) out.pdf = density(point, out.direction, out.pdf);
     return out;
+}
+
+/// Draws up to ACDF_CUT_WAVE of a point whose cut is drawn from, and its lobe.
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::size_t count, const double (*u)[2],
+                                                      ProductSample* out) const noexcept {
+    std::size_t of_light[ACDF_CUT_WAVE], of_lobe[ACDF_CUT_WAVE], lit = 0, reflected = 0;
+    double rest[ACDF_CUT_WAVE][2];
+    ProductSample drawn[ACDF_CUT_WAVE];
+    float directions[ACDF_CUT_WAVE][3], wi[ACDF_CUT_WAVE][3], light[ACDF_CUT_WAVE], lobe[ACDF_CUT_WAVE];
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = acdf_unit_interval(u[i][0]);
+        const bool is_lit = !(x < point.share);
+        rest[lit][0] = (x - point.share) / (1.0 - point.share);
+        rest[lit][1] = u[i][1];
+        of_light[lit] = of_lobe[reflected] = i;
+        lit += is_lit ? 1 : 0;
+        reflected += is_lit ? 0 : 1;
+    }
+    acdf_cut_sample_wave(&light_, &point.light, &point.cut, rest, lit, drawn);
+    for (std::size_t k = 0; k < lit; ++k) {
+        out[of_light[k]] = drawn[k];
+        light[of_light[k]] = drawn[k].pdf;
+    }
+    for (std::size_t k = 0; k < reflected; ++k) {
+        const std::size_t i = of_lobe[k];
+        drawn[k] = lobe_.sample(point.lobe, acdf_unit_interval(u[i][0]) / point.share, u[i][1]);
+        point.frame.to_world(drawn[k].direction, directions[k]);
+    }
+    acdf_cut_pdf_wave(&light_, &point.light, &point.cut, directions, reflected, lobe);
+    for (std::size_t k = 0; k < reflected; ++k) {
+        const std::size_t i = of_lobe[k];
+        out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, drawn[k].pdf};
+        light[i] = lobe[k];
+    }
+    for (std::size_t i = 0; i < count; ++i) point.frame.to_local(out[i].direction, wi[i]);
+    lobe_pdfs(lobe_, point.lobe, wi, count, lobe, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (out[i].pdf > 0.0f) out[i].pdf = mixed(point, light[i], lobe[i]);
+        else out[i] = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    }
+}
+
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::sample(const Point& point, std::size_t count, const double (*u)[2],
+                                                 ProductSample* out) const noexcept {
+    constexpr std::size_t wave = ACDF_CUT_WAVE;
+    const bool both = point.light.what == ACDF_LOCAL_BLEND && point.share >= 0.0 && point.share < 1.0;
+    for (std::size_t first = 0; both && first < count; first += wave)
+        sample_wave(point, count - first < wave ? count - first : wave, u + first, out + first);
+    for (std::size_t i = 0; !both && i < count; ++i) out[i] = sample(point, u[i][0], u[i][1]);
 }
 
 } // namespace acdf

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 using namespace acdf_test;
 
@@ -146,6 +147,33 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
     EXPECT_GT(drawn, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
 }
 
+// To the bit, whatever the numbers are and however many.
+TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
+    const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-53, 0x1p-1000, NAN, -1.0, 2.0};
+    int together = 0;
+    for (const bool tilts : {false, true})
+        each_point(tilts, [&](const LoadedLocal&, const TestLobe&, const Sampler& sampler,
+                              const Sampler::Point& point, const std::string& name, std::mt19937_64& rng) {
+            together += point.cut.count > 1 && point.light.mix.count == ACDF_CUT_WAVE_ROWS;
+            double u[70][2];
+            acdf::ProductSample out[71];
+            for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{16}, rng() % 70}) {
+                for (auto& pair : u)
+                    for (double& x : pair) x = rng() % 8 == 0 ? edges[rng() % 8] : unit(rng);
+                std::memset(out, 0x55, sizeof out);
+                sampler.sample(point, count, u, out);
+                for (std::size_t i = 0; i < count; ++i) {
+                    const acdf::ProductSample one = sampler.sample(point, u[i][0], u[i][1]);
+                    ASSERT_EQ(std::memcmp(&out[i], &one, sizeof one), 0)
+                        << name << ", " << i << " of " << count << ": " << u[i][0] << ' ' << u[i][1];
+                }
+                const unsigned char* behind = reinterpret_cast<const unsigned char*>(&out[count]);
+                for (std::size_t k = 0; k < sizeof *out; ++k) ASSERT_EQ(behind[k], 0x55);
+            }
+        });
+    EXPECT_GT(together, 50);
+}
+
 // The light's part, over the squares of its grid, in which it is constant; the lobe's part is the lobe's own.
 TEST(Product, DensityIntegratesToOne) {
     int cuts = 0;
@@ -254,6 +282,10 @@ TEST(Product, InCIsTheSame) {
                                       b = acdf_product_lobe_sample(&light, &c_lobe, &c_point, u0, u1);
             for (int k = 0; k < 3; ++k) ASSERT_EQ(a.direction[k], b.direction[k]);
             ASSERT_EQ(a.pdf, b.pdf);
+            const double numbers[3][2] = {{u1, u0}, {u0, u1}, {u0, u0}};
+            AcdfDirectionSample several[3];
+            acdf_product_lobe_samples(&light, &c_lobe, &c_point, 3, numbers, several);
+            ASSERT_EQ(std::memcmp(&several[1], &b, sizeof b), 0);
             ASSERT_EQ(acdf_product_lobe_pdf(&light, &c_lobe, &c_point, b.direction), b.pdf);
         }
     }

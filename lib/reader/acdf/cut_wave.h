@@ -1,0 +1,257 @@
+/* Several draws from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits and
+ * curves on its way, the others use. Each is acdf_cut_sample's to the bit. One freestanding header, valid C99,
+ * C++17 and CUDA/HIP/SYCL, though kernels, whose threads wait for each other anyhow, have no use for it. */
+#ifndef ACDF_CUT_WAVE_H
+#define ACDF_CUT_WAVE_H
+
+#include <acdf/cut_sample.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* As many as are on their way at once; rows are those of nearly all points. */
+enum { ACDF_CUT_WAVE = 16, ACDF_CUT_WAVE_ROWS = 3 };
+
+/* A draw on its way. */
+typedef struct AcdfCutLane {
+    double u[2];
+    AcdfRange range[2];
+    double probability;
+    double given; /* what the part's mixture gives to the tile */
+    const AcdfCutPart* part;
+    uint32_t tile;
+    uint32_t curve;
+} AcdfCutLane;
+
+/* Numbers of lanes. */
+typedef struct AcdfCutLanes {
+    uint32_t count;
+    uint32_t lane[ACDF_CUT_WAVE];
+} AcdfCutLanes;
+
+/* Draws parts: one step of each lane in turn. */
+ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], uint32_t count, AcdfCutLane* lane) {
+    AcdfCutNumbers numbers[ACDF_CUT_WAVE];
+    int32_t child[ACDF_CUT_WAVE];
+    AcdfCutLanes on_way;
+    uint32_t i, k, split;
+    for (i = 0; i + 1 < (uint32_t)cut->count; i += 4) ACDF_PREFETCH(&cut->split[i]);
+    for (i = 0; i < count; ++i) {
+        lane[i].u[0] = acdf_cut_number(u[i][0]);
+        lane[i].u[1] = acdf_cut_number(u[i][1]);
+        numbers[i] = acdf_cut_all_numbers();
+        child[i] = cut->count > 1 ? 0 : ~0;
+        on_way.lane[i] = i;
+    }
+    on_way.count = cut->count > 1 ? count : 0;
+    while ((split = on_way.count) > 0) {
+        on_way.count = 0;
+        for (k = 0; k < split; ++k) {
+            const uint32_t number = on_way.lane[k];
+            child[number] = acdf_cut_step(cut, child[number], lane[number].u, &numbers[number]);
+            on_way.lane[on_way.count] = number;
+            on_way.count += (uint32_t)(child[number] >= 0);
+        }
+    }
+    for (i = 0; i < count; ++i) {
+        acdf_cut_numbers_left(&numbers[i], lane[i].u);
+        lane[i].part = &cut->part[~child[i]];
+        ACDF_PREFETCH(&lane[i].part->low[0]);
+        ACDF_PREFETCH(&lane[i].part->probability);
+    }
+}
+
+/* Draws lights, and tells which lanes draw from the mixture of their part. */
+ACDF_INLINE void acdf_cut_wave_lights(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                                      uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
+    uint32_t i, k;
+    mixed->count = 0;
+    for (i = 0; i < count; ++i) {
+        AcdfCutLane* one = &lane[i];
+        const int lit = acdf_cut_draws_light(one->part, one->u[0]);
+        acdf_cut_range(one->part, one->range);
+        for (k = 0; k < ACDF_CUT_WAVE_ROWS; ++k)
+            ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
+        if (lit) one->tile = acdf_cut_draw_light(local, cut, one->part, one->u, one->range, &one->probability);
+        mixed->lane[mixed->count] = i;
+        mixed->count += (uint32_t)!lit;
+    }
+}
+
+/* The weights of a part's mixture: rows are those of the point. */
+ACDF_INLINE AcdfMixture acdf_cut_wave_mixture(const AcdfCutPart* part) {
+    AcdfMixture mix;
+    int i;
+    mix.count = ACDF_CUT_WAVE_ROWS;
+    for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
+        mix.row[i] = 0;
+        mix.weight[i] = i < ACDF_CUT_WAVE_ROWS ? part->weight[i] : 0.0;
+    }
+    return mix;
+}
+
+/* Draws tiles of mixtures. */
+ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutLanes* mixed,
+                                     AcdfCutLane* lane) {
+    const uint32_t* words = acdf_local_words(local->tables);
+    const AcdfTileTables* tables = &local->tables->tiles;
+    AcdfTileWalk walk[ACDF_CUT_WAVE];
+    AcdfCutLanes on_way;
+    uint32_t k;
+    on_way.count = 0;
+    for (k = 0; k < mixed->count; ++k) {
+        const uint32_t number = mixed->lane[k];
+        AcdfCutLane* one = &lane[number];
+        const uint32_t node = one->part->entry;
+        double from[2];
+        const AcdfMixture mix = acdf_cut_wave_mixture(one->part);
+        one->u[0] = acdf_cut_number_of_mixture(one->part, one->u[0]);
+        one->given = acdf_cut_of_all(&mix, one->u, from);
+        walk[number].node = node;
+        if (node & ACDF_TILE_FLAG) {
+            one->u[0] = acdf_unit_interval(from[0] / one->given);
+            one->u[1] = acdf_unit_interval(from[1] / one->given);
+            continue;
+        }
+        acdf_tile_walk_begin(words, tables, &mix, point->codes, ACDF_CUT_WAVE_ROWS, node, from, &walk[number]);
+        on_way.lane[on_way.count++] = number;
+    }
+    {
+        const AcdfCutLanes walked = on_way;
+        while (on_way.count > 0) {
+            uint32_t left = 0;
+            for (k = 0; k < on_way.count; ++k) {
+                const uint32_t number = on_way.lane[k];
+                acdf_tile_walk_step(words, tables, point->codes, ACDF_CUT_WAVE_ROWS, &walk[number]);
+                on_way.lane[left] = number;
+                left += (uint32_t) !(walk[number].node & ACDF_TILE_FLAG);
+            }
+            on_way.count = left;
+        }
+        for (k = 0; k < walked.count; ++k) {
+            const uint32_t number = walked.lane[k];
+            const AcdfMixture mix = acdf_cut_wave_mixture(lane[number].part);
+            acdf_tile_walk_end(&walk[number], &mix, ACDF_CUT_WAVE_ROWS, lane[number].u, &lane[number].given);
+        }
+    }
+    for (k = 0; k < mixed->count; ++k) {
+        const uint32_t number = mixed->lane[k];
+        AcdfCutLane* one = &lane[number];
+        const AcdfMixture mix = acdf_cut_wave_mixture(one->part);
+        one->tile = walk[number].node & ~ACDF_TILE_FLAG;
+        ACDF_PREFETCH(acdf_tile_record(words, tables, one->tile));
+        one->probability =
+            acdf_cut_tile_probability(one->part, &mix, acdf_positive(one->given / acdf_mixture_sum(&mix)));
+    }
+}
+
+/* Draws cells of tiles. */
+ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, const AcdfCutLanes* mixed,
+                                      AcdfCutLane* lane) {
+    const uint8_t* tree = local->blend.tree;
+    const uint32_t units = local->environment.tree_units;
+    double inside[ACDF_CUT_WAVE];
+    AcdfCutLanes on_way;
+    uint32_t i, k, in_curves;
+    AcdfCutLanes curved;
+    on_way.count = 0;
+    for (i = 0; i < count; ++i) {
+        const uint32_t root = local->blend.roots ? local->blend.roots[lane[i].tile] : ACDF_NO_ROOT;
+        lane[i].curve = root;
+        inside[i] = 1.0;
+        on_way.lane[on_way.count] = i;
+        on_way.count += (uint32_t)(root != ACDF_NO_ROOT);
+    }
+    for (k = 0; k < on_way.count; ++k) ACDF_PREFETCH(tree + 2 * (size_t)lane[on_way.lane[k]].curve);
+    curved = on_way;
+    for (k = 0; k < mixed->count; ++k) {
+        AcdfCutLane* one = &lane[mixed->lane[k]];
+        acdf_tile_range(acdf_local_tile(local->tables, one->tile), one->range);
+    }
+    while ((in_curves = on_way.count) > 0) {
+        on_way.count = 0;
+        for (k = 0; k < in_curves; ++k) {
+            const uint32_t number = on_way.lane[k];
+            AcdfCutLane* one = &lane[number];
+            const uint32_t link = acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
+            one->curve += link;
+            on_way.lane[on_way.count] = number;
+            on_way.count += (uint32_t)(link != 0);
+        }
+    }
+    for (k = 0; k < curved.count; ++k) {
+        AcdfCutLane* one = &lane[curved.lane[k]];
+        one->probability = acdf_positive(one->probability * acdf_positive(inside[curved.lane[k]]));
+    }
+}
+
+/* acdf_cut_sample of u[i] into out[i], i < count. */
+ACDF_FN void acdf_cut_sample_wave(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                                  const double (*u)[2], size_t count, AcdfDirectionSample* out) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfCutLane lane[ACDF_CUT_WAVE];
+    AcdfCutLanes mixed;
+    size_t first, i;
+    if (cut->count == 0 || !acdf_local_tabled(local, point) || point->mix.count != ACDF_CUT_WAVE_ROWS) {
+        for (i = 0; i < count; ++i) out[i] = acdf_cut_sample(local, point, cut, u[i][0], u[i][1]);
+        return;
+    }
+    for (first = 0; first < count; first += ACDF_CUT_WAVE) {
+        const uint32_t some = count - first < ACDF_CUT_WAVE ? (uint32_t)(count - first) : (uint32_t)ACDF_CUT_WAVE;
+        acdf_cut_wave_parts(cut, u + first, some, lane);
+        acdf_cut_wave_lights(local, point, cut, some, lane, &mixed);
+        acdf_cut_wave_tiles(local, point, &mixed, lane);
+        acdf_cut_wave_curves(local, some, &mixed, lane);
+        for (i = 0; i < some; ++i)
+            out[first + i] =
+                acdf_cut_place(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
+    }
+}
+
+/* acdf_cut_pdf of directions[i] into out[i], i < count. */
+ACDF_FN void acdf_cut_pdf_wave(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                               const float (*directions)[3], size_t count, float* out) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfCutLane lane[ACDF_CUT_WAVE];
+    uint32_t square[ACDF_CUT_WAVE][2];
+    size_t first, i;
+    if (cut->count == 0 || !acdf_local_tabled(local, point)) {
+        for (i = 0; i < count; ++i) out[i] = acdf_cut_pdf(local, point, cut, directions[i]);
+        return;
+    }
+    for (first = 0; first < count; first += ACDF_CUT_WAVE) {
+        const size_t some = count - first < ACDF_CUT_WAVE ? count - first : (size_t)ACDF_CUT_WAVE;
+        for (i = 0; i < some; ++i) {
+            AcdfCutLane* one = &lane[i];
+            one->part = 0;
+            if (!acdf_local_square(&grid, directions[first + i], square[i])) continue;
+            one->tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square[i]);
+            ACDF_PREFETCH(acdf_local_tile(local->tables, one->tile));
+            one->part = acdf_cut_find(cut, square[i]);
+            ACDF_PREFETCH(&one->part->low[0]);
+            ACDF_PREFETCH(&one->part->probability);
+        }
+        for (i = 0; i < some; ++i) {
+            AcdfCutLane* one = &lane[i];
+            AcdfMixture mix;
+            if (!one->part) continue;
+            mix = acdf_cut_mixture(point, one->part);
+            acdf_cut_range(one->part, one->range);
+            one->given = acdf_local_found_tile(local, point, &mix, one->tile, one->part->depth, one->range);
+            one->probability = acdf_cut_found_probability(local, cut, one->part, &mix, one->tile, one->given);
+        }
+        for (i = 0; i < some; ++i) {
+            AcdfCutLane* one = &lane[i];
+            double p = 0.0;
+            if (one->part) p = acdf_local_find_inside(local, one->tile, one->probability, square[i], one->range);
+            out[first + i] =
+                p > 0.0 ? acdf_local_cell_pdf(local, &grid, directions[first + i], one->range, p) : 0.0f;
+        }
+    }
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
