@@ -245,7 +245,7 @@ TEST(BuilderErrors, OtherKindsCanBeCancelled) {
     lambert.evaluate = [](const double*, const double*, double out[3]) { out[0] = out[1] = out[2] = 0.3; };
     BrdfOptions brdf_options;
     brdf_options.goal = Goal::of_cells(40);
-    brdf_options.theta_views = 4;
+    brdf_options.theta_views = 2;
     expect_cancellable(taking_bytes<BrdfFile>([&](const Control& control, BrdfFile& made) {
                            return brdf(lambert, brdf_options, made, control);
                        }),

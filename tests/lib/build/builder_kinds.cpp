@@ -196,7 +196,7 @@ TEST(BuilderBrdf, Misuse) {
     BrdfFile made;
     BrdfOptions options;
     options.goal = Goal::of_budget(12 << 10);
-    options.theta_views = 4;
+    options.theta_views = 2;
     Brdf given;
     EXPECT_EQ(brdf(given, options, made).code, ErrorCode::invalid_argument);
     const auto answers = [&](double r) {
