@@ -90,8 +90,9 @@ TEST_F(OctahedralCommand, FitsTheMapsOwnTexels) {
 
 TEST_F(OctahedralCommand, LatLongMapsKeepTheirOwn) {
     EXPECT_EQ(made(latlong, {})["domain"], "latlong");
-    EXPECT_EQ(made(latlong, {"--domain", "octahedral"})["domain"], "octahedral");
-    EXPECT_GT(made(latlong, {"--domain", "octahedral"})["least_variance"], 0.0);
+    const json resampled = made(latlong, {"--domain", "octahedral"});
+    EXPECT_EQ(resampled["domain"], "octahedral");
+    EXPECT_GT(resampled["least_variance"], 0.0);
     const json back = made(square, {"--projection", "octahedral", "--domain", "latlong"});
     EXPECT_EQ(back["domain"], "latlong");
     EXPECT_EQ(parameterization(), std::uint32_t{ACDF_PARAM_LATLONG});
