@@ -14,16 +14,32 @@ double cosine(const ShadingPoint& point, const float wi[3]) {
     return double{point.n[0]} * wi[0] + double{point.n[1]} * wi[1] + double{point.n[2]} * wi[2];
 }
 
-/// Draws one sample, of the set of numbers that has begun, and counts it. True where it may contribute: above the
-/// horizon.
-bool draw(const PointSampler& sampler, const ShadingPoint& point, Random& random, Tally& tally,
-          AcdfDirectionSample& out) {
-    const std::array<double, 2> u = random.pair();
-    out = sampler.sample(u[0], u[1]);
+/// Counts a sample. True where it may contribute: above the horizon.
+bool counts(const AcdfDirectionSample& s, const ShadingPoint& point, Tally& tally) {
     ++tally.samples;
-    if (!(out.pdf > 0.0f && cosine(point, out.direction) > 0.0)) return false;
+    if (!(s.pdf > 0.0f && cosine(point, s.direction) > 0.0)) return false;
     ++tally.above;
     return true;
+}
+
+/// Draws n samples of the set of numbers that has begun, several at once: use(sample) of those that may contribute.
+template <class Use>
+void draw(const PointSampler& sampler, const ShadingPoint& point, std::uint64_t n, Random& random, Tally& tally,
+          const Use& use) {
+    constexpr std::size_t at_once = 64;
+    double u[at_once][2];
+    AcdfDirectionSample drawn[at_once];
+    while (n > 0) {
+        const std::size_t some = std::min<std::uint64_t>(n, at_once);
+        for (std::size_t i = 0; i < some; ++i) {
+            const std::array<double, 2> pair = random.pair();
+            std::copy(pair.begin(), pair.end(), u[i]);
+        }
+        sampler.samples(some, u, drawn);
+        for (std::size_t i = 0; i < some; ++i)
+            if (counts(drawn[i], point, tally)) use(drawn[i]);
+        n -= some;
+    }
 }
 
 /// sum += weight * f(wi), which costs a shadow ray.
@@ -41,10 +57,8 @@ public:
         sampler_->move_to(point);
         random.begin_set();
         Rgb sum{};
-        AcdfDirectionSample s;
-        for (std::uint32_t i = 0; i < n_; ++i)
-            if (draw(*sampler_, point, random, tally, s))
-                add(f, s.direction, 1.0 / (n_ * double{s.pdf}), sum, tally);
+        draw(*sampler_, point, n_, random, tally,
+             [&](const AcdfDirectionSample& s) { add(f, s.direction, 1.0 / (n_ * double{s.pdf}), sum, tally); });
         return sum;
     }
 
@@ -67,11 +81,10 @@ public:
         for (const Part& part : parts_) part.sampler->move_to(point);
         if (automatic_ < parts_.size()) divide_samples();
         Rgb sum{};
-        AcdfDirectionSample s;
         for (const Part& part : parts_) {
             random.begin_set();
-            for (double i = 0.0; i < part.n; i += 1.0)
-                if (draw(*part.sampler, point, random, tally, s)) add(f, s.direction, weight(part, s), sum, tally);
+            draw(*part.sampler, point, static_cast<std::uint64_t>(part.n), random, tally,
+                 [&](const AcdfDirectionSample& s) { add(f, s.direction, weight(part, s), sum, tally); });
         }
         return sum;
     }
@@ -142,9 +155,10 @@ private:
     Kept keep_one(const ShadingPoint& point, const Integrand& f, Random& random, Tally& tally) const {
         Kept kept{};
         double sum = 0.0, g_kept = 0.0;
-        AcdfDirectionSample s;
         for (std::uint32_t i = 0; i < candidates_; ++i) {
-            if (!draw(*sampler_, point, random, tally, s)) continue;
+            const std::array<double, 2> u = random.pair();
+            const AcdfDirectionSample s = sampler_->sample(u[0], u[1]);
+            if (!counts(s, point, tally)) continue;
             const double g = f.unoccluded(s.direction), w = g / s.pdf;
             if (!(w > 0.0)) continue;
             sum += w;

@@ -29,6 +29,9 @@ public:
         point_ = sampler_.at(point.position, frame_of(point), point.wo);
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return sampler_.sample(point_, u0, u1); }
+    void samples(std::size_t count, const double (*u)[2], AcdfDirectionSample* out) const override {
+        sampler_.sample(point_, count, u, out);
+    }
     float pdf(const float wi[3]) const override { return sampler_.pdf(point_, wi); }
 
 private:
