@@ -117,6 +117,20 @@ TEST_F(Hostile, RadianceBeyondFloatsIsToldWithItsFile) {
             1, "bright.pfm: radiance");
 }
 
+TEST_F(Hostile, ReportsOfFilesWithoutVarianceHaveNumbersAlone) {
+    const std::string even = folder / "even.pfm";
+    write_probe(even, 1, 1);
+    ASSERT_EQ(run_acdf({"local", even, "--projection", "latlong", "--budget", "8KiB", "-o", file, "-q"}).code, 0);
+    for (const std::vector<std::string>& form : std::vector<std::vector<std::string>>{{}, {"--json"}}) {
+        std::vector<std::string> words{"measure", file, "--against", even, "--projection", "latlong", "-q"};
+        words.insert(words.end(), form.begin(), form.end());
+        const Result result = run_acdf(words);
+        EXPECT_EQ(result.code, 0) << result.err;
+        for (const char* none : {"-nan", " nan", "null"})
+            EXPECT_EQ(result.out.find(none), std::string::npos) << result.out;
+    }
+}
+
 TEST_F(Hostile, DamagedPicturesAreToldInOneLine) { // and not by libpng, too
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
     const std::string picture = folder / "probe.png", damaged = folder / "damaged.png", out = folder / "out.acdf";

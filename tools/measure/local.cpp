@@ -104,12 +104,15 @@ PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& optio
     return out;
 }
 
+/// How many times as much a rival has; 1 where neither has any.
+double times(double rival, double own) { return rival <= own && own <= rival ? 1.0 : rival / own; }
+
 nlohmann::ordered_json places_json(const PlacesAccuracy& p) {
     return {{"points", p.points},
             {"relative_variance", p.relative_variance},
             {"relative_variance_worst", p.worst},
             {"relative_variance_normals_alone", p.normals_alone},
-            {"gain", p.normals_alone / p.relative_variance},
+            {"gain", times(p.normals_alone, p.relative_variance)},
             {"support_violations", p.support_violations}};
 }
 
@@ -117,7 +120,7 @@ void print_places(const PlacesAccuracy& p) {
     std::printf("  at %zu places of the scene, with what it hides\n", p.points);
     std::printf("    relative variance    %.6g; %.6g at worst\n", p.relative_variance, p.worst);
     std::printf("    by normals alone     %.6g   %.4g times as much\n", p.normals_alone,
-                p.normals_alone / p.relative_variance);
+                times(p.normals_alone, p.relative_variance));
     std::printf("    support violations   %" PRIu64 "\n", p.support_violations);
 }
 
@@ -132,7 +135,7 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
         {"relative_variance_median", a.median},
         {"relative_variance_worst", a.worst},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},
-        {"gain", a.relative_variance_full_cdf / a.relative_variance},
+        {"gain", times(a.relative_variance_full_cdf, a.relative_variance)},
         {"share_above_horizon", a.share_above_horizon},
         {"share_above_horizon_least", a.least_share_above_horizon},
         {"share_above_horizon_full_cdf", a.share_above_horizon_full_cdf},
@@ -161,7 +164,7 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
                 noise_texts(a.relative_variance).c_str());
     std::printf("    median, worst        %.6g, %.6g\n", a.median, a.worst);
     std::printf("    full-resolution CDF  %.6g   %.4g times as much\n", a.relative_variance_full_cdf,
-                a.relative_variance_full_cdf / a.relative_variance);
+                times(a.relative_variance_full_cdf, a.relative_variance));
     std::printf("  above the horizon      %.2f %%   of samples; %.2f %% for the worst normal\n",
                 100.0 * a.share_above_horizon, 100.0 * a.least_share_above_horizon);
     std::printf("    full-resolution CDF  %.2f %%; %.2f %%\n", 100.0 * a.share_above_horizon_full_cdf,
