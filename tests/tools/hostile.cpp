@@ -131,6 +131,20 @@ TEST_F(Hostile, ReportsOfFilesWithoutVarianceHaveNumbersAlone) {
     }
 }
 
+TEST_F(Hostile, CommandsThatFailLeaveNoFolder) {
+    const std::string scene = folder / "scene.json", out = folder / "a/b";
+    std::ofstream(scene) << R"({"camera": {"from": [3, 0, 1], "to": [0, 0, 0], "fov": 40},
+        "image": {"width": 2, "height": 2}, "light": {"built_in": "sky"},
+        "objects": [{"sphere": {"centre": [0, 0, 0], "radius": 1}, "brdf": "lambert"}],
+        "samples": 1, "samplers": ["portals"]})";
+    expect_failure({"render", "--scene", scene, "-o", out, "-q"}, 1, "the scene tells no portals");
+    expect_failure({"sweep", probe, "-o", out, "--kind", "brdf", "-q"}, 1, "it is no BRDF file");
+    EXPECT_EQ(folder.entries(), 2u); // the probe and the scene
+    ASSERT_EQ(mkdir((folder / "a").c_str(), 0700), 0);
+    expect_failure({"sweep", probe, "-o", folder / "a", "--kind", "brdf", "-q"}, 1, "it is no BRDF file");
+    EXPECT_EQ(folder.entries(), 3u); // the folder was there before
+}
+
 TEST_F(Hostile, DamagedPicturesAreToldInOneLine) { // and not by libpng, too
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
     const std::string picture = folder / "probe.png", damaged = folder / "damaged.png", out = folder / "out.acdf";

@@ -246,11 +246,18 @@ void write_output(const std::string& path, const std::vector<std::uint8_t>& byte
     output.commit(readable ? verify : Verify{});
 }
 
-void make_folder(const std::string& folder) {
+OutputFolder::OutputFolder(const std::string& path) {
+    namespace fs = std::filesystem;
     std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error || !std::filesystem::is_directory(folder))
-        fail(folder, "cannot make this folder: " + error.message());
+    for (fs::path missing = path; !missing.empty() && !fs::exists(missing, error); missing = missing.parent_path())
+        made_.push_back(missing.string());
+    fs::create_directories(path, error);
+    if (error || !fs::is_directory(path)) fail(path, "cannot make this folder: " + error.message());
+}
+
+OutputFolder::~OutputFolder() {
+    for (const std::string& folder : made_)
+        if (rmdir(folder.c_str()) != 0) return;
 }
 
 } // namespace acdf::tools

@@ -57,7 +57,18 @@ private:
 void write_output(const std::string& path, const std::vector<std::uint8_t>& bytes, bool force,
                   const std::vector<std::string>& inputs = {}, const Verify& verify = {});
 
-/// With those above it, unless it is there. Throws Failure.
-void make_folder(const std::string& folder);
+/// A folder for outputs, made with those above it where they are missing. What was made is removed at the end where
+/// it is empty: a command that fails leaves none.
+class OutputFolder {
+public:
+    /// Throws Failure.
+    explicit OutputFolder(const std::string& path);
+    ~OutputFolder();
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+private:
+    std::vector<std::string> made_; ///< the deepest first
+};
 
 } // namespace acdf::tools

@@ -78,7 +78,7 @@ void show_brdf(const DemoArguments& options, const std::string& brdf, const std:
 }
 
 void run(const DemoArguments& options) {
-    make_folder(options.folder);
+    const OutputFolder folder(options.folder);
     if (options.probes.empty()) {
         for (const DemoProbe& probe : demo_probes()) {
             const std::string path = (fs::path(options.folder) / (probe.name + ".exr")).string();

@@ -70,11 +70,6 @@ class Folder {
 public:
     Folder(std::string path, bool force) : path_(std::move(path)), force_(force) {}
 
-    void create() const {
-        std::error_code error;
-        std::filesystem::create_directories(path_, error);
-        if (!std::filesystem::is_directory(path_)) throw Failure(path_ + ": cannot make this folder");
-    }
     /// Before any long work.
     void refuse_existing(const std::string& name) const {
         if (!force_ && std::filesystem::exists(at(name)))
@@ -229,7 +224,7 @@ void run(const RenderArguments& options) {
     const Folder folder(options.output, options.force);
     folder.refuse_existing("render.json");
     for (const std::string& stem : stems(samplers)) folder.refuse_existing(stem + ".exr");
-    folder.create();
+    const OutputFolder made(options.output);
 
     std::unique_ptr<LoadedScene> scene;
     RenderRun done;

@@ -197,7 +197,7 @@ void run(SweepArguments& options) {
     const SweepKind kind = options.kind ? *options.kind : kind_of(options.source);
     check_options(options, kind);
     const auto limit = limit_threads(options.threads);
-    make_folder(options.folder);
+    const OutputFolder folder(options.folder);
     const auto path = [&](const char* name) { return (fs::path(options.folder) / name).string(); };
     // All refuse early, before the work.
     Output csv(path("sweep.csv"), options.force, {options.source});
