@@ -79,7 +79,7 @@ ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     uint32_t cell[TOGETHER];
     int found[TOGETHER];
     size_t first, i;
-    if (!brdf->tables || !brdf->tables->grid) {
+    if (!ACDF_SIDE_BY_SIDE || !brdf->tables || !brdf->tables->grid) {
         for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_pdf(brdf, view, wi[i]);
         return;
     }

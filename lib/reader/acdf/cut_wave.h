@@ -1,6 +1,6 @@
 /* Several draws from a cut side by side (acdf/cut_sample.h): what one of them waits for, memory and the splits and
  * curves on its way, the others use. Each is acdf_cut_sample's to the bit. One freestanding header, valid C99,
- * C++17 and CUDA/HIP/SYCL, though kernels, whose threads wait for each other anyhow, have no use for it. */
+ * C++17 and CUDA/HIP/SYCL; in kernels it makes single calls. */
 #ifndef ACDF_CUT_WAVE_H
 #define ACDF_CUT_WAVE_H
 
@@ -193,7 +193,8 @@ ACDF_FN void acdf_cut_sample_wave(const AcdfLocal* local, const AcdfLocalPoint* 
     AcdfCutLane lane[ACDF_CUT_WAVE];
     AcdfCutLanes mixed;
     size_t first, i;
-    if (cut->count == 0 || !acdf_local_tabled(local, point) || point->mix.count != ACDF_CUT_WAVE_ROWS) {
+    if (!ACDF_SIDE_BY_SIDE || cut->count == 0 || !acdf_local_tabled(local, point) ||
+        point->mix.count != ACDF_CUT_WAVE_ROWS) {
         for (i = 0; i < count; ++i) out[i] = acdf_cut_sample(local, point, cut, u[i][0], u[i][1]);
         return;
     }
@@ -216,7 +217,7 @@ ACDF_FN void acdf_cut_pdf_wave(const AcdfLocal* local, const AcdfLocalPoint* poi
     AcdfCutLane lane[ACDF_CUT_WAVE];
     uint32_t square[ACDF_CUT_WAVE][2];
     size_t first, i;
-    if (cut->count == 0 || !acdf_local_tabled(local, point)) {
+    if (!ACDF_SIDE_BY_SIDE || cut->count == 0 || !acdf_local_tabled(local, point)) {
         for (i = 0; i < count; ++i) out[i] = acdf_cut_pdf(local, point, cut, directions[i]);
         return;
     }

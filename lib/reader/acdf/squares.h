@@ -23,6 +23,14 @@
 #define ACDF_PREFETCH(address) (void)(address)
 #endif
 
+/* Whether several calls are made side by side: not by threads of a GPU, which wait for each other anyhow, and
+ * whose registers would not hold them. */
+#ifdef ACDF_ON_GPU
+#define ACDF_SIDE_BY_SIDE 0
+#else
+#define ACDF_SIDE_BY_SIDE 1
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
