@@ -8,7 +8,7 @@
 // borders are left to the functions of acdf/local.h.
 #pragma once
 
-#include "local_tiles.h"
+#include "local_tile_vectors.h"
 #include "local_wavefront.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // linkage: see local_kernel.h.
 #pragma once
 
-#include "local_curves.h"
-#include "local_points.h"
+#include "local_curve_vectors.h"
+#include "local_point_vectors.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // Densities of LocalWavefront over vectors, operation by operation as in acdf/local.h; see local_kernel.h.
 #pragma once
 
-#include "local_tiles.h"
+#include "local_tile_vectors.h"
 #include "local_wavefront.h"
 
 #include <algorithm>
