@@ -3,61 +3,16 @@
 // breaks.
 #pragma once
 
+#include "tests/fuzz/sample_waves.h"
+
 #include <acdf/acdf.h>
 #include <acdf/shader_tables.h>
-#include <acdf/wavefront.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 
 namespace acdf_test {
-
-inline void require(bool condition) {
-    if (!condition) std::abort();
-}
-
-/// splitmix64: cheap to start, as each input starts one.
-class FuzzRandom {
-public:
-    explicit FuzzRandom(std::uint64_t seed) : state_(seed) {}
-
-    std::uint64_t next() {
-        std::uint64_t z = state_ += 0x9E3779B97F4A7C15u;
-        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-        return z ^ z >> 31;
-    }
-    std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(next() % n); }
-    double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-
-    /// A random number as careless callers have them: mostly in [0, 1), the ends, beyond them, NaN.
-    double any_u() {
-        static const double edges[] = {0.0,      1.0,       0.5,   1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30,
-                                       0x1p-149, 0x1p-1074, -0.25, 1.5,           HUGE_VAL,      std::nan("")};
-        return below(3) == 0 ? edges[below(sizeof edges / sizeof *edges)] : uniform();
-    }
-    /// A vector in [-1, 1]^3: often along axes, in planes of the seam and of the equator, at times not finite.
-    void any_vector(float v[3]) {
-        static const float edges[] = {0.0f, -0.0f, 1.0f, -1.0f, 0x1p-24f, 1e-38f, 3e38f, HUGE_VALF, std::nanf("")};
-        const std::uint32_t choice = below(8);
-        for (int k = 0; k < 3; ++k)
-            v[k] = choice == 0   ? edges[below(sizeof edges / sizeof *edges)]
-                   : choice == 1 ? static_cast<float>(static_cast<int>(below(3)) - 1)
-                                 : static_cast<float>(2.0 * uniform() - 1.0);
-    }
-    void unit_vector(float v[3], bool upper) {
-        const double z = below(8) == 0 ? static_cast<double>(below(2)) : upper ? uniform() : 2.0 * uniform() - 1.0;
-        const double phi = below(8) == 0 ? 0.5 * ACDF_PI * below(4) : 2.0 * ACDF_PI * uniform();
-        const double r = std::sqrt(1.0 - z * z);
-        v[0] = static_cast<float>(r * std::cos(phi));
-        v[1] = static_cast<float>(r * std::sin(phi));
-        v[2] = static_cast<float>(z);
-    }
-
-private:
-    std::uint64_t state_;
-};
 
 inline bool is_unit(const float v[3]) {
     double square = 0.0;
@@ -66,8 +21,6 @@ inline bool is_unit(const float v[3]) {
 }
 inline bool is_density(double pdf) { return pdf >= 0.0 && std::isfinite(pdf); }
 inline bool in_unit_square(const double u[2]) { return u[0] >= 0.0 && u[0] <= 1.0 && u[1] >= 0.0 && u[1] <= 1.0; }
-
-inline constexpr int samples_a_file = 24;
 
 inline void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
     require(view.total() > 0.0);
@@ -83,6 +36,7 @@ inline void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& ran
         random.unit_vector(any, false);
         require(view.invert(any, u) == (view.pdf(any) > 0.0f));
     }
+    wavefront_is_the_view(view, random);
 }
 
 inline void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
@@ -114,30 +68,9 @@ inline void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom
         if (s.pdf == 0.0f) continue;
         require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
     }
+    wavefront_is_the_view(view, random);
+    product_at_once_is_the_product(view, random);
     sample_everything(view.environment(), random);
-}
-
-/// Many views at once, by whatever instructions this processor has.
-inline void wavefront_is_the_view(const acdf::BrdfView& view, FuzzRandom& random) {
-    acdf::BrdfWavefront wavefront;
-    require(acdf::BrdfWavefront::prepare(view, wavefront).ok());
-    float wo[samples_a_file][3], wi[samples_a_file][3], pdfs[samples_a_file];
-    double u[samples_a_file][2];
-    acdf::DirectionSample samples[samples_a_file];
-    for (int n = 0; n < samples_a_file; ++n) {
-        if (n % 4 == 3) random.any_vector(wo[n]);
-        else random.unit_vector(wo[n], true);
-        if (n % 2 == 0) random.any_vector(wi[n]);
-        else random.unit_vector(wi[n], false);
-        for (double& v : u[n]) v = random.any_u();
-    }
-    wavefront.sample(wo, u, samples_a_file, samples);
-    wavefront.pdf(wo, wi, samples_a_file, pdfs);
-    for (int n = 0; n < samples_a_file; ++n) {
-        const acdf::DirectionSample s = view.sample(wo[n], u[n][0], u[n][1]);
-        require(std::memcmp(&s, &samples[n], sizeof s) == 0);
-        require(view.pdf(wo[n], wi[n]) == pdfs[n]);
-    }
 }
 
 inline void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {

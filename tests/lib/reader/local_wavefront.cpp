@@ -3,6 +3,7 @@
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/no_pieces.h"
 
 #include <acdf/wavefront.h>
 
@@ -100,21 +101,6 @@ void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t c
 void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t count) {
     for (const acdf::Instructions most : kEach) expect_the_local_view(view, count, most);
 }
-
-/// As large files have them, which leave pieces out: a copy of the tables without those.
-struct NoPieces {
-    struct alignas(64) Line {
-        std::uint32_t word[16];
-    };
-    std::vector<Line> lines;
-    AcdfLocal local;
-
-    explicit NoPieces(const AcdfLocal& from) : lines((from.tables->words + 15) / 16), local(from) {
-        std::memcpy(lines.data(), from.tables, 4 * std::size_t{from.tables->words});
-        reinterpret_cast<AcdfLocalTables*>(lines.data())->pieces = 0;
-        local.tables = reinterpret_cast<const AcdfLocalTables*>(lines.data());
-    }
-};
 
 void expect_all(const acdf::File& file) {
     const acdf::LocalEnvironmentView view = file.local();

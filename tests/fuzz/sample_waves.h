@@ -1,0 +1,115 @@
+// Many draws and densities at once, by whatever instructions this processor has, of any file that was accepted:
+// those of single calls, to the bit.
+#pragma once
+
+#include "tests/fuzz/fuzz_random.h"
+#include "tests/lib/reader/no_pieces.h"
+
+#include <acdf/product.h>
+#include <acdf/wavefront.h>
+
+#include <cstring>
+
+namespace acdf_test {
+
+/// What waves take and give.
+struct FuzzWave {
+    float first[samples_a_file][3], second[samples_a_file][3], pdfs[samples_a_file];
+    double u[samples_a_file][2];
+    acdf::DirectionSample samples[samples_a_file];
+
+    /// Each fourth of the first vectors and each second of the others may be no direction; `upper`: where the first
+    /// ones lie.
+    FuzzWave(FuzzRandom& random, bool upper) {
+        for (int n = 0; n < samples_a_file; ++n) {
+            if (n % 4 == 3) random.any_vector(first[n]);
+            else random.unit_vector(first[n], upper);
+            if (n % 2 == 0) random.any_vector(second[n]);
+            else random.unit_vector(second[n], false);
+            for (double& v : u[n]) v = random.any_u();
+        }
+    }
+    void require_sample(int n, const acdf::DirectionSample& s) const {
+        require(std::memcmp(&s, &samples[n], sizeof s) == 0);
+    }
+};
+
+inline void wavefront_is_the_view(const acdf::BrdfView& view, FuzzRandom& random) {
+    acdf::BrdfWavefront wavefront;
+    require(acdf::BrdfWavefront::prepare(view, wavefront).ok());
+    FuzzWave wave(random, true);
+    wavefront.sample(wave.first, wave.u, samples_a_file, wave.samples);
+    wavefront.pdf(wave.first, wave.second, samples_a_file, wave.pdfs);
+    for (int n = 0; n < samples_a_file; ++n) {
+        wave.require_sample(n, view.sample(wave.first[n], wave.u[n][0], wave.u[n][1]));
+        require(view.pdf(wave.first[n], wave.second[n]) == wave.pdfs[n]);
+    }
+}
+
+inline void wavefront_is_the_view(const acdf::EnvironmentView& view, FuzzRandom& random) {
+    const acdf::EnvironmentWavefront wavefront(view);
+    FuzzWave wave(random, false);
+    wavefront.sample(wave.u, samples_a_file, wave.samples);
+    wavefront.pdf(wave.second, samples_a_file, wave.pdfs);
+    for (int n = 0; n < samples_a_file; ++n) {
+        wave.require_sample(n, view.sample(wave.u[n][0], wave.u[n][1]));
+        require(view.pdf(wave.second[n]) == wave.pdfs[n]);
+    }
+}
+
+/// Of a normal each, and of one shading point.
+inline void local_wavefront_is_the_view(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
+    const auto most = random.below(2) == 0 ? acdf::Instructions::avx2 : acdf::Instructions::avx512;
+    const acdf::LocalWavefront wavefront(view, most);
+    FuzzWave wave(random, false);
+    wavefront.sample(wave.first, wave.u, samples_a_file, wave.samples);
+    wavefront.pdf(wave.first, wave.second, samples_a_file, wave.pdfs);
+    for (int n = 0; n < samples_a_file; ++n) {
+        wave.require_sample(n, view.sample(wave.first[n], wave.u[n][0], wave.u[n][1]));
+        require(view.pdf(wave.first[n], wave.second[n]) == wave.pdfs[n]);
+    }
+    const AcdfLocalPoint point = view.at(wave.first[random.below(samples_a_file)]);
+    wavefront.sample(point, wave.u, samples_a_file, wave.samples);
+    wavefront.pdf(point, wave.second, samples_a_file, wave.pdfs);
+    for (int n = 0; n < samples_a_file; ++n) {
+        wave.require_sample(n, view.sample(point, wave.u[n][0], wave.u[n][1]));
+        require(view.pdf(point, wave.second[n]) == wave.pdfs[n]);
+    }
+}
+
+inline void wavefront_is_the_view(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
+    local_wavefront_is_the_view(view, random);
+    if (!view.data().tables) return;
+    const NoPieces large(view.data());
+    local_wavefront_is_the_view(acdf::LocalEnvironmentView(large.local), random);
+}
+
+/// With a lobe that is the cosine, drawn around the normal.
+inline void product_at_once_is_the_product(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
+    const auto density = [](const float*, const float* wi) { return wi[2] > 0.0f ? wi[2] / float(ACDF_PI) : 0.0f; };
+    const auto draw = [&](const float* wo, double u0, double u1) {
+        acdf::ProductSample s;
+        double sine, cosine;
+        acdf_sincospi(2.0 * acdf_unit_interval(u0) - 1.0, &sine, &cosine);
+        const double v = acdf_unit_interval(u1), radius = std::sqrt(v);
+        s.direction[0] = static_cast<float>(radius * cosine);
+        s.direction[1] = static_cast<float>(radius * sine);
+        s.direction[2] = static_cast<float>(std::sqrt(1.0 - v));
+        s.pdf = density(wo, s.direction);
+        return s;
+    };
+    const acdf::Lobe lobe([](const float*, const float*) { return 1.0; }, draw, density);
+    const acdf::ProductSampler sampler(view.data(), lobe, {static_cast<int>(1 + random.below(12))});
+    FuzzWave wave(random, false);
+    const auto point = sampler.at(wave.first[0], wave.first[1]);
+    acdf::ProductSample at_once[samples_a_file];
+    sampler.sample(point, samples_a_file, wave.u, at_once);
+    for (int n = 0; n < samples_a_file; ++n) {
+        const acdf::ProductSample s = sampler.sample(point, wave.u[n][0], wave.u[n][1]);
+        require(std::memcmp(&s, &at_once[n], sizeof s) == 0);
+        require(s.pdf >= 0.0f && std::isfinite(s.pdf) && std::isfinite(sampler.pdf(point, wave.second[n])));
+        require(sampler.pdf(point, s.direction) == s.pdf || s.pdf == 0.0f);
+    }
+}
+
+} // namespace acdf_test
