@@ -1,5 +1,7 @@
 #include "images/float_map.h"
 
+#include "images/one_part.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -102,8 +104,7 @@ std::optional<Layout> layout_of(std::ifstream& file, std::uintmax_t bytes) {
 
 /// Null where it is none.
 std::unique_ptr<FloatMap> open_map(const std::string& path) {
-    std::error_code error; // a pipe is not looked into
-    if (!std::filesystem::is_regular_file(path, error)) return nullptr;
+    std::error_code error;
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     if (error) return nullptr;
     auto map = std::make_unique<FloatMap>();
@@ -129,8 +130,6 @@ void* open(const std::string& path, int, Header& header, std::string&) {
 }
 
 void close(void* image) { std::unique_ptr<FloatMap>(static_cast<FloatMap*>(image)); }
-
-bool seek(void*, int part, Header&) { return part == 0; }
 
 void swap_bytes(std::vector<float>& numbers) {
     for (float& number : numbers) {
@@ -171,15 +170,10 @@ bool read(void* image, const Rows& rows, float* to, std::string& error) {
     return true;
 }
 
-// It has no attributes.
-std::string text(const void*, const char*) { return ""; }
-int integer(const void*, const char*, int otherwise) { return otherwise; }
-float real(const void*, const char*, float otherwise) { return otherwise; }
-
 } // namespace
 
 const ImageReader& float_map_reader() {
-    static const ImageReader functions = {open, close, seek, read, text, integer, real};
+    static const ImageReader functions = {open, close, seek_one_part, read, no_text, no_integer, no_real};
     return functions;
 }
 

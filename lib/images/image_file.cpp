@@ -13,8 +13,6 @@ namespace {
 
 /// Whether a file begins as one of OpenEXR does that has one part in rows, and no deep pixels.
 bool begins_as_openexr(const std::string& path) {
-    std::error_code error; // a pipe is not looked into
-    if (!std::filesystem::is_regular_file(path, error)) return false;
     std::array<unsigned char, 8> begin{}; // its number, the version, flags
     std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(begin.data()), begin.size());
     constexpr unsigned kTilesDeepOrParts = 0x1A;
@@ -25,8 +23,10 @@ bool begins_as_openexr(const std::string& path) {
 } // namespace
 
 ImageFile::ImageFile(const std::string& path, int threads) : path_(path), threads_(threads) {
-    if (open(float_map_reader()) || open(radiance_reader())) return;
-    if (begins_as_openexr(path) && open(openexr_module().reader)) return;
+    std::error_code error; // a pipe is not looked into
+    const bool regular = std::filesystem::is_regular_file(path, error);
+    if (regular && (open(float_map_reader()) || open(radiance_reader()))) return;
+    if (regular && begins_as_openexr(path) && open(openexr_module().reader)) return;
     open(module().reader);
 }
 

@@ -1,10 +1,11 @@
 #include "images/radiance.h"
 
+#include "images/one_part.h"
+
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -71,8 +72,6 @@ bool read_header(Radiance& picture) {
 }
 
 void* open_radiance(const std::string& path, int, Header& header, std::string&) {
-    std::error_code error; // a pipe is not looked into
-    if (!std::filesystem::is_regular_file(path, error)) return nullptr;
     auto picture = std::make_unique<Radiance>();
     picture->file.open(path, std::ios::binary);
     if (!read_header(*picture)) return nullptr;
@@ -88,8 +87,6 @@ void* open_radiance(const std::string& path, int, Header& header, std::string&) 
 }
 
 void close_radiance(void* image) { std::unique_ptr<Radiance>(static_cast<Radiance*>(image)); }
-
-bool seek_radiance(void*, int part, Header&) { return part == 0; }
 
 /// One of the four components of a row: runs of a byte, and bytes as they are.
 bool read_component(std::streambuf& bytes, unsigned char* at, unsigned char* end) {
@@ -163,16 +160,12 @@ bool read_radiance(void* image, const Rows& rows, float* to, std::string& error)
     return true;
 }
 
-// It is upright and linear: nothing has to be said.
-std::string text_of_radiance(const void*, const char*) { return ""; }
-int integer_of_radiance(const void*, const char*, int otherwise) { return otherwise; }
-float real_of_radiance(const void*, const char*, float otherwise) { return otherwise; }
-
 } // namespace
 
 const ImageReader& radiance_reader() {
-    static const ImageReader functions = {open_radiance,    close_radiance,      seek_radiance,   read_radiance,
-                                          text_of_radiance, integer_of_radiance, real_of_radiance};
+    // It is upright and linear: nothing has to be said.
+    static const ImageReader functions = {open_radiance, close_radiance, seek_one_part, read_radiance,
+                                          no_text,       no_integer,     no_real};
     return functions;
 }
 

@@ -29,8 +29,14 @@ struct FuzzWave {
             for (double& v : u[n]) v = random.any_u();
         }
     }
-    void require_sample(int n, const acdf::DirectionSample& s) const {
-        require(std::memcmp(&s, &samples[n], sizeof s) == 0);
+    /// What waves gave is what single calls give: of number n.
+    template <class Sample, class Pdf>
+    void require_single(const Sample& sample, const Pdf& pdf) const {
+        for (int n = 0; n < samples_a_file; ++n) {
+            const acdf::DirectionSample s = sample(n);
+            require(std::memcmp(&s, &samples[n], sizeof s) == 0);
+            require(pdf(n) == pdfs[n]);
+        }
     }
 };
 
@@ -40,10 +46,8 @@ inline void wavefront_is_the_view(const acdf::BrdfView& view, FuzzRandom& random
     FuzzWave wave(random, true);
     wavefront.sample(wave.first, wave.u, samples_a_file, wave.samples);
     wavefront.pdf(wave.first, wave.second, samples_a_file, wave.pdfs);
-    for (int n = 0; n < samples_a_file; ++n) {
-        wave.require_sample(n, view.sample(wave.first[n], wave.u[n][0], wave.u[n][1]));
-        require(view.pdf(wave.first[n], wave.second[n]) == wave.pdfs[n]);
-    }
+    wave.require_single([&](int n) { return view.sample(wave.first[n], wave.u[n][0], wave.u[n][1]); },
+                        [&](int n) { return view.pdf(wave.first[n], wave.second[n]); });
 }
 
 inline void wavefront_is_the_view(const acdf::EnvironmentView& view, FuzzRandom& random) {
@@ -51,10 +55,8 @@ inline void wavefront_is_the_view(const acdf::EnvironmentView& view, FuzzRandom&
     FuzzWave wave(random, false);
     wavefront.sample(wave.u, samples_a_file, wave.samples);
     wavefront.pdf(wave.second, samples_a_file, wave.pdfs);
-    for (int n = 0; n < samples_a_file; ++n) {
-        wave.require_sample(n, view.sample(wave.u[n][0], wave.u[n][1]));
-        require(view.pdf(wave.second[n]) == wave.pdfs[n]);
-    }
+    wave.require_single([&](int n) { return view.sample(wave.u[n][0], wave.u[n][1]); },
+                        [&](int n) { return view.pdf(wave.second[n]); });
 }
 
 /// Of a normal each, and of one shading point.
@@ -64,17 +66,13 @@ inline void local_wavefront_is_the_view(const acdf::LocalEnvironmentView& view, 
     FuzzWave wave(random, false);
     wavefront.sample(wave.first, wave.u, samples_a_file, wave.samples);
     wavefront.pdf(wave.first, wave.second, samples_a_file, wave.pdfs);
-    for (int n = 0; n < samples_a_file; ++n) {
-        wave.require_sample(n, view.sample(wave.first[n], wave.u[n][0], wave.u[n][1]));
-        require(view.pdf(wave.first[n], wave.second[n]) == wave.pdfs[n]);
-    }
+    wave.require_single([&](int n) { return view.sample(wave.first[n], wave.u[n][0], wave.u[n][1]); },
+                        [&](int n) { return view.pdf(wave.first[n], wave.second[n]); });
     const AcdfLocalPoint point = view.at(wave.first[random.below(samples_a_file)]);
     wavefront.sample(point, wave.u, samples_a_file, wave.samples);
     wavefront.pdf(point, wave.second, samples_a_file, wave.pdfs);
-    for (int n = 0; n < samples_a_file; ++n) {
-        wave.require_sample(n, view.sample(point, wave.u[n][0], wave.u[n][1]));
-        require(view.pdf(point, wave.second[n]) == wave.pdfs[n]);
-    }
+    wave.require_single([&](int n) { return view.sample(point, wave.u[n][0], wave.u[n][1]); },
+                        [&](int n) { return view.pdf(point, wave.second[n]); });
 }
 
 inline void wavefront_is_the_view(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {

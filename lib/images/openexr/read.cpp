@@ -1,6 +1,6 @@
 // The module that reads usual OpenEXR files: one part in rows, of R, G and B, maybe with A, in floats. What else
 // there is, and whatever is wrong with a file, is left to OpenImageIO, which takes a hundred times longer to load.
-#include "images/module.h"
+#include "images/one_part.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -111,8 +111,6 @@ void* open(const std::string& path, int threads, Header& header, std::string& er
 
 void close(void* image) { std::unique_ptr<OpenExr>(static_cast<OpenExr*>(image)); }
 
-bool seek(void*, int part, Header&) { return part == 0; }
-
 bool read(void* image, const Rows& rows, float* to, std::string& error) {
     OpenExr& exr = *static_cast<OpenExr*>(image);
     const Imath::Box2i box = exr.file->header().dataWindow();
@@ -141,14 +139,13 @@ bool read(void* image, const Rows& rows, float* to, std::string& error) {
 std::string text(const void*, const char* name) {
     return std::strcmp(name, "oiio:ColorSpace") == 0 ? "Linear" : "";
 }
-int integer(const void*, const char*, int otherwise) { return otherwise; }
-float real(const void*, const char*, float otherwise) { return otherwise; }
 
 } // namespace
 } // namespace acdf::images
 
 extern "C" __attribute__((visibility("default"))) const acdf::images::ReaderModule* acdf_openexr_module() {
     using namespace acdf::images;
-    static const ReaderModule functions = {ACDF_VERSION, {open, close, seek, read, text, integer, real}};
+    static const ReaderModule functions = {ACDF_VERSION,
+                                           {open, close, seek_one_part, read, text, no_integer, no_real}};
     return &functions;
 }
