@@ -17,7 +17,7 @@ Instructions instructions_of_this_processor() noexcept {
 
 EnvironmentWavefront::EnvironmentWavefront(const EnvironmentView& view, Instructions most) noexcept
     : environment_(view.data()) {
-    if (environment_.cells) instructions_ = std::min(most, instructions_of_this_processor());
+    if (environment_.cells || environment_.groups) instructions_ = std::min(most, instructions_of_this_processor());
 }
 
 void EnvironmentWavefront::sample(const double (*u)[2], std::size_t count, DirectionSample* out) const noexcept {

@@ -3,6 +3,7 @@
 
 #include "local_tile_vectors.h"
 #include "local_wavefront.h"
+#include "row_vectors.h"
 
 #include <algorithm>
 #include <cstring>
@@ -11,60 +12,16 @@ namespace {
 
 // ---- squares ---------------------------------------------------------------------------------------------------
 
-ACDF_LANE Floats with_sign(Floats size, Floats of) {
-    return (Floats)(((Words)size & 0x7FFFFFFFu) | ((Words)of & 0x80000000u));
-}
-
-/* acdf_turn_float */
-ACDF_LANE Floats turn_of(Floats y, Floats x) {
-    const Floats ax = absolute(x), ay = absolute(y), one = Floats{} + 1.0f;
-    const Floats level = with_sign(one, ax - ay), east = with_sign(one, x);
-    const Floats eighth = arc_tangent(least(ay, ax) / most(ay, ax)) * (float)(0.5 / ACDF_PI);
-    const Floats quarter = (0.125f - 0.125f * level) + level * eighth;
-    return with_sign((0.25f - 0.25f * east) + east * quarter, y);
-}
-
-/* acdf_sure_step, into the lanes from one on. Returns those that are sure. */
-ACDF_LANE Signed sure_step(Floats place, float border, Signed refused, long long* square) {
-    const Signed step = __builtin_convertvector(select(refused, Floats{}, place), Signed);
-    const Floats inside = place - __builtin_convertvector(step, Floats);
-    for (int half = 0; half < 2; ++half) stored(square + ACDF_WIDTH * half, widened(step, half));
-    return (inside > border) & (inside < 1.0f - border);
-}
-
-/* acdf_row_square, or acdf_fold_square, of kLanes lanes from one on. Returns those of which floats do not tell. */
+/* The squares of kLanes directions, into the lanes from one on. Returns those of which floats do not tell. */
 ACDF_LANE std::uint32_t find_squares(const AcdfLocal& local, const float (*directions)[3], std::size_t first,
                                      Cells* cells) {
-    const auto columns = (float)local.environment.columns, rows = (float)local.environment.rows;
-    Floats w[3], place[2];
-    Signed refused, sure;
-    float border[2];
-    load_vectors(directions, w);
-    if (local.tables->octahedral) {
-        Floats across, along;
-        Words key[2];
-        refused = direction_place(true, w, &across, &along, key);
-        place[0] = columns * (0.5f - 0.5f * across);
-        place[1] = rows * (0.5f + 0.5f * along);
-        border[0] = columns * 2.0f * ACDF_FOLD_BORDER;
-        border[1] = rows * 2.0f * ACDF_FOLD_BORDER;
-    } else {
-        const Floats sin2 = w[0] * w[0] + w[1] * w[1];
-        const float step = 2.0f * ACDF_FLOAT_BORDER * (float)(0.5 / ACDF_PI);
-        refused = are_not_directions(sin2, sin2 + w[2] * w[2]);
-        place[0] = columns * (0.5f - turn_of(w[1], w[0]));
-        place[1] = rows * 2.0f * turn_of(root(sin2), w[2]);
-        border[0] = columns * step;
-        border[1] = rows * 2.0f * step;
-    }
-    sure = ~refused;
-    for (int axis = 0; axis < 2; ++axis)
-        sure &= sure_step(place[axis], border[axis], refused, &cells->square[axis][first]);
+    const AcdfEnvironment& grid = local.environment;
+    Signed square[2];
+    const Signed sure = squares_of(local.tables->octahedral != 0, grid.columns, grid.rows, directions, square);
     for (int axis = 0; axis < 2; ++axis) /* of others any that the grid has */
-        for (std::size_t half = 0; half < 2; ++half) {
-            long long* const square = &cells->square[axis][first + ACDF_WIDTH * half];
-            stored(square, loaded(square) & widened(sure, (int)half));
-        }
+        for (int half = 0; half < 2; ++half)
+            stored(&cells->square[axis][first + ACDF_WIDTH * (std::size_t)half],
+                   widened(square[axis] & sure, half));
     return bits(~sure);
 }
 

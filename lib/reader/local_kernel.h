@@ -10,6 +10,7 @@
 
 #include "local_tile_vectors.h"
 #include "local_wavefront.h"
+#include "row_vectors.h"
 
 #include <algorithm>
 #include <cstring>
@@ -154,54 +155,31 @@ ACDF_LANE void end_walks(const Walks& w, Cells* cells) {
 
 // ---- directions ------------------------------------------------------------------------------------------------
 
-/// Halves of kLanes cells, and what is to be drawn of them.
-struct Drawn {
-    Vector angle[2], cap[2], pdf[2];
-    Longs quarter[2], south[2];
-    Integer refused[2];
-};
-
-/* acdf_row_place of half of some lanes, in doubles. */
-ACDF_LANE void row_place(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t at, int half,
-                         Drawn* out) {
-    const double columns = local.environment.columns, border = columns * (ACDF_FLOAT_BORDER / (2.0 * ACDF_PI));
+/* acdf_row_place of half of some lanes, in doubles. Returns the densities. */
+ACDF_LANE Vector row_place(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t at, int half,
+                           Drawn* out) {
+    const double columns = local.environment.columns;
     const double* const z = acdf_local_heights(local.tables);
-    const Vector low = converted(loaded(&done.low[0][at])), high = converted(loaded(&done.high[0][at])),
-                 width = high - low;
-    const Vector west = loaded(&done.u[0][at]) * width, x = low + west;
+    const Vector low = converted(loaded(&done.low[0][at])), high = converted(loaded(&done.high[0][at]));
     const Vector z0 = (Vector)loaded_from(z, loaded(&done.low[1][at])),
                  z1 = (Vector)loaded_from(z, loaded(&done.high[1][at]));
-    const Vector height = z0 + loaded(&done.u[1][at]) * (z1 - z0), cap = 1.0 - absolute(height);
-    const Vector from_north = z0 - height, from_south = height - z1;
-    const Vector nearest = select(from_north < from_south, from_north, from_south);
-    const Vector turn = 1.0 - x * (2.0 / columns), quarter = whole_part(2.0 * turn + 4.5) - 4.0;
-    out->refused[half] = (west < border) | (high - x < border) |
-                         (cap < (double)(ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER)) |
-                         (nearest * nearest < 2.0 * ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER * cap);
-    out->angle[half] = (turn - 0.5 * quarter) * ACDF_PI;
-    out->cap[half] = cap;
-    out->quarter[half] = (Longs)truncated(quarter + 4.0) & 3u;
-    out->south[half] = (Longs)(height < 0.0) & 1u;
-    out->pdf[half] = area_pdf(probabilities(cells, done, at), columns, row_area(width, z0, z1));
+    const Vector u[2] = {loaded(&done.u[0][at]), loaded(&done.u[1][at])};
+    row_direction(columns, low, high, z0, z1, u, half, out);
+    return area_pdf(probabilities(cells, done, at), columns, row_area(high - low, z0, z1));
 }
 
-/* acdf_fold_place: the angle is the place across the square, the cap that along it. */
-ACDF_LANE void fold_place(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t at, int half,
-                          Drawn* out) {
-    const double steps[2] = {(double)local.environment.columns, (double)local.environment.rows};
-    Vector width[2], place[2];
-    out->refused[half] = Integer{};
+/* acdf_fold_place of the same. */
+ACDF_LANE Vector fold_place(const AcdfLocal& local, const Cells& cells, const Boxes& done, std::size_t at, int half,
+                            Drawn* out) {
+    const double columns = local.environment.columns, rows = local.environment.rows;
+    Vector low[2], width[2], u[2];
     for (int axis = 0; axis < 2; ++axis) {
-        const Vector low = converted(loaded(&done.low[axis][at]));
-        const double border = steps[axis] * ACDF_FOLD_BORDER;
-        width[axis] = converted(loaded(&done.high[axis][at])) - low;
-        const Vector from = loaded(&done.u[axis][at]) * width[axis];
-        out->refused[half] |= (from < border) | (width[axis] - from < border);
-        place[axis] = 2.0 * (low + from) / steps[axis];
+        low[axis] = converted(loaded(&done.low[axis][at]));
+        width[axis] = converted(loaded(&done.high[axis][at])) - low[axis];
+        u[axis] = loaded(&done.u[axis][at]);
     }
-    out->angle[half] = 1.0 - place[0];
-    out->cap[half] = place[1] - 1.0;
-    out->pdf[half] = area_pdf(probabilities(cells, done, at), steps[0], fold_area(width[0], width[1], steps[1]));
+    fold_direction(columns, rows, low, width, u, half, out);
+    return area_pdf(probabilities(cells, done, at), columns, fold_area(width[0], width[1], rows));
 }
 
 /* acdf_local_place of all cells. Returns the lanes that are not answered. */
@@ -210,21 +188,16 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
     std::uint64_t lost = 0;
     for (std::size_t first = 0; first < done.count; first += kLanes) {
         Drawn d;
+        Vector pdf[2];
         Floats direction[3];
         AcdfDirectionSample drawn[kLanes];
         for (int half = 0; half < 2; ++half) {
             const std::size_t at = first + ACDF_WIDTH * (std::size_t)half;
-            if (local.tables->octahedral) fold_place(local, cells, done, at, half, &d);
-            else row_place(local, cells, done, at, half, &d);
+            pdf[half] = local.tables->octahedral ? fold_place(local, cells, done, at, half, &d)
+                                                 : row_place(local, cells, done, at, half, &d);
         }
-        const Floats angle = to_floats((Doubles)d.angle[0], (Doubles)d.angle[1]);
-        const Floats cap = to_floats((Doubles)d.cap[0], (Doubles)d.cap[1]);
-        if (local.tables->octahedral) square_direction(angle, cap, direction);
-        else
-            piece_direction(angle, cap, low_words(d.quarter[0], d.quarter[1]), low_words(d.south[0], d.south[1]),
-                            direction);
-        store_samples(direction, to_floats((Doubles)d.pdf[0], (Doubles)d.pdf[1]), drawn);
-        const std::uint32_t refused = bits(d.refused[0]) | bits(d.refused[1]) << ACDF_WIDTH;
+        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, d, direction);
+        store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), drawn);
         for (std::size_t i = 0; i < kLanes && first + i < done.count; ++i) {
             const std::size_t lane = (std::size_t)cells.lane[done.number[first + i]];
             out[lane] = drawn[i];

@@ -63,14 +63,6 @@ ACDF_LANE void load_corners(const AcdfLocalTables& tables, Integer number, Vecto
            (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(&tables), &tables.tiles, 0);
 }
 
-ACDF_LANE Vector whole_part(Vector x) { // of x in [0, 2^31)
-#if ACDF_WIDTH == 8
-    return (Vector)_mm512_roundscale_pd((__m512d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
-#else
-    return (Vector)_mm256_round_pd((__m256d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
-#endif
-}
-
 /* acdf_local_at by tables of corners; what those do not serve is not served. Small whole numbers are doubles. */
 ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points* out) {
     const double n = local.subdivisions, side = 2.0 * n + 1.0;

@@ -1,5 +1,6 @@
-// What the loops of LocalWavefront need beside the vectors of the other two: pairs of doubles that are gathered,
-// lanes that are packed, and what acdf/elementary.h says of single numbers. Internal linkage: see local_kernel.h.
+// What the loops of LocalWavefront and those of groups of cells need beside the vectors of the other two: pairs of
+// doubles that are gathered, lanes that are packed, and what acdf/elementary.h says of single numbers. Internal
+// linkage: see local_kernel.h.
 #pragma once
 
 #include "piece_vectors.h"
@@ -212,6 +213,13 @@ ACDF_LANE Integer numbers_from(std::size_t first) {
     return lane + (long long)first;
 }
 
+ACDF_LANE Vector whole_part(Vector x) { // of x in [0, 2^31)
+#if ACDF_WIDTH == 8
+    return (Vector)_mm512_roundscale_pd((__m512d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+#else
+    return (Vector)_mm256_round_pd((__m256d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+#endif
+}
 /* acdf_unit_interval, acdf_positive. */
 ACDF_LANE Vector unit_interval(Vector u) {
     const Vector kept = select((absolute(u) <= 0x1.fffffffffffffp1023) & (u > 0.0), u, all(0.0));

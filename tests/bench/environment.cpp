@@ -187,8 +187,9 @@ int of_files(int files, char** paths) {
     const std::vector<float> u = numbers(false);
     const Directions w = uniform_directions(kNumbers, 9);
     std::printf(
-        "| file | bytes | tables | making them, ms | ns a draw | walked | of the full table's, 1k and 4k | ns a "
-        "density | walked | of the full table's, 1k and 4k |\n|---|---|---|---|---|---|---|---|---|---|\n");
+        "| file | bytes | tables | making them, ms | ns a draw | walked | of the full table's, 1k and 4k | AVX2, "
+        "AVX-512 | ns a density | walked | of the full table's, 1k and 4k | AVX2, AVX-512 "
+        "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < files; ++i) {
         std::ifstream in(paths[i], std::ios::binary);
         const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
@@ -205,10 +206,12 @@ int of_files(int files, char** paths) {
         }
         if (plain.kind() != ACDF_KIND_ENVIRONMENT) return 1;
         const EnvironmentView fast = tables.environment(), slow = plain.environment();
+        const Waves waves[2] = {{fast, u, Instructions::avx2}, {fast, u, Instructions::avx512}};
         std::vector<Candidate> drawn{draws("1k", full[0], u), draws("4k", full[1], u), draws("tables", fast, u),
-                                     draws("walk", slow, u)};
-        std::vector<Candidate> told{densities("1k", full[0], w), densities("4k", full[1], w),
-                                    densities("tables", fast, w), densities("walk", slow, w)};
+                                     draws("walk", slow, u),  waves[0].draws("avx2"),  waves[1].draws("avx512")};
+        std::vector<Candidate> told{densities("1k", full[0], w),   densities("4k", full[1], w),
+                                    densities("tables", fast, w),  densities("walk", slow, w),
+                                    waves[0].densities("avx2", w), waves[1].densities("avx512", w)};
         std::string name = paths[i];
         name.erase(0, name.find_last_of('/') + 1);
         std::printf("| %s | %llu | %llu | %.1f", name.c_str(), static_cast<unsigned long long>(plain.size()),
@@ -218,8 +221,8 @@ int of_files(int files, char** paths) {
             turns.rounds = 20;
             acdf_bench::take_turns(*all, turns);
             const double ns = (*all)[2].least;
-            std::printf(" | %.1f | %.1f | %.2f %.2f", ns, (*all)[3].least, ns / (*all)[0].least,
-                        ns / (*all)[1].least);
+            std::printf(" | %.1f | %.1f | %.2f %.2f | %.1f %.1f", ns, (*all)[3].least, ns / (*all)[0].least,
+                        ns / (*all)[1].least, (*all)[4].least, (*all)[5].least);
         }
         std::printf(" |\n");
         std::fflush(stdout);

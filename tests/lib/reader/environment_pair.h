@@ -3,11 +3,9 @@
 #pragma once
 
 #include "tests/inputs/synthetic.h"
+#include "tests/lib/reader/grouped.h"
 #include "tests/lib/reader/random.h"
 #include "tests/lib/reader/tables_pair.h"
-
-#include "make_groups.h"
-#include "memory.h"
 
 #include <acdf/reader.h>
 
@@ -15,6 +13,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <random>
 
 namespace acdf_test {
@@ -30,13 +29,9 @@ public:
         data_ = fast.environment().data();
         grid_ = acdf_environment_grid(&data_);
         if (tables == Tables::own) return;
-        data_.cells = nullptr;
-        data_.groups = acdf::make_groups(data_, acdf::TreeSurvey(data_, fast.tree_units()),
-                                         8 * bytes.size() + (1u << 20), {}, block_);
+        grouped_.emplace(data_, fast.tree_units(), 8 * bytes.size() + (1u << 20), false);
+        data_ = grouped_->data;
     }
-    ~EnvironmentPair() { acdf::give_block({}, block_); }
-    EnvironmentPair(const EnvironmentPair&) = delete;
-    EnvironmentPair& operator=(const EnvironmentPair&) = delete;
 
     acdf::EnvironmentView view() const { return acdf::EnvironmentView(data_); }
     bool has_tables() const { return data_.cells || data_.groups; }
@@ -56,7 +51,7 @@ public:
 private:
     AcdfEnvironment data_ = {};
     AcdfGrid grid_ = {};
-    AcdfBlock block_ = {};
+    std::optional<Grouped> grouped_;
 };
 
 /// Numbers and directions that were asked, and for how many the tables told the answer.
