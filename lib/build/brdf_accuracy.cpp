@@ -5,6 +5,7 @@
 #include "compress/sum.h"
 
 #include <acdf/sample.h>
+#include <acdf/wavefront.h>
 
 #include <tbb/parallel_for.h>
 
@@ -12,6 +13,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace acdf::build {
@@ -119,6 +122,27 @@ void for_each_half_vector(const compress::View& view, const double wo[3], std::u
     }
 }
 
+/// The densities of a file, bit for bit those of its BrdfView: of several directions at once, by vectors where they
+/// serve.
+class StoredDensities {
+public:
+    explicit StoredDensities(const File& file) : brdf_(file.brdf().data()) {
+        if (!brdf_.tables || !brdf_.tables->grid) return; // a wave would look up the view for each direction
+        if (!BrdfWavefront::prepare(file.brdf(), waves_).ok()) throw std::bad_alloc();
+    }
+    /// Of wi[i] into out[i], i < count; all of wo[i] are the one of `view`.
+    void of(const AcdfBrdfView& view, const float (*wo)[3], const float (*wi)[3], std::size_t count,
+            float* out) const {
+        if (waves_.instructions() != Instructions::none) waves_.pdf(wo, wi, count, out);
+        else acdf_brdf_view_pdfs(&brdf_, &view, wi, count, out);
+    }
+    const AcdfBrdf& brdf() const { return brdf_; }
+
+private:
+    AcdfBrdf brdf_;
+    BrdfWavefront waves_;
+};
+
 double light_above(const compress::Reflected& reflected, const double wo[3], const double wi[3]) {
     return wi[2] > 0.0 ? reflected(wo, wi) : 0.0;
 }
@@ -178,22 +202,29 @@ std::vector<double> relative_variances(const std::vector<ViewDensity>& densities
 std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflected& reflected,
                                         const std::vector<compress::View>& views, std::uint32_t columns,
                                         std::uint32_t rows) {
-    const BrdfView whole = file.brdf();
-    const AcdfBrdf& brdf = whole.data();
+    struct Place {
+        double wi[3], measure;
+    };
+    const StoredDensities stored(file);
     std::vector<ViewAccuracy> out(views.size());
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
-        float o[3];
-        rounded(wo, o);
+        const auto o = std::make_unique<float[][3]>(columns), i = std::make_unique<float[][3]>(columns);
+        for (std::uint32_t c = 0; c < columns; ++c) rounded(wo, o[c]);
         AcdfBrdfView view; // looked up once
-        const bool seen = acdf_brdf_view(&brdf, o, &view) != 0;
+        const bool seen = acdf_brdf_view(&stored.brdf(), o[0], &view) != 0;
         ViewSums sums;
+        std::vector<Place> row;
+        std::vector<float> p(columns, 0.0f);
         for_each_half_vector(views[v], wo, columns, rows, [&](const double wi[3], double measure) {
-            float i[3];
-            rounded(wi, i);
-            const double p = seen ? double{acdf_brdf_view_pdf(&brdf, &view, i)} : 0.0;
-            sums.add(light_above(reflected, wo, wi), p, measure, wi[2]);
+            rounded(wi, i[row.size()]);
+            row.push_back({{wi[0], wi[1], wi[2]}, measure});
+            if (row.size() < columns) return;
+            if (seen) stored.of(view, o.get(), i.get(), columns, p.data());
+            for (std::uint32_t c = 0; c < columns; ++c)
+                sums.add(light_above(reflected, wo, row[c].wi), double{p[c]}, row[c].measure, row[c].wi[2]);
+            row.clear();
         });
         out[v] = sums.result();
         out[v].view = views[v];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -29,6 +30,17 @@ Between periodic(double fraction, std::size_t cells) {
     return {{low % cells, (low + 1) % cells}, x - static_cast<double>(low)};
 }
 
+/// Of a direction of any length, as fractions of what the axes of the table cover.
+struct Angles {
+    Angles() = default;
+    explicit Angles(const double w[3])
+        : of{w[0], w[1], w[2]}, theta(std::atan2(compress::norm(w[0], w[1]), w[2]) / (0.5 * compress::pi)),
+          phi(std::atan2(w[1], w[0]) / (2.0 * compress::pi)) {}
+
+    double of[3] = {0.0, 0.0, 0.0}; ///< none
+    double theta = 0.0, phi = 0.0;
+};
+
 double mirror_asymmetry(const Array& table) {
     const std::size_t n = table.shape[3];
     double difference = 0.0, sum = 0.0;
@@ -53,31 +65,33 @@ public:
         std::fill(rgb, rgb + 3, 0.0);
         if (!(wo[2] > 0.0 && wi[2] > 0.0)) return;
         const double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
-        const auto theta = [](const double w[3]) {
-            return std::atan2(compress::norm(w[0], w[1]), w[2]) / (0.5 * compress::pi);
-        };
-        const double phi_o = std::atan2(wo[1], wo[0]) / (2.0 * compress::pi),
-                     phi_h = std::atan2(h[1], h[0]) / (2.0 * compress::pi);
+        thread_local Angles view; // most calls ask for many directions of one view
+        if (std::memcmp(view.of, wo, sizeof view.of) != 0) view = Angles(wo);
+        const Angles half(h);
         const auto& shape = table_.shape;
-        const Between at[4] = {clamped(theta(wo), shape[0]), periodic(phi_o, shape[1]), clamped(theta(h), shape[2]),
-                               periodic(isotropic ? phi_h - phi_o : phi_h, shape[3])};
+        const Between at[4] = {clamped(view.theta, shape[0]), periodic(view.phi, shape[1]),
+                               clamped(half.theta, shape[2]),
+                               periodic(isotropic ? half.phi - view.phi : half.phi, shape[3])};
         const double value = std::min(interpolate(at) * table_.scale, std::numeric_limits<double>::max());
         std::fill(rgb, rgb + 3, value);
     }
 
 private:
     double interpolate(const Between at[4]) const {
-        double sum = 0.0;
-        for (unsigned corner = 0; corner < 16; ++corner) {
-            double weight = 1.0;
-            std::size_t index = 0;
-            for (unsigned axis = 0; axis < 4; ++axis) {
-                const unsigned side = corner >> axis & 1u;
-                weight *= side ? at[axis].t : 1.0 - at[axis].t;
-                index = index * table_.shape[axis] + at[axis].cell[side];
+        double weight[16], sum = 0.0; // of corners, whose bits are sides of the axes
+        std::size_t index[16];
+        weight[0] = 1.0, index[0] = 0;
+        for (unsigned axis = 0, count = 1; axis < 4; ++axis, count *= 2)
+            for (unsigned corner = 0; corner < count; ++corner) {
+                const std::size_t row = index[corner] * table_.shape[axis];
+                const double whole = weight[corner];
+                index[corner] = row + at[axis].cell[0];
+                index[corner + count] = row + at[axis].cell[1];
+                weight[corner] = whole * (1.0 - at[axis].t);
+                weight[corner + count] = whole * at[axis].t;
             }
-            if (weight > 0.0) sum += weight * static_cast<double>(table_.values[index]);
-        }
+        for (unsigned corner = 0; corner < 16; ++corner)
+            if (weight[corner] > 0.0) sum += weight[corner] * static_cast<double>(table_.values[index[corner]]);
         return sum;
     }
 

@@ -22,13 +22,17 @@ double least_turn(double azimuth, double low, double high) {
     return from <= width ? 0.0 : std::min(from - width, turn - from);
 }
 
-/// cos(theta_i) of the reflection at a half-vector of cap = 1 - cos(theta_h) and relative azimuth phi; the Jacobian
-/// |d wi / d wh| is 4 `dot`.
-double reflected_cosine(const View& view, double cap, double cos_phi, double& dot) {
-    const double c = view.cosine(), s = std::sqrt(std::max(0.0, 1.0 - c * c));
-    const double hz = 1.0 - cap, radius = std::sqrt(cap * (2.0 - cap));
-    dot = c * hz + s * radius * cos_phi;
-    return 2.0 * dot * hz - c;
+/// theta_o of a view.
+struct Height {
+    explicit Height(const View& view)
+        : cosine(view.cosine()), sine(std::sqrt(std::max(0.0, 1.0 - cosine * cosine))) {}
+    double cosine, sine;
+};
+
+/// cos(theta_i) of the reflection at a half-vector of relative azimuth phi; the Jacobian |d wi / d wh| is 4 `dot`.
+double reflected_cosine(const Height& view, const Latitude& half, double cos_phi, double& dot) {
+    dot = view.cosine * half.z + view.sine * half.radius * cos_phi;
+    return 2.0 * dot * half.z - view.cosine;
 }
 
 /// The part of a square that is the first to rise above the horizon is where theta_h is least and phi_h nearest to
@@ -39,11 +43,12 @@ double first_turn(const HalfGrid& grid, std::uint32_t column, double low_azimuth
 }
 
 void add_prior(const HalfGrid& grid, const View& view, std::vector<float>& square) {
+    const Height height(view);
     for (std::uint32_t c = 0; c < grid.columns(); ++c) {
         const double cos_phi = std::cos(first_turn(grid, c, view.phi, view.phi));
         for (std::uint32_t r = 0; r < grid.rows(); ++r) {
             double dot;
-            if (reflected_cosine(view, grid.cap(grid.row_knots[r]), cos_phi, dot) < kBelow) break;
+            if (reflected_cosine(height, grid.edges[r], cos_phi, dot) < kBelow) break;
             const double prior = kPrior * 4.0 * std::max(dot, 1e-3) / ACDF_PI;
             square[std::size_t{r} * grid.columns() + c] += static_cast<float>(prior * prior);
         }
@@ -74,6 +79,11 @@ HalfGrid::HalfGrid(std::uint32_t columns, std::uint32_t rows, bool mirrored_) : 
     row_knots.back() = row_resolution;
     for (std::size_t r = 0; r + 1 < row_knots.size(); ++r)
         row_measure.push_back(double(row_knots[r + 1] - row_knots[r]) / row_resolution);
+    for (const std::uint32_t knot : row_knots) edges.push_back(latitude(knot));
+    for (std::size_t r = 0; r + 1 < row_knots.size(); ++r) {
+        const double t = 0.5 * (std::sqrt(double(row_knots[r])) + std::sqrt(double(row_knots[r + 1])));
+        middles.push_back(latitude(t * t));
+    }
 }
 
 double HalfGrid::phi(double column_position) const {
@@ -95,8 +105,7 @@ ViewTarget view_target(const Reflected& reflected, const HalfGrid& grid, const V
     }
     Sum albedo;
     for (std::uint32_t r = 0; r < grid.rows(); ++r) {
-        const double t = 0.5 * (std::sqrt(double(grid.row_knots[r])) + std::sqrt(double(grid.row_knots[r + 1])));
-        const double cap = grid.cap(t * t), hz = 1.0 - cap, radius = std::sqrt(cap * (2.0 - cap));
+        const auto [hz, radius] = grid.middles[r];
         for (std::uint32_t c = 0; c < grid.columns(); ++c) {
             const double h[3] = {radius * cosine[c], radius * sine[c], hz};
             const double dot = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
@@ -120,13 +129,14 @@ ViewTarget view_target(const Reflected& reflected, const HalfGrid& grid, const V
 }
 
 std::vector<std::uint8_t> visible_squares(const HalfGrid& grid, const View& low, const View& high) {
+    const Height heights[] = {Height(low), Height(high)};
     std::vector<std::uint8_t> out(grid.size(), 0);
     for (std::uint32_t c = 0; c < grid.columns(); ++c) {
         const double cos_phi = std::cos(first_turn(grid, c, low.phi, high.phi));
-        for (const View& view : {low, high}) // for each half-vector theta_o has only one bound
+        for (const Height& height : heights) // for each half-vector theta_o has only one bound
             for (std::uint32_t r = 0; r < grid.rows(); ++r) {
                 double dot;
-                if (reflected_cosine(view, grid.cap(grid.row_knots[r]), cos_phi, dot) < kBelow) break;
+                if (reflected_cosine(height, grid.edges[r], cos_phi, dot) < kBelow) break;
                 out[std::size_t{r} * grid.columns() + c] = 1;
             }
     }

@@ -1,6 +1,7 @@
 // What a BRDF file approximates: for each view the reflected light over half-vectors.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -25,6 +26,12 @@ struct View {
     void direction(double out[3]) const;
 };
 
+/// Half-vectors of one theta_h.
+struct Latitude {
+    explicit Latitude(double cap) : z(1.0 - cap), radius(std::sqrt(cap * (2.0 - cap))) {}
+    double z, radius; ///< cosine and sine of theta_h
+};
+
 /// A grid of half-vectors: columns in phi_h, rows in theta_h, finest where highlights are. Knots are positions on
 /// the file's axes, whose measure is that of solid angle: phi_h and cos(theta_h).
 struct HalfGrid {
@@ -37,12 +44,15 @@ struct HalfGrid {
     std::vector<std::uint32_t> row_knots;    ///< rows + 1
     std::vector<double> column_measure;      ///< radians, of both sides if mirrored
     std::vector<double> row_measure;         ///< differences of cosines
+    std::vector<Latitude> edges;             ///< of the rows' knots
+    std::vector<Latitude> middles;           ///< of the rows, halfway in sqrt(1 - z)
 
     std::uint32_t columns() const { return static_cast<std::uint32_t>(column_measure.size()); }
     std::uint32_t rows() const { return static_cast<std::uint32_t>(row_measure.size()); }
     std::size_t size() const { return column_measure.size() * row_measure.size(); }
     double phi(double column_position) const;
-    double cap(double row_position) const { return row_position / row_resolution; } ///< 1 - cos(theta_h)
+    /// Of a position, which is 1 - cos(theta_h) in steps of the file's axis.
+    Latitude latitude(double row_position) const { return Latitude(row_position / row_resolution); }
 };
 
 /// The square of a view's normalised density over the half-vectors: what a fit needs to know of it.

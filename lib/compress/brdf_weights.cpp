@@ -26,10 +26,8 @@ public:
         bool above() const { return dot > 0.0 && wi[2] > 0.0; }
     };
 
-    /// Of the half-vector at cap = 1 - cos(theta_h) and an azimuth.
-    Reflection at(double cap, const double azimuth[2]) const {
-        const double hz = 1.0 - cap, radius = std::sqrt(cap * (2.0 - cap));
-        const double h[3] = {radius * azimuth[0], radius * azimuth[1], hz};
+    Reflection at(const Latitude& half, const double azimuth[2]) const {
+        const double h[3] = {half.radius * azimuth[0], half.radius * azimuth[1], half.z};
         const double dot = wo_[0] * h[0] + wo_[1] * h[1] + wo_[2] * h[2];
         return {dot, {2.0 * dot * h[0] - wo_[0], 2.0 * dot * h[1] - wo_[1], 2.0 * dot * h[2] - wo_[2]}};
     }
@@ -66,7 +64,7 @@ double mean_square(const Reflections& reflections, const HalfGrid& grid, std::ui
             const double column =
                 grid.column_knots[c] + (grid.column_knots[c + 1] - grid.column_knots[c]) * (k + 0.5) / kPoints;
             const Azimuth azimuth(grid.phi(column));
-            const double density = reflections.density(reflections.at(grid.cap(row), azimuth.of));
+            const double density = reflections.density(reflections.at(grid.latitude(row), azimuth.of));
             sum += density * density;
         }
     return sum / (kPoints * kPoints);
@@ -82,11 +80,9 @@ std::vector<HorizonSquare> horizon_squares(const Reflected& reflected, const Hal
         const double begin = grid.phi(grid.column_knots[c]), end = grid.phi(grid.column_knots[c + 1]);
         const Azimuth first(reflections.nearest(begin, end)), middle(0.5 * (begin + end));
         for (std::uint32_t r = 0; r < grid.rows(); ++r) {
-            const auto edge = reflections.at(grid.cap(grid.row_knots[r]), first.of);
+            const auto edge = reflections.at(grid.edges[r], first.of);
             if (!edge.above()) break;
-            const double t =
-                0.5 * (std::sqrt(double(grid.row_knots[r])) + std::sqrt(double(grid.row_knots[r + 1])));
-            if (reflections.at(grid.cap(t * t), middle.of).above()) continue;
+            if (reflections.at(grid.middles[r], middle.of).above()) continue;
             out.push_back({r * grid.columns() + c, static_cast<float>(reflections.density(edge)),
                            static_cast<float>(mean_square(reflections, grid, r, c))});
         }
