@@ -18,111 +18,127 @@ namespace {
 
 // ---- drawing ---------------------------------------------------------------------------------------------------
 
+/// Numbers that are drawn with: on their way to pieces.
+struct Draws {
+    Sought sought;
+    Doubles shifted[kBlock / kLanes][2][2]; // as load_numbers gives them
+    std::uint32_t lost;                     // bits of lanes that tables do not answer
+};
+
 /* acdf_draw_distance of lanes: exact in doubles, then rounded once. */
-ACDF_LANE Floats draw_distance(const Numbers& n, std::size_t first, int axis, Words low) {
+ACDF_LANE Floats draw_distance(const Doubles shifted[2][2], int axis, Words low) {
     Doubles d[2];
     for (int half = 0; half < 2; ++half)
-        d[half] = (n.shifted[first / ACDF_WIDTH + (std::size_t)half][axis] - 1.0) * 0x1p52 -
-                  to_doubles((Signed)low, half) * 0x1p21;
+        d[half] = (shifted[half][axis] - 1.0) * 0x1p52 - to_doubles((Signed)low, half) * 0x1p21;
     return to_floats(d[0], d[1]);
 }
 
 /* acdf_cells_sample of lanes by the cells that were found. Returns those that it does not answer. */
-ACDF_LANE std::uint32_t draw(const AcdfCells* cells, const Search& s, const Sought& sought, const Numbers& n,
-                             std::size_t first, AcdfDirectionSample* out) {
+ACDF_LANE std::uint32_t draw(const AcdfCells* cells, const Search& s, const Draws& draws, std::size_t first,
+                             AcdfDirectionSample* out) {
     const auto* const pieces = (const AcdfPiece*)(const void*)(s.tables + cells->pieces);
     Floats piece[8], direction[3];
-    load_pieces(pieces, &sought.cell[first], piece);
-    const Floats d0 = draw_distance(n, first, 0, (Words)piece[0]), d1 = draw_distance(n, first, 1, (Words)piece[4]);
+    load_pieces(pieces, &draws.sought.cell[first], piece);
+    const Doubles(&shifted)[2][2] = draws.shifted[first / kLanes];
+    const Floats d0 = draw_distance(shifted, 0, (Words)piece[0]), d1 = draw_distance(shifted, 1, (Words)piece[4]);
     const Words width0 = (Words)piece[1], width1 = (Words)piece[5];
     const Signed held = ((Words)d0 < width0) & (((Words)d1 ^ width1 << 31) < width1);
     const Floats along = piece[2] + d0 * piece[3], height = piece[6] + d1 * piece[7];
     if (cells->octahedral) square_direction(along, height, direction);
     else piece_direction(along, height, width0 & 3u, width1 & 1u, direction);
-    store_samples(direction, (Floats)gathered(s.tables + cells->densities, *(const Words*)&sought.cell[first]),
+    store_samples(direction,
+                  (Floats)gathered(s.tables + cells->densities, *(const Words*)&draws.sought.cell[first]),
                   out + first);
     return bits(~held) << first;
 }
 
-/* acdf_environment_sample of a block. */
-ACDF_LANE void sample_block(const AcdfEnvironment& env, const Search& s, const double (*u)[2],
-                            AcdfDirectionSample* out) {
-    Sought sought;
-    Numbers n;
-    std::uint32_t lost = 0;
-    for (std::size_t first = 0; first < kBlock; first += kLanes) {
-        Words key[2];
-        lost |= load_numbers(u, first, &n, key);
-        find_blocks(s, key[0], key[1], &sought, first);
-    }
-    find_cells(s, &sought, [](std::uint32_t) {});
-    for (std::size_t first = 0; first < kBlock; first += kLanes) lost |= draw(env.cells, s, sought, n, first, out);
-    for (; lost; lost &= lost - 1) {
-        const std::uint32_t i = acdf_lowest_bit(lost);
-        out[i] = acdf_environment_sample(&env, u[i][0], u[i][1]);
-    }
+ACDF_LANE void sample_by_cells(const AcdfEnvironment& env, const double (*u)[2], std::size_t count,
+                               AcdfDirectionSample* out) {
+    const Search s = search_of(env.cells, env.cells->numbers);
+    const std::uint32_t* const pieces = s.tables + env.cells->pieces;
+    in_stages<Draws>(
+        u, count, out,
+        [&](const double(*from)[2], Draws* draws) {
+            draws->lost = 0;
+            for (std::size_t first = 0; first < kBlock; first += kLanes) {
+                Words key[2];
+                draws->lost |= load_numbers(from + first, draws->shifted[first / kLanes], key) << first;
+                find_blocks(s, key[0], key[1], &draws->sought, first);
+            }
+            ask_for_blocks(s, draws->sought);
+        },
+        [&](Draws* draws) {
+            find_cells(s, &draws->sought, [&](std::size_t cell) { ACDF_PREFETCH(pieces + 8 * cell); });
+        },
+        [&](const double(*from)[2], Draws* draws, AcdfDirectionSample* to) {
+            std::uint32_t lost = draws->lost;
+            for (std::size_t first = 0; first < kBlock; first += kLanes)
+                lost |= draw(env.cells, s, *draws, first, to);
+            for (; lost; lost &= lost - 1) {
+                const std::uint32_t i = acdf_lowest_bit(lost);
+                to[i] = acdf_environment_sample(&env, from[i][0], from[i][1]);
+            }
+        });
 }
 
 // ---- finding ---------------------------------------------------------------------------------------------------
 
-/// Where directions lie: an AcdfPlace a lane.
+/// Where directions lie, an AcdfPlace a lane: on their way to pieces.
 struct Places {
+    Sought sought;
     Floats along[kBlock / kLanes], cap[kBlock / kLanes];
+    std::uint32_t lost;
 };
 
 /* Where directions lie, and the blocks of them. Returns the lanes of which floats do not tell. */
 ACDF_LANE std::uint32_t find_directions(const AcdfCells* cells, const Search& s, const float (*directions)[3],
-                                        std::size_t first, Places* places, Sought* sought) {
+                                        std::size_t first, Places* places) {
     Floats w[3];
     Words key[2];
     load_vectors(directions + first, w);
     const std::uint32_t refused = bits(direction_place(cells->octahedral != 0, w, &places->along[first / kLanes],
                                                        &places->cap[first / kLanes], key));
-    find_blocks(s, key[0], key[1], sought, first);
+    find_blocks(s, key[0], key[1], &places->sought, first);
     return refused << first;
 }
 
 /* acdf_cells_pdf of lanes by the cells that were found. Returns those that it does not answer. */
-ACDF_LANE std::uint32_t densities(const AcdfCells* cells, const Search& s, const Sought& sought,
-                                  const Places& places, std::size_t first, float* out) {
+ACDF_LANE std::uint32_t densities(const AcdfCells* cells, const Search& s, const Places& places, std::size_t first,
+                                  float* out) {
     const auto* const pieces = (const AcdfPiece*)(const void*)(s.tables + cells->pieces);
     Floats piece[8];
-    load_pieces(pieces, &sought.cell[first], piece);
+    load_pieces(pieces, &places.sought.cell[first], piece);
     const Floats d0 = piece[2] - places.along[first / kLanes], d1 = places.cap[first / kLanes] - piece[6];
     const Floats width0 = -(piece[1] * piece[3]), width1 = absolute(piece[5] * piece[7]);
     const Signed held = ((Words)d0 < (Words)width0) & ((Words)d1 < (Words)width1);
-    const Words pdf = gathered(s.tables + cells->densities, *(const Words*)&sought.cell[first]);
+    const Words pdf = gathered(s.tables + cells->densities, *(const Words*)&places.sought.cell[first]);
     std::memcpy(out + first, &pdf, sizeof pdf);
     return bits(~held) << first;
 }
 
-/* acdf_environment_pdf of a block. */
-ACDF_LANE void pdf_block(const AcdfEnvironment& env, const Search& s, const float (*w)[3], float* out) {
-    Sought sought;
-    Places places;
-    std::uint32_t lost = 0;
-    for (std::size_t first = 0; first < kBlock; first += kLanes)
-        lost |= find_directions(env.cells, s, w, first, &places, &sought);
-    find_cells(s, &sought, [](std::uint32_t) {});
-    for (std::size_t first = 0; first < kBlock; first += kLanes)
-        lost |= densities(env.cells, s, sought, places, first, out);
-    for (; lost; lost &= lost - 1) {
-        const std::uint32_t i = acdf_lowest_bit(lost);
-        out[i] = acdf_environment_pdf(&env, w[i]);
-    }
-}
-
-// ---- all of an array -------------------------------------------------------------------------------------------
-
-ACDF_LANE void sample_by_cells(const AcdfEnvironment& env, const double (*u)[2], std::size_t count,
-                               AcdfDirectionSample* out) {
-    const Search s = search_of(env.cells, env.cells->numbers);
-    for_blocks(u, count, out,
-               [&](const double(*from)[2], AcdfDirectionSample* to) { sample_block(env, s, from, to); });
-}
 ACDF_LANE void pdf_by_cells(const AcdfEnvironment& env, const float (*w)[3], std::size_t count, float* out) {
     const Search s = search_of(env.cells, env.cells->directions);
-    for_blocks(w, count, out, [&](const float(*from)[3], float* to) { pdf_block(env, s, from, to); });
+    const std::uint32_t* const pieces = s.tables + env.cells->pieces;
+    in_stages<Places>(
+        w, count, out,
+        [&](const float(*from)[3], Places* places) {
+            places->lost = 0;
+            for (std::size_t first = 0; first < kBlock; first += kLanes)
+                places->lost |= find_directions(env.cells, s, from, first, places);
+            ask_for_blocks(s, places->sought);
+        },
+        [&](Places* places) {
+            find_cells(s, &places->sought, [&](std::size_t cell) { ACDF_PREFETCH(pieces + 8 * cell); });
+        },
+        [&](const float(*from)[3], Places* places, float* to) {
+            std::uint32_t lost = places->lost;
+            for (std::size_t first = 0; first < kBlock; first += kLanes)
+                lost |= densities(env.cells, s, *places, first, to);
+            for (; lost; lost &= lost - 1) {
+                const std::uint32_t i = acdf_lowest_bit(lost);
+                to[i] = acdf_environment_pdf(&env, from[i]);
+            }
+        });
 }
 
 } // namespace

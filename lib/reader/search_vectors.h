@@ -37,7 +37,7 @@ struct Sought {
     alignas(64) std::uint32_t block[kBlock], bytes[kBlock], cell[kBlock];
 };
 
-/* acdf_squares_entry of lanes, and what is to be compared. */
+/* acdf_squares_entry of lanes, and what is to be compared. The blocks are asked for. */
 ACDF_LANE void find_blocks(const Search& s, Words key0, Words key1, Sought* sought, std::size_t first) {
     Words entry = gathered(s.grid, ((key1 >> s.shift1) << s.bits0) + (key0 >> s.shift0));
     std::uint32_t finer = bits((Signed)entry < 0);
@@ -91,42 +91,43 @@ ACDF_LANE void find_cells(const Search& s, Sought* sought, const Next& next) {
 
 // ---- random numbers --------------------------------------------------------------------------------------------
 
-/// Random numbers of a block, and 1.
-struct Numbers {
-    Doubles shifted[kBlock / ACDF_WIDTH][2];
-};
-
-/* acdf_number_steps of kLanes lanes from one on, and the keys that they are searched by. Returns the lanes that are
- * refused. */
-ACDF_LANE std::uint32_t load_numbers(const double (*u)[2], std::size_t first, Numbers* n, Words key[2]) {
-    Longs number[2][2]; /* of each half and axis */
+/* acdf_number_steps of kLanes lanes: numbers and 1, of each half and axis, and the keys that they are searched by.
+ * Returns the lanes that are refused. */
+ACDF_LANE std::uint32_t load_numbers(const double (*u)[2], Doubles shifted[2][2], Words key[2]) {
+    Longs number[2][2];
     for (std::size_t half = 0; half < 2; ++half) {
-        Doubles* const shifted = n->shifted[first / ACDF_WIDTH + half];
-        load_pairs(u + first + ACDF_WIDTH * half, shifted);
+        load_pairs(u + ACDF_WIDTH * half, shifted[half]);
         for (int axis = 0; axis < 2; ++axis) {
-            shifted[axis] = shifted[axis] + 1.0;
-            number[half][axis] = (Longs)shifted[axis] ^ 0x3FF0000000000000u;
+            shifted[half][axis] = shifted[half][axis] + 1.0;
+            number[half][axis] = (Longs)shifted[half][axis] ^ 0x3FF0000000000000u;
         }
     }
     for (int axis = 0; axis < 2; ++axis)
         key[axis] = low_words(number[0][axis] >> 21, number[1][axis] >> 21) & 0x7FFFFFFFu;
     const Words high = low_words((number[0][0] | number[0][1]) >> 52, (number[1][0] | number[1][1]) >> 52);
-    return bits(high != 0u) << first;
+    return bits(high != 0u);
 }
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-/* What does not fill a block is copied to the front of one. */
-template <class In, class Out, class Block>
-ACDF_LANE void for_blocks(const In* in, std::size_t count, Out* out, const Block& block) {
-    std::size_t first = 0;
-    for (; first + kBlock <= count; first += kBlock) block(in + first, out + first);
-    if (first == count) return;
+/* Takes all blocks through three stages: begin(from, state), go_on(state) and end(from, state, to). What each asks
+ * memory for has come when the next one needs it, as stages of other blocks lie between. What does not fill a block
+ * is copied to the front of one. */
+template <class State, class In, class Out, class Begin, class GoOn, class End>
+ACDF_LANE void in_stages(const In* in, std::size_t count, Out* out, const Begin& begin, const GoOn& go_on,
+                         const End& end) {
+    const std::size_t whole = count / kBlock, blocks = (count + kBlock - 1) / kBlock;
+    State state[3];
     In last[kBlock] = {};
     Out result[kBlock];
-    std::memcpy(last, in + first, (count - first) * sizeof(In));
-    block(last, result);
-    std::memcpy(out + first, result, (count - first) * sizeof(Out));
+    const auto from = [&](std::size_t block) { return block < whole ? in + kBlock * block : last; };
+    if (whole < blocks) std::memcpy(last, in + kBlock * whole, (count - kBlock * whole) * sizeof(In));
+    for (std::size_t t = 0; t < blocks + 2; ++t) {
+        if (t < blocks) begin(from(t), &state[t % 3]);
+        if (t >= 1 && t <= blocks) go_on(&state[(t - 1) % 3]);
+        if (t >= 2) end(from(t - 2), &state[(t - 2) % 3], t - 2 < whole ? out + kBlock * (t - 2) : result);
+    }
+    if (whole < blocks) std::memcpy(out + kBlock * whole, result, (count - kBlock * whole) * sizeof(Out));
 }
 
 } // namespace
