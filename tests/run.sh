@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Everything that must hold, from a bare Debian 12: installs what is missing, then
 #   0. builds optimised with warnings as errors, while packages are still being installed, and checks the formatting,
-#   1. builds with clang, AddressSanitizer and UndefinedBehaviorSanitizer, runs the tests on synthetic data, and beside them
-#      fuzzes the reader for a quarter of a minute, and every parser of our own for 5 seconds,
+#   1. builds libraries, the program and tests of the reader with clang, AddressSanitizer and UndefinedBehaviorSanitizer, and
+#      links the other tests with them; runs the tests on synthetic data, and beside them fuzzes the reader for a quarter of
+#      a minute, and every parser of our own for 5 seconds,
 #   2. compares the files that both builds make byte for byte,
 #   3. runs all tests of the optimised build, those on real data too where it is present.
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
@@ -54,7 +55,8 @@ check_formatting() {
 
 run_sanitized_tests() {
     # Real data is left to the release build: sanitizers make it many times slower and it adds no code paths.
-    cmake --preset asan -DACDF_TEST_DATA=/nonexistent
+    # Tests that only drive libraries and the program are not compiled again (tests/CMakeLists.txt).
+    cmake --preset asan -DACDF_TEST_DATA=/nonexistent -DACDF_TESTS_FROM="$PWD/build/release"
     cmake --build --preset asan --parallel "$jobs"
     ctest --preset asan --parallel "$jobs" --label-exclude packaging
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/inputs/irradiance.h"
+#include "tests/inputs/places.h"
 #include "tests/inputs/synthetic.h"
 
 #include "compress/fit_local.h"
@@ -251,7 +252,7 @@ inline acdf::compress::Target suns_target(std::uint32_t columns, std::uint32_t r
 
 /// A real probe, its texels averaged `by` x `by`; nothing where it is absent.
 inline std::optional<acdf::compress::Target> probe_target(const std::string& name, int by) {
-    const std::string path = ACDF_TEST_DATA "/probes/" + name;
+    const std::string path = std::string(acdf_test::kTestData) + "/probes/" + name;
     if (!std::filesystem::exists(path)) return std::nullopt;
     acdf::input::ProbeOptions options;
     if (name == "grace_probe.hdr") options.projection = acdf::input::Projection::angular;

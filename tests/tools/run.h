@@ -1,6 +1,8 @@
 // Runs the acdf program as a user would, and makes small files for it to work on.
 #pragma once
 
+#include "tests/inputs/places.h"
+
 #include "compress/store.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +66,7 @@ struct Result {
 /// Starts `acdf arguments...` (or a copy of it that lies elsewhere) with the given files as stdin, stdout and
 /// stderr.
 inline pid_t start_acdf(std::vector<std::string> arguments, const std::string& in, const std::string& out,
-                        const std::string& err, const std::string& program = ACDF_PROGRAM) {
+                        const std::string& err, const std::string& program = acdf_test::kProgram) {
     arguments.insert(arguments.begin(), "acdf");
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -95,7 +97,7 @@ inline int wait_for(pid_t pid) {
 }
 
 inline Result run_acdf(const std::vector<std::string>& arguments, const std::string& input = "",
-                       const std::string& program = ACDF_PROGRAM) {
+                       const std::string& program = acdf_test::kProgram) {
     const Folder folder;
     write_text(folder / "in", input);
     Result result;

@@ -1,4 +1,5 @@
 // `acdf scanline` as a user runs it.
+#include "tests/inputs/places.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
 
@@ -98,7 +99,7 @@ TEST_F(ScanlineCommand, RefusesRowsThatAreNone) {
 
 // What the paper reports of Grace Cathedral: 16 times on a peaky row, little on a smooth one (Fig. 6).
 TEST_F(ScanlineCommand, GraceGainsMuchWhereItIsPeaky) {
-    const std::string grace = std::string(ACDF_TEST_DATA) + "/probes/grace_probe.hdr";
+    const std::string grace = std::string(acdf_test::kTestData) + "/probes/grace_probe.hdr";
     if (!std::filesystem::exists(grace)) GTEST_SKIP() << grace << " is absent; set ACDF_TEST_DATA";
     const Json peaky = report({grace, "--projection", "angular"});
     const Json smooth = report({grace, "--projection", "angular", "--row", "auto-smooth"});

@@ -1,4 +1,5 @@
 // What the program loads before it has anything to do: no library for images, until there is one.
+#include "tests/inputs/places.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
 
@@ -62,22 +63,22 @@ protected:
     /// The program as it is installed, in another place.
     std::string copied_program() {
         fs::create_directories(folder / "moved/bin");
-        fs::copy_file(ACDF_PROGRAM, folder / "moved/bin/acdf");
+        fs::copy_file(acdf_test::kProgram, folder / "moved/bin/acdf");
         return folder / "moved/bin/acdf";
     }
     /// Where that one looks for a module.
     std::string place_of(const std::string& module) {
-        const fs::path way = fs::path(module).lexically_relative(fs::path(ACDF_PROGRAM).parent_path());
+        const fs::path way = fs::path(module).lexically_relative(fs::path(acdf_test::kProgram).parent_path());
         const fs::path place = (fs::path(folder / "moved/bin") / way).lexically_normal();
         fs::create_directories(place.parent_path());
         return fs::canonical(place.parent_path()) / place.filename();
     }
     void expect_refused(const std::string& program, const std::string& why) {
-        expect_refused(program, place_of(ACDF_IMAGES_MODULE), why,
+        expect_refused(program, place_of(acdf_test::kImagesModule), why,
                        {{"env", image, "-o", folder / "x.acdf", "-q"},
                         {"plot", sky, "-o", folder / "x.png", "-q"},
                         {"batch", image, "-o", folder / "out", "-q"}});
-        expect_refused(program, place_of(ACDF_OPENEXR_MODULE), why,
+        expect_refused(program, place_of(acdf_test::kOpenExrModule), why,
                        {{"env", exr, "-o", folder / "x.acdf", "-q"}, {"batch", exr, "-o", folder / "out", "-q"}});
     }
     void expect_refused(const std::string& program, const std::string& module, const std::string& why,
@@ -153,8 +154,8 @@ TEST_F(Startup, LoadsNoMoreThanOpenExrWhereThatIsEnough) {
 TEST_F(Startup, TheProgramAndItsModulesMayBeMovedTogether) {
     write_images();
     const std::string program = copied_program();
-    fs::copy_file(ACDF_IMAGES_MODULE, place_of(ACDF_IMAGES_MODULE));
-    fs::copy_file(ACDF_OPENEXR_MODULE, place_of(ACDF_OPENEXR_MODULE));
+    fs::copy_file(acdf_test::kImagesModule, place_of(acdf_test::kImagesModule));
+    fs::copy_file(acdf_test::kOpenExrModule, place_of(acdf_test::kOpenExrModule));
     for (const std::string& probe : {image, exr}) {
         const Result result = run_acdf({"env", probe, "-o", folder / "x.acdf", "--force"}, "", program);
         EXPECT_EQ(result.code, 0) << result.err;
@@ -173,7 +174,8 @@ TEST_F(Startup, AMissingModuleIsNamed) {
 TEST_F(Startup, ADamagedModuleIsNamed) {
     write_images();
     const auto damage = [&](const std::string& bytes) {
-        for (const char* module : {ACDF_IMAGES_MODULE, ACDF_OPENEXR_MODULE}) write_text(place_of(module), bytes);
+        for (const char* module : {acdf_test::kImagesModule, acdf_test::kOpenExrModule})
+            write_text(place_of(module), bytes);
     };
     damage("no library");
     expect_refused(copied_program(), "too short");
@@ -183,8 +185,8 @@ TEST_F(Startup, ADamagedModuleIsNamed) {
 
 TEST_F(Startup, AModuleOfAnotherVersionIsNamed) {
     write_images();
-    for (const char* module : {ACDF_IMAGES_MODULE, ACDF_OPENEXR_MODULE})
-        fs::copy_file(ACDF_OTHER_MODULE, place_of(module));
+    for (const char* module : {acdf_test::kImagesModule, acdf_test::kOpenExrModule})
+        fs::copy_file(acdf_test::kOtherModule, place_of(module));
     expect_refused(copied_program(), "it is of version 0.0, not ");
 }
 

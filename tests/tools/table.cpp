@@ -1,4 +1,5 @@
 // acdf table, and the other subcommands on what it makes.
+#include "tests/inputs/places.h"
 #include "tests/inputs/table_files.h"
 
 #include <gtest/gtest.h>
@@ -198,7 +199,7 @@ TEST(TableCommand, CompressedFilesDrawTheSame) {
 
 /// Runs one command line of the guide in `folder`, with the programs that it calls by their names.
 std::string guide_output(const Folder& folder, const std::string& command) {
-    const std::string program = quoted(ACDF_PROGRAM), examples = ACDF_EXAMPLES;
+    const std::string program = quoted(acdf_test::kProgram), examples = acdf_test::kExamples;
     const std::string script =
         "cd " + quoted(folder / "") + " && acdf() { " + program + " \"$@\"; }; " + "light_field() { " +
         quoted(examples + "/light_field") + " \"$@\"; }; " + "read_table() { " + quoted(examples + "/read_table") +

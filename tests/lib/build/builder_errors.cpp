@@ -157,7 +157,7 @@ TEST(BuilderErrors, RowsThatGiveUp) {
     sees([](std::uint32_t, std::uint32_t, float*) -> bool { throw 7; });
 }
 
-constexpr int kStops = acdf_test::kSanitized ? 4 : 12;
+const int kStops = acdf_test::kSanitized ? 4 : 12;
 
 /// Calls `build` with a caller who cancels at the k-th call of progress, for `stops` such k spread over all that
 /// there are.

@@ -1,5 +1,6 @@
 // Estimates of a file and its company together are unbiased: Monte Carlo against summation, for every fit and
 // company and each of 200 normals. Of real probes where they are at hand (ACDF_TEST_DATA).
+#include "tests/inputs/places.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/build/company.h"
 
@@ -17,7 +18,7 @@ constexpr double kSummation = 1e-3; // that sums over texels are off by, of the 
 
 /// Texels of a file on the grid of the tests: means of luminance. Empty where it is not there.
 Probe real_probe(const std::string& name) {
-    const std::string path = std::string(ACDF_TEST_DATA "/probes/") + name;
+    const std::string path = std::string(acdf_test::kTestData) + "/probes/" + name;
     if (!std::filesystem::exists(path)) return {};
     input::ProbeOptions options;
     if (name.find("_probe.hdr") != std::string::npos) options.projection = input::Projection::angular;

@@ -1,5 +1,7 @@
 // Local environment maps of real probes, at the sizes that users ask for, beside everything that a renderer could
 // use instead. All by exact summation, over random normals that are no bin's own.
+#include "tests/inputs/places.h"
+
 #include "build/local.h"
 #include "build/local_accuracy.h"
 #include "input/probe.h"
@@ -36,7 +38,7 @@ const compress::Target& target_of(const Probe& probe) {
     static std::map<std::string, compress::Target> targets;
     const auto [found, missing] = targets.try_emplace(probe.file);
     if (missing) {
-        const std::string path = std::string(ACDF_TEST_DATA "/probes/") + probe.file;
+        const std::string path = std::string(acdf_test::kTestData) + "/probes/" + probe.file;
         const input::Probe read = input::read_probe(path, {probe.projection});
         found->second = compress::environment_target(read.rgb.data(), static_cast<std::uint32_t>(read.width),
                                                      static_cast<std::uint32_t>(read.height), {});
@@ -91,8 +93,8 @@ void expect_less_noise_than_rivals(const Probe& probe, const build::Local& local
 class LocalProbes : public ::testing::Test {
 protected:
     void SetUp() override {
-        if (!std::filesystem::exists(ACDF_TEST_DATA "/probes"))
-            GTEST_SKIP() << ACDF_TEST_DATA "/probes is absent; set ACDF_TEST_DATA";
+        if (!std::filesystem::exists(std::string(acdf_test::kTestData) + "/probes"))
+            GTEST_SKIP() << acdf_test::kTestData << "/probes is absent; set ACDF_TEST_DATA";
     }
 };
 

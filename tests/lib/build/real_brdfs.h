@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/inputs/brdf_files.h"
+#include "tests/inputs/places.h"
 
 #include "input/brdf.h"
 
@@ -13,7 +14,7 @@
 namespace acdf_test {
 
 inline std::string real_brdf_path(const std::string& name) {
-    return std::string(ACDF_TEST_DATA) + "/brdfs/" + name;
+    return std::string(acdf_test::kTestData) + "/brdfs/" + name;
 }
 
 /// The file of a measured BRDF within so many KiB; each is made once a process.

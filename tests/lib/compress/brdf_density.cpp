@@ -95,7 +95,7 @@ TEST_P(BrdfDensity, drawsWhatItTells) {
         const std::vector<double> expected = expected_bins(brdf.view(), view);
         const Direction wo = at_angles(cosine, view.phi);
         std::vector<std::uint32_t> counts(expected.size(), 0);
-        constexpr int side = kSanitized ? 50 : 100; // stratified
+        const int side = kSanitized ? 50 : 100; // stratified
         for (int i = 0; i < side * side; ++i) {
             const auto s =
                 brdf.view().sample(wo.data(), (i % side + u(random)) / side, (i / side + u(random)) / side);

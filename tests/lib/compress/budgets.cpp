@@ -1,5 +1,7 @@
 // What a byte buys on real probes: the figures that docs/method.md quotes, as bounds. Whole files, stored
 // uncompressed, metadata of the usual length included; variances by exact summation over the stored density.
+#include "tests/inputs/places.h"
+
 #include "build/environment_accuracy.h"
 #include "compress/fit.h"
 #include "compress/store.h"
@@ -37,7 +39,7 @@ struct Made {
 class Budgets : public testing::Test {
 protected:
     static void SetUpTestSuite() {
-        const std::string folder = std::string(ACDF_TEST_DATA) + "/probes/";
+        const std::string folder = std::string(acdf_test::kTestData) + "/probes/";
         for (const Probe& probe : probes) {
             if (!std::filesystem::exists(folder + probe.file)) return targets_.clear();
             input::ProbeOptions options;
@@ -52,7 +54,7 @@ protected:
         made_.clear();
     }
     void SetUp() override {
-        if (targets_.empty()) GTEST_SKIP() << "no probes in " << ACDF_TEST_DATA;
+        if (targets_.empty()) GTEST_SKIP() << "no probes in " << acdf_test::kTestData;
     }
 
     static const Made& made(std::size_t i, std::uint64_t budget);

@@ -232,7 +232,7 @@ TEST(LocalFit, TilesAreNotSpentOnLightsInVain) {
 
 /// The mean over ten million samples, spread over a hundred normals.
 TEST(LocalFit, TenMillionSamplesAgree) {
-    constexpr int normals = 100, samples = repeated(100000);
+    const int normals = 100, samples = repeated(100000);
     LocalFileOptions options = sized(200, 4000);
     options.cosine_share = 0.1;
     const LocalMap map(suns_target(128, 64), octahedral_bins(6), options);

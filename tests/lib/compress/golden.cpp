@@ -1,4 +1,5 @@
 // The frozen files of every version: format/make_golden.cpp makes those of the present one.
+#include "tests/inputs/places.h"
 #include "tests/lib/reader/golden_numbers.h"
 #include <acdf/reader.h>
 
@@ -228,7 +229,7 @@ TEST(MakeGolden, MakesTheFrozenFilesAgain) {
     const fs::path folder = fs::path(::testing::TempDir()) / "acdf_golden";
     fs::remove_all(folder);
     fs::create_directories(folder);
-    const std::string command = "\"" ACDF_MAKE_GOLDEN "\" \"" + folder.string() + "\"";
+    const std::string command = std::string("\"") + acdf_test::kMakeGolden + "\" \"" + folder.string() + "\"";
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
     std::size_t files = 0;
     for (const auto& entry : fs::directory_iterator(folder)) {

@@ -23,7 +23,7 @@ using namespace acdf::compress;
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFew = 256;
 /// Sanitized, the last steps, which take longest, are left out.
-constexpr int kSteps = acdf_test::kSanitized ? 6 : 9;
+const int kSteps = acdf_test::kSanitized ? 6 : 9;
 
 Target noise() { return acdf_test::noise_target(256, 200, 5); }
 

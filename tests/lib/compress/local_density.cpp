@@ -211,7 +211,7 @@ TEST_P(Maps, LengthOfNormalsDoesNotMatter) {
 
 /// Samples fall into grid squares as often as the density says.
 TEST_P(Maps, ChiSquare) {
-    constexpr std::uint32_t samples = repeated(20000);
+    const std::uint32_t samples = std::uint32_t(repeated(20000));
     const std::vector<Normal> tried = normals(4, 10, 5);
     const double significance = sidak(1e-3, static_cast<int>(tried.size() * map_cases().size()));
     const auto view = map_->view();
@@ -292,7 +292,7 @@ TEST_P(Maps, CoverTheLight) {
 /// error is that of the density where that is larger than of the samples, which may have missed what is rare and
 /// large.
 TEST_P(FineMaps, EstimatesAreUnbiased) {
-    constexpr int normals = repeated(60), samples = 4500;
+    const int normals = repeated(60), samples = 4500;
     const auto view = map_->view();
     std::mt19937_64 random(6);
     const std::vector<Normal> hard = hard_normals(map_->bins, 6, 60);

@@ -1,4 +1,5 @@
 // Every fit, both orders, on real probes, and the figures that must hold there.
+#include "tests/inputs/places.h"
 #include "tests/lib/compress/checks.h"
 
 #include "build/environment_accuracy.h"
@@ -43,7 +44,7 @@ void PrintTo(const Figures& figures, std::ostream* out) { *out << figures.name; 
 class Probe : public ::testing::TestWithParam<Figures> {
 protected:
     void SetUp() override {
-        const std::string path = std::string(ACDF_TEST_DATA "/probes/") + GetParam().name + ".exr";
+        const std::string path = std::string(acdf_test::kTestData) + "/probes/" + GetParam().name + ".exr";
         if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent; set ACDF_TEST_DATA";
         const acdf::input::Probe probe = acdf::input::read_probe(path);
         ASSERT_EQ(probe.width, 1024);
@@ -104,7 +105,7 @@ void PrintTo(const Projected& projected, std::ostream* out) { *out << projected.
 class Projection : public ::testing::TestWithParam<Projected> {};
 
 TEST_P(Projection, EveryFitIsADensityThatCoversIt) {
-    const std::string path = std::string(ACDF_TEST_DATA "/probes/") + GetParam().file;
+    const std::string path = std::string(acdf_test::kTestData) + "/probes/" + GetParam().file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent; set ACDF_TEST_DATA";
     acdf::input::ProbeOptions options;
     options.projection = GetParam().projection;

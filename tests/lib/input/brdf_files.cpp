@@ -1,5 +1,6 @@
 // Opening BRDFs by name: what each file is told apart by, tables of numbers, and real measurements.
 #include "input/brdf_npy.h"
+#include "tests/inputs/places.h"
 #include "tests/lib/input/brdf.h"
 #include "tests/lib/input/folder.h"
 
@@ -129,7 +130,7 @@ TEST(InputBrdfFiles, AreToldByWhatTheyHold) {
     EXPECT_REFUSED(open_brdf("lamber"), "no model of this name");
 }
 
-std::string data_file(const std::string& name) { return std::string(ACDF_TEST_DATA) + "/brdfs/" + name; }
+std::string data_file(const std::string& name) { return std::string(acdf_test::kTestData) + "/brdfs/" + name; }
 
 struct Real {
     const char* name;

@@ -1,4 +1,5 @@
 // Real probes, where they are at hand (ACDF_TEST_DATA).
+#include "tests/inputs/places.h"
 #include "tests/lib/input/write.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +37,7 @@ const Known known[] = {
 
 class InputProbes : public testing::TestWithParam<Known> {
 protected:
-    std::string path() const { return std::string(ACDF_TEST_DATA) + "/probes/" + GetParam().name; }
+    std::string path() const { return std::string(acdf_test::kTestData) + "/probes/" + GetParam().name; }
     void SetUp() override {
         if (!std::filesystem::exists(path())) GTEST_SKIP() << path() << " is not here (set ACDF_TEST_DATA)";
     }
@@ -76,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Data, InputProbes, testing::ValuesIn(known), test_name)
 
 // St Peter's dome: the lantern at the zenith is brighter than the pavement at the nadir, in every column.
 TEST(InputProbesUpright, StPetersDomeIsOnTop) {
-    const std::string path = std::string(ACDF_TEST_DATA) + "/probes/stpeters_cross.hdr";
+    const std::string path = std::string(acdf_test::kTestData) + "/probes/stpeters_cross.hdr";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here (set ACDF_TEST_DATA)";
     const Probe probe = read_probe(path);
     const auto row_mean = [&](int row) {
@@ -96,7 +97,7 @@ TEST(InputProbesUpright, StPetersDomeIsOnTop) {
 // No seam: steps between neighbouring columns across the image's ends and the cube's face borders are like
 // those elsewhere.
 TEST(InputProbesUpright, NoSeamsInStPeters) {
-    const std::string path = std::string(ACDF_TEST_DATA) + "/probes/stpeters_cross.hdr";
+    const std::string path = std::string(acdf_test::kTestData) + "/probes/stpeters_cross.hdr";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here (set ACDF_TEST_DATA)";
     const Probe probe = read_probe(path);
     const auto step = [&](int column) { // mean |log ratio| to the next column, on the faces around the horizon

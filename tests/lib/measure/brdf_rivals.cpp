@@ -2,6 +2,7 @@
 #include "input/brdf_models.h"
 #include "measure/brdf_table.h"
 #include "measure/rgl_sampler.h"
+#include "tests/inputs/places.h"
 #include "tests/lib/input/brdf.h"
 #include "tests/lib/measure/brdf_checks.h"
 
@@ -143,7 +144,7 @@ TEST(MeasureBrdfRivals, RglInSinglePrecisionIsRounded) {
 }
 
 TEST(MeasureBrdfRivals, RglOfRealMaterials) {
-    const std::string folder = std::string(ACDF_TEST_DATA) + "/brdfs/";
+    const std::string folder = std::string(acdf_test::kTestData) + "/brdfs/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real BRDFs: set ACDF_TEST_DATA";
     for (const char* name : {"cc_ibiza_sunset_rgb.bsdf", "paper_white_rgb.bsdf"}) {
         const auto brdf = acdf::input::open_brdf(folder + name);

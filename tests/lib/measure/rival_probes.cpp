@@ -1,5 +1,6 @@
 // The rivals of local environment maps on real probes: their relative variance over random normals, printed as a
 // table, and how far taking texels at their centres is from the truth.
+#include "tests/inputs/places.h"
 #include "tests/lib/measure/rivals.h"
 
 #include "input/probe.h"
@@ -28,7 +29,7 @@ struct Variances {
 class RivalsOn : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
-        const std::string path = std::string(ACDF_TEST_DATA "/probes/") + GetParam();
+        const std::string path = std::string(acdf_test::kTestData) + "/probes/" + GetParam();
         if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent; set ACDF_TEST_DATA";
         static std::map<std::string, Target> read; // each once a process
         const auto [found, missing] = read.try_emplace(path);

@@ -1,6 +1,7 @@
 // Disks that are full, folders that refuse, links, other devices, several writers: the old file stays or the new
 // one is there, whole, and nothing else.
 #include "tests/tools/disk/files.h"
+#include "tests/inputs/places.h"
 
 #include "tests/inputs/float_map.h"
 
@@ -47,7 +48,7 @@ protected:
         result.err = read_text(err);
         return result;
     }
-    const std::string program = "'" ACDF_PROGRAM "'";
+    const std::string program = std::string("'") + acdf_test::kProgram + "'";
 
     Folder folder;
     std::string sky = folder / "sky.acdf", out = folder / "out.csv";
