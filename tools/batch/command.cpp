@@ -30,6 +30,7 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <string_view>
 
 #include <unistd.h>
 
@@ -135,6 +136,19 @@ BatchJobs all_jobs(const BatchArguments& options) {
     return jobs;
 }
 
+/// What a run writes beside its jobs' outputs. Throws Failure where another's file is in the way.
+std::string own_file(const BatchArguments& options, const char* name, const char* mark) {
+    const std::string path = (fs::path(options.output) / name).string();
+    std::error_code error;
+    if (fs::is_directory(path, error)) throw Failure(path + ": is a folder, where a file is to be written");
+    if (options.force || !fs::exists(path, error)) return path;
+    const std::vector<std::uint8_t> old = read_bytes(path);
+    const std::string_view start(mark);
+    if (old.size() < start.size() || !std::equal(start.begin(), start.end(), old.begin()))
+        throw Failure(path + ": exists and was not made by acdf; use --force to replace it");
+    return path;
+}
+
 // ---- the ways to go on -----------------------------------------------------------------------------------
 
 void sweep(const BatchArguments& options, const std::vector<BatchJob>& jobs) {
@@ -211,13 +225,15 @@ int run_batch(const BatchArguments& options, const BatchJobs& all, const BatchLi
         show_plan(options, plan);
         return exit_done;
     }
-    fs::create_directories(options.output);
+    const std::string gallery = options.gallery ? own_file(options, "gallery.html", gallery_mark) : "";
+    make_folder(options.output);
     const BatchReport report{batch_id(all.jobs), shard, run_with_progress(options, plan, limits)};
-    if (options.gallery) {
+    const int code = tell(options, report); // also where the page cannot be written
+    if (!gallery.empty()) {
         const std::string page = gallery_page(report, options.output);
-        write_output((fs::path(options.output) / "gallery.html").string(), {page.begin(), page.end()}, true);
+        write_output(gallery, {page.begin(), page.end()}, true);
     }
-    return tell(options, report);
+    return code;
 }
 
 /// The arguments that make the same build file once more.
@@ -248,7 +264,8 @@ int emit_ninja(const BatchArguments& options, const BatchJobs& all, const BatchL
             errors.push_back(planned.job.origin + ": needs about " + to_readable_size(planned.memory) +
                              " of memory; raise --memory");
     refuse(errors);
-    fs::create_directories(options.output);
+    const std::string path = own_file(options, "build.ninja", ninja_mark);
+    make_folder(options.output);
     NinjaBuild build;
     build.program = fs::read_symlink("/proc/self/exe").string();
     build.output = options.output;
@@ -262,14 +279,7 @@ int emit_ninja(const BatchArguments& options, const BatchJobs& all, const BatchL
             const fs::path real = fs::canonical(path);
             if (!is_within(real, output)) build.dependencies.push_back(real.string());
         }
-    const std::string path = (fs::path(options.output) / "build.ninja").string();
     const std::string text = ninja_text(plan, build, make_conversion);
-    if (!options.force && fs::exists(path)) {
-        const std::vector<std::uint8_t> old = read_bytes(path);
-        const std::string start(old.begin(), old.end());
-        if (start.compare(0, std::char_traits<char>::length(ninja_mark), ninja_mark) != 0)
-            throw Failure(path + ": exists and was not made by acdf; use --force to replace it");
-    }
     write_output(path, {text.begin(), text.end()}, true);
     if (!options.quiet)
         std::printf("%s: %zu jobs; run `ninja -C %s -k 0`\n", path.c_str(), plan.size(), options.output.c_str());

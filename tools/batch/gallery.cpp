@@ -76,14 +76,16 @@ std::string figure(const JobResult& job, const std::string& folder) {
 
 } // namespace
 
+const char gallery_mark[] = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+                            "<title>acdf batch: gallery</title>\n";
+
 std::string gallery_page(const BatchReport& report, const std::string& folder) {
     const std::size_t failed = report.count(JobResult::Status::failed), made = report.jobs.size() - failed;
     std::string out =
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<title>acdf batch: gallery</title>\n<style>" +
-        std::string(kStyle) + "</style>\n</head>\n<body>\n<header>\n<h1>" + std::to_string(made) +
-        (made == 1 ? " file" : " files") + (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
+        gallery_mark + std::string("<style>") + kStyle + "</style>\n</head>\n<body>\n<header>\n<h1>" +
+        std::to_string(made) + (made == 1 ? " file" : " files") +
+        (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
         "</h1>\n<p>Densities in false colours, logarithmic, from violet over green to red; each picture "
         "has a range of its own. Dark grey: no sample falls there.</p>\n</header>\n<main>\n";
     for (const bool wanted : {false, true})

@@ -82,9 +82,10 @@ private:
         fs::recursive_directory_iterator i(folder, error), end;
         for (; !error && i != end; i.increment(error)) {
             const fs::path& path = i->path();
-            const bool hidden = path.filename().string().front() == '.', directory = i->is_directory();
+            std::error_code ignored; // a link in a circle is a name like others
+            const bool hidden = path.filename().string().front() == '.', directory = i->is_directory(ignored);
             if (directory && hidden) i.disable_recursion_pending();
-            else if (directory && !i->is_symlink()) out_.folders.push_back(path.string());
+            else if (directory && !i->is_symlink(ignored)) out_.folders.push_back(path.string());
             const std::string extension = input::lower_extension(path);
             if (!directory && !hidden && !is_rendering(path) &&
                 (is_one_of(probe_extensions, extension) || is_one_of(brdf_extensions, extension)))
@@ -163,6 +164,7 @@ std::string check_source(BatchJob& job) {
     std::error_code error;
     const fs::file_status status = fs::status(job.source, error);
     if (status.type() == fs::file_type::not_found) return "there is no file " + job.source;
+    if (status.type() == fs::file_type::none) return job.source + ": " + error.message();
     if (status.type() == fs::file_type::directory) return job.source + " is a folder, not a file";
     if (status.type() != fs::file_type::regular) return job.source + " is no regular file";
     job.bytes = fs::file_size(job.source, error);

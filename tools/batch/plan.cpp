@@ -103,7 +103,8 @@ void look_at(PlannedJob& planned, const std::string& folder, const PlanOptions& 
     const std::string path = (fs::path(folder) / job.output).string();
     const Conversion& conversion = conversions.of(job);
     planned.reason = "new";
-    if (fs::exists(path)) {
+    std::error_code unknown; // told when it is written
+    if (fs::exists(path, unknown)) {
         planned.reason = "forced";
         if (!options.force) {
             const std::vector<std::uint8_t> bytes = read_acdf_bytes(path);

@@ -49,7 +49,7 @@ void convert(const BatchJob& job, const std::string& folder, const MakeConversio
              const build::Progress& progress, JobResult& result) {
     const std::shared_ptr<Conversion> conversion = make(job);
     const fs::path path = fs::path(folder) / job.output;
-    fs::create_directories(path.parent_path());
+    make_folder(path.parent_path().string());
     const Stopwatch watch{result.seconds}; // the job's own work
     std::vector<std::string> inputs;
     for (const std::string* file : conversion->files()) inputs.push_back(*file);

@@ -246,13 +246,19 @@ void write_output(const std::string& path, const std::vector<std::uint8_t>& byte
     output.commit(readable ? verify : Verify{});
 }
 
+void make_folder(const std::string& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error) fail(path, "cannot make this folder: " + error.message());
+    if (!std::filesystem::is_directory(path, error)) fail(path, "is no folder; give one to write to");
+}
+
 OutputFolder::OutputFolder(const std::string& path) {
     namespace fs = std::filesystem;
     std::error_code error;
     for (fs::path missing = path; !missing.empty() && !fs::exists(missing, error); missing = missing.parent_path())
         made_.push_back(missing.string());
-    fs::create_directories(path, error);
-    if (error || !fs::is_directory(path)) fail(path, "cannot make this folder: " + error.message());
+    make_folder(path);
 }
 
 OutputFolder::~OutputFolder() {

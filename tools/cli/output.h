@@ -57,6 +57,9 @@ private:
 void write_output(const std::string& path, const std::vector<std::uint8_t>& bytes, bool force,
                   const std::vector<std::string>& inputs = {}, const Verify& verify = {});
 
+/// Makes a folder, and those above it, where they are missing. Throws Failure.
+void make_folder(const std::string& path);
+
 /// A folder for outputs, made with those above it where they are missing. What was made is removed at the end where
 /// it is empty: a command that fails leaves none.
 class OutputFolder {

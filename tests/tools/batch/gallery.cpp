@@ -42,5 +42,38 @@ TEST(BatchGallery, ShowsEveryFileAndWhatFailed) {
     EXPECT_EQ(run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "--dry-run"}).code, 2);
 }
 
+TEST(BatchGallery, ReplacesNoPageOfOthers) {
+    const Folder folder;
+    write_small_probe(folder / "a.pfm", 1);
+    std::filesystem::create_directory(folder / "out");
+    write_text(folder / "out/gallery.html", "<!doctype html>\nmine");
+    std::vector<std::string> arguments{"batch", folder / "a.pfm", "-o", folder / "out", "--gallery", "-q"};
+    const Result refused = run_acdf(arguments);
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.err.find("gallery.html: exists and was not made by acdf"), std::string::npos) << refused.err;
+    EXPECT_EQ(read_text(folder / "out/gallery.html"), "<!doctype html>\nmine");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/a.acdf")) << "nothing was started";
+    arguments.push_back("--force");
+    EXPECT_EQ(run_acdf(arguments).code, 0);
+    EXPECT_EQ(count(read_text(folder / "out/gallery.html"), "<figure>"), 1u);
+
+    std::filesystem::remove(folder / "out/gallery.html");
+    std::filesystem::create_directory(folder / "out/gallery.html");
+    const Result in_the_way = run_acdf(arguments);
+    EXPECT_EQ(in_the_way.code, 1);
+    EXPECT_NE(in_the_way.err.find("gallery.html: is a folder"), std::string::npos) << in_the_way.err;
+}
+
+TEST(BatchGallery, AReportIsToldWhereThePageCannotBeWritten) {
+    const Folder folder;
+    write_small_probe(folder / "a.pfm", 1);
+    std::filesystem::create_directory(folder / "out");
+    std::filesystem::create_symlink("nowhere/gallery.html", folder / "out/gallery.html");
+    const Result made = run_acdf({"batch", folder / "a.pfm", "-o", folder / "out", "--gallery", "--json"});
+    EXPECT_EQ(made.code, 1);
+    EXPECT_EQ(lines_in(made.err), 1u) << made.err;
+    EXPECT_NE(made.out.find("\"status\": \"done\""), std::string::npos) << made.out;
+}
+
 } // namespace
 } // namespace acdf::test

@@ -77,6 +77,30 @@ TEST_F(BatchCommand, TwoSourcesOfOneOutputAreRefused) {
     EXPECT_EQ(batch({probes + "/*.png"}).code, 1);
 }
 
+TEST_F(BatchCommand, LinksInACircleAreNoSources) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    fs::create_symlink("circle", probes + "/circle");
+    fs::create_directory_symlink("../probes", probes + "/self");
+    EXPECT_EQ(batch({probes}).code, 0);
+    EXPECT_EQ(files_in(out).size(), 1u);
+    fs::create_symlink("b.pfm", probes + "/b.pfm");
+    const Result result = batch({probes});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+    EXPECT_EQ(result.err.rfind("acdf: " + probes + "/b.pfm: ", 0), 0u) << result.err;
+}
+
+TEST_F(BatchCommand, AFolderThatCannotBeMadeIsNamed) {
+    write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
+    for (const std::string& wrong : {std::string("/proc/acdf/out"), probes + "/a.pfm/out"})
+        for (const char* way : {"--gallery", "--emit=ninja"}) {
+            const Result result = run_acdf({"batch", probes, "-o", wrong, way});
+            EXPECT_EQ(result.code, 1);
+            EXPECT_EQ(result.err.rfind("acdf: " + wrong, 0), 0u) << result.err;
+            EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        }
+}
+
 TEST_F(BatchCommand, WrongUsageIsTold) {
     write_small_probe((fs::create_directory(probes), probes + "/a.pfm"), 1);
     for (const std::vector<std::string>& wrong : {std::vector<std::string>{probes, "--shard", "0/3"},
