@@ -195,7 +195,7 @@ Json describe(const std::string& path, const File& file) {
 // ---- for people ----------------------------------------------------------------------------------------
 
 void line(const char* name, const std::string& value) {
-    if (!value.empty()) std::printf("  %-12s %s\n", name, printable(value).c_str());
+    if (!value.empty()) std::printf("  %-12s %s\n", name, on_one_line(value).c_str());
 }
 
 std::string number(double value) {
@@ -259,14 +259,14 @@ std::string source_text(const Json& source) {
 
 void print_table(const char* name, const Json& object) {
     for (const auto& [key, value] : object.items()) {
-        std::printf("  %-12s %-28s %s\n", name, printable(key).c_str(), printable(text_of(value)).c_str());
+        std::printf("  %-12s %-28s %s\n", name, on_one_line(key).c_str(), on_one_line(text_of(value)).c_str());
         name = "";
     }
 }
 
 void print(const Json& report) {
     const std::uint64_t bytes = report["bytes"];
-    std::printf("%s: %s, format %s, %llu bytes (%s)\n", printable(text_of(report["file"])).c_str(),
+    std::printf("%s: %s, format %s, %llu bytes (%s)\n", on_one_line(text_of(report["file"])).c_str(),
                 text_of(report["kind"]).c_str(), text_of(report["version"]).c_str(),
                 static_cast<unsigned long long>(bytes), to_readable_size(bytes).c_str());
     line("target", target_text(report));

@@ -26,6 +26,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 namespace acdf::tools {
 namespace {
@@ -66,6 +67,7 @@ std::uint32_t axis_of(const std::string& text, const std::vector<std::string>& n
 void set_ranges(TableArguments& options, const std::vector<std::uint32_t>& shape) {
     if (options.ranges.empty()) return;
     for (const std::uint32_t length : shape) options.table.ranges.emplace_back(0.0, length);
+    std::set<std::uint32_t> seen;
     for (const std::string& text : options.ranges) {
         const std::size_t equals = text.rfind('='),
                           colon = text.find(':', equals == std::string::npos ? 0 : equals);
@@ -74,7 +76,11 @@ void set_ranges(TableArguments& options, const std::vector<std::uint32_t>& shape
             !parse_number(text.substr(equals + 1, colon - equals - 1), low) ||
             !parse_number(text.substr(colon + 1), high))
             throw CLI::ValidationError("--range", "'" + text + "' is not of the form AXIS=LOW:HIGH");
-        options.table.ranges[axis_of(text.substr(0, equals), options.table.names, shape.size())] = {low, high};
+        const std::uint32_t axis = axis_of(text.substr(0, equals), options.table.names, shape.size());
+        if (!seen.insert(axis).second)
+            throw CLI::ValidationError("--range",
+                                       "'" + text + "' is the second one for axis " + std::to_string(axis));
+        options.table.ranges[axis] = {low, high};
     }
 }
 

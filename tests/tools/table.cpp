@@ -68,6 +68,17 @@ TEST(TableCommand, MakesAFileThatInfoValidateAndMeasureRead) {
     EXPECT_EQ(text.err, "");
 }
 
+TEST(TableCommand, NamesOfAxesAddNoLinesToInfo) {
+    const Folder folder;
+    const std::string source = write_table(folder), file = folder / "a.acdf";
+    ASSERT_EQ(run_acdf({"table", source, "-o", file, "--names", "t,x,y"}).code, 0);
+    const std::size_t lines = lines_in(run_acdf({"info", file}).out);
+    ASSERT_EQ(run_acdf({"table", source, "-f", "-o", file, "--names", "t\n  x\x1b[1m,x,y"}).code, 0);
+    const std::string told = run_acdf({"info", file}).out;
+    EXPECT_EQ(lines_in(told), lines) << told;
+    EXPECT_NE(told.find("axes         t   x\\x1b[1m (sampled"), std::string::npos) << told;
+}
+
 TEST(TableCommand, SampleAndPdfAgree) {
     const Folder folder;
     const std::string source = write_table(folder), file = folder / "a.acdf";
@@ -162,6 +173,8 @@ TEST(TableCommand, MistakesAreOneLineWithTheRightCode) {
         {2, {"table", source, "-o", out, "--range", "3=0:1"}, "none of the 3 axes"},
         {2, {"table", source, "-o", out, "--range", "0=zero:1"}, "AXIS=LOW:HIGH"},
         {1, {"table", source, "-o", out, "--range", "0=1:1"}, "empty"},
+        {2, {"table", source, "-o", out, "--range", "x1=0:1", "--range", "1=0:2"}, "the second one for axis 1"},
+        {1, {"table", source, "-o", out, "--names", "abcdefghijklmnop,b,c"}, "more than 15 bytes"},
         {1, {"table", source, "-o", out, "--budget", "100"}, "out of reach"},
         {1, {"table", source, "-o", out, "--names", "a,b"}, "2 names"},
         {1, {"table", folder / "bad.npy", "-o", out}, "--bad-values zero"},

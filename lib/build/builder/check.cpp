@@ -42,14 +42,17 @@ void check(const Goal& goal, std::uint32_t least_cells) {
             "goal.variance is not a positive, finite number");
 }
 
-void check_text(const std::string& text, std::size_t most) {
-    require(text.size() <= most && is_utf8(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()),
-            "a text for the metadata, or the name of an axis, is not UTF-8 or too long");
+bool is_text(const std::string& text, std::size_t most) {
+    return text.size() <= most && is_utf8(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+}
+
+void check_text(const std::string& text) {
+    require(is_text(text, 4096), "a text for the metadata is not UTF-8 or too long");
 }
 
 void check(const Source& source) {
     for (const std::string* text : {&source.name, &source.sha256, &source.projection, &source.reading})
-        check_text(*text, 4096);
+        check_text(*text);
 }
 
 void check_max_weight(double bound) {
@@ -125,7 +128,7 @@ void check(const EnvironmentOptions& options) {
     check(options.source);
     check(options.company, ACDF_COMPANY_MEAN);
     for (const SceneNormal& n : options.normals) check(n);
-    check_text(options.normals_text, 4096);
+    check_text(options.normals_text);
     const bool alone = options.company.kind == ACDF_COMPANY_NONE;
     require(alone || (options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == Shape::tree &&
                       options.fit.max_weight == 0.0 && options.goal.kind != Goal::Kind::variance),
@@ -170,7 +173,7 @@ void check(const LocalOptions& options) {
             "bin_target is no BinTarget");
     check(options.codec);
     check(options.source);
-    check_text(options.normals_text, 4096);
+    check_text(options.normals_text);
     check(options.company, ACDF_COMPANY_BRDF);
     require(options.company.kind == ACDF_COMPANY_NONE || (options.sharing && options.cosine_share == 0.0),
             "a company is for bins that share tiles, and takes the place of a cosine_share");
@@ -206,7 +209,8 @@ void check(const TableOptions& options) {
     check_max_weight(options.max_weight);
     check(options.codec);
     check(options.source);
-    for (const std::string& name : options.names) check_text(name, 15);
+    for (const std::string& name : options.names)
+        require(is_text(name, 15), "the name of an axis is not UTF-8 or has more than 15 bytes");
     check(options.other_source);
     const bool alone = options.company.kind == ACDF_COMPANY_NONE;
     require(alone || options.company.kind == ACDF_COMPANY_TABLE, "the company of a table is another table");
