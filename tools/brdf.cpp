@@ -79,7 +79,7 @@ void BrdfConversion::check() {
     if (given("--views") && !parse_views(views_, brdf_.theta_views, brdf_.phi_views))
         throw CLI::ValidationError("--views",
                                    "needs a count such as 32, or two such as 16x8 (theta_o x phi_o, at least 4)");
-    if (given("--knots") && !parse_views(knots_, brdf_.phi_segments, brdf_.theta_segments))
+    if (given("--knots") && !parse_pair(knots_, ACDF_MAX_SEGMENTS, brdf_.phi_segments, brdf_.theta_segments))
         throw CLI::ValidationError("--knots", "needs two counts such as 10x30 (phi_h x theta_h)");
     if (given("--eps") && !given("--knots")) brdf_.phi_segments = brdf_.theta_segments = ACDF_MAX_SEGMENTS;
     brdf_.sharing = !separate_;

@@ -295,7 +295,6 @@ Local build_separate(const compress::Target& target, const Source& source, const
                      const Progress& progress) {
     const NormalBins bins = bins_of(options, options.subdivisions > 0 ? options.subdivisions : 6);
     LocalDraft draft{{}, description_of(target, source, options, bins, {})};
-    draft.description.shares.assign(bins.normals.size(), 0.0f);
     draft.description.chunks = {compress::local_chunk(static_cast<float>(options.cosine_share), {})};
     compress::FitOptions fit = options.fit;
     fit.goal = options.goal;
@@ -305,10 +304,17 @@ Local build_separate(const compress::Target& target, const Source& source, const
     fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };
-    compress::SeparateFit fitted = compress::fit_local_separate(target, bins, options.bin_target, fit);
-    draft.tree = std::move(fitted.tree);
-    draft.description.shares = std::move(fitted.shares);
-    return finish(std::move(draft), target, source, options, bins);
+    const auto bytes_over = [&] { // shares are known only now, and compress worse than none
+        const std::uint64_t bytes = fit.file_size(draft.tree), budget = options.goal.budget;
+        return options.goal.kind == Goal::Kind::budget && bytes > budget ? bytes - budget : 0;
+    };
+    for (std::uint64_t over = 0;; fit.goal.budget -= std::min(over, fit.goal.budget)) {
+        draft.description.shares.assign(bins.normals.size(), 0.0f);
+        compress::SeparateFit fitted = compress::fit_local_separate(target, bins, options.bin_target, fit);
+        draft.tree = std::move(fitted.tree);
+        draft.description.shares = std::move(fitted.shares);
+        if (over = bytes_over(); over == 0) return finish(std::move(draft), target, source, options, bins);
+    }
 }
 
 } // namespace

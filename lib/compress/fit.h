@@ -32,6 +32,9 @@ using Progress = std::function<void(double)>;
 /// Size of the file that a tree would make.
 using FileSize = std::function<std::uint64_t(const EncodedTree&)>;
 
+/// The same of curves that are stored otherwise than they were fitted.
+using CascadeSize = std::function<std::uint64_t(const Cascade&)>;
+
 /// What the tree of the variance fit is to reach.
 struct Goal {
     enum class Kind { cells, budget, variance };
@@ -48,6 +51,7 @@ struct FitOptions {
     Shape shape = Shape::tree;  ///< variance
     Goal goal;                  ///< variance; a cascade takes cells alone
     FileSize file_size;         ///< needed for a budget; by default the bytes of the tree
+    CascadeSize cascade_size;   ///< instead of file_size
     /// A goal of variance is out of reach where it takes many more bytes; it bounds the memory of the search.
     std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
     bool size_by_length = false;        ///< file_size depends on nothing but the number of bytes of the tree

@@ -126,14 +126,14 @@ EncodedTree fit_variance(const std::vector<Target>& targets, const HalfGrid& gri
     if (fit.goal.kind == Goal::Kind::cells)
         fit.goal.cells = static_cast<std::uint32_t>(
             std::min<std::uint64_t>(std::uint64_t{options.goal.cells} * targets.size(), std::uint64_t{0xFFFFFFFF}));
-    // Positions of the file take up to four bytes where the steps of the grid take two.
+    // Positions of the file take up to four bytes where the steps of the grid take two: only what is placed tells.
     const auto placed = [&](Cascade cascade) {
         place_knots(cascade, grid);
         return encode_tree(cascade);
     };
-    fit.file_size = [&](const EncodedTree& tree) {
-        empty.tree = tree;
-        return options.file_size(empty) + tree.bytes.size() / 2;
+    fit.cascade_size = [&](const Cascade& cascade) {
+        empty.tree = placed(cascade);
+        return options.file_size(empty);
     };
     std::vector<Grid> grids;
     for (const Target& target : targets) grids.push_back(grid_of(target));

@@ -147,7 +147,8 @@ private:
         out.tree = sizer_.tree(bins, stored_price(out.price), known_trees);
         for (const Trial* trial : known)
             if (trial->tree == out.tree) return trial->beyond;
-        if (goal_.kind == Goal::Kind::budget && (!options_.file_size || options_.size_by_length))
+        if (goal_.kind == Goal::Kind::budget && !options_.cascade_size &&
+            (!options_.file_size || options_.size_by_length))
             return file_size_of_length(sizer_.bytes(out.tree)) > goal_.budget;
         return beyond(store_trees(trees, out.price));
     }
@@ -211,6 +212,7 @@ private:
     }
 
     std::uint64_t size(const Candidate& candidate) const {
+        if (options_.cascade_size) return options_.cascade_size(candidate.fitted.cascade);
         return options_.file_size ? options_.file_size(candidate.fitted.tree) : candidate.fitted.tree.bytes.size();
     }
 

@@ -56,6 +56,18 @@ TEST(BrdfCommand, compressedFilesFillTheirBudget) {
     EXPECT_NE(run_acdf({"info", path}).out.find("--budget 9000"), std::string::npos);
 }
 
+TEST(BrdfCommand, treesOfTheirOwnKeepTheirBudget) {
+    const Folder folder;
+    const std::string path = folder / "a.acdf";
+    for (const auto& [codec, budget] : {std::pair{"none", 4096u}, {"zlib", 16384u}}) {
+        const Result made = run_acdf({"brdf", "lambert", "-f", "-o", path, "--views", "4", "--no-sharing",
+                                      "--budget", std::to_string(budget), "--compress", codec});
+        ASSERT_EQ(made.code, 0) << made.err;
+        EXPECT_LE(std::filesystem::file_size(path), budget);
+        EXPECT_GE(std::filesystem::file_size(path), budget - budget / 10);
+    }
+}
+
 TEST(BrdfCommand, measureComparesWithOtherSamplers) {
     const Result measured = run_acdf({"measure", small_file(), "--against", "ggx:alpha=0.4", "--json"});
     ASSERT_EQ(measured.code, 0) << measured.err;
@@ -176,6 +188,14 @@ std::string anisotropic_npy() {
     return bytes;
 }
 
+TEST(BrdfCommand, curvesOfTwoSegmentsAreTaken) {
+    const Folder folder;
+    const Result made = run_acdf({"brdf", "lambert", "-o", folder / "a.acdf", "--views", "4", "--fit", "uniform",
+                                  "--knots", "10x2", "--json"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(Json::parse(made.out).at("cells"), 4 * 10 * 2);
+}
+
 TEST(BrdfCommand, anisotropicTablesAreFollowed) {
     if (acdf_test::kSanitized) GTEST_SKIP() << "test_brdf and test_builder make such files";
     const Folder folder;
@@ -220,6 +240,7 @@ TEST(BrdfCommand, mistakesAreToldInOneLine) {
                                                  {"--views", "eight"},
                                                  {"--fit", "cdf", "--budget", "64KiB"},
                                                  {"--knots", "10x30"},
+                                                 {"--fit=cdf", "--knots=10"},
                                                  {"--cells", "64", "--budget", "64KiB"},
                                                  {"--diffuse-floor", "1"}}) {
         std::vector<std::string> arguments{"brdf", "lambert", "-o", out};

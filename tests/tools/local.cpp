@@ -114,6 +114,12 @@ TEST_F(LocalCommand, CompressedFilesFillTheirBudget) {
     EXPECT_NE(run_acdf({"info", output}).out.find("--budget 30000"), std::string::npos);
 }
 
+TEST_F(LocalCommand, CompressedTreesOfTheirOwnKeepTheirBudget) {
+    const int bytes = made({"--no-sharing", "--normals", "4", "--budget", "8KiB", "--compress", "zlib"})["bytes"];
+    EXPECT_LE(bytes, 8192);
+    EXPECT_GE(bytes, 7600);
+}
+
 TEST_F(LocalCommand, ScenesAreRead) {
     write_text(folder / "normals.txt", "0 0 1\n0.1 0 1 3\n# a remark\n");
     const json all = made({"--budget", "40kB"}),
