@@ -21,8 +21,8 @@ namespace {
 /// Numbers that are drawn with: on their way to pieces.
 struct Draws {
     Sought sought;
-    Doubles shifted[kBlock / kLanes][2][2]; // as load_numbers gives them
-    std::uint32_t lost;                     // bits of lanes that tables do not answer
+    Doubles shifted[kSearched / kLanes][2][2]; // as load_numbers gives them
+    std::uint32_t lost;                        // bits of lanes that tables do not answer
 };
 
 /* acdf_draw_distance of lanes: exact in doubles, then rounded once. */
@@ -60,7 +60,7 @@ ACDF_LANE void sample_by_cells(const AcdfEnvironment& env, const double (*u)[2],
         u, count, out,
         [&](const double(*from)[2], Draws* draws) {
             draws->lost = 0;
-            for (std::size_t first = 0; first < kBlock; first += kLanes) {
+            for (std::size_t first = 0; first < kSearched; first += kLanes) {
                 Words key[2];
                 draws->lost |= load_numbers(from + first, draws->shifted[first / kLanes], key) << first;
                 find_blocks(s, key[0], key[1], &draws->sought, first);
@@ -68,11 +68,12 @@ ACDF_LANE void sample_by_cells(const AcdfEnvironment& env, const double (*u)[2],
             ask_for_blocks(s, draws->sought);
         },
         [&](Draws* draws) {
-            find_cells(s, &draws->sought, [&](std::size_t cell) { ACDF_PREFETCH(pieces + 8 * cell); });
+            draws->lost |=
+                find_cells(s, &draws->sought, [&](std::size_t cell) { ACDF_PREFETCH(pieces + 8 * cell); });
         },
         [&](const double(*from)[2], Draws* draws, AcdfDirectionSample* to) {
             std::uint32_t lost = draws->lost;
-            for (std::size_t first = 0; first < kBlock; first += kLanes)
+            for (std::size_t first = 0; first < kSearched; first += kLanes)
                 lost |= draw(env.cells, s, *draws, first, to);
             for (; lost; lost &= lost - 1) {
                 const std::uint32_t i = acdf_lowest_bit(lost);
@@ -86,7 +87,7 @@ ACDF_LANE void sample_by_cells(const AcdfEnvironment& env, const double (*u)[2],
 /// Where directions lie, an AcdfPlace a lane: on their way to pieces.
 struct Places {
     Sought sought;
-    Floats along[kBlock / kLanes], cap[kBlock / kLanes];
+    Floats along[kSearched / kLanes], cap[kSearched / kLanes];
     std::uint32_t lost;
 };
 
@@ -123,16 +124,17 @@ ACDF_LANE void pdf_by_cells(const AcdfEnvironment& env, const float (*w)[3], std
         w, count, out,
         [&](const float(*from)[3], Places* places) {
             places->lost = 0;
-            for (std::size_t first = 0; first < kBlock; first += kLanes)
+            for (std::size_t first = 0; first < kSearched; first += kLanes)
                 places->lost |= find_directions(env.cells, s, from, first, places);
             ask_for_blocks(s, places->sought);
         },
         [&](Places* places) {
-            find_cells(s, &places->sought, [&](std::size_t cell) { ACDF_PREFETCH(pieces + 8 * cell); });
+            places->lost |=
+                find_cells(s, &places->sought, [&](std::size_t cell) { ACDF_PREFETCH(pieces + 8 * cell); });
         },
         [&](const float(*from)[3], Places* places, float* to) {
             std::uint32_t lost = places->lost;
-            for (std::size_t first = 0; first < kBlock; first += kLanes)
+            for (std::size_t first = 0; first < kSearched; first += kLanes)
                 lost |= densities(env.cells, s, *places, first, to);
             for (; lost; lost &= lost - 1) {
                 const std::uint32_t i = acdf_lowest_bit(lost);

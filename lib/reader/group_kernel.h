@@ -50,7 +50,7 @@ ACDF_LANE const std::uint8_t* boxes_of(const GroupArrays& g, const AcdfGroup* gr
 /* Asks for the boxes of the groups of all lanes, from some byte of each block on, that do not stand where the
  * number of a group tells. */
 ACDF_LANE void ask_for_more(const GroupArrays& g, const Sought& sought, std::size_t from) {
-    for (std::size_t i = 0; i < kBlock; ++i) {
+    for (std::size_t i = 0; i < kSearched; ++i) {
         const AcdfGroup* const group = g.groups + sought.cell[i];
         const std::uint8_t* const boxes = g.more + kGroupBytes * group->more + from;
         if (group->count > ACDF_BLOCK_CELLS) ACDF_PREFETCH(boxes);
@@ -88,10 +88,10 @@ ACDF_LANE std::uint32_t cell_of_group(const GroupArrays& g, const AcdfGroup* gro
 
 /// The lanes of a block in their groups and cells.
 struct Grouped {
-    alignas(64) std::uint64_t left[kBlock][2]; // of the numbers in the group, in steps of 2^-52
-    alignas(64) double u[kBlock][2];           // in the cell
-    alignas(64) double range[kBlock][4];       // columns of the cell; heights of its rows, or these
-    alignas(64) std::uint32_t cell[kBlock], in_group[kBlock];
+    alignas(64) std::uint64_t left[kSearched][2]; // of the numbers in the group, in steps of 2^-52
+    alignas(64) double u[kSearched][2];           // in the cell
+    alignas(64) double range[kSearched][4];       // columns of the cell; heights of its rows, or these
+    alignas(64) std::uint32_t cell[kSearched], in_group[kSearched];
     std::uint32_t alone, lost; // bits of lanes: in a group of one cell; that tables do not answer
 };
 
@@ -174,8 +174,8 @@ ACDF_LANE std::uint64_t cross_cells(const GroupArrays& g, std::size_t first, Gro
 /* What is left in its cell of the numbers of all lanes, and where these lie. */
 ACDF_LANE void draw_cells(const GroupArrays& g, const Sought& sought, Grouped* in) {
     std::uint64_t outside = 0; // two bits a lane
-    for (std::size_t i = 0; i < kBlock; ++i) find_range(g, sought, i, in);
-    for (std::size_t first = 0; first < kBlock; first += ACDF_WIDTH / 2)
+    for (std::size_t i = 0; i < kSearched; ++i) find_range(g, sought, i, in);
+    for (std::size_t first = 0; first < kSearched; first += ACDF_WIDTH / 2)
         outside |= cross_cells(g, first, in) << 2 * first;
     while (outside) {
         const std::uint32_t i = (std::uint32_t)__builtin_ctzll(outside) / 2;
@@ -234,9 +234,9 @@ ACDF_LANE void end_draws(const AcdfEnvironment& env, const GroupArrays& g, const
     in.alone = 0;
     in.lost = draws->lost;
     if (g.several) ask_for_more(g, draws->sought, 0);
-    for (std::size_t i = 0; i < kBlock; ++i) enter_group(g, u[i], i, &draws->sought, &in);
+    for (std::size_t i = 0; i < kSearched; ++i) enter_group(g, u[i], i, &draws->sought, &in);
     draw_cells(g, draws->sought, &in);
-    for (std::size_t first = 0; first < kBlock; first += kLanes) place_lanes(env, g, first, &in, out);
+    for (std::size_t first = 0; first < kSearched; first += kLanes) place_lanes(env, g, first, &in, out);
     for (; in.lost; in.lost &= in.lost - 1) {
         const std::uint32_t i = acdf_lowest_bit(in.lost);
         out[i] = acdf_environment_sample(&env, u[i][0], u[i][1]);
@@ -251,7 +251,7 @@ ACDF_LANE void sample_by_groups(const AcdfEnvironment& env, const double (*u)[2]
         u, count, out,
         [&](const double(*from)[2], GroupDraws* draws) {
             draws->lost = 0;
-            for (std::size_t first = 0; first < kBlock; first += kLanes) {
+            for (std::size_t first = 0; first < kSearched; first += kLanes) {
                 Words key[2];
                 Doubles shifted[2][2];
                 draws->lost |= load_numbers(from + first, shifted, key) << first;
@@ -260,7 +260,7 @@ ACDF_LANE void sample_by_groups(const AcdfEnvironment& env, const double (*u)[2]
             ask_for_blocks(s, draws->sought);
         },
         [&](GroupDraws* draws) {
-            find_cells(s, &draws->sought, [&g](std::size_t group) {
+            draws->lost |= find_cells(s, &draws->sought, [&g](std::size_t group) {
                 ACDF_PREFETCH(g.groups + group);
                 ACDF_PREFETCH(g.boxes + kGroupBytes * group);
             });
@@ -289,7 +289,7 @@ ACDF_LANE bool locate(const GroupArrays& g, std::uint32_t square0, std::uint32_t
 /// Directions on their way to groups.
 struct GroupPlaces {
     Sought sought;
-    alignas(64) std::uint32_t square[2][kBlock];
+    alignas(64) std::uint32_t square[2][kSearched];
     std::uint32_t lost;
 };
 
@@ -297,7 +297,7 @@ struct GroupPlaces {
 ACDF_LANE void begin_densities(const AcdfEnvironment& env, const GroupArrays& g, const Search& s,
                                const float (*w)[3], GroupPlaces* places) {
     places->lost = 0;
-    for (std::size_t first = 0; first < kBlock; first += kLanes) {
+    for (std::size_t first = 0; first < kSearched; first += kLanes) {
         Signed square[2];
         Words key[2];
         const Signed sure = squares_of(!g.heights, env.columns, env.rows, w + first, square);
@@ -318,9 +318,9 @@ ACDF_LANE void end_densities(const AcdfEnvironment& env, const GroupArrays& g, c
     std::uint32_t* const sought = places->sought.cell;
     std::uint32_t lost = places->lost;
     if (g.several) ask_for_more(g, places->sought, kPositions);
-    for (std::size_t i = 0; i < kBlock; ++i)
+    for (std::size_t i = 0; i < kSearched; ++i)
         lost |= (std::uint32_t)locate(g, places->square[0][i], places->square[1][i], &sought[i]) << i;
-    for (std::size_t first = 0; first < kBlock; first += kLanes) {
+    for (std::size_t first = 0; first < kSearched; first += kLanes) {
         const Words pdf = gathered(g.densities, *(const Words*)&sought[first]);
         std::memcpy(out + first, &pdf, sizeof pdf);
     }
@@ -337,7 +337,7 @@ ACDF_LANE void pdf_by_groups(const AcdfEnvironment& env, const float (*w)[3], st
         w, count, out,
         [&](const float(*from)[3], GroupPlaces* places) { begin_densities(env, g, s, from, places); },
         [&](GroupPlaces* places) {
-            find_cells(s, &places->sought, [&g](std::size_t group) {
+            places->lost |= find_cells(s, &places->sought, [&g](std::size_t group) {
                 ACDF_PREFETCH(g.groups + group);
                 ACDF_PREFETCH(g.boxes + kGroupBytes * group + kPositions);
             });

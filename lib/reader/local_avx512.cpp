@@ -1,7 +1,7 @@
 #if ACDF_WAVEFRONT_X86
 #define ACDF_WIDTH 8
-#include "local_density_kernel.h"
 #include "local_kernel.h"
+#include "local_piece_kernel.h"
 
 void acdf::local_sample_avx512(const AcdfLocal& local, const float (*normals)[3], const double (*u)[2],
                                std::size_t count, AcdfDirectionSample* out) {

@@ -89,19 +89,17 @@ __attribute__((noinline)) double light_probability(const AcdfLocal& local, const
     return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 
-/* acdf_local_found_tile and acdf_local_tile_probability of all cells. */
-ACDF_LANE void weigh_tiles(const AcdfLocal& local, const Seen& seen, Cells* cells) {
-    alignas(64) double given[kRoom];
-    for (std::size_t i = 0; i < cells->count; ++i)
-        given[i] = share_of(*local.tables, seen, i, (std::uint32_t)cells->tile[i]);
-    for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH) {
+/* acdf_local_tile_probability of some tiles, by what the mixture gives to them. */
+ACDF_LANE void weigh_tiles(const AcdfLocal& local, const Seen& seen, const long long* tile, const double* given,
+                           std::size_t count, double* probability) {
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
         const Vector mixture = loaded(&seen.mixture[at]), share = loaded(&given[at]);
-        stored(&cells->probability[at], positive(mixture / loaded(&seen.sum[at]) * positive(share / mixture)));
-        const std::size_t more = std::min<std::size_t>(cells->count - at, ACDF_WIDTH);
+        stored(&probability[at], positive(mixture / loaded(&seen.sum[at]) * positive(share / mixture)));
+        const std::size_t more = std::min<std::size_t>(count - at, ACDF_WIDTH);
         unsigned none = ~lanes(less(all(0.0), share)) & ((1u << more) - 1u);
         for (; none; none &= none - 1) {
             const std::size_t i = at + acdf_lowest_bit(none);
-            cells->probability[i] = light_probability(local, seen, i, (std::uint32_t)cells->tile[i]);
+            probability[i] = light_probability(local, seen, i, (std::uint32_t)tile[i]);
         }
     }
 }
@@ -125,8 +123,6 @@ ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, cons
     return to_floats((Doubles)out[0], (Doubles)out[1]);
 }
 
-// ---- all of an array -------------------------------------------------------------------------------------------
-
 /* Densities of up to kBlock lanes; `at` and `alone` as in draw_block. */
 template <class At, class Alone>
 ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& alone, const float (*directions)[3],
@@ -134,6 +130,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     Seen seen;
     Cells cells;
     Boxes live, done;
+    alignas(64) double given[kRoom];
     Points room;
     std::uint64_t lost = 0;
     cells.count = count;
@@ -153,7 +150,9 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
             find_tiles(*local.tables, &cells, first + half);
     }
     enter_tiles<true>(local, cells, &live, &done);
-    weigh_tiles(local, seen, &cells);
+    for (std::size_t i = 0; i < count; ++i)
+        given[i] = share_of(*local.tables, seen, i, (std::uint32_t)cells.tile[i]);
+    weigh_tiles(local, seen, cells.tile, given, count, cells.probability);
     find_cells<true>(local, &live, &done);
     for (std::size_t first = 0; first < count; first += kLanes) {
         alignas(64) float told[kLanes];
@@ -165,25 +164,6 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
         }
     }
     for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
-}
-
-ACDF_LANE void pdf_all(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
-                       std::size_t count, float* out) {
-    for (std::size_t first = 0; first < count;
-         first += kBlock, normals += kBlock, directions += kBlock, out += kBlock)
-        density_block(
-            local, PointsOf{local, normals},
-            [&](std::size_t lane) { out[lane] = acdf_local_pdf(&local, normals[lane], directions[lane]); },
-            directions, std::min(count - first, kBlock), out);
-}
-ACDF_LANE void pdf_all(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
-                       std::size_t count, float* out) {
-    const OnePoint points(local, point);
-    for (std::size_t first = 0; first < count; first += kBlock, directions += kBlock, out += kBlock)
-        density_block(
-            local, points,
-            [&](std::size_t lane) { out[lane] = acdf_local_pdf_at(&local, &point, directions[lane]); }, directions,
-            std::min(count - first, kBlock), out);
 }
 
 } // namespace

@@ -131,7 +131,7 @@ void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std
 void LocalWavefront::pdf(const AcdfLocalPoint& point, const float (*directions)[3], std::size_t count,
                          float* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ != Instructions::none && count >= kFewest && !local_.tables->pieces && serves_waves(point)) {
+    if (instructions_ != Instructions::none && count >= kFewest && serves_waves(point)) {
         if (instructions_ == Instructions::avx512) return local_pdf_avx512(local_, point, directions, count, out);
         return local_pdf_avx2(local_, point, directions, count, out);
     }
@@ -142,10 +142,8 @@ void LocalWavefront::pdf(const AcdfLocalPoint& point, const float (*directions)[
 void LocalWavefront::pdf(const float (*normals)[3], const float (*directions)[3], std::size_t count,
                          float* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ != Instructions::none && !local_.tables->pieces) {
-        if (instructions_ == Instructions::avx512) return local_pdf_avx512(local_, normals, directions, count, out);
-        return local_pdf_avx2(local_, normals, directions, count, out);
-    }
+    if (instructions_ == Instructions::avx512) return local_pdf_avx512(local_, normals, directions, count, out);
+    if (instructions_ == Instructions::avx2) return local_pdf_avx2(local_, normals, directions, count, out);
 #endif
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     Lane lane[kBlock];

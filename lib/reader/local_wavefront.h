@@ -17,7 +17,6 @@ void local_sample_avx2(const AcdfLocal&, const AcdfLocalPoint&, const double (*)
                        AcdfDirectionSample*);
 void local_sample_avx512(const AcdfLocal&, const AcdfLocalPoint&, const double (*)[2], std::size_t,
                          AcdfDirectionSample*);
-// Of files without pieces of cells.
 void local_pdf_avx2(const AcdfLocal&, const float (*)[3], const float (*)[3], std::size_t, float*);
 void local_pdf_avx512(const AcdfLocal&, const float (*)[3], const float (*)[3], std::size_t, float*);
 void local_pdf_avx2(const AcdfLocal&, const AcdfLocalPoint&, const float (*)[3], std::size_t, float*);

@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr std::size_t kBlock = 32; // points that are searched for at a time: loads do not wait for each other
+constexpr std::size_t kSearched = 32; // points that are searched for at a time: loads do not wait for each other
 
 /// The grids and cells of one kind of key.
 struct Search {
@@ -34,7 +34,7 @@ ACDF_LANE Search search_of(const void* all, const AcdfSquares& squares) {
 /// Of the lanes of a block: the number of a block of boxes, where in it a point lies (bytes that turn comparisons
 /// with all four kinds of sides into "greater"), and the first cell that may hold it.
 struct Sought {
-    alignas(64) std::uint32_t block[kBlock], bytes[kBlock], cell[kBlock];
+    alignas(64) std::uint32_t block[kSearched], bytes[kSearched], cell[kSearched];
 };
 
 /* acdf_squares_entry of lanes, and what is to be compared. The blocks are asked for. */
@@ -52,7 +52,7 @@ ACDF_LANE void find_blocks(const Search& s, Words key0, Words key1, Sought* soug
 }
 
 ACDF_LANE void ask_for_blocks(const Search& s, const Sought& sought) {
-    for (std::size_t i = 0; i < kBlock; ++i) {
+    for (std::size_t i = 0; i < kSearched; ++i) {
         ACDF_PREFETCH(s.boxes + 64 * std::size_t{sought.block[i]});
         ACDF_PREFETCH(s.cells + 32 * std::size_t{sought.block[i]});
     }
@@ -70,23 +70,29 @@ ACDF_LANE std::uint32_t candidates(const void* boxes, __m256i at0, __m256i at1) 
     return (std::uint32_t)_mm_movemask_epi8(either) ^ 0xFFFFu;
 }
 
-/* The first cell of each lane's block that may hold its point, or any where there is none, which `next` is given.
- */
-template <class Next>
-ACDF_LANE void find_cells(const Search& s, Sought* sought, const Next& next) {
+/* Bit k: whether cell k of lane i's block may hold its point. */
+ACDF_LANE std::uint32_t candidates_of(const Search& s, const Sought& sought, std::size_t i) {
     const __m256i axis0 = _mm256_set_m128i(_mm_set1_epi8(1), _mm_set1_epi8(0));
     const __m256i axis1 = _mm256_set_m128i(_mm_set1_epi8(3), _mm_set1_epi8(2));
-    for (std::size_t i = 0; i < kBlock; ++i) {
-        const std::size_t block = sought->block[i];
-        const __m256i at = _mm256_set1_epi32((std::int32_t)sought->bytes[i]);
-        const std::uint32_t mask =
-            candidates(s.boxes + 64 * block, _mm256_shuffle_epi8(at, axis0), _mm256_shuffle_epi8(at, axis1)) |
-            0x8000u;
-        const std::uint32_t cell =
-            ((const std::uint16_t*)(const void*)(s.cells + 32 * block))[acdf_lowest_bit(mask)];
-        sought->cell[i] = cell;
-        next(cell);
+    const __m256i at = _mm256_set1_epi32((std::int32_t)sought.bytes[i]);
+    return candidates(s.boxes + 64 * std::size_t{sought.block[i]}, _mm256_shuffle_epi8(at, axis0),
+                      _mm256_shuffle_epi8(at, axis1));
+}
+
+/* The first cell of each lane's block that may hold its point, or any where there is none, which `next` is given.
+ * Returns the lanes that have none: what any cell tells of their places is told of other quarters, too. */
+template <class Next>
+ACDF_LANE std::uint32_t find_cells(const Search& s, Sought* sought, const Next& next) {
+    std::uint32_t gaps = 0, none = 0; // gaps: its highest bit
+    for (std::size_t i = 0; i < kSearched; ++i) {
+        const std::uint32_t mask = candidates_of(s, *sought, i);
+        const auto* const list = (const std::uint16_t*)(const void*)(s.cells + 32 * std::size_t{sought->block[i]});
+        gaps |= mask - 1u;
+        next(sought->cell[i] = list[acdf_lowest_bit(mask | 0x8000u)]);
     }
+    if (__builtin_expect(gaps >> 31, 0))
+        for (std::size_t i = 0; i < kSearched; ++i) none |= (std::uint32_t)(candidates_of(s, *sought, i) == 0) << i;
+    return none;
 }
 
 // ---- random numbers --------------------------------------------------------------------------------------------
@@ -116,18 +122,18 @@ ACDF_LANE std::uint32_t load_numbers(const double (*u)[2], Doubles shifted[2][2]
 template <class State, class In, class Out, class Begin, class GoOn, class End>
 ACDF_LANE void in_stages(const In* in, std::size_t count, Out* out, const Begin& begin, const GoOn& go_on,
                          const End& end) {
-    const std::size_t whole = count / kBlock, blocks = (count + kBlock - 1) / kBlock;
+    const std::size_t whole = count / kSearched, blocks = (count + kSearched - 1) / kSearched;
     State state[3];
-    In last[kBlock] = {};
-    Out result[kBlock];
-    const auto from = [&](std::size_t block) { return block < whole ? in + kBlock * block : last; };
-    if (whole < blocks) std::memcpy(last, in + kBlock * whole, (count - kBlock * whole) * sizeof(In));
+    In last[kSearched] = {};
+    Out result[kSearched];
+    const auto from = [&](std::size_t block) { return block < whole ? in + kSearched * block : last; };
+    if (whole < blocks) std::memcpy(last, in + kSearched * whole, (count - kSearched * whole) * sizeof(In));
     for (std::size_t t = 0; t < blocks + 2; ++t) {
         if (t < blocks) begin(from(t), &state[t % 3]);
         if (t >= 1 && t <= blocks) go_on(&state[(t - 1) % 3]);
-        if (t >= 2) end(from(t - 2), &state[(t - 2) % 3], t - 2 < whole ? out + kBlock * (t - 2) : result);
+        if (t >= 2) end(from(t - 2), &state[(t - 2) % 3], t - 2 < whole ? out + kSearched * (t - 2) : result);
     }
-    if (whole < blocks) std::memcpy(out + kBlock * whole, result, (count - kBlock * whole) * sizeof(Out));
+    if (whole < blocks) std::memcpy(out + kSearched * whole, result, (count - kSearched * whole) * sizeof(Out));
 }
 
 } // namespace
