@@ -12,13 +12,15 @@ namespace {
 /// Light near the horizon of a normal is that within this sine: as far as its bins are apart.
 double horizon_band(const NormalBins& bins) { return 2.0 / bins.subdivisions; }
 
+/// The radius of tiles at the horizon.
+constexpr double kTileRadius = 0.1;
+
 /// A tile whose directions differ by r adds r^2 sin^2 / cos to the sum of costs, and about r where it crosses the
-/// horizon: r is taken as a tenth there.
+/// horizon.
 double spread_worth(double cosine) {
-    constexpr double tile = 0.1;
-    if (cosine <= -tile) return 0.0;
-    if (cosine <= 0.0) return (1.0 + cosine / tile) / tile;
-    return (1.0 - cosine * cosine) / std::max(cosine, tile);
+    if (cosine <= -kTileRadius) return 0.0;
+    if (cosine <= 0.0) return (1.0 + cosine / kTileRadius) / kTileRadius;
+    return (1.0 - cosine * cosine) / std::max(cosine, kTileRadius);
 }
 
 } // namespace
@@ -72,17 +74,27 @@ Worth worth(const Target& target, const NormalBins& bins, const std::vector<doub
     grid.rows = CoarseMap::rows;
     grid.parameterization = target.parameterization;
     const double band = out.band = horizon_band(bins);
+    struct Lit {
+        Direction normal;
+        double weight, irradiance;
+    };
+    std::vector<Lit> lit;
+    for (std::size_t b = 0; b < bins.normals.size(); ++b)
+        if (irradiance[b] > 0.0) lit.push_back({bins.normals[b], bins.weight[b], irradiance[b]});
     tbb::parallel_for(std::size_t{0}, out.mean.values.size(), [&](std::size_t i) {
         const Direction d = direction_at(grid, double(i / grid.columns) + 0.5, double(i % grid.columns) + 0.5);
-        for (std::size_t b = 0; b < bins.normals.size(); ++b) {
-            if (!(irradiance[b] > 0.0)) continue;
-            const double cosine = dot(d, bins.normals[b]);
-            out.mean.values[i] += bins.weight[b] * std::max(0.0, cosine) / irradiance[b];
-            out.spread.values[i] += bins.weight[b] * spread_worth(cosine) / irradiance[b];
+        double mean = 0.0, spread = 0.0, alarm = 0.0;
+        for (const Lit& bin : lit) {
+            const double cosine = dot(d, bin.normal);
+            if (cosine <= -std::max(band, kTileRadius)) continue; // it sees nothing of it
+            mean += bin.weight * std::max(0.0, cosine) / bin.irradiance;
+            spread += bin.weight * spread_worth(cosine) / bin.irradiance;
             // Between bins the weight of light at the horizon is too large by up to a quarter of their distance.
-            if (std::abs(cosine) < band)
-                out.alarm.values[i] = std::max(out.alarm.values[i], 0.25 * band / irradiance[b]);
+            if (std::abs(cosine) < band) alarm = std::max(alarm, 0.25 * band / bin.irradiance);
         }
+        out.mean.values[i] = mean;
+        out.spread.values[i] = spread;
+        out.alarm.values[i] = alarm;
     });
     return out;
 }
