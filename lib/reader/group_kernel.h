@@ -173,8 +173,12 @@ ACDF_LANE std::uint64_t cross_cells(const GroupArrays& g, std::size_t first, Gro
 
 /* What is left in its cell of the numbers of all lanes, and where these lie. */
 ACDF_LANE void draw_cells(const GroupArrays& g, const Sought& sought, Grouped* in) {
-    std::uint64_t outside = 0; // two bits a lane
-    for (std::size_t i = 0; i < kSearched; ++i) find_range(g, sought, i, in);
+    std::uint64_t outside = 0;                          // two bits a lane
+    const std::uint32_t without = in->alone | in->lost; // boxes of theirs would lead past all heights
+    for (std::size_t i = 0; i < kSearched; ++i) {
+        if (__builtin_expect(without >> i & 1u, 0)) _mm256_store_pd(in->range[i], _mm256_setzero_pd());
+        else find_range(g, sought, i, in);
+    }
     for (std::size_t first = 0; first < kSearched; first += ACDF_WIDTH / 2)
         outside |= cross_cells(g, first, in) << 2 * first;
     while (outside) {
