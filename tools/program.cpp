@@ -55,8 +55,11 @@ std::string called(const CLI::App& program) {
 // CLI11 tells an option without its value, or with commas alone, by the name of a type, which may be empty.
 std::string what_is_wrong(const CLI::ParseError& error) {
     const std::string text = on_one_line(error.what());
-    const std::size_t option = text.find(": 1 required ");
-    return option == std::string::npos ? text : text.substr(0, option) + ": needs a value";
+    const auto option = [&](const char* what) { return text.substr(0, text.find(what)); };
+    if (text.find(": 1 required ") != std::string::npos) return option(": 1 required ") + ": needs a value";
+    if (text.find(": At Most 1 required ") != std::string::npos)
+        return option(": At Most ") + ": is given more than once";
+    return text;
 }
 
 int usage_error(const CLI::App& program, const CLI::ParseError& error) {

@@ -311,7 +311,7 @@ public:
         const HorizonSquares horizon = look_at_horizon(reflected_, views);
         if (std::none_of(views.targets.begin(), views.targets.end(),
                          [](const ViewTarget& t) { return t.albedo > 0.0; }))
-            throw NoEnergy("it reflects nothing, so there is nothing to sample");
+            throw NoEnergy("it reflects nothing to any view looked at, so there is nothing to sample");
         if (options_.progress) options_.progress(0.6);
         Nodes nodes;
         for (std::size_t i = 0; i < x.size(); ++i) nodes.x.push_back(i * parts);

@@ -159,7 +159,8 @@ BrdfFit fit_separate(const Reflected& reflected, const BrdfOptions& options) {
     for (std::size_t b = 0; b < ranges.size(); b += azimuths)
         out.nodes.push_back(static_cast<float>(ranges[b].node.x));
     out.total = std::accumulate(albedo.begin(), albedo.end(), 0.0);
-    if (!(out.total > 0.0)) throw NoEnergy("it reflects nothing, so there is nothing to sample");
+    if (!(out.total > 0.0))
+        throw NoEnergy("it reflects nothing to any view looked at, so there is nothing to sample");
     for (const double a : albedo) out.shares.push_back(static_cast<float>(std::max(a / out.total, 1e-12)));
     if (options.fit == ACDF_FIT_VARIANCE) out.tree = fit_variance(targets, grid, options, out);
     else out.tree = encode_tree(fit_each(targets, grid, options));

@@ -99,7 +99,8 @@ std::unique_ptr<Brdf> parse_merl(const std::string& name, const std::uint8_t* da
             else table[3 * i + c] = static_cast<float>(value);
         }
     if (bad > 0)
-        throw input_error(name, std::to_string(bad) + " of its entries are NaN or infinite; download it again");
+        throw input_error(name, std::to_string(bad) +
+                                    " of its entries are NaN or infinite in single precision; download it again");
     const double asymmetry = mirror_asymmetry(table);
     auto brdf = std::make_unique<Merl>(std::move(table));
     brdf->name = name;

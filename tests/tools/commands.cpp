@@ -116,6 +116,7 @@ TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {
     expect_one_line_error(run_acdf({"sample", sky}), 2, "--count");
     expect_one_line_error(run_acdf({"sample", sky, "-n", "1", "--sequence", "halton"}), 2, "halton");
     expect_one_line_error(run_acdf({"sample", sky, "-n"}), 2, "--count: needs a value");
+    expect_one_line_error(run_acdf({"sample", sky, "-n", "1", "-n", "2"}), 2, "--count: is given more than once");
     expect_one_line_error(run_acdf({"table", sky, "-o", folder / "out", "--names", ",,"}), 2,
                           "--names: needs a value");
     expect_one_line_error(run_acdf({"table", sky, "-o", folder / "out", "--with", ""}), 2, "--with: needs a value");

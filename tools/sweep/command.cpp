@@ -310,6 +310,11 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_repairs(command, options->input);
     add_sweep_options(command, *options);
     add_target_options(command, options->sweep.target);
+    command.get_option("--filter")
+        ->description("How your renderer looks the map up: nearest, which rivals are defined "
+                      "for; a file for bilinear is measured by acdf env and acdf local");
+    CLI::Option& channel = *command.get_option("--channel");
+    channel.description(channel.get_description() + ". Rivals of probes are defined for one channel: not rgb");
     command.add_option("-o,--output", options->folder, "The folder to write to; made where it does not exist")
         ->required()
         ->type_name("DIR")
