@@ -76,6 +76,18 @@ ACDF_LANE double share_of(const AcdfLocalTables& tables, const Seen& seen, std::
                                 acdf_local_tile(&tables, tile), 0);
 }
 
+/* Asks for the bytes of rows on the way to a lane's tile, in the middle and at its end. */
+ACDF_LANE void ask_for_rows(const AcdfLocalTables& tables, const Seen& seen, const Cells& cells, std::size_t i) {
+    const AcdfTileRecord* const tile = acdf_local_tile(&tables, (std::uint32_t)cells.tile[i]);
+    if (tile->depth > ACDF_TILE_STEPS) return;
+    const std::size_t middle = tile->step[tile->depth / 2] >> 1, last = tile->step[tile->depth - 1] >> 1;
+    for (int k = 0; k < kRows; ++k) {
+        ACDF_PREFETCH((const std::uint8_t*)seen.row[k][i]);
+        ACDF_PREFETCH((const std::uint8_t*)seen.row[k][i] + middle);
+        ACDF_PREFETCH((const std::uint8_t*)seen.row[k][i] + last);
+    }
+}
+
 /* Of a tile to which the mixture gives nothing: that of its light. */
 __attribute__((noinline)) double light_probability(const AcdfLocal& local, const Seen& seen, std::size_t i,
                                                    std::uint32_t tile) {
@@ -123,6 +135,8 @@ ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, cons
     return to_floats((Doubles)out[0], (Doubles)out[1]);
 }
 
+constexpr std::size_t kAhead = 8; // lanes, whose rows are asked for
+
 /* Densities of up to kBlock lanes; `at` and `alone` as in draw_block. */
 template <class At, class Alone>
 ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& alone, const float (*directions)[3],
@@ -150,8 +164,10 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
             find_tiles(*local.tables, &cells, first + half);
     }
     enter_tiles<true>(local, cells, &live, &done);
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + kAhead < count) ask_for_rows(*local.tables, seen, cells, i + kAhead);
         given[i] = share_of(*local.tables, seen, i, (std::uint32_t)cells.tile[i]);
+    }
     weigh_tiles(local, seen, cells.tile, given, count, cells.probability);
     find_cells<true>(local, &live, &done);
     for (std::size_t first = 0; first < count; first += kLanes) {
