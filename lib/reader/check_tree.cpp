@@ -1,6 +1,6 @@
 // The distribution itself: BINS and TREE. Linear in their bytes: the curves are walked in file order, which
 // comes after every path that leads to them because links only go forward.
-#include "checker.h"
+#include "tree_roots.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -10,7 +10,6 @@ namespace acdf {
 namespace {
 
 using u8 = std::uint8_t;
-using u16 = std::uint16_t;
 using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
@@ -41,46 +40,15 @@ struct Starts {
     }
 };
 
-struct Tree {
-    const Payload& payload;
-    const Payload& bins;
-    const Parts& parts;
-    u32 kind;
-    const TileBoxes& tiles; // where bins share them
-    u32 units;
+struct Tree : CheckedTree {
     Starts starts;
     Mark* marks;
 
-    const u8* data() const { return payload.data; }
     u64 at(u32 unit) const { return payload.at(u64{unit} * 2); }
     u64 at(const u8* byte) const { return payload.at(static_cast<u64>(byte - payload.data)); }
-    bool sampled(u32 axis) const {
-        return axis < parts.description->axis_count && parts.axes[axis].role == ACDF_AXIS_SAMPLED;
-    }
     bool starts_at(u64 unit) const { return unit < units && starts.at(static_cast<u32>(unit)); }
     Mark& mark(u32 unit) const { return marks[starts.index(unit)]; }
 };
-
-/// Calls `visit(unit, box, offset, index)` wherever a tree begins: for each bin or, where bins share tiles, for
-/// each tile, with its box (null: everything), the place in the file that says so and the number of the bin or
-/// tile. Unit 0 is one too in local environments, and in BRDFs whose tiles have none.
-template <class Visit>
-void for_each_root(const Tree& tree, Visit visit) {
-    const bool indexed = tree.kind == ACDF_KIND_LOCAL || tree.kind == ACDF_KIND_BRDF;
-    const bool unused = tree.parts.tiles && tree.parts.tiles->root_count == 0;
-    if (tree.kind == ACDF_KIND_LOCAL || (tree.kind == ACDF_KIND_BRDF && unused))
-        visit(u32{0}, static_cast<const TileBox*>(nullptr), tree.payload.at(0), u32{0});
-    const u32 count = tree.parts.tiles ? tree.parts.tiles->root_count : tree.parts.description->bin_count;
-    for (u32 i = 0; i < count; ++i) {
-        const TileBox* box = tree.tiles.of ? &tree.tiles.of[i] : nullptr;
-        const u32 root = box ? tree.parts.tile_roots[i] : tree.parts.bins[i].root;
-        if (indexed && root == ACDF_NO_ROOT) continue;
-        visit(root, box, box ? tree.tiles.roots.at(u64{i} * sizeof(u32)) : tree.bins.at(u64{i} * sizeof(AcdfBin)),
-              i);
-    }
-}
-
-u32 unit_at(const Payload& payload, u32 unit) { return reinterpret_cast<const u16*>(payload.data)[unit]; }
 
 /// Calls `visit(unit, curve)` for each curve in file order.
 template <class Visit>
@@ -95,22 +63,11 @@ void for_each_curve(const Tree& tree, const Report& report, Visit visit) {
 
 // ---- first pass: where curves start ---------------------------------------------------------------------
 
-bool header_is_legal(u32 header) {
-    return ACDF_CURVE_CUMULATIVE_CODE(header) <= 2 && ACDF_CURVE_POSITION_CODE(header) <= 2;
-}
-
-// The number of segments, 0 where it is missing, too large or written in the wrong form.
-u32 segments_of(const Payload& payload, u32 units, u32 unit) {
-    const u32 few = unit_at(payload, unit) >> ACDF_CURVE_SEGMENTS_SHIFT;
-    if (few != 0) return few;
-    if (units - unit < 3) return 0;
-    const u32 many = unit_at(payload, unit + 1) | unit_at(payload, unit + 2) << 16;
-    return many > ACDF_CURVE_SHORT_SEGMENTS && many <= ACDF_MAX_SEGMENTS ? many : 0;
-}
-
 // Marks the starts; a header is decoded only once its codes and its count are known to be legal, and nothing behind
 // the count is read. False where the start of the next curve cannot be found; else `curves` are counted.
-bool find_curves(const Payload& payload, u32 units, u64* bits, u32& curves, Report& report) {
+bool find_curves(const Tree& tree, u32& curves, Report& report) {
+    const Payload& payload = tree.payload;
+    const u32 units = tree.units;
     curves = 0;
     for (u32 unit = 0; unit < units;) {
         const u64 at = payload.at(u64{unit} * 2);
@@ -119,12 +76,12 @@ bool find_curves(const Payload& payload, u32 units, u64* bits, u32& curves, Repo
                        static_cast<ull>(payload.size));
             return false;
         }
-        const u32 header = unit_at(payload, unit);
+        const u32 header = tree.unit(unit);
         if (!header_is_legal(header)) {
             report.add(6004, at, "the header of the curve at unit %u is %04x", unit, header);
             return false;
         }
-        if (segments_of(payload, units, unit) == 0) {
+        if (segments_of(tree, unit) == 0) {
             report.add(6005, at, "the curve at unit %u", unit);
             return false;
         }
@@ -135,7 +92,7 @@ bool find_curves(const Payload& payload, u32 units, u64* bits, u32& curves, Repo
                        units);
             return false;
         }
-        bits[unit / 64] |= u64{1} << (unit % 64);
+        tree.starts.bits[unit / 64] |= u64{1} << (unit % 64);
         unit = static_cast<u32>(next);
     }
     return true;
@@ -250,9 +207,9 @@ void check_reach(const Tree& tree, u32 unit, Report& report) {
 }
 
 void check_curves(const Tree& tree, Report& report) {
-    for_each_root(tree, [&](u32 root, const TileBox*, u64, u32) {
-        if (tree.starts_at(root)) tree.mark(root).b = 1; // depth 1, nothing tilted
-    });
+    TreeRoots roots(tree);
+    for (TreeRoot root; roots.next(root);)
+        if (tree.starts_at(root.unit)) tree.mark(root.unit).b = 1; // depth 1, nothing tilted
     for_each_curve(tree, report, [&](u32 unit, const AcdfCurve& curve) {
         check_reach(tree, unit, report);
         check_values(tree, unit, curve, report);
@@ -313,10 +270,11 @@ void check_ranges(const Tree& tree, u32 curves, u32 axis, Report& report) {
     const u32 resolution = tree.parts.axes[axis].resolution;
     if (resolution == 0 || resolution >= disagree) return; // rule 5014
     for (u32 i = 0; i < curves; ++i) tree.marks[i] = {0, unreached};
-    for_each_root(tree, [&](u32 root, const TileBox* box, u64, u32) {
-        narrow(tree.mark(root), box && axis < 2 ? box->low[axis] : 0,
-               box && axis < 2 ? box->high[axis] : resolution);
-    });
+    TreeRoots roots(tree);
+    for (TreeRoot root; roots.next(root);) {
+        const TileBox* const box = axis < 2 ? root.box : nullptr;
+        narrow(tree.mark(root.unit), box ? box->low[axis] : 0, box ? box->high[axis] : resolution);
+    }
     for_each_curve(tree, report,
                    [&](u32 unit, const AcdfCurve& curve) { check_knots(tree, unit, curve, axis, report); });
 }
@@ -343,10 +301,11 @@ bool check_bins(const Payload& payload, u32 kind, Report& report, Parts& parts) 
 }
 
 void check_roots(const Tree& tree, Report& report) {
-    for_each_root(tree, [&](u32 root, const TileBox* box, u64 at, u32 index) {
-        if (tree.starts_at(root) || report.stopped()) return;
-        report.add(box ? 6024 : 6010, at, "%s %u: unit %u", box ? "tile" : "bin", index, root);
-    });
+    TreeRoots roots(tree);
+    for (TreeRoot root; !report.stopped() && roots.next(root);)
+        if (!tree.starts_at(root.unit))
+            report.add(root.box ? 6024 : 6010, root.at, "%s %u: unit %u", root.box ? "tile" : "bin", root.index,
+                       root.unit);
 }
 
 void check_marked_tree(const Tree& tree, u32 curves, Report& report) {
@@ -365,12 +324,24 @@ void no_memory(const Payload& payload, u64 bytes, Report& report) {
 void check_found_curves(Tree& tree, Report& report) {
     u32 curves = 0;
     const Payload& payload = tree.payload;
-    if (!find_curves(payload, tree.units, tree.starts.bits, curves, report)) return;
+    if (!find_curves(tree, curves, report)) return;
     count_before(tree.units, tree.starts);
     tree.marks = static_cast<Mark*>(std::calloc(curves, sizeof(Mark)));
     if (!tree.marks) return no_memory(payload, u64{curves} * sizeof(Mark), report);
     check_marked_tree(tree, curves, report);
     std::free(tree.marks);
+}
+
+// Of a tree in any order, with marks for each of its curves.
+void find_faults(const CheckedTree& checked, Report& report) {
+    const u64 runs = checked.units / 64 + 1;
+    const Starts starts{static_cast<u64*>(std::calloc(runs, sizeof(u64))),
+                        static_cast<u32*>(std::calloc(runs, sizeof(u32)))};
+    Tree tree{checked, starts, nullptr};
+    if (starts.bits && starts.before) check_found_curves(tree, report);
+    else no_memory(checked.payload, runs * (sizeof(u64) + sizeof(u32)), report);
+    std::free(starts.bits);
+    std::free(starts.before);
 }
 
 } // namespace
@@ -387,14 +358,8 @@ void check_tree(const Payload& bins, const Payload& payload, u32 kind, const Til
     if (!bins_ok || parts.description->bin_count == 0) return;
     parts.tree = payload.data;
     parts.tree_units = static_cast<u32>(units);
-    const u64 runs = units / 64 + 1;
-    const Starts starts{static_cast<u64*>(std::calloc(runs, sizeof(u64))),
-                        static_cast<u32*>(std::calloc(runs, sizeof(u32)))};
-    Tree tree{payload, bins, parts, kind, boxes, parts.tree_units, starts, nullptr};
-    if (starts.bits && starts.before) check_found_curves(tree, report);
-    else no_memory(payload, runs * (sizeof(u64) + sizeof(u32)), report);
-    std::free(starts.bits);
-    std::free(starts.before);
+    const CheckedTree tree{payload, bins, parts, kind, boxes, parts.tree_units};
+    if (!is_right_in_preorder(tree)) find_faults(tree, report);
 }
 
 } // namespace acdf

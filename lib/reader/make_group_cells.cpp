@@ -2,19 +2,49 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace acdf {
 
 namespace {
 
 using u32 = std::uint32_t;
+using u64 = std::uint64_t;
 
 // Where a draw in a cell is told to lie is less than 2^-24 radians off.
 constexpr double kAngleSteps = 0x1p8;
 constexpr float kNeverSure = 1.0f;
 
-u32 less_128(int x) { return static_cast<u32>(x - 128); }
+// The bytes of a cell of a block: boxes of random numbers and of positions, of both axes the lower and the upper
+// side, less 128. Boxes that no point is in have lower sides above all, and upper ones below.
+constexpr u64 kNoBox = 0x807F807F, kNowhere = kNoBox << 32 | kNoBox;
+
+// Two of them.
+u64 sides(int low, int high) {
+    return ((static_cast<u32>(high) & 0xFF) << 8 | (static_cast<u32>(low) & 0xFF)) ^ 0x8080;
+}
+
+// In blocks the same byte of all cells lies together.
+void write_block(const u64* cells, u32* block) {
+#ifdef ACDF_SQUARES_SSE2
+    constexpr int count = ACDF_BLOCK_CELLS / 2;
+    __m128i bytes[count];
+    for (int i = 0; i < count; ++i) bytes[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(cells) + i);
+    for (int turn = 0; turn < 4; ++turn) { // each takes one bit of a cell's number from the front to the end
+        __m128i mixed[count];
+        for (int i = 0; i < count / 2; ++i) {
+            mixed[2 * i] = _mm_unpacklo_epi8(bytes[i], bytes[i + count / 2]);
+            mixed[2 * i + 1] = _mm_unpackhi_epi8(bytes[i], bytes[i + count / 2]);
+        }
+        for (int i = 0; i < count; ++i) bytes[i] = mixed[i];
+    }
+    for (int i = 0; i < count; ++i) _mm_store_si128(reinterpret_cast<__m128i*>(block) + i, bytes[i]);
+#else
+    auto* const bytes = reinterpret_cast<std::uint8_t*>(block);
+    for (int side = 0; side < 8; ++side)
+        for (int i = 0; i < ACDF_BLOCK_CELLS; ++i)
+            bytes[ACDF_BLOCK_CELLS * side + i] = static_cast<std::uint8_t>(cells[i] >> 8 * side);
+#endif
+}
 
 } // namespace
 
@@ -43,10 +73,12 @@ class GroupCells::Writer {
 public:
     Writer(const GroupCells& maker, const Tables& tables, std::size_t number)
         : maker_(maker), group_(tables.groups[number]), cells_(tables.cells + group_.cells),
-          densities_(tables.densities + group_.cells),
-          boxes_(reinterpret_cast<std::uint8_t*>(tables.boxes + number * ACDF_GROUP_WORDS)),
-          more_(reinterpret_cast<std::uint8_t*>(tables.more + std::size_t{group_.more} * ACDF_GROUP_WORDS)) {
-        clear();
+          densities_(tables.densities + group_.cells), boxes_(tables.boxes + number * ACDF_GROUP_WORDS),
+          more_(tables.more + std::size_t{group_.more} * ACDF_GROUP_WORDS) {}
+
+    void end() {
+        for (; in_block_ < ACDF_BLOCK_CELLS; ++in_block_) block_[in_block_] = kNowhere;
+        write_block(block_, boxes_);
     }
 
     bool operator()(const Cell& above, u32 axis, const CellPart& part, bool same) {
@@ -59,7 +91,7 @@ private:
     // A cell on an axis of its group.
     struct Along {
         AcdfGroupAxis axis;
-        u32 box[2], position[2]; // bytes
+        u64 box, positions; // their bytes among those of a cell, were it axis 0
     };
     static constexpr AcdfGroupAxis kUntold = {0, kNeverSure};
 
@@ -83,30 +115,17 @@ private:
             return;
         }
         if (in_block_ == ACDF_BLOCK_CELLS) {
+            write_block(block_, boxes_);
             in_block_ = 0;
             boxes_ = more_;
-            more_ += 4 * ACDF_GROUP_WORDS;
-            clear();
+            more_ += ACDF_GROUP_WORDS;
         }
-        std::uint8_t* const boxes = boxes_ + in_block_++;
         const Along along = this->along<axis>(part.low, part.high, part.first, part.last), across = across_;
         cell.axis[axis] = part.dark ? kUntold : along.axis;
         cell.axis[other] = part.dark ? kUntold : across.axis;
-        write(boxes + 4 * ACDF_GROUP_POSITIONS, axis, along.position);
-        write(boxes + 4 * ACDF_GROUP_POSITIONS, other, across.position);
-        if (part.dark) return; // no numbers are in its box
-        write(boxes, axis, along.box);
-        write(boxes, other, across.box);
-    }
-
-    // Boxes that no point is in: lower sides above all, upper ones below.
-    void clear() {
-        for (std::size_t side = 0; side < 8; ++side)
-            std::memset(boxes_ + ACDF_BLOCK_CELLS * side, side % 2 == 0 ? 127 : -128, ACDF_BLOCK_CELLS);
-    }
-    static void write(std::uint8_t* boxes, u32 axis, const u32 side[2]) {
-        boxes[2 * ACDF_BLOCK_CELLS * axis] = static_cast<std::uint8_t>(side[0]);
-        boxes[2 * ACDF_BLOCK_CELLS * axis + ACDF_BLOCK_CELLS] = static_cast<std::uint8_t>(side[1]);
+        const u64 box = along.box << 16 * axis | across.box << 16 * other;
+        const u64 positions = along.positions << 16 * axis | across.positions << 16 * other;
+        block_[in_block_++] = (part.dark ? kNoBox : box) | positions; // no numbers are in the box of a dark one
     }
 
     // Radians of columns, in the order in which acdf_cell_pdf multiplies.
@@ -129,28 +148,29 @@ private:
         const bool told = group_.low[axis] < 1.0 && width > 0.0; // else no numbers are in its box
         const double lifted = 0.5 * (low + std::fabs(low)), steps = lifted * 0x1p32; // low or 0, without a branch
         const int upper = static_cast<int>((low + width) * 256.0);
-        const u32 begin = less_128(static_cast<int>(lifted * 256.0)), end = less_128(upper < 255 ? upper : 255);
         const u32 number = static_cast<u32>(static_cast<std::int64_t>(steps < 0x1p32 - 1.0 ? steps : 0x1p32 - 1.0));
         const bool slow = told && is_slow<axis>(first, last, width);
         return {{told ? number : 0, slow ? static_cast<float>(0x1p-32 / width) : kNeverSure},
-                {told ? begin : 127u, told ? end : 128u},
-                {less_128(static_cast<int>(first - corner)), less_128(static_cast<int>(last - corner) - 1)}};
+                told ? sides(static_cast<int>(lifted * 256.0), upper < 255 ? upper : 255) : kNoBox & 0xFFFF,
+                sides(static_cast<int>(first - corner), static_cast<int>(last - corner) - 1) << 32};
     }
 
     const GroupCells& maker_;
     const AcdfGroup group_;
     AcdfGroupCell* cells_;
     float* densities_;
-    std::uint8_t *boxes_, *more_; // of the block, of the next one
+    u32 *boxes_, *more_; // of the block, of the next one
     u32 in_block_ = 0;
+    u64 block_[ACDF_BLOCK_CELLS]; // set as far as they are counted
     Along across_ = {};
     double extent_ = 0.0; // of the axis on which cells are as they were
 };
 
-void GroupCells::write(const Tables& tables, std::size_t number, const GroupRun& run) const noexcept {
-    Writer writer(*this, tables, number);
-    const AcdfCurve curve = acdf_curve_at(environment_.tree, run.at);
-    each_cell(environment_.tree, run.at, curve, run.first, run.last, run.above, writer);
+void GroupCells::write(const Tables& tables, std::size_t group, const GroupCurve& curve, u32 first,
+                       u32 last) const noexcept {
+    Writer writer(*this, tables, group);
+    each_cell(environment_.tree, curve.at, curve.curve, first, last, curve.above, writer);
+    writer.end();
 }
 
 } // namespace acdf

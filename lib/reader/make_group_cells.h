@@ -11,17 +11,18 @@
 
 namespace acdf {
 
-/// Segments of a curve that follow each other, in the cell that the curve divides: their cells make a group.
-struct GroupRun {
-    Cell above;
-    std::uint32_t at, first, last; ///< of the curve; segments
+/// A curve of whose segments groups are made: those that follow each other.
+struct GroupCurve {
+    const AcdfCurve& curve;
+    const Cell& above; ///< that it divides
+    std::uint32_t at;
 };
 
 /// Writes down the cells of groups, one group after the other. The tables are as long as the groups tell.
 class GroupCells {
 public:
     struct Tables {
-        const AcdfGroup* groups;
+        AcdfGroup* groups;
         std::uint32_t *boxes, *more;
         AcdfGroupCell* cells;
         float* densities;
@@ -32,7 +33,9 @@ public:
     bool remember_heights() noexcept;
     const Growable<double>& heights() const noexcept { return heights_; }
 
-    void write(const Tables& tables, std::size_t group, const GroupRun& run) const noexcept;
+    /// Of a group that is in the tables, the cells of segments [first, last).
+    void write(const Tables& tables, std::size_t group, const GroupCurve& curve, std::uint32_t first,
+               std::uint32_t last) const noexcept;
 
 private:
     class Writer;

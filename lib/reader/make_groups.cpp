@@ -53,9 +53,13 @@ public:
 
 private:
     bool gather(u32 most_cells);
-    bool gather(u32 at, const Cell& above, std::size_t& next);
-    bool add(const Run& run, u32 at, const Cell& above);
-    bool failed() const;
+    template <class Add>
+    bool each_run(Add&& add) const;
+    template <class Add>
+    bool each_run(u32 at, const Cell& above, std::size_t& next, Add& add) const;
+    bool add(const Run& run);
+    AcdfGroup group_of(const Run& run) const;
+    void count(const Run& run);
     bool square() const { return environment_.parameterization == ACDF_PARAM_OCTAHEDRAL; }
     bool may_be_grouped(const Cell& box) const;
     /// Of positions, along a group: floats tell a place in half a turn well enough.
@@ -69,15 +73,9 @@ private:
     const TreeSurvey& curves_;
     GroupCells written_;
     u32 key_bits_ = 0, shift_[2] = {0, 0}, most_cells_ = 0;
-    u32 cells_ = 0, more_ = 0; ///< of the groups so far: cells, blocks beside the first one of each
-    Growable<AcdfGroup> groups_;
-    Growable<GroupRun> runs_; ///< of each group
+    u32 groups_ = 0, cells_ = 0, more_ = 0; ///< so far: groups, their cells, blocks beside the first one of each
     KeyBoxes numbers_, places_;
 };
-
-bool GroupsMaker::failed() const {
-    return groups_.failed() || runs_.failed() || numbers_.failed() || places_.failed();
-}
 
 // At the poles a direction moves faster than its height: cells there are by themselves.
 bool GroupsMaker::may_be_grouped(const Cell& box) const {
@@ -85,54 +83,69 @@ bool GroupsMaker::may_be_grouped(const Cell& box) const {
            (square() || (box.first[1] > 0 && box.last[1] < environment_.rows));
 }
 
-// Makes a group of a run of segments of a curve, of which there are some or none.
-bool GroupsMaker::add(const Run& run, u32 at, const Cell& above) {
-    if (run.cells == 0) return true;
-    if (groups_.size() == kMostGroups) return false;
-    AcdfGroup group = {};
+// Keys of a group.
+bool GroupsMaker::add(const Run& run) {
+    if (groups_ == kMostGroups) return false;
     KeySpan number[2] = {{1, 0}, {1, 0}}, place[2];
     for (int axis = 0; axis < 2; ++axis) {
         const Cell& box = run.box;
-        const double width = box.high[axis] - box.low[axis];
         const u32 last = (1u << kDrawnBits) - 1;
-        const bool drawn = width > kLeastWidth;
-        group.low[axis] = drawn ? box.low[axis] : 2.0;
-        group.scale[axis] = drawn ? 1.0 / width : 1.0;
-        group.first[axis] = box.first[axis];
-        group.last[axis] = box.last[axis];
         place[axis] = {box.first[axis] << shift_[axis], (box.last[axis] << shift_[axis]) - 1};
-        if (drawn)
+        if (box.high[axis] - box.low[axis] > kLeastWidth)
             number[axis] = {std::min(static_cast<u32>(box.low[axis] * kDrawnSteps), last),
                             std::min(static_cast<u32>(box.high[axis] * kDrawnSteps), last)};
+    }
+    numbers_.add(number[0], number[1]);
+    places_.add(place[0], place[1]);
+    count(run);
+    return !(numbers_.failed() || places_.failed());
+}
+
+AcdfGroup GroupsMaker::group_of(const Run& run) const {
+    AcdfGroup group = {};
+    for (int axis = 0; axis < 2; ++axis) {
+        const double width = run.box.high[axis] - run.box.low[axis];
+        const bool drawn = width > kLeastWidth;
+        group.low[axis] = drawn ? run.box.low[axis] : 2.0;
+        group.scale[axis] = drawn ? 1.0 / width : 1.0;
+        group.first[axis] = run.box.first[axis];
+        group.last[axis] = run.box.last[axis];
     }
     group.cells = cells_;
     group.count = run.cells;
     group.more = more_;
+    return group;
+}
+
+void GroupsMaker::count(const Run& run) {
+    ++groups_;
     cells_ += run.cells;
     more_ += (run.cells - 1) / ACDF_BLOCK_CELLS;
-    groups_.add(group);
-    runs_.add({above, at, run.first, run.last});
-    numbers_.add(number[0], number[1]);
-    places_.add(place[0], place[1]);
-    return !failed();
 }
 
 bool GroupsMaker::gather(u32 most_cells) {
+    most_cells_ = most_cells;
+    groups_ = cells_ = more_ = 0;
+    numbers_.cut(0);
+    places_.cut(0);
+    return each_run([&](const Run& run, const GroupCurve&) { return add(run); });
+}
+
+// Calls add(run, curve) for each run of segments that makes a group, in their order, as long as it returns true.
+// They are found twice: what is known of them takes more memory than time.
+template <class Add>
+bool GroupsMaker::each_run(Add&& add) const {
     const Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows},
                         false, false};
     std::size_t next = 0;
-    most_cells_ = most_cells;
-    cells_ = more_ = 0;
-    groups_.cut(0);
-    runs_.cut(0);
-    numbers_.cut(0);
-    places_.cut(0);
-    return gather(environment_.root, whole, next);
+    return each_run(environment_.root, whole, next, add);
 }
 
 // Below the curve that is `next` in the order of the survey.
-bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
+template <class Add>
+bool GroupsMaker::each_run(u32 at, const Cell& above, std::size_t& next, Add& add) const {
     const AcdfCurve curve = acdf_curve_at(environment_.tree, at);
+    const GroupCurve divided = {curve, above, at};
     CellParts parts(curve, above, 0);
     const u32 axis = parts.axis();
     Run run = {};
@@ -148,17 +161,17 @@ bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
             run.box.last[axis] = part.last[axis];
             run.box.high[axis] = part.high[axis];
         } else {
-            if (!add(run, at, above)) return false;
+            if (run.cells > 0 && !add(run, divided)) return false;
             run = {i, i + 1, cells, part};
             if (!narrow || cells > most_cells_) { // it is divided further, or a group by itself
-                if (!(link == 0 ? add(run, at, above) : gather(at + link, part, next))) return false;
+                if (!(link == 0 ? add(run, divided) : each_run(at + link, part, next, add))) return false;
                 run.cells = 0;
                 continue;
             }
         }
         if (link != 0) next += curves_[next].curves;
     }
-    return add(run, at, above);
+    return run.cells == 0 || add(run, divided);
 }
 
 AcdfGroups* GroupsMaker::make(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
@@ -174,10 +187,10 @@ AcdfGroups* GroupsMaker::make(std::size_t most_bytes, const AcdfAllocator& alloc
         if (about(cells, most) + written_.heights().bytes() > most_bytes || !gather(most)) continue;
         SquaresMaker numbers, places;
         if (!numbers.make(numbers_, kDrawnBits) || !places.make(places_, key_bits_)) return nullptr;
-        const std::size_t words = sizeof(AcdfGroups) / 4 + numbers.words() + places.words() + groups_.bytes() / 4 +
-                                  (groups_.size() + more_) * ACDF_GROUP_WORDS +
-                                  whole_lines(cells * sizeof(AcdfGroupCell) / 4) + whole_lines(cells) +
-                                  whole_lines(written_.heights().bytes() / 4);
+        const std::size_t words =
+            sizeof(AcdfGroups) / 4 + numbers.words() + places.words() + groups_ * sizeof(AcdfGroup) / 4 +
+            (std::size_t{groups_} + more_) * ACDF_GROUP_WORDS + whole_lines(cells * sizeof(AcdfGroupCell) / 4) +
+            whole_lines(cells) + whole_lines(written_.heights().bytes() / 4);
         if (4 * words <= most_bytes) return assemble(numbers, places, words, allocator, block);
     }
     return nullptr;
@@ -201,18 +214,24 @@ AcdfGroups* GroupsMaker::assemble(const SquaresMaker& numbers, const SquaresMake
     out->count = cells_;
     out->shift[0] = shift_[0];
     out->shift[1] = shift_[1];
-    out->groups = copy(groups_);
-    out->boxes = room(groups_.size() * ACDF_GROUP_WORDS);
+    out->groups = room(groups_ * sizeof(AcdfGroup) / 4);
+    out->boxes = room(std::size_t{groups_} * ACDF_GROUP_WORDS);
     out->more = room(std::size_t{more_} * ACDF_GROUP_WORDS);
     out->cells = room(std::size_t{cells_} * sizeof(AcdfGroupCell) / 4);
     out->densities = room(cells_);
     if (written_.heights().size() > 0) out->heights = copy(written_.heights());
     at = numbers.place(tables, at, out->numbers);
     places.place(tables, at, out->places);
-    const GroupCells::Tables parts = {groups_.data(), tables + out->boxes, tables + out->more,
-                                      reinterpret_cast<AcdfGroupCell*>(tables + out->cells),
+    const GroupCells::Tables parts = {reinterpret_cast<AcdfGroup*>(tables + out->groups), tables + out->boxes,
+                                      tables + out->more, reinterpret_cast<AcdfGroupCell*>(tables + out->cells),
                                       reinterpret_cast<float*>(tables + out->densities)};
-    for (std::size_t i = 0; i < groups_.size(); ++i) written_.write(parts, i, runs_[i]);
+    groups_ = cells_ = more_ = 0;
+    each_run([&](const Run& run, const GroupCurve& curve) {
+        parts.groups[groups_] = group_of(run);
+        written_.write(parts, groups_, curve, run.first, run.last);
+        count(run);
+        return true;
+    });
     return out;
 }
 

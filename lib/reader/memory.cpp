@@ -1,9 +1,12 @@
 #include "memory.h"
 
+#include <cstdint>
 #include <cstdlib>
 
 #if defined(_WIN32)
 #include <malloc.h>
+#elif defined(__linux__)
+#include <sys/mman.h>
 #endif
 
 namespace acdf {
@@ -13,7 +16,24 @@ namespace {
 void* take(std::size_t bytes) { return _aligned_malloc(bytes, ACDF_ALIGNMENT); }
 void give(void* block) { _aligned_free(block); }
 #else
-void* take(std::size_t bytes) { return std::aligned_alloc(ACDF_ALIGNMENT, bytes); }
+// Asks for large pages where whole ones lie in a block: of a system that gives them only to those who ask, each
+// page of 4 KiB costs a fault when it is first used, and draws look for places all over the tables.
+void ask_for_large_pages(void* block, std::size_t bytes) {
+#if defined(MADV_HUGEPAGE)
+    constexpr std::size_t page = std::size_t{1} << 21;
+    const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(block);
+    const std::uintptr_t first = (begin + page - 1) & ~(page - 1), last = (begin + bytes) & ~(page - 1);
+    if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); // it may say no
+#else
+    static_cast<void>(block), static_cast<void>(bytes);
+#endif
+}
+
+void* take(std::size_t bytes) {
+    void* const block = std::aligned_alloc(ACDF_ALIGNMENT, bytes);
+    if (block) ask_for_large_pages(block, bytes);
+    return block;
+}
 void give(void* block) { std::free(block); }
 #endif
 
