@@ -1,6 +1,8 @@
 // Trees as they usually lie, in one pass: what check_tree.cpp finds nothing wrong with.
 #include "tree_roots.h"
 
+#include <acdf/squares.h>
+
 namespace acdf {
 
 namespace {
@@ -93,6 +95,57 @@ bool tilts_are_right(const AcdfCurve& curve) {
     return true;
 }
 
+// What check_curve tells of the short curves that end, which most are.
+struct Short {
+    u32 axis, knot; ///< the last one, counted from the range's low end
+    u32 next;       ///< where the next curve begins
+    bool right;
+};
+
+#ifdef ACDF_SQUARES_SSE2
+// Bits of bytes of `count` values: those that are equal in both.
+bool are_equal(__m128i a, __m128i b, u32 bytes) {
+    const u32 equal = static_cast<u32>(_mm_movemask_epi8(_mm_cmpeq_epi8(a, b)));
+    return (~equal & ((1u << bytes) - 1)) == 0;
+}
+
+// Up to eight knots of a byte, and as many cumulative values of `size` bytes, 1 or 2, compared with those before
+// them.
+bool rise(const u8* cumulative, const u8* positions, u32 count, u32 size) {
+    const __m128i zero = _mm_setzero_si128();
+    const __m128i knots = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(positions)),
+                  before = _mm_slli_si128(knots, 1);
+    const __m128i values = _mm_loadu_si128(reinterpret_cast<const __m128i*>(cumulative));
+    const __m128i falls = size == 1 ? _mm_subs_epu8(_mm_slli_si128(values, 1), values)
+                                    : _mm_subs_epu16(_mm_slli_si128(values, 2), values);
+    const __m128i rises = _mm_cmpeq_epi8(_mm_subs_epu8(knots, before), zero); // where they do not
+    return are_equal(rises, zero, count) && are_equal(falls, zero, count * size);
+}
+#else
+bool rise(const u8* cumulative, const u8* positions, u32 count, u32 size) {
+    return knots_rise<u8>(positions, count, {0, 256}) &&
+           (size == 1 ? never_falls<u8>(cumulative, count) : never_falls<u16>(cumulative, count));
+}
+#endif
+
+// Whether a curve is one of these: without children and tilts, of two to nine segments with positions of a byte and
+// cumulative values of one or two, and far enough from the end to load sixteen bytes of each.
+bool check_short(const CheckedTree& tree, u32 at, Short& out) {
+    constexpr u32 fewest = 2, most = 9, room = 1 + (2 * (most - 1) + 16) / 2;
+    constexpr u32 others = 0x3F0; // bits of a header that are 0
+    static_assert(ACDF_CURVE_CUMULATIVE_CODE(others) == 2 && ACDF_CURVE_POSITION_CODE(others) == 3 &&
+                  ACDF_CURVE_LINK_CODE(others) == 3 && (others & ACDF_CURVE_TILTED) != 0);
+    const u32 header = tree.unit(at), segments = header >> ACDF_CURVE_SEGMENTS_SHIFT;
+    if ((header & others) != 0 || segments - fewest > most - fewest || tree.units - at < room) return false;
+    const u32 count = segments - 1, size = acdf_element_size(ACDF_CURVE_CUMULATIVE_CODE(header));
+    const u8 *const cumulative = tree.data() + u64{at} * 2 + 2, *const positions = cumulative + count * size,
+                    *const end = positions + count;
+    const u32 odd = count & (size - 1); // with a byte of padding
+    out = {header & ACDF_CURVE_AXIS_MASK, end[-1], at + 1 + (count * (size + 1) + odd) / 2,
+           rise(cumulative, positions, count, size) && (*end & (0u - odd)) == 0};
+    return true;
+}
+
 class Preorder {
 public:
     explicit Preorder(const CheckedTree& tree) : tree_(tree), roots_(tree), work_(u64{2} * tree.units) {
@@ -104,7 +157,7 @@ public:
         next_root();
         while (next_ < tree_.units)
             if (!curve()) return false;
-        return open_count_ == 0 && !has_root_;
+        return open_count_ == 0 && !has_root_ && curves_ <= tree_.units / 2 + 1;
     }
 
 private:
@@ -150,23 +203,40 @@ private:
         if (!(open_count_ > 0 ? enter() : begin())) return false;
         for (; has_root_ && root_.unit <= at; next_root())
             if (root_.unit != at || !is_inherited(root_.box)) return false;
+        ++curves_;
+        Short end;
+        if (check_short(tree_, at, end)) return end.right && pass(end);
         if (!header_is_legal(tree_.unit(at)) || segments_of(tree_, at) == 0) return false;
         AcdfCurve curve;
         const std::size_t next = acdf_curve_decode(tree_.data(), at, &curve);
         const u32 axis = acdf_curve_axis(&curve);
-        if (next > tree_.units || ++curves_ > tree_.units / 2 + 1 || tilted_ >> axis & 1 ||
-            resolution_[axis] == 0 || !knots_are_right(curve, range_[axis]) || !values_are_right(curve) ||
+        if (next > tree_.units || tilted_ >> axis & 1 || resolution_[axis] == 0 ||
+            !knots_are_right(curve, range_[axis]) || !values_are_right(curve) ||
             !padding_is_zero(curve, tree_.data() + u64{at} * 2, tree_.data() + u64{next} * 2) ||
             !tilts_are_right(curve))
             return false;
         next_ = static_cast<u32>(next);
         if (curve.links && !open(curve, at)) return false;
+        leave();
+        return true;
+    }
+
+    bool pass(const Short& curve) {
+        const Inherited range = range_[curve.axis];
+        next_ = curve.next;
+        const bool right =
+            !(tilted_ >> curve.axis & 1) && resolution_[curve.axis] != 0 && curve.knot < range.high - range.low;
+        leave();
+        return right;
+    }
+
+    // Curves all of whose children were seen.
+    void leave() {
         while (open_count_ > 0 && open_[open_count_ - 1].children == 0) {
             const Open& last = open_[--open_count_];
             range_[acdf_curve_axis(&last.curve)] = last.range;
             tilted_ = last.tilted;
         }
-        return true;
     }
 
     // Segments without probability have no children.

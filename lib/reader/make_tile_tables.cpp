@@ -159,10 +159,12 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
     at = whole_lines(at + 2 * stride());
     out.rows = static_cast<u32>(at);
     const std::size_t rows =
-        splits > 0 ? blend_.tiles->row_count : 0; // without splits any number of them takes no byte
+        splits > 0 ? blend_.tiles->row_count : 0;         // without splits any number of them takes no byte
+    const std::uint16_t* const numbers = numbers_.data(); // which stored bytes might be, for all a compiler knows
     for (std::size_t row = 0; row < rows; ++row) {
+        const std::uint8_t* const from = blend_.rows + row * splits;
         auto* const to = reinterpret_cast<std::uint8_t*>(words + at) + row * stride();
-        for (std::size_t i = 0; i < splits; ++i) to[numbers_[i]] = blend_.rows[row * splits + i];
+        for (std::size_t i = 0; i < splits; ++i) to[numbers[i]] = from[i];
     }
     at += row_words();
     out.stride = static_cast<u32>(stride());
@@ -197,13 +199,15 @@ bool TileTablesMaker::prepare_hearts() noexcept {
 }
 
 void TileTablesMaker::place_hearts(std::uint16_t* out) noexcept {
-    const std::size_t splits = blend_.tiles->tile_count - 1;
-    for (std::size_t row = 0; row < blend_.tiles->row_count; ++row, out += stride()) {
+    const std::size_t splits = blend_.tiles->tile_count - 1, step = stride(), rows = blend_.tiles->row_count;
+    const std::uint16_t *const numbers = numbers_.data(), *const links = links_.data();
+    std::uint16_t* const hearts = hearts_.data();
+    std::uint8_t uppers[kCodes]; // whether a code gives more to the upper half
+    for (std::size_t i = 0; i < kCodes; ++i) uppers[i] = blend_.tiles->codebook[i] < 32768u;
+    for (std::size_t row = 0; row < rows; ++row, out += step) {
         const std::uint8_t* const codes = blend_.rows + row * splits;
-        for (std::size_t i = splits; i-- > 0;) {
-            const std::size_t upper = blend_.tiles->codebook[codes[i]] < 32768u;
-            out[numbers_[i]] = hearts_[i] = hearts_[links_[2 * i + upper]];
-        }
+        for (std::size_t i = splits; i-- > 0;)
+            out[numbers[i]] = hearts[i] = hearts[links[2 * i + uppers[codes[i]]]];
     }
 }
 
