@@ -206,13 +206,22 @@ void File::make_tables() noexcept {
     const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
-    if (kind() == ACDF_KIND_ENVIRONMENT) {
-        const TreeSurvey survey(environment().data(), tree_units_);
-        cells_ = make_cells(environment().data(), survey, most, allocator_, owned_[2]);
-        if (!cells_) groups_ = make_groups(environment().data(), survey, most, allocator_, owned_[2]);
-    }
+    if (kind() == ACDF_KIND_ENVIRONMENT) make_environment_tables(most);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
+}
+
+void File::make_environment_tables(std::size_t most_bytes) noexcept {
+    constexpr u32 fewest_units = 1 << 13; // tables of less need less than a large page
+    Scratch pages;
+    Scratch* const scratch = tree_units_ < fewest_units ? nullptr : &pages;
+    const AcdfEnvironment data = environment().data();
+    const TreeSurvey survey(data, tree_units_, scratch);
+    const Scratch::Mark surveyed = pages.mark();
+    cells_ = make_cells(data, survey, most_bytes, allocator_, owned_[2], scratch);
+    if (cells_) return;
+    pages.forget(surveyed);
+    groups_ = make_groups(data, survey, most_bytes, allocator_, owned_[2], scratch);
 }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {

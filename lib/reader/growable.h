@@ -2,6 +2,8 @@
 // lost.
 #pragma once
 
+#include "scratch.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -12,10 +14,13 @@ namespace acdf {
 template <class T>
 class Growable {
 public:
-    Growable() noexcept = default;
+    /// In `scratch`, which outlives it, or (null) in memory of its own.
+    explicit Growable(Scratch* scratch = nullptr) noexcept : scratch_(scratch) {}
     Growable(const Growable&) = delete;
     Growable& operator=(const Growable&) = delete;
-    ~Growable() { std::free(data_); }
+    ~Growable() {
+        if (!scratch_) std::free(data_);
+    }
 
     T* data() noexcept { return data_; }
     const T* data() const noexcept { return data_; }
@@ -41,7 +46,10 @@ public:
     bool reserve(std::size_t size) noexcept {
         if (size <= capacity_) return true;
         const std::size_t more = size > 2 * capacity_ ? size : 2 * capacity_;
-        T* const moved = static_cast<T*>(std::realloc(data_, more * sizeof(T)));
+        void* const room = scratch_
+                               ? scratch_->grow(data_, size_ * sizeof(T), capacity_ * sizeof(T), more * sizeof(T))
+                               : std::realloc(data_, more * sizeof(T));
+        T* const moved = static_cast<T*>(room);
         if (!moved) {
             failed_ = true;
             return false;
@@ -52,6 +60,7 @@ public:
     }
 
 private:
+    Scratch* scratch_;
     T* data_ = nullptr;
     std::size_t size_ = 0, capacity_ = 0;
     bool failed_ = false;

@@ -40,8 +40,10 @@ struct AxisParts {
 class CellsMaker {
 public:
     /// total: tables that answer always.
-    CellsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, bool total)
-        : environment_(environment), survey_(survey), sides_(acdf_environment_grid(&environment)), total_(total) {}
+    CellsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, bool total, Scratch* scratch)
+        : environment_(environment), survey_(survey), scratch_(scratch),
+          sides_(acdf_environment_grid(&environment)), total_(total), pieces_(scratch), ends_(scratch),
+          densities_(scratch), numbers_(scratch), keys_(scratch) {}
 
     /// False where there can be no tables, or none of at most so many bytes.
     bool gather(std::size_t most_bytes);
@@ -56,6 +58,7 @@ private:
 
     AcdfEnvironment environment_;
     const TreeSurvey& survey_;
+    Scratch* scratch_;
     Sides sides_;
     bool total_;
     Growable<AcdfPiece> pieces_;
@@ -231,7 +234,7 @@ void CellsMaker::add_piece(const AxisPart& azimuth, const AxisPart& height, floa
 AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
     const std::size_t count = pieces_.size();
     const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
-    SquaresMaker numbers, directions;
+    SquaresMaker numbers(scratch_), directions(scratch_);
     const std::size_t others = pieces_.bytes() + densities_.bytes() + count * kLeastDirectionBytes;
     if (others > most_bytes || !numbers.make(numbers_, kNumberBits, work, most_bytes - others) ||
         4 * numbers.words() > most_bytes - others || !directions.make(keys_, sides_.key_bits(), work))
@@ -261,14 +264,14 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
 } // namespace
 
 AcdfCells* make_cells(const AcdfEnvironment& environment, const TreeSurvey& survey, std::size_t most_bytes,
-                      const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
-    CellsMaker maker(environment, survey, false);
+                      const AcdfAllocator& allocator, AcdfBlock& block, Scratch* scratch) noexcept {
+    CellsMaker maker(environment, survey, false, scratch);
     return maker.gather(most_bytes) ? maker.assemble(most_bytes, allocator, block) : nullptr;
 }
 
 AcdfCells* make_shader_cells(const AcdfEnvironment& environment, const TreeSurvey& survey,
                              AcdfBlock& block) noexcept {
-    CellsMaker maker(environment, survey, true);
+    CellsMaker maker(environment, survey, true, nullptr);
     return maker.gather(SIZE_MAX) ? maker.assemble(SIZE_MAX, {}, block) : nullptr;
 }
 

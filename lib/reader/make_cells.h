@@ -14,9 +14,10 @@ namespace acdf {
 
 /// The tables of an environment, whose tree was surveyed, in `block`, which the caller gives back, of at most
 /// `most_bytes`; null where there are none: where the survey was not done, for more than 65535 cells, where they
-/// would take more bytes, and where memory fails. The work is linear in the cells.
+/// would take more bytes, and where memory fails. The work is linear in the cells. What is needed meanwhile lies in
+/// `scratch` (null: wherever there is memory).
 AcdfCells* make_cells(const AcdfEnvironment& environment, const TreeSurvey& survey, std::size_t most_bytes,
-                      const AcdfAllocator& allocator, AcdfBlock& block) noexcept;
+                      const AcdfAllocator& allocator, AcdfBlock& block, Scratch* scratch = nullptr) noexcept;
 
 /// The same for shaders: tables that answer always (AcdfPieceEnds), of any size. Null too where a block of cells
 /// cannot name all that a point may lie in, which takes cells of less than 2^-11 radians about a pole.

@@ -46,8 +46,9 @@ std::size_t about(std::size_t cells, std::size_t most_cells) {
 
 class GroupsMaker {
 public:
-    GroupsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey)
-        : environment_(environment), curves_(survey), written_(environment) {}
+    GroupsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, Scratch* scratch)
+        : environment_(environment), curves_(survey), scratch_(scratch), written_(environment), numbers_(scratch),
+          places_(scratch) {}
 
     AcdfGroups* make(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block);
 
@@ -71,6 +72,7 @@ private:
 
     AcdfEnvironment environment_;
     const TreeSurvey& curves_;
+    Scratch* scratch_;
     GroupCells written_;
     u32 key_bits_ = 0, shift_[2] = {0, 0}, most_cells_ = 0;
     u32 groups_ = 0, cells_ = 0, more_ = 0; ///< so far: groups, their cells, blocks beside the first one of each
@@ -185,7 +187,7 @@ AcdfGroups* GroupsMaker::make(std::size_t most_bytes, const AcdfAllocator& alloc
         return nullptr;
     for (u32 most = kFewestCells; most <= kMostCells; most *= 2) {
         if (about(cells, most) + written_.heights().bytes() > most_bytes || !gather(most)) continue;
-        SquaresMaker numbers, places;
+        SquaresMaker numbers(scratch_), places(scratch_);
         if (!numbers.make(numbers_, kDrawnBits) || !places.make(places_, key_bits_)) return nullptr;
         const std::size_t words =
             sizeof(AcdfGroups) / 4 + numbers.words() + places.words() + groups_ * sizeof(AcdfGroup) / 4 +
@@ -238,8 +240,8 @@ AcdfGroups* GroupsMaker::assemble(const SquaresMaker& numbers, const SquaresMake
 } // namespace
 
 AcdfGroups* make_groups(const AcdfEnvironment& environment, const TreeSurvey& survey, std::size_t most_bytes,
-                        const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
-    GroupsMaker maker(environment, survey);
+                        const AcdfAllocator& allocator, AcdfBlock& block, Scratch* scratch) noexcept {
+    GroupsMaker maker(environment, survey, scratch);
     return maker.make(most_bytes, allocator, block);
 }
 

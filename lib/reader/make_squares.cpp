@@ -16,6 +16,8 @@ constexpr u32 kByteBits = 8;
 constexpr u32 kMostBits = 16;         // of the grid
 constexpr std::size_t kLookedAt = 32; // cells, to choose an axis
 
+constexpr std::size_t kUsualBoxes = 4; // for each block that there will be
+
 constexpr KeySpan kNone = {1, 0};
 
 struct AxisOfBlock {
@@ -86,6 +88,9 @@ bool SquaresMaker::make(const KeyBoxes& boxes, u32 key_bits, std::size_t work_a_
     work_ = work_a_box * (count + ACDF_BLOCK_CELLS);
     const Rectangle whole = {{0, 0}, {key_bits, key_bits}};
     list_.reserve(4 * count + ACDF_BLOCK_CELLS);
+    const std::size_t blocks = count / kUsualBoxes + 1;
+    block_boxes_.reserve(blocks * ACDF_BLOCK_CELLS);
+    block_cells_.reserve(blocks * ACDF_BLOCK_CELLS);
     block(whole, 0); // no cells: the empty one
     std::uint16_t* const listed = list_.add(count, 0);
     std::size_t some = 0;

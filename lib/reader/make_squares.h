@@ -21,6 +21,9 @@ struct KeySpan {
 /// The keys that may lead to cells: those of each axis next to each other, as lists are divided along one.
 class KeyBoxes {
 public:
+    explicit KeyBoxes(Scratch* scratch = nullptr) noexcept
+        : spans_{Growable<KeySpan>(scratch), Growable<KeySpan>(scratch)} {}
+
     void add(const KeySpan& first, const KeySpan& second) noexcept {
         spans_[0].add(first);
         spans_[1].add(second);
@@ -40,6 +43,9 @@ private:
 /// The arrays of an AcdfSquares.
 class SquaresMaker {
 public:
+    explicit SquaresMaker(Scratch* scratch = nullptr) noexcept
+        : entries_(scratch), finer_(scratch), block_boxes_(scratch), block_cells_(scratch), list_(scratch) {}
+
     /// Over boxes (at most 65536) of keys of `key_bits` bits. Boxes without keys of an axis are in no block. The
     /// work is in proportion to how many there are, whatever the boxes: where it would be more, entries name the
     /// empty block. Once there are more than `most_bytes` it ends, too. Returns false where memory fails.

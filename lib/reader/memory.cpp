@@ -20,9 +20,9 @@ void give(void* block) { _aligned_free(block); }
 // page of 4 KiB costs a fault when it is first used, and draws look for places all over the tables.
 void ask_for_large_pages(void* block, std::size_t bytes) {
 #if defined(MADV_HUGEPAGE)
-    constexpr std::size_t page = std::size_t{1} << 21;
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(block);
-    const std::uintptr_t first = (begin + page - 1) & ~(page - 1), last = (begin + bytes) & ~(page - 1);
+    const std::uintptr_t first = (begin + kLargePage - 1) & ~(kLargePage - 1),
+                         last = (begin + bytes) & ~(kLargePage - 1);
     if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); // it may say no
 #else
     static_cast<void>(block), static_cast<void>(bytes);

@@ -159,6 +159,7 @@ private:
     AcdfBlock owned_[3] = {}; // the file's bytes; inflated chunks; runtime tables
 
     void make_tables() noexcept;
+    void make_environment_tables(std::size_t most_bytes) noexcept;
     void release() noexcept;
 };
 
