@@ -49,6 +49,16 @@ TEST(Allocation, inPlaceOnlyTheScratchOfTheChecks) {
     EXPECT_LE(10 * bytes_taken, 21 * bytes.size()); // 8 bytes a curve, 12 a run of 64 units
 }
 
+TEST(Allocation, noneToCheckTreesInPreorder) {
+    const Bytes bytes = preorder_environment().encode();
+    acdf::File file;
+    acdf::LoadOptions options;
+    options.tables = false;
+    Counted counted;
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file, options).ok());
+    EXPECT_EQ(calls, 0u);
+}
+
 TEST(Allocation, nothingForWhatIsRefusedBefore) {
     EnvironmentSpec spec = large();
     spec.zlib = true; // 800 kB from about 1 kB
