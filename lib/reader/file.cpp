@@ -212,15 +212,14 @@ void File::make_tables() noexcept {
 }
 
 void File::make_environment_tables(std::size_t most_bytes) noexcept {
-    constexpr u32 fewest_units = 1 << 13; // tables of less need less than a large page
+    constexpr u32 fewest_cells = 1 << 12; // tables of fewer need less than a large page
     Scratch pages;
-    Scratch* const scratch = tree_units_ < fewest_units ? nullptr : &pages;
     const AcdfEnvironment data = environment().data();
-    const TreeSurvey survey(data, tree_units_, scratch);
-    const Scratch::Mark surveyed = pages.mark();
+    const TreeSurvey survey(data, tree_units_);
+    Scratch* const scratch = survey.done() && survey.cells() >= fewest_cells ? &pages : nullptr;
     cells_ = make_cells(data, survey, most_bytes, allocator_, owned_[2], scratch);
     if (cells_) return;
-    pages.forget(surveyed);
+    pages.clear();
     groups_ = make_groups(data, survey, most_bytes, allocator_, owned_[2], scratch);
 }
 

@@ -48,13 +48,13 @@ void* Scratch::grow(void* data, std::size_t used, std::size_t bytes, std::size_t
     return used > 0 ? std::memcpy(moved, data, used) : moved;
 }
 
-void Scratch::forget(const Mark& mark) noexcept {
-    while (block_ != mark.block) {
+void Scratch::clear() noexcept {
+    while (block_) {
         AcdfBlock memory = block_->memory;
         block_ = block_->before;
         give_block({}, memory);
     }
-    used_ = mark.used;
+    used_ = 0;
 }
 
 } // namespace acdf

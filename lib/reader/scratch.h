@@ -14,19 +14,14 @@ public:
     Scratch() noexcept = default;
     Scratch(const Scratch&) = delete;
     Scratch& operator=(const Scratch&) = delete;
-    ~Scratch() { forget({}); }
+    ~Scratch() { clear(); }
 
     /// Moves `used` bytes of an array at `data` (null: none) with room for `bytes` to where there is room for
     /// `more`: in place, if it is the newest one and its block is long enough. Null where memory fails.
     void* grow(void* data, std::size_t used, std::size_t bytes, std::size_t more) noexcept;
 
-    /// How far it is used, and gives back what was taken since.
-    struct Mark {
-        void* block = nullptr;
-        std::size_t used = 0;
-    };
-    Mark mark() const noexcept { return {block_, used_}; }
-    void forget(const Mark& mark) noexcept;
+    /// Gives back all.
+    void clear() noexcept;
 
 private:
     struct Block;

@@ -4,8 +4,8 @@ namespace acdf {
 
 using u32 = std::uint32_t;
 
-TreeSurvey::TreeSurvey(const AcdfEnvironment& environment, u32 tree_units, Scratch* scratch) noexcept
-    : tree_(environment.tree), most_steps_(2 * std::size_t{tree_units} + 64), curves_(scratch) {
+TreeSurvey::TreeSurvey(const AcdfEnvironment& environment, u32 tree_units) noexcept
+    : tree_(environment.tree), most_steps_(2 * std::size_t{tree_units} + 64) {
     u32 cells = 0;
     curves_.reserve(tree_units / 6); // most have as many; where not, it grows
     done_ = walk(environment.root, cells) && !curves_.failed();

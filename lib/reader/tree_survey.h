@@ -18,7 +18,7 @@ public:
     };
 
     /// Of a tree that takes `tree_units`. The work is linear in them.
-    TreeSurvey(const AcdfEnvironment& environment, std::uint32_t tree_units, Scratch* scratch = nullptr) noexcept;
+    TreeSurvey(const AcdfEnvironment& environment, std::uint32_t tree_units) noexcept;
 
     /// Whether there are no tilts, curves are not shared so often that walking them all is more work than in
     /// proportion to the tree, and memory did not fail. Else nothing below is known.
