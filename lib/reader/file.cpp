@@ -1,11 +1,13 @@
 // `File`: ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check.h"
+#include "cut_wavefront.h"
 #include "input_file.h"
 #include "make_brdf_tables.h"
 #include "make_cells.h"
 #include "make_groups.h"
 #include "make_local_tables.h"
 #include "memory.h"
+#include "wavefront.h"
 
 #include <cstdarg>
 #include <cstdio>
@@ -278,6 +280,9 @@ LocalEnvironmentView File::local() const noexcept {
     local.tables = local_tables_;
     local.places = places_;
     local.portals = portals_;
+#if ACDF_WAVEFRONT_X86
+    local.vectors = local_vectors();
+#endif
     if (description_->axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
         while (4 * local.subdivisions * local.subdivisions + 2 < axes_[2].resolution) ++local.subdivisions;
     } else {
@@ -288,8 +293,12 @@ LocalEnvironmentView File::local() const noexcept {
 }
 
 BrdfView File::brdf() const noexcept {
+    const AcdfBrdfVectors* vectors = nullptr;
+#if ACDF_WAVEFRONT_X86
+    vectors = brdf_vectors();
+#endif
     return BrdfView({blend_, tree_, bins_, views_, nodes_, axes_[0].resolution, axes_[1].resolution,
-                     description_->total, brdf_tables_});
+                     description_->total, brdf_tables_, vectors});
 }
 
 TableView File::table() const noexcept {

@@ -45,6 +45,22 @@ ACDF_LANE void find_tiles(const AcdfLocalTables& tables, Cells* cells, std::size
     stored(&cells->tile[at], node & 0x7FFF);
 }
 
+/* Squares and tiles of up to kBlock lanes. Returns those of which floats do not tell. */
+ACDF_LANE std::uint64_t find_all_squares(const AcdfLocal& local, const float (*directions)[3], std::size_t count,
+                                         Cells* cells) {
+    std::uint64_t lost = 0;
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const std::size_t more = std::min(count - first, kLanes);
+        float last[kLanes][3] = {};
+        if (more < kLanes) std::memcpy(last, directions + first, more * sizeof *directions);
+        const std::uint32_t refused = find_squares(local, more < kLanes ? last : directions + first, first, cells);
+        lost |= (std::uint64_t)(refused & ((1u << more) - 1u)) << first;
+        for (std::size_t half = 0; half < kLanes; half += ACDF_WIDTH)
+            find_tiles(*local.tables, cells, first + half);
+    }
+    return lost;
+}
+
 // ---- probabilities ---------------------------------------------------------------------------------------------
 
 /// Points of lanes.
@@ -135,6 +151,21 @@ ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, cons
     return to_floats((Doubles)out[0], (Doubles)out[1]);
 }
 
+/* Densities of all cells. Returns the lanes that are left to single calls. */
+ACDF_LANE std::uint64_t told_densities(const AcdfLocal& local, const Cells& cells, const Boxes& done, float* out) {
+    std::uint64_t lost = 0;
+    for (std::size_t first = 0; first < cells.count; first += kLanes) {
+        alignas(64) float told[kLanes];
+        *(Floats*)told = cell_densities(local, cells, done, first);
+        for (std::size_t i = 0; i < kLanes && first + i < cells.count; ++i) {
+            const auto lane = (std::size_t)done.number[first + i];
+            out[lane] = told[i];
+            lost |= (std::uint64_t)done.lost[first + i] << lane;
+        }
+    }
+    return lost;
+}
+
 constexpr std::size_t kAhead = 8; // lanes, whose rows are asked for
 
 /* Densities of up to kBlock lanes; `at` and `alone` as in draw_block. */
@@ -154,15 +185,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
         keep(p, first, &seen);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << more) - 1u)) << first;
     }
-    for (std::size_t first = 0; first < count; first += kLanes) {
-        const std::size_t more = std::min(count - first, kLanes);
-        float last[kLanes][3] = {};
-        if (more < kLanes) std::memcpy(last, directions + first, more * sizeof *directions);
-        const std::uint32_t refused = find_squares(local, more < kLanes ? last : directions + first, first, &cells);
-        lost |= (std::uint64_t)(refused & ((1u << more) - 1u)) << first;
-        for (std::size_t half = 0; half < kLanes; half += ACDF_WIDTH)
-            find_tiles(*local.tables, &cells, first + half);
-    }
+    lost |= find_all_squares(local, directions, count, &cells);
     enter_tiles<true>(local, cells, &live, &done);
     for (std::size_t i = 0; i < count; ++i) {
         if (i + kAhead < count) ask_for_rows(*local.tables, seen, cells, i + kAhead);
@@ -170,15 +193,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     }
     weigh_tiles(local, seen, cells.tile, given, count, cells.probability);
     find_cells<true>(local, &live, &done);
-    for (std::size_t first = 0; first < count; first += kLanes) {
-        alignas(64) float told[kLanes];
-        *(Floats*)told = cell_densities(local, cells, done, first);
-        for (std::size_t i = 0; i < kLanes && first + i < count; ++i) {
-            const auto lane = (std::size_t)done.number[first + i];
-            out[lane] = told[i];
-            lost |= (std::uint64_t)done.lost[first + i] << lane;
-        }
-    }
+    lost |= told_densities(local, cells, done, out);
     for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
 }
 

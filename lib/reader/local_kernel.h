@@ -51,8 +51,9 @@ ACDF_LANE void draw_lights(const AcdfLocal& local, const Points& p, const Vector
     cells->count += (std::size_t)__builtin_popcount(mask);
 }
 
-/* acdf_tile_walk_begin of the lanes of a mask. */
-ACDF_LANE void begin_walks(const Points& p, const Vector u[2], unsigned mask, Integer lane, Walks* walks) {
+/* acdf_tile_walk_begin of the lanes of a mask, at split `root`. */
+ACDF_LANE void begin_walks(const Points& p, const Vector u[2], unsigned mask, Integer lane, std::uint32_t root,
+                           Walks* walks) {
     const std::size_t at = walks->count;
     for (int i = 0; i < kRows; ++i) {
         store_packed(&walks->weight[i][at], p.weight[i], mask);
@@ -62,6 +63,7 @@ ACDF_LANE void begin_walks(const Points& p, const Vector u[2], unsigned mask, In
     store_packed(&walks->x[1][at], u[1] * p.mixture, mask);
     store_packed(&walks->mixture[at], p.mixture, mask);
     store_packed(&walks->sum[at], p.sum, mask);
+    store_packed(&walks->node[at], Integer{} + root, mask);
     store_packed(&walks->lane[at], lane, mask);
     walks->count += (std::size_t)__builtin_popcount(mask);
     for (std::size_t i = at; i < walks->count; ++i)
@@ -118,12 +120,10 @@ ACDF_LANE void walk(const AcdfLocalTables& tables, Walks* w) {
             stored(&w->part[i][at], all(1.0));
         }
         stored(&w->chosen[at], loaded(&w->mixture[at]));
-        stored(&w->node[at], Integer{} + tables.tiles.root);
         live[count++] = at;
     }
-    /* What stands behind the last lane walks too, along the rows of the first. */
-    for (std::size_t i = w->count; i < count * ACDF_WIDTH; ++i)
-        for (int k = 0; k < kRows; ++k) w->row[k][i] = w->row[k][0];
+    /* What stands behind the last lane is at a tile. */
+    for (std::size_t i = w->count; i < count * ACDF_WIDTH; ++i) w->node[i] = ACDF_TILE_FLAG;
     while (count > 0) {
         std::size_t left = 0;
         for (std::size_t k = 0; k < count; ++k) {
@@ -135,9 +135,10 @@ ACDF_LANE void walk(const AcdfLocalTables& tables, Walks* w) {
     }
 }
 
-/* acdf_tile_walk_end, acdf_local_drawn_tile and acdf_local_tile_probability of all lanes, into cells behind others.
- */
-ACDF_LANE void end_walks(const Walks& w, Cells* cells) {
+/* acdf_tile_walk_end, acdf_local_drawn_tile and acdf_local_tile_probability of all lanes, into cells behind others;
+ * `scaled(at, of_all)`: the probabilities of a vector of tiles that are such a part of all. */
+template <class Scaled>
+ACDF_LANE void end_walks(const Walks& w, const Scaled& scaled, Cells* cells) {
     for (std::size_t at = 0, to = cells->count; at < w.count; at += ACDF_WIDTH, to += ACDF_WIDTH) {
         const Vector chosen = loaded(&w.chosen[at]), mixture = loaded(&w.mixture[at]);
         for (int k = 0; k < 2; ++k) {
@@ -146,7 +147,8 @@ ACDF_LANE void end_walks(const Walks& w, Cells* cells) {
         }
         Vector given = all(0.0);
         for (int i = 0; i < kRows; ++i) given += loaded(&w.whole[i][at]) * loaded(&w.part[i][at]);
-        stored(&cells->probability[to], positive(mixture / loaded(&w.sum[at]) * positive(given / mixture)));
+        const Vector of_all = mixture / loaded(&w.sum[at]) * positive(given / mixture);
+        stored(&cells->probability[to], positive(scaled(at, of_all)));
         stored(&cells->lane[to], loaded(&w.lane[at]));
         stored(&cells->tile[to], loaded(&w.node[at]) & ~(long long)ACDF_TILE_FLAG);
     }
@@ -232,12 +234,13 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const At& at, const Alone& alo
         const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
         const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.lights)) & served;
         lost |= (std::uint64_t)(served ^ there) << first;
-        begin_walks(p, v, served ^ light, lane, &walks);
+        begin_walks(p, v, served ^ light, lane, local.tables->tiles.root, &walks);
         if (light) draw_lights(local, p, v, light, lane, &cells);
     }
     for (std::size_t i = 0; i < cells.count; ++i) cells.tile[i] = local.lights[cells.tile[i]].tile;
     walk(*local.tables, &walks);
-    end_walks(walks, &cells);
+    end_walks(
+        walks, [](std::size_t, Vector of_all) { return of_all; }, &cells);
     enter_tiles<false>(local, cells, &live, &done);
     find_cells<false>(local, &live, &done);
     lost |= place_cells(local, cells, done, out);

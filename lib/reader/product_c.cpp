@@ -67,6 +67,12 @@ float pdf(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* p
     return acdf::ProductSampler<AnyLobe>(light, lobe).pdf(point_in<AnyLobe>(point), direction);
 }
 
+template <class AnyLobe>
+void pdfs(const AcdfLocal& light, const AnyLobe& lobe, const AcdfProductPoint* point, std::size_t count,
+          const float (*directions)[3], float* out) noexcept {
+    acdf::ProductSampler<AnyLobe>(light, lobe).pdf(point_in<AnyLobe>(point), count, directions, out);
+}
+
 } // namespace
 
 void acdf_product_at(const AcdfLocal* light, const AcdfBrdf* brdf, int parts, const float frame[9],
@@ -85,6 +91,10 @@ float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfP
                        const float direction[3]) {
     return pdf(*light, acdf::BrdfLobe(*brdf), point, direction);
 }
+void acdf_product_pdfs(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
+                       const float (*directions)[3], float* out) {
+    pdfs(*light, acdf::BrdfLobe(*brdf), point, count, directions, out);
+}
 
 void acdf_product_lobe_at(const AcdfLocal* light, const AcdfLobe* lobe, int parts, const float frame[9],
                           const float wo[3], AcdfProductPoint* point) {
@@ -101,4 +111,8 @@ void acdf_product_lobe_samples(const AcdfLocal* light, const AcdfLobe* lobe, con
 float acdf_product_lobe_pdf(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
                             const float direction[3]) {
     return pdf(*light, CLobe(*lobe), point, direction);
+}
+void acdf_product_lobe_pdfs(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
+                            size_t count, const float (*directions)[3], float* out) {
+    pdfs(*light, CLobe(*lobe), point, count, directions, out);
 }

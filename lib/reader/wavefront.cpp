@@ -135,22 +135,11 @@ bool are_in_proportion(const AcdfBrdf& brdf) {
     return std::size_t{12} * brdf.views->theta_count * entries_of(brdf) <= most_bytes_of(brdf);
 }
 
-WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const AcdfBrdfTables& tables) {
-    number_splits(brdf, arrays.number);
-    place_splits(brdf, arrays.number, arrays.splits);
-    pair_codes(brdf, arrays.number, arrays.codes);
-    place_boxes(brdf, arrays.split_boxes, arrays.boxes);
-    WavefrontTable* out = new (arrays.table) WavefrontTable{};
-    out->brdf = brdf;
+/// What is the same for all waves of a file.
+void add_runtime_tables(const AcdfBrdf& brdf, const AcdfBrdfTables& tables, WavefrontTable* out) {
     out->columns = brdf.columns;
     out->rows = brdf.rows;
     out->mirrored = acdf_brdf_mirrored(&brdf) != 0;
-    out->entries = entries_of(brdf);
-    std::copy(arrays.splits, arrays.splits + 7, out->top);
-    out->top[7] = kAllBelow;
-    out->splits = arrays.splits;
-    out->codes = arrays.codes;
-    out->boxes = arrays.boxes;
     const auto array = [&](auto*& at, u32 words) {
         at = static_cast<std::remove_reference_t<decltype(at)>>(acdf_brdf_words(&tables, words));
     };
@@ -166,6 +155,22 @@ WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const AcdfBrd
     array(out->parts, tables.parts);
     array(out->areas, tables.areas);
     array(out->nodes, tables.nodes);
+}
+
+WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const AcdfBrdfTables& tables) {
+    number_splits(brdf, arrays.number);
+    place_splits(brdf, arrays.number, arrays.splits);
+    pair_codes(brdf, arrays.number, arrays.codes);
+    place_boxes(brdf, arrays.split_boxes, arrays.boxes);
+    WavefrontTable* out = new (arrays.table) WavefrontTable{};
+    out->brdf = brdf;
+    out->entries = entries_of(brdf);
+    std::copy(arrays.splits, arrays.splits + 7, out->top);
+    out->top[7] = kAllBelow;
+    out->splits = arrays.splits;
+    out->codes = arrays.codes;
+    out->boxes = arrays.boxes;
+    add_runtime_tables(brdf, tables, out);
     return out;
 }
 
@@ -176,7 +181,28 @@ Status out_of_memory(std::size_t bytes) {
     return status;
 }
 
+#if ACDF_WAVEFRONT_X86
+template <auto Densities>
+void view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], std::size_t count,
+               float* out) {
+    WavefrontTable table;
+    add_runtime_tables(*brdf, *brdf->tables, &table);
+    Densities(table, *view, wi, count, out);
+}
+#endif
+
 } // namespace
+
+const AcdfBrdfVectors* brdf_vectors(Instructions most) noexcept {
+#if ACDF_WAVEFRONT_X86
+    static constexpr AcdfBrdfVectors avx2 = {view_pdfs<view_pdf_avx2>}, avx512 = {view_pdfs<view_pdf_avx512>};
+    const Instructions best = std::min(most, instructions_of_this_processor());
+    if (best == Instructions::avx512) return &avx512;
+    if (best == Instructions::avx2) return &avx2;
+#endif
+    (void)most;
+    return nullptr;
+}
 
 BrdfWavefront::BrdfWavefront(BrdfWavefront&& other) noexcept { *this = std::move(other); }
 

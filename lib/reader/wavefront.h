@@ -2,6 +2,7 @@
 #pragma once
 
 #include <acdf/brdf.h>
+#include <acdf/wavefront.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -47,12 +48,18 @@ struct WavefrontTable {
     const double *parts, *areas, *nodes;
 };
 
+/// Those of the best instructions that the processor has, up to `most`; null: none.
+const AcdfBrdfVectors* brdf_vectors(Instructions most = Instructions::avx512) noexcept;
+
 #if ACDF_WAVEFRONT_X86
 void sample_avx2(const WavefrontTable&, const float (*)[3], const double (*)[2], std::size_t, AcdfDirectionSample*);
 void sample_avx512(const WavefrontTable&, const float (*)[3], const double (*)[2], std::size_t,
                    AcdfDirectionSample*);
 void pdf_avx2(const WavefrontTable&, const float (*)[3], const float (*)[3], std::size_t, float*);
 void pdf_avx512(const WavefrontTable&, const float (*)[3], const float (*)[3], std::size_t, float*);
+// Of one view, by tables that have a grid: of those of the file alone.
+void view_pdf_avx2(const WavefrontTable&, const AcdfBrdfView&, const float (*)[3], std::size_t, float*);
+void view_pdf_avx512(const WavefrontTable&, const AcdfBrdfView&, const float (*)[3], std::size_t, float*);
 #endif
 
 } // namespace acdf

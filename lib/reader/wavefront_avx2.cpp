@@ -1,6 +1,6 @@
 #if ACDF_WAVEFRONT_X86
 #define ACDF_WIDTH 4
-#include "wavefront_kernel.h"
+#include "wavefront_density_kernel.h"
 
 void acdf::sample_avx2(const WavefrontTable& table, const float (*wo)[3], const double (*u)[2], std::size_t count,
                        AcdfDirectionSample* out) {
@@ -9,5 +9,9 @@ void acdf::sample_avx2(const WavefrontTable& table, const float (*wo)[3], const 
 void acdf::pdf_avx2(const WavefrontTable& table, const float (*wo)[3], const float (*wi)[3], std::size_t count,
                     float* out) {
     for_blocks<Densities>(table, wo, wi, count, out);
+}
+void acdf::view_pdf_avx2(const WavefrontTable& table, const AcdfBrdfView& view, const float (*wi)[3],
+                         std::size_t count, float* out) {
+    view_densities(table, view, wi, count, out);
 }
 #endif

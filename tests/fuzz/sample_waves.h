@@ -113,9 +113,12 @@ inline void product_at_once_is_the_product(const acdf::LocalEnvironmentView& vie
     const auto point = sampler.at(wave.first[0], wave.first[1]);
     acdf::ProductSample at_once[samples_a_file];
     sampler.sample(point, samples_a_file, wave.u, at_once);
+    sampler.pdf(point, samples_a_file, wave.second, wave.pdfs);
     for (int n = 0; n < samples_a_file; ++n) {
         const acdf::ProductSample s = sampler.sample(point, wave.u[n][0], wave.u[n][1]);
         require(std::memcmp(&s, &at_once[n], sizeof s) == 0);
+        const float pdf = sampler.pdf(point, wave.second[n]);
+        require(std::memcmp(&pdf, &wave.pdfs[n], sizeof pdf) == 0);
         require(s.pdf >= 0.0f && std::isfinite(s.pdf) && std::isfinite(sampler.pdf(point, wave.second[n])));
         require(sampler.pdf(point, s.direction) == s.pdf || s.pdf == 0.0f);
     }

@@ -71,6 +71,15 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     return acdf_brdf_density(brdf, p, range, &place, wi);
 }
 
+/* The same by vectors of this process's processor, which the linked library has: files that it opens name them. Of
+ * files with runtime tables that have a grid. */
+typedef struct AcdfBrdfVectors {
+    void (*view_pdfs)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
+                      float* out);
+} AcdfBrdfVectors;
+
+enum { ACDF_BRDF_FEWEST = 4 }; /* fewer are not worth vectors */
+
 /* The same of wi[i] into out[i], i < count: they wait for memory together. */
 ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
                                  float* out) {
@@ -83,6 +92,12 @@ ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view,
         for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_pdf(brdf, view, wi[i]);
         return;
     }
+#if ACDF_SIDE_BY_SIDE
+    if (brdf->vectors && count >= ACDF_BRDF_FEWEST) {
+        brdf->vectors->view_pdfs(brdf, view, wi, count, out);
+        return;
+    }
+#endif
     for (first = 0; first < count; first += TOGETHER) {
         const size_t some = count - first < TOGETHER ? count - first : (size_t)TOGETHER;
         for (i = 0; i < some; ++i) {

@@ -10,8 +10,22 @@
 extern "C" {
 #endif
 
-/* As many as are on their way at once; rows are those of nearly all points. */
-enum { ACDF_CUT_WAVE = 16, ACDF_CUT_WAVE_ROWS = 3 };
+/* As many as are on their way at once, and fewer than are worth vectors; rows are those of nearly all points. */
+enum { ACDF_CUT_WAVE = 16, ACDF_CUT_FEWEST = 4, ACDF_CUT_WAVE_ROWS = 3 };
+
+/* The same by vectors of this process's processor, which the linked library has: files that it opens name them.
+ * Cuts have parts, and points are such as acdf_cut_by_vectors approves. */
+typedef struct AcdfLocalVectors {
+    void (*cut_sample)(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                       const double (*u)[2], size_t count, AcdfDirectionSample* out);
+    void (*cut_pdf)(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
+                    const float (*directions)[3], size_t count, float* out);
+} AcdfLocalVectors;
+
+ACDF_INLINE int acdf_cut_by_vectors(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    return local->vectors && acdf_local_tabled(local, point) && point->mix.count == ACDF_CUT_WAVE_ROWS &&
+           local->blend.tiles->tile_count > 1;
+}
 
 /* A draw on its way. */
 typedef struct AcdfCutLane {
@@ -176,6 +190,7 @@ ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, co
             AcdfCutLane* one = &lane[number];
             const uint32_t link = acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
             one->curve += link;
+            ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
             on_way.lane[on_way.count] = number;
             on_way.count += (uint32_t)(link != 0);
         }
@@ -198,6 +213,12 @@ ACDF_FN void acdf_cut_sample_wave(const AcdfLocal* local, const AcdfLocalPoint* 
         for (i = 0; i < count; ++i) out[i] = acdf_cut_sample(local, point, cut, u[i][0], u[i][1]);
         return;
     }
+#if ACDF_SIDE_BY_SIDE
+    if (count >= ACDF_CUT_FEWEST && acdf_cut_by_vectors(local, point)) {
+        local->vectors->cut_sample(local, point, cut, u, count, out);
+        return;
+    }
+#endif
     for (first = 0; first < count; first += ACDF_CUT_WAVE) {
         const uint32_t some = count - first < ACDF_CUT_WAVE ? (uint32_t)(count - first) : (uint32_t)ACDF_CUT_WAVE;
         acdf_cut_wave_parts(cut, u + first, some, lane);
@@ -221,6 +242,12 @@ ACDF_FN void acdf_cut_pdf_wave(const AcdfLocal* local, const AcdfLocalPoint* poi
         for (i = 0; i < count; ++i) out[i] = acdf_cut_pdf(local, point, cut, directions[i]);
         return;
     }
+#if ACDF_SIDE_BY_SIDE
+    if (count >= ACDF_CUT_FEWEST && acdf_cut_by_vectors(local, point)) {
+        local->vectors->cut_pdf(local, point, cut, directions, count, out);
+        return;
+    }
+#endif
     for (first = 0; first < count; first += ACDF_CUT_WAVE) {
         const size_t some = count - first < ACDF_CUT_WAVE ? count - first : (size_t)ACDF_CUT_WAVE;
         for (i = 0; i < some; ++i) {

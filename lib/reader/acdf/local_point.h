@@ -10,6 +10,8 @@
 extern "C" {
 #endif
 
+struct AcdfLocalVectors;
+
 typedef struct AcdfLocal {
     AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
     AcdfEnvironment environment; /* the 2D table that is always there */
@@ -20,10 +22,11 @@ typedef struct AcdfLocal {
     uint32_t columns;      /* of that grid */
     uint32_t rows;
     double cosine_share;
-    const AcdfLocalTables* tables; /* runtime tables; null: splits are walked */
-    const AcdfCompany* company;    /* null: to be used alone */
-    AcdfPlaceTable places;         /* its header is null where places are not told apart */
-    AcdfPortalTable portals;       /* its header is null where there are none */
+    const AcdfLocalTables* tables;          /* runtime tables; null: splits are walked */
+    const AcdfCompany* company;             /* null: to be used alone */
+    AcdfPlaceTable places;                  /* its header is null where places are not told apart */
+    AcdfPortalTable portals;                /* its header is null where there are none */
+    const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
 } AcdfLocal;
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {

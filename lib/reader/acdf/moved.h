@@ -75,6 +75,7 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfPortalMap, local->portals.maps);
     ACDF_MOVE(uint32_t, local->portals.sums);
     ACDF_MOVE(uint8_t, local->portals.rows);
+    local->vectors = 0; /* of this process */
 }
 
 /* The same of a BRDF. */
@@ -85,6 +86,7 @@ static inline void acdf_move_brdf(AcdfBrdf* brdf, const AcdfMove* moves, int cou
     ACDF_MOVE(AcdfViews, brdf->views);
     ACDF_MOVE(float, brdf->nodes);
     ACDF_MOVE(AcdfBrdfTables, brdf->tables);
+    brdf->vectors = 0;
 }
 
 /* The same of a table. */

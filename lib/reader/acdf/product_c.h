@@ -37,6 +37,9 @@ void acdf_product_samples(const AcdfLocal* light, const AcdfBrdf* brdf, const Ac
 /* Density in sr^-1 of a unit direction; exactly that of the sample for what it returned. */
 float acdf_product_pdf(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point,
                        const float direction[3]);
+/* The same of directions[i] into out[i], i < count, to the bit. */
+void acdf_product_pdfs(const AcdfLocal* light, const AcdfBrdf* brdf, const AcdfProductPoint* point, size_t count,
+                       const float (*directions)[3], float* out);
 
 /* A renderer's own BRDF, as acdf::Lobe: of unit vectors in the surface's frame, wo above the surface. `data` is
  * handed to each function. */
@@ -47,7 +50,7 @@ typedef struct AcdfLobe {
     float (*pdf)(const void* data, const float wo[3], const float wi[3]); /* of `sample`, sr^-1 */
 } AcdfLobe;
 
-/* The same four with such a BRDF. */
+/* The same five with such a BRDF. */
 void acdf_product_lobe_at(const AcdfLocal* light, const AcdfLobe* lobe, int parts, const float frame[9],
                           const float wo[3], AcdfProductPoint* point);
 AcdfDirectionSample acdf_product_lobe_sample(const AcdfLocal* light, const AcdfLobe* lobe,
@@ -56,6 +59,8 @@ void acdf_product_lobe_samples(const AcdfLocal* light, const AcdfLobe* lobe, con
                                size_t count, const double (*u)[2], AcdfDirectionSample* out);
 float acdf_product_lobe_pdf(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
                             const float direction[3]);
+void acdf_product_lobe_pdfs(const AcdfLocal* light, const AcdfLobe* lobe, const AcdfProductPoint* point,
+                            size_t count, const float (*directions)[3], float* out);
 
 #ifdef __cplusplus
 }

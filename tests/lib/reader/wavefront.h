@@ -1,10 +1,13 @@
 // Compares BrdfWavefront with BrdfView, bit for bit, whatever instructions serve.
 #pragma once
 
+#include <wavefront.h>
+
 #include <acdf/wavefront.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -97,8 +100,29 @@ inline void expect_wavefront_is_the_view(const acdf::BrdfView& view, std::size_t
     EXPECT_EQ(pdfs[count], 7.0f);
 }
 
+/// Densities of several directions for one view, each 40th of a wave.
+inline void expect_view_pdfs(const acdf::BrdfView& view, std::size_t count, acdf::Instructions most) {
+    SCOPED_TRACE(std::to_string(count) + " directions of a view, instructions up to " + std::to_string(int(most)));
+    AcdfBrdf brdf = view.data();
+    brdf.vectors = acdf::brdf_vectors(most);
+    const Wave wave(view, count);
+    for (std::size_t i = 0; i < count; i += 40) {
+        AcdfBrdfView of_wo;
+        if (!acdf_brdf_view(&brdf, wave.wo()[i], &of_wo)) continue;
+        const std::size_t some = std::min(count - i, i % 67);
+        std::vector<float> pdfs(some + 1, 7.0f);
+        acdf_brdf_view_pdfs(&brdf, &of_wo, wave.wi() + i, some, pdfs.data());
+        for (std::size_t k = 0; k < some; ++k)
+            ASSERT_EQ(acdf_brdf_view_pdf(&brdf, &of_wo, wave.wi()[i + k]), pdfs[k]) << i << ' ' << k;
+        EXPECT_EQ(pdfs[some], 7.0f);
+    }
+}
+
 inline void expect_wavefront_is_the_view(const acdf::BrdfView& view, std::size_t count) {
-    for (const acdf::Instructions most : all_instructions()) expect_wavefront_is_the_view(view, count, most);
+    for (const acdf::Instructions most : all_instructions()) {
+        expect_wavefront_is_the_view(view, count, most);
+        expect_view_pdfs(view, count, most);
+    }
 }
 
 } // namespace acdf_test

@@ -1,0 +1,24 @@
+// Which vectors serve several draws from a cut, or densities, at once (acdf/cut_wave.h).
+#pragma once
+
+#include <acdf/cut_wave.h>
+#include <acdf/wavefront.h>
+
+#include <cstddef>
+
+namespace acdf {
+
+/// Those of the best instructions that the processor has, up to `most`; null: none.
+const AcdfLocalVectors* local_vectors(Instructions most = Instructions::avx512) noexcept;
+
+#if ACDF_WAVEFRONT_X86
+void cut_sample_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const double (*)[2], std::size_t,
+                     AcdfDirectionSample*);
+void cut_sample_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const double (*)[2], std::size_t,
+                       AcdfDirectionSample*);
+void cut_pdf_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const float (*)[3], std::size_t, float*);
+void cut_pdf_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const float (*)[3], std::size_t,
+                    float*);
+#endif
+
+} // namespace acdf
