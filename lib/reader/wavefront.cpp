@@ -189,16 +189,26 @@ void view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)
     add_runtime_tables(*brdf, *brdf->tables, &table);
     Densities(table, *view, wi, count, out);
 }
+
+template <auto Samples>
+void view_samples(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2], std::size_t count,
+                  AcdfDirectionSample* out) {
+    WavefrontTable table;
+    add_runtime_tables(*brdf, *brdf->tables, &table);
+    Samples(table, *brdf, *view, u, count, out);
+}
+
+template <auto Densities, auto Samples>
+constexpr AcdfBrdfVectors kVectors = {view_pdfs<Densities>, view_samples<Samples>};
 #endif
 
 } // namespace
 
 const AcdfBrdfVectors* brdf_vectors(Instructions most) noexcept {
 #if ACDF_WAVEFRONT_X86
-    static constexpr AcdfBrdfVectors avx2 = {view_pdfs<view_pdf_avx2>}, avx512 = {view_pdfs<view_pdf_avx512>};
     const Instructions best = std::min(most, instructions_of_this_processor());
-    if (best == Instructions::avx512) return &avx512;
-    if (best == Instructions::avx2) return &avx2;
+    if (best == Instructions::avx512) return &kVectors<view_pdf_avx512, view_sample_avx512>;
+    if (best == Instructions::avx2) return &kVectors<view_pdf_avx2, view_sample_avx2>;
 #endif
     (void)most;
     return nullptr;

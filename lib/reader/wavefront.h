@@ -60,6 +60,11 @@ void pdf_avx512(const WavefrontTable&, const float (*)[3], const float (*)[3], s
 // Of one view, by tables that have a grid: of those of the file alone.
 void view_pdf_avx2(const WavefrontTable&, const AcdfBrdfView&, const float (*)[3], std::size_t, float*);
 void view_pdf_avx512(const WavefrontTable&, const AcdfBrdfView&, const float (*)[3], std::size_t, float*);
+// By tables that have guesses, too.
+void view_sample_avx2(const WavefrontTable&, const AcdfBrdf&, const AcdfBrdfView&, const double (*)[2], std::size_t,
+                      AcdfDirectionSample*);
+void view_sample_avx512(const WavefrontTable&, const AcdfBrdf&, const AcdfBrdfView&, const double (*)[2],
+                        std::size_t, AcdfDirectionSample*);
 #endif
 
 } // namespace acdf

@@ -92,20 +92,25 @@ ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const float 
 
 // ---- of one view -----------------------------------------------------------------------------------------------
 
+/* A view that lanes share. */
+ACDF_LANE View same_view(const AcdfBrdfView& view) {
+    View out;
+    out.wo = {all(view.wo[0]), all(view.wo[1]), all(view.wo[2])};
+    for (int i = 0; i < 2; ++i) {
+        out.turn[i] = all(view.turn[i]);
+        out.weight[i] = all(view.pair[i]);
+    }
+    out.lower = Integer{} + view.lower;
+    return out;
+}
+
 /* acdf_brdf_view_pdf of an array of directions: sixteen at once. */
 ACDF_LANE void view_densities(const WavefrontTable& t, const AcdfBrdfView& view, const float (*wi)[3],
                               std::size_t count, float* out) {
     constexpr int groups = 16 / kWidth;
     constexpr std::size_t lanes = 16;
     DensitiesOf<groups> d;
-    for (View& v : d.view) {
-        v.wo = {all(view.wo[0]), all(view.wo[1]), all(view.wo[2])};
-        for (int i = 0; i < 2; ++i) {
-            v.turn[i] = all(view.turn[i]);
-            v.weight[i] = all(view.pair[i]);
-        }
-        v.lower = Integer{} + view.lower;
-    }
+    for (View& v : d.view) v = same_view(view);
     for (std::size_t first = 0; first < count; first += lanes) {
         const std::size_t some = count - first < lanes ? count - first : lanes;
         float last[lanes][3] = {}, told[lanes];

@@ -85,22 +85,18 @@ ACDF_LANE Integer split_at(const WavefrontTable& t, Integer number) {
     return gathered<8>(t.splits, number);
 }
 
-ACDF_LANE Integer axis_of(Integer split) { return (split >> 32) != 0; }
-
 /* Children have higher numbers than their parents, tiles higher ones than splits; that entry's are 0. */
 ACDF_LANE void take(Walk* s, Integer upper, Integer split) {
     s->node = most(s->node, select(upper, split >> 16, split) & 0xFFFF);
 }
 
-template <bool Top>
-ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
-    const Integer at = split_of(t, *s), split = split_at<Top>(t, at), codes = gathered_words(t.codes, s->base + at);
-    const Vector code0 = converted(codes & 0xFFFF), code1 = converted(codes >> 16);
-    const Vector lower0 = s->weight[0] * (code0 * (1.0 / 65535.0));
-    const Vector lower1 = s->weight[1] * (code1 * (1.0 / 65535.0));
+/* Goes on from splits whose lower parts rows give so much of theirs. Returns the lanes that go to the upper part.
+ */
+ACDF_LANE Integer go(Walk* s, const Vector code[2], Integer axis1) {
+    const Vector lower0 = s->weight[0] * code[0], lower1 = s->weight[1] * code[1];
     const Vector higher0 = s->weight[0] - lower0, higher1 = s->weight[1] - lower1;
     const Vector low = lower0 + lower1, high = higher0 + higher1;
-    const Integer axis = axis_of(split);
+    const Integer axis = axis1 != 0;
     const Vector x = select(axis, s->x[1], s->x[0]);
     const Integer upper = (x >= low) & (high > 0.0);
     const Vector sum = select(upper, high, low), scale = sum / s->chosen, cut = select(upper, x - low, x);
@@ -109,7 +105,14 @@ ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
     s->chosen = sum;
     s->weight[0] = select(upper, higher0, lower0);
     s->weight[1] = select(upper, higher1, lower1);
-    take(s, upper, split);
+    return upper;
+}
+
+template <bool Top>
+ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
+    const Integer at = split_of(t, *s), split = split_at<Top>(t, at), codes = gathered_words(t.codes, s->base + at);
+    const Vector code[2] = {converted(codes & 0xFFFF) * (1.0 / 65535.0), converted(codes >> 16) * (1.0 / 65535.0)};
+    take(s, go(s, code, split >> 32), split);
 }
 
 ACDF_LANE void walk(const WavefrontTable& t, Walk* s) {
@@ -219,6 +222,7 @@ ACDF_LANE Vector clamp(Vector x, double low, double high) {
     return select(x < low, all(low), select(x > high, all(high), x));
 }
 
+/* All but where it begins. */
 ACDF_LANE void begin_walk(const WavefrontTable& t, const View& view, Vector u0, Vector u1, Walk* s, Vector* sign) {
     Vector u[2] = {unit_interval(u0), unit_interval(u1)};
     *sign = all(1.0);
@@ -230,8 +234,6 @@ ACDF_LANE void begin_walk(const WavefrontTable& t, const View& view, Vector u0, 
     s->chosen = view.weight[0] + view.weight[1];
     for (int axis = 0; axis < 2; ++axis) s->x[axis] = u[axis] * s->chosen;
     for (int i = 0; i < 2; ++i) s->weight[i] = view.weight[i];
-    s->base = view.lower * t.entries;
-    s->node = Integer{} + (t.brdf.blend.tiles->tile_count > 1 ? 0 : (long long)ACDF_TILE_FLAG);
 }
 
 constexpr std::size_t kBlock = kGroups * kWidth;
@@ -253,15 +255,16 @@ ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const double
         const int lane = g * kWidth;
         s->view[g] = view_of(t, load(&wo[lane]));
         begin_walk(t, s->view[g], every_second(u[lane]), every_second(u[lane] + 1), &s->walked[g], &s->sign[g]);
+        s->walked[g].base = s->view[g].lower * t.entries;
+        s->walked[g].node = Integer{} + acdf_blend_root(&t.brdf.blend);
     }
     walk(t, s->walked);
 }
 
-/* Writes the samples of a vector of lanes. Returns the lanes that are left to acdf_brdf_sample. */
-ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const Walk& s, Vector sign,
-                              AcdfDirectionSample* out) {
+/* Writes the samples of a vector of lanes in their cells. Returns the lanes that are left to acdf_brdf_sample. */
+ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const Walk& s, const Cell& cell,
+                              Vector sign, AcdfDirectionSample* out) {
     const Integer valid = view.weight[0] + view.weight[1] > 0.0;
-    const Cell cell = cell_of(t, s);
     const Integer number = s.node & 0x7FFF, at = multiplied(number, t.stride) + view.lower;
     const Vector area = (Vector)gathered<8>(t.areas, number);
     const Vector part[2] = {(Vector)gathered<8>(t.parts, at), (Vector)gathered<8>(t.parts + 1, at)};
@@ -282,7 +285,7 @@ ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const W
 
 ACDF_LANE void end(const WavefrontTable& t, const Samples& s, AcdfDirectionSample* out) {
     for (int g = 0; g < kGroups; ++g) {
-        unsigned left = end_sample(t, s.view[g], s.walked[g], s.sign[g], &out[g * kWidth]);
+        unsigned left = end_sample(t, s.view[g], s.walked[g], cell_of(t, s.walked[g]), s.sign[g], &out[g * kWidth]);
         for (int lane = g * kWidth; left != 0; ++lane, left >>= 1)
             if (left & 1) out[lane] = acdf_brdf_sample(&t.brdf, s.wo[lane], s.u[lane][0], s.u[lane][1]);
     }

@@ -72,10 +72,12 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
 }
 
 /* The same by vectors of this process's processor, which the linked library has: files that it opens name them. Of
- * files with runtime tables that have a grid. */
+ * files with runtime tables that have a grid; samples, of views that weigh something and tables with guesses. */
 typedef struct AcdfBrdfVectors {
     void (*view_pdfs)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
                       float* out);
+    void (*view_samples)(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2], size_t count,
+                         AcdfDirectionSample* out);
 } AcdfBrdfVectors;
 
 enum { ACDF_BRDF_FEWEST = 4 }; /* fewer are not worth vectors */
@@ -215,6 +217,20 @@ ACDF_FN AcdfDirectionSample acdf_brdf_view_sample(const AcdfBrdf* brdf, const Ac
     if (brdf->tables && brdf->tables->guesses && acdf_brdf_pair_sample(brdf, view, u0, u1, &out)) return out;
 #endif
     return acdf_brdf_view_walk(brdf, view, u0, u1);
+}
+
+/* The same of u[i] into out[i], i < count, to the bit. */
+ACDF_FN void acdf_brdf_view_samples(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double (*u)[2],
+                                    size_t count, AcdfDirectionSample* out) {
+    size_t i;
+#if ACDF_SIDE_BY_SIDE
+    if (brdf->vectors && count >= ACDF_BRDF_FEWEST && brdf->tables && brdf->tables->grid && brdf->tables->guesses &&
+        view->pair[0] + view->pair[1] > 0.0) {
+        brdf->vectors->view_samples(brdf, view, u, count, out);
+        return;
+    }
+#endif
+    for (i = 0; i < count; ++i) out[i] = acdf_brdf_view_sample(brdf, view, u[i][0], u[i][1]);
 }
 
 /* A direction about as acdf_brdf_view_sample draws it, to look where much is reflected; pdf 0: none. */

@@ -63,6 +63,11 @@ public:
     ACDF_METHOD void pdfs(const Point& point, const float (*wi)[3], std::size_t count, float* out) const noexcept {
         acdf_brdf_view_pdfs(&data_, &point, wi, count, out);
     }
+    /// `sample` of u[i] into out[i], i < count. Lobes need not have this.
+    ACDF_METHOD void samples(const Point& point, const double (*u)[2], std::size_t count,
+                             ProductSample* out) const noexcept {
+        acdf_brdf_view_samples(&data_, &point, u, count, out);
+    }
     /// About what `sample` draws, in less time, with the density there. Lobes need not have this.
     ACDF_METHOD ProductSample about(const Point& point, double u0, double u1) const noexcept {
         return acdf_brdf_view_about(&data_, &point, u0, u1);
@@ -95,6 +100,19 @@ template <class AnyLobe>
 ACDF_METHOD void lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
                            std::size_t count, float* out, long) noexcept {
     for (std::size_t i = 0; i < count; ++i) out[i] = lobe.pdf(point, wi[i]);
+}
+
+/// Several samples: `samples` where it has that, else `sample`.
+template <class AnyLobe>
+ACDF_METHOD auto lobe_samples(const AnyLobe& lobe, const typename AnyLobe::Point& point, const double (*u)[2],
+                              std::size_t count, ProductSample* out, int) noexcept
+    -> decltype(lobe.samples(point, u, count, out)) {
+    lobe.samples(point, u, count, out);
+}
+template <class AnyLobe>
+ACDF_METHOD void lobe_samples(const AnyLobe& lobe, const typename AnyLobe::Point& point, const double (*u)[2],
+                              std::size_t count, ProductSample* out, long) noexcept {
+    for (std::size_t i = 0; i < count; ++i) out[i] = lobe.sample(point, u[i][0], u[i][1]);
 }
 
 /// A renderer's own BRDF as a lobe. Callables over unit vectors in the surface's frame, wo above the surface:

@@ -346,10 +346,11 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::s
         light[of_light[k]] = drawn[k].pdf;
     }
     for (std::size_t k = 0; k < reflected; ++k) {
-        const std::size_t i = of_lobe[k];
-        drawn[k] = lobe_.sample(point.lobe, acdf_unit_interval(u[i][0]) / point.share, u[i][1]);
-        point.frame.to_world(drawn[k].direction, directions[k]);
+        rest[k][0] = acdf_unit_interval(u[of_lobe[k]][0]) / point.share;
+        rest[k][1] = u[of_lobe[k]][1];
     }
+    lobe_samples(lobe_, point.lobe, rest, reflected, drawn, 0);
+    for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(drawn[k].direction, directions[k]);
     acdf_cut_pdf_wave(&light_, &point.light, &point.cut, directions, reflected, lobe);
     for (std::size_t k = 0; k < reflected; ++k) {
         const std::size_t i = of_lobe[k];

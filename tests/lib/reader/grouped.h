@@ -14,7 +14,8 @@ struct Grouped {
     AcdfEnvironment data;
 
     /// In at most some bytes; `least`: in as few as can be, by groups of as many cells as there may be.
-    Grouped(const AcdfEnvironment& from, std::uint32_t tree_units, std::size_t most_bytes, bool least) : data(from) {
+    Grouped(const AcdfEnvironment& from, std::uint32_t tree_units, std::size_t most_bytes, bool least)
+        : data(from) {
         const acdf::TreeSurvey survey(data, tree_units);
         data.cells = nullptr;
         data.groups = nullptr;

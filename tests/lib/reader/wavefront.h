@@ -100,9 +100,9 @@ inline void expect_wavefront_is_the_view(const acdf::BrdfView& view, std::size_t
     EXPECT_EQ(pdfs[count], 7.0f);
 }
 
-/// Densities of several directions for one view, each 40th of a wave.
-inline void expect_view_pdfs(const acdf::BrdfView& view, std::size_t count, acdf::Instructions most) {
-    SCOPED_TRACE(std::to_string(count) + " directions of a view, instructions up to " + std::to_string(int(most)));
+/// Densities of several directions for one view, each 40th of a wave, and several samples.
+inline void expect_same_of_a_view(const acdf::BrdfView& view, std::size_t count, acdf::Instructions most) {
+    SCOPED_TRACE(std::to_string(count) + " calls of a view, instructions up to " + std::to_string(int(most)));
     AcdfBrdf brdf = view.data();
     brdf.vectors = acdf::brdf_vectors(most);
     const Wave wave(view, count);
@@ -115,13 +115,23 @@ inline void expect_view_pdfs(const acdf::BrdfView& view, std::size_t count, acdf
         for (std::size_t k = 0; k < some; ++k)
             ASSERT_EQ(acdf_brdf_view_pdf(&brdf, &of_wo, wave.wi()[i + k]), pdfs[k]) << i << ' ' << k;
         EXPECT_EQ(pdfs[some], 7.0f);
+        std::vector<acdf::DirectionSample> samples(some + 1, acdf::DirectionSample{{7.0f, 7.0f, 7.0f}, 7.0f});
+        acdf_brdf_view_samples(&brdf, &of_wo, wave.u() + i, some, samples.data());
+        for (std::size_t k = 0; k < some; ++k) {
+            const acdf::DirectionSample s =
+                acdf_brdf_view_sample(&brdf, &of_wo, wave.u()[i + k][0], wave.u()[i + k][1]);
+            for (int axis = 0; axis < 3; ++axis)
+                ASSERT_EQ(s.direction[axis], samples[k].direction[axis]) << i << ' ' << k;
+            ASSERT_EQ(s.pdf, samples[k].pdf) << i << ' ' << k;
+        }
+        EXPECT_EQ(samples[some].pdf, 7.0f);
     }
 }
 
 inline void expect_wavefront_is_the_view(const acdf::BrdfView& view, std::size_t count) {
     for (const acdf::Instructions most : all_instructions()) {
         expect_wavefront_is_the_view(view, count, most);
-        expect_view_pdfs(view, count, most);
+        expect_same_of_a_view(view, count, most);
     }
 }
 
