@@ -25,7 +25,7 @@ rm -f "$work"/objects/*.o
 for source in "$here/exports.cpp" "$root"/lib/reader/*.cpp; do
     name=$(basename "$source" .cpp)
     case $name in
-    c_api | linked | product_c | *wavefront | *_avx* | input_file_windows) continue ;;
+    c_api | linked | product_c | *wavefront | *_avx* | *_windows) continue ;;
     esac
     "$clang" "${flags[@]}" -std=c++17 -fno-exceptions -fno-rtti -isystem "$libcxx" -isystem /usr/include/wasm32-wasi \
         "${includes[@]}" -c "$source" -o "$work/objects/$name.o"
