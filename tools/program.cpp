@@ -8,10 +8,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 
 namespace {
 
@@ -20,15 +23,20 @@ using namespace acdf::tools;
 // A new subcommand: a file NAME.cpp, its add_NAME in commands.h, a line here.
 struct Command {
     const char* group; // heading in `acdf --help`
+    std::string_view name;
     void (*add)(CLI::App& program, int& exit_code);
 };
 
 constexpr Command commands[] = {
-    {"Start here", add_demo}, {"Make", add_env},         {"Make", add_local},       {"Make", add_brdf},
-    {"Make", add_table},      {"Inspect", add_info},     {"Inspect", add_validate}, {"Inspect", add_measure},
-    {"Inspect", add_plot},    {"Inspect", add_scanline}, {"Inspect", add_render},   {"Inspect", add_sweep},
-    {"Use", add_sample},      {"Use", add_pdf},          {"Use", add_export},       {"Use", add_completion},
-    {"Make", add_batch},
+    {"Start here", "demo", add_demo},      {"Make", "env", add_env},
+    {"Make", "local", add_local},          {"Make", "brdf", add_brdf},
+    {"Make", "table", add_table},          {"Inspect", "info", add_info},
+    {"Inspect", "validate", add_validate}, {"Inspect", "measure", add_measure},
+    {"Inspect", "plot", add_plot},         {"Inspect", "scanline", add_scanline},
+    {"Inspect", "render", add_render},     {"Inspect", "sweep", add_sweep},
+    {"Use", "sample", add_sample},         {"Use", "pdf", add_pdf},
+    {"Use", "export", add_export},         {"Use", "completion", add_completion},
+    {"Make", "batch", add_batch},
 };
 
 constexpr const char* program_description =
@@ -73,6 +81,20 @@ int failure(const std::string& what) {
     return exit_failed;
 }
 
+// The options of all commands together take longer to set up than short commands to run. So only the command that
+// is called is added, if one is: `completion` writes of all.
+void add_commands(CLI::App& program, std::string_view called, int& exit_code) {
+    const auto is_called = [&](const Command& command) { return command.name == called; };
+    const bool one = called != "completion" && std::any_of(std::begin(commands), std::end(commands), is_called);
+    for (const Command& command : commands) {
+        if (one && !is_called(command)) continue;
+        command.add(program, exit_code);
+        CLI::App& added = *program.get_subcommand(std::string(command.name));
+        added.group(command.group);
+        refuse_what_is_no_value(added);
+    }
+}
+
 int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code) {
     try {
         program.parse(argc, argv);
@@ -104,14 +126,6 @@ int acdf::tools::run_program(int argc, char** argv) {
     program.require_subcommand(0, 1);
     program.footer(program_footer);
     int exit_code = exit_done;
-    for (const Command& command : commands) {
-        const std::size_t before = program.get_subcommands({}).size();
-        command.add(program, exit_code);
-        const auto all = program.get_subcommands({});
-        for (std::size_t i = before; i < all.size(); ++i) {
-            all[i]->group(command.group);
-            refuse_what_is_no_value(*all[i]);
-        }
-    }
+    add_commands(program, argc > 1 ? argv[1] : "", exit_code);
     return parse_and_run(program, argc, argv, exit_code);
 }
