@@ -1,9 +1,8 @@
 // Densities of cuts (acdf/cut_sample.h) over vectors, operation by operation. Internal linkage: see local_kernel.h.
 #pragma once
 
+#include "cut_curve_vectors.h"
 #include "local_density_kernel.h"
-
-#include <acdf/cut_wave.h>
 
 namespace {
 
@@ -39,12 +38,12 @@ ACDF_LANE void weigh_cut_tiles(const AcdfLocal& local, const AcdfLocalPoint& poi
     }
 }
 
-/* acdf_cut_pdf of up to kBlock lanes. */
+/* acdf_cut_pdf of up to ACDF_CUT_WAVE lanes. */
 ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
                                  const float (*directions)[3], std::size_t count, float* out) {
     alignas(64) long long part[kRoom];
     Cells cells;
-    Boxes live, done;
+    Boxes done;
     cells.count = count;
     std::uint64_t lost = find_all_squares(local, directions, count, &cells);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) find_cut_parts(cut, cells, at, &part[at]);
@@ -52,9 +51,10 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
         ACDF_PREFETCH(&cut.part[part[i]].low[0]);
         ACDF_PREFETCH(&cut.part[part[i]].probability);
     }
-    enter_tiles<true>(local, cells, &live, &done);
+    for (std::size_t i = 0; i < count; ++i)
+        acdf_local_ahead(&local, acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]));
     weigh_cut_tiles(local, point, cut, part, &cells);
-    find_cells<true>(local, &live, &done);
+    follow_in_turns<true>(local, cells, &done);
     lost |= told_densities(local, cells, done, out);
     for (; lost; lost &= lost - 1) {
         const auto lane = (std::size_t)__builtin_ctzll(lost);
@@ -64,8 +64,9 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
 
 ACDF_LANE void cut_densities(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
                              const float (*directions)[3], std::size_t count, float* out) {
-    for (std::size_t first = 0; first < count; first += kBlock)
-        cut_density_block(local, point, cut, directions + first, std::min(count - first, kBlock), out + first);
+    constexpr std::size_t wave = ACDF_CUT_WAVE;
+    for (std::size_t first = 0; first < count; first += wave)
+        cut_density_block(local, point, cut, directions + first, std::min(count - first, wave), out + first);
 }
 
 } // namespace

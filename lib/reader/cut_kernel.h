@@ -2,6 +2,7 @@
 // tiles and directions as LocalWavefront draws them. Internal linkage: see local_kernel.h.
 #pragma once
 
+#include "cut_curve_vectors.h"
 #include "local_kernel.h"
 
 #include <acdf/cut_wave.h>
@@ -156,39 +157,6 @@ ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& poi
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-/* acdf_cut_wave_curves of tiles: so few curves are not worth vectors. */
-ACDF_LANE void draw_curves(const AcdfLocal& local, Cells* cells, Boxes* done) {
-    AcdfCutLane lane[ACDF_CUT_WAVE];
-    AcdfCutLanes all;
-    const auto count = (std::uint32_t)cells->count;
-    all.count = count;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        all.lane[i] = i;
-        for (int axis = 0; axis < 2; ++axis) {
-            lane[i].u[axis] = cells->u[axis][i];
-            lane[i].range[axis].tilt = 0.0;
-        }
-        lane[i].tile = (std::uint32_t)cells->tile[i];
-        lane[i].probability = cells->probability[i];
-    }
-    acdf_cut_wave_curves(&local, count, &all, lane);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        for (int axis = 0; axis < 2; ++axis) {
-            done->u[axis][i] = lane[i].u[axis];
-            done->low[axis][i] = lane[i].range[axis].low;
-            done->high[axis][i] = lane[i].range[axis].high;
-        }
-        done->product[i] = 1.0;
-        done->number[i] = i;
-        done->lost[i] = lane[i].range[0].tilt != 0.0 || lane[i].range[1].tilt != 0.0;
-        cells->probability[i] = lane[i].probability;
-    }
-    for (std::size_t i = done->count = count; i % kLanes > 0; ++i) { /* as find_cells has it */
-        done->number[i] = 0;
-        for (int axis = 0; axis < 2; ++axis) done->low[axis][i] = done->high[axis][i] = 0;
-    }
-}
-
 /* acdf_cut_sample of up to ACDF_CUT_WAVE lanes. */
 ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
                               const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
@@ -207,7 +175,7 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
     walk(*local.tables, &walks);
     end_walks(
         walks, [&](std::size_t at, Vector of_all) { return loaded(&walks.probability[at]) * of_all; }, &cells);
-    draw_curves(local, &cells, &done);
+    follow_in_turns<false>(local, cells, &done);
     lost |= place_cells(local, cells, done, out);
     for (; lost; lost &= lost - 1) {
         const auto lane = (std::size_t)__builtin_ctzll(lost);

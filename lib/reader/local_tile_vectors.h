@@ -35,14 +35,20 @@ ACDF_LANE void enter_tiles(const AcdfLocal& local, const Cells& cells, Boxes* li
     }
 }
 
-/* Follows the curves of all tiles. What stands behind the last cell is one of the file, too. */
+/* Ends a list of cells: what stands behind the last one is one of the file, too. */
+ACDF_LANE void end_boxes(std::size_t count, Boxes* boxes) {
+    boxes->count = count;
+    for (std::size_t i = count; i % kLanes > 0; ++i) {
+        boxes->number[i] = 0;
+        for (int axis = 0; axis < 2; ++axis) boxes->low[axis][i] = boxes->high[axis][i] = 0;
+    }
+}
+
+/* Follows the curves of all tiles. */
 template <bool Finds>
 ACDF_LANE void find_cells(const AcdfLocal& local, Boxes* live, Boxes* done) {
     follow_all<Finds>(local.blend.tree, local.environment.tree_units, live, done);
-    for (std::size_t i = done->count; i % kLanes > 0; ++i) {
-        done->number[i] = 0;
-        for (int axis = 0; axis < 2; ++axis) done->low[axis][i] = done->high[axis][i] = 0;
-    }
+    end_boxes(done->count, done);
 }
 
 /* Their probabilities, by those of the tiles, which are above 0, as are the products. */

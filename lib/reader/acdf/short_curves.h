@@ -225,20 +225,26 @@ ACDF_INLINE double acdf_tree_draw(const uint8_t* tree, uint32_t units, uint32_t 
     return acdf_positive(probability);
 }
 
+/* Finds one segment, of whatever curve: as acdf_tree_find does. Returns the distance to its child, 0 where it ends.
+ */
+ACDF_INLINE uint32_t acdf_curve_locate(const uint8_t* tree, uint32_t units, uint32_t at, const uint32_t* square,
+                                       AcdfRange* range, double* probability) {
+    AcdfShortCurve curve;
+    uint32_t segment, low, width;
+    if (!acdf_short_curve(tree, units, at, &curve)) return acdf_curve_find(tree, at, square, range, 0, probability);
+    segment = acdf_short_curve_found(&curve, square[curve.axis] - range[curve.axis].low);
+    width = acdf_short_curve_width(&curve, segment, &low);
+    *probability *= (double)(int32_t)width / (double)(int32_t)curve.maximum;
+    return acdf_short_curve_narrow(&curve, segment, &range[curve.axis]);
+}
+
 /* acdf_tree_find, without strata, of a tree of `units`; 0: how many is not known. */
 ACDF_INLINE double acdf_tree_locate(const uint8_t* tree, uint32_t units, uint32_t root, const uint32_t* square,
                                     AcdfRange* range) {
     double probability = 1.0;
-    AcdfShortCurve curve;
     uint32_t at = root, link;
     do {
-        if (acdf_short_curve(tree, units, at, &curve)) {
-            const uint32_t segment = acdf_short_curve_found(&curve, square[curve.axis] - range[curve.axis].low);
-            uint32_t low;
-            const uint32_t width = acdf_short_curve_width(&curve, segment, &low);
-            probability *= (double)(int32_t)width / (double)(int32_t)curve.maximum;
-            link = acdf_short_curve_narrow(&curve, segment, &range[curve.axis]);
-        } else link = acdf_curve_find(tree, at, square, range, 0, &probability);
+        link = acdf_curve_locate(tree, units, at, square, range, &probability);
         at += link;
     } while (link != 0);
     return probability > 0.0 ? acdf_positive(probability) : 0.0;
