@@ -43,11 +43,10 @@ const Rule rules[] = {
     {3011, error, malformed, "deflate-ratio",
      "With codec 1 or 2, `raw_length` is less than 1032 (`stored_length` + 1)."},
     {3012, error, ErrorCode::limit_exceeded, "inflate-limit",
-     "The compressed chunks inflate to no more than the reader's limit."},
+     "The compressed chunks, but for unknown ones, inflate to no more than the reader's limit."},
     {3013, error, malformed, "chunk-kind",
      "TILE and ROWS come only in files of kinds 2 and 3, LOCL, PLAC and PORT only in those of kind 2, VIEW only in "
-     "those "
-     "of kind 3."},
+     "those of kind 3, COMP in all but those."},
     {3014, error, malformed, "chunk-type", "The type of a chunk is four printable ASCII characters."},
 
     {4001, error, malformed, "chunk-crc", "`crc` is the CRC-32 of the stored bytes."},
@@ -129,7 +128,7 @@ const Rule rules[] = {
 
     {7001, error, malformed, "environment-axes",
      "An environment, local or not, has the two axes of §6.1 first, with parameterization 4 those of §6.9, with "
-     "resolutions of at most 65536."},
+     "resolutions of at most 65536; one that is not local has no others."},
     {7002, error, malformed, "environment-bins", "An environment has one bin."},
     {7003, error, malformed, "normal-axes",
      "A local environment has the axes of an environment, and one or two of normals as in §6.7."},
@@ -172,8 +171,7 @@ const Rule rules[] = {
     {8002, error, malformed, "brdf-bins", "A BRDF has as many bins as the product of its axes of views."},
     {8003, error, malformed, "views",
      "A BRDF has VIEW, as long as `theta_count` tells, with the counts of the axes; only flag bit 0 may be set, "
-     "and phi_h "
-     "begins at 0 where it is."},
+     "where `phi_count` is 1, and phi_h begins at 0 if it is, else at -π."},
     {8004, error, malformed, "view-nodes", "The stored views are in [0, 1] and strictly increasing."},
     {8005, error, malformed, "diffuse-share", "`diffuse_share` is in [0, 1)."},
     {8006, error, malformed, "brdf-stored", "Each bin of a BRDF is stored: no root is FFFFFFFF."},

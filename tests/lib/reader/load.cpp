@@ -295,6 +295,9 @@ TEST(Memory, limitsHold) {
     EXPECT_EQ(load(packed, limits).code, ErrorCode::limit_exceeded);
     limits.max_inflated_bytes = raw;
     EXPECT_TRUE(load(packed, limits).ok());
+    FileSpec unknown = compressed().file();
+    unknown.chunks.push_back({"more", Bytes(100, 7), 0, true});
+    EXPECT_TRUE(load(unknown.encode(), limits).ok()); // is not inflated
 }
 
 // ---- contents -------------------------------------------------------------------------------------------

@@ -39,7 +39,14 @@ std::vector<Case> brdf_cases() {
              file.chunks[0].raw = d.encode();
              return file.encode();
          }},
+        {3013, "company_of_a_brdf",
+         [] {
+             FileSpec file = shared_brdf().file();
+             file.chunks.push_back({"COMP", Bytes(24, 0), 1, false});
+             return file.encode();
+         }},
         {8001, "name", field(0, axis(1), 1, 'C')},
+        {8001, "range_of_views", field(0, axis(2) + 32, 8, 0x3FE0000000000000)},
         {8001, "role", field(0, axis(3) + 16, 4, 0)},
         {8001, "measure", field(0, axis(1) + 20, 4, 1)},
         {8001, "range", field(0, axis(1) + 40, 8, 0x3FE0000000000000)},

@@ -240,6 +240,14 @@ std::vector<Case> tree_cases() {
              file.chunks[0].raw = description.encode();
              return file.encode();
          }},
+        {7001, "three_axes",
+         [] {
+             FileSpec file = chain(1).file();
+             DescriptionSpec description;
+             description.axes.push_back({"third", 1, 0, 1, 0.0, 1.0});
+             file.chunks[0].raw = description.encode();
+             return file.encode();
+         }},
         {7001, "name", payload_field("DESC", 64, 1, 'P')},
         {7001, "octahedral_with_angles", payload_field("DESC", 0, 4, 4)},
         {7001, "angles_with_u_and_v", octahedral_axes([](FileSpec& f) { set(f.chunks[0].raw, 0, 4, 1); })},
