@@ -110,30 +110,35 @@ ACDF_LANE std::uint32_t turn_of(std::uint32_t header, const std::uint32_t* squar
 /* All lanes on their way, in turns. Returns those whose cells have tilts, a bit each. */
 template <bool Finds>
 __attribute__((noinline)) std::uint32_t take_turns(const AcdfLocal& local, const std::uint32_t (*square)[2],
-                                                   AcdfCutTurns turns, CurveLane* lanes) {
+                                                   AcdfCutLanes on_way, CurveLane* lanes) {
     const std::uint8_t* const tree = local.blend.tree;
     const std::size_t units =
         local.environment.tree_units; /* what is loaded of a curve is not all there at the end */
     const std::uint8_t* const near_end = tree + 2 * (units > 15 ? units - 15 : 0);
     std::uint32_t tilted = 0;
-    while (turns.first != turns.end) {
-        const std::uint32_t number = acdf_cut_next(&turns);
-        CurveLane& lane = lanes[number];
-        std::uint16_t header;
-        std::uint32_t link;
-        std::memcpy(&header, lane.at, 2);
-        const std::uint32_t rest = header - kOneSegment;
-        if ((rest & kOtherBits) == 0 && lane.at < near_end) {
-            link = turn_of<Finds>(rest, square[number], &lane);
-        } else {
-            const auto at = (std::uint32_t)((std::size_t)(lane.at - tree) / 2);
-            link = Finds ? acdf_curve_find(tree, at, square[number], lane.range, nullptr, &lane.inside)
-                         : acdf_curve_sample(tree, at, lane.u, lane.range, &lane.inside);
-            tilted |= (std::uint32_t)(lane.range[0].tilt != 0.0 || lane.range[1].tilt != 0.0) << number;
+    while (const std::uint32_t count = on_way.count) {
+        std::uint32_t left = 0;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const std::uint32_t number = on_way.lane[k];
+            CurveLane& lane = lanes[number];
+            std::uint16_t header;
+            std::uint32_t link;
+            std::memcpy(&header, lane.at, 2);
+            const std::uint32_t rest = header - kOneSegment;
+            if ((rest & kOtherBits) == 0 && lane.at < near_end) {
+                link = turn_of<Finds>(rest, square[number], &lane);
+            } else {
+                const auto at = (std::uint32_t)((std::size_t)(lane.at - tree) / 2);
+                link = Finds ? acdf_curve_find(tree, at, square[number], lane.range, nullptr, &lane.inside)
+                             : acdf_curve_sample(tree, at, lane.u, lane.range, &lane.inside);
+                tilted |= (std::uint32_t)(lane.range[0].tilt != 0.0 || lane.range[1].tilt != 0.0) << number;
+            }
+            lane.at += 2 * std::size_t{link};
+            ACDF_PREFETCH(lane.at);
+            on_way.lane[left] = number;
+            left += link != 0;
         }
-        lane.at += 2 * std::size_t{link};
-        ACDF_PREFETCH(lane.at);
-        acdf_cut_again(&turns, number, link != 0);
+        on_way.count = left;
     }
     return tilted;
 }
@@ -143,9 +148,9 @@ template <bool Finds>
 ACDF_LANE void follow_in_turns(const AcdfLocal& local, const Cells& cells, Boxes* done) {
     CurveLane lane[ACDF_CUT_WAVE];
     std::uint32_t square[ACDF_CUT_WAVE][2];
-    AcdfCutTurns turns;
+    AcdfCutLanes on_way;
     const auto count = (std::uint32_t)cells.count;
-    turns.first = turns.end = 0;
+    on_way.count = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]);
         acdf_local_ahead(&local, tile);
@@ -157,9 +162,10 @@ ACDF_LANE void follow_in_turns(const AcdfLocal& local, const Cells& cells, Boxes
         acdf_tile_range(tile, lane[i].range);
         lane[i].inside = 1.0;
         lane[i].at = local.blend.tree + 2 * std::size_t{tile->root == ACDF_NO_ROOT ? 0 : tile->root};
-        acdf_cut_again(&turns, i, tile->root != ACDF_NO_ROOT);
+        on_way.lane[on_way.count] = i;
+        on_way.count += tile->root != ACDF_NO_ROOT;
     }
-    const std::uint32_t tilted = take_turns<Finds>(local, square, turns, lane);
+    const std::uint32_t tilted = take_turns<Finds>(local, square, on_way, lane);
     for (std::uint32_t i = 0; i < count; ++i) {
         for (int axis = 0; axis < 2; ++axis) {
             if (!Finds) done->u[axis][i] = lane[i].u[axis];

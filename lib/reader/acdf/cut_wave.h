@@ -44,52 +44,29 @@ typedef struct AcdfCutLanes {
     uint32_t lane[ACDF_CUT_WAVE];
 } AcdfCutLanes;
 
-/* Lanes that take turns, one step each, until none is left: a ring, so that nobody has to guess how many are left
- * when all have had their turn. */
-typedef struct AcdfCutTurns {
-    uint32_t first, end; /* of those in the ring, counted on and on */
-    uint8_t lane[2 * ACDF_CUT_WAVE];
-} AcdfCutTurns;
-
-ACDF_INLINE AcdfCutTurns acdf_cut_turns(const AcdfCutLanes* lanes) {
-    AcdfCutTurns turns;
-    uint32_t k;
-    turns.first = 0;
-    turns.end = lanes->count;
-    for (k = 0; k < lanes->count; ++k) turns.lane[k] = (uint8_t)lanes->lane[k];
-    return turns;
-}
-/* Takes the next one out. */
-ACDF_INLINE uint32_t acdf_cut_next(AcdfCutTurns* turns) {
-    return turns->lane[turns->first++ % (2 * ACDF_CUT_WAVE)];
-}
-/* Puts it back, behind all others, where it goes on. */
-ACDF_INLINE void acdf_cut_again(AcdfCutTurns* turns, uint32_t lane, int goes_on) {
-    turns->lane[turns->end % (2 * ACDF_CUT_WAVE)] = (uint8_t)lane;
-    turns->end += (uint32_t)goes_on;
-}
-
 /* Draws parts: one step of each lane in turn. */
 ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], uint32_t count, AcdfCutLane* lane) {
     AcdfCutNumbers numbers[ACDF_CUT_WAVE];
     int32_t child[ACDF_CUT_WAVE];
-    AcdfCutLanes all;
-    AcdfCutTurns turns;
-    uint32_t i;
+    AcdfCutLanes on_way;
+    uint32_t i, k, split;
     for (i = 0; i + 1 < (uint32_t)cut->count; i += 4) ACDF_PREFETCH(&cut->split[i]);
     for (i = 0; i < count; ++i) {
         lane[i].u[0] = acdf_cut_number(u[i][0]);
         lane[i].u[1] = acdf_cut_number(u[i][1]);
         numbers[i] = acdf_cut_all_numbers();
         child[i] = cut->count > 1 ? 0 : ~0;
-        all.lane[i] = i;
+        on_way.lane[i] = i;
     }
-    all.count = cut->count > 1 ? count : 0;
-    turns = acdf_cut_turns(&all);
-    while (turns.first != turns.end) {
-        const uint32_t number = acdf_cut_next(&turns);
-        child[number] = acdf_cut_step(cut, child[number], lane[number].u, &numbers[number]);
-        acdf_cut_again(&turns, number, child[number] >= 0);
+    on_way.count = cut->count > 1 ? count : 0;
+    while ((split = on_way.count) > 0) {
+        on_way.count = 0;
+        for (k = 0; k < split; ++k) {
+            const uint32_t number = on_way.lane[k];
+            child[number] = acdf_cut_step(cut, child[number], lane[number].u, &numbers[number]);
+            on_way.lane[on_way.count] = number;
+            on_way.count += (uint32_t)(child[number] >= 0);
+        }
     }
     for (i = 0; i < count; ++i) {
         acdf_cut_numbers_left(&numbers[i], lane[i].u);
@@ -134,8 +111,7 @@ ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoin
     const uint32_t* words = acdf_local_words(local->tables);
     const AcdfTileTables* tables = &local->tables->tiles;
     AcdfTileWalk walk[ACDF_CUT_WAVE];
-    AcdfCutLanes walked;
-    AcdfCutTurns turns;
+    AcdfCutLanes on_way, walked;
     uint32_t k;
     walked.count = 0;
     for (k = 0; k < mixed->count; ++k) {
@@ -155,11 +131,16 @@ ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoin
         acdf_tile_walk_begin(words, tables, &mix, point->codes, ACDF_CUT_WAVE_ROWS, node, from, &walk[number]);
         walked.lane[walked.count++] = number;
     }
-    turns = acdf_cut_turns(&walked);
-    while (turns.first != turns.end) {
-        const uint32_t number = acdf_cut_next(&turns);
-        acdf_tile_walk_step(words, tables, point->codes, ACDF_CUT_WAVE_ROWS, &walk[number]);
-        acdf_cut_again(&turns, number, !(walk[number].node & ACDF_TILE_FLAG));
+    on_way = walked;
+    while (on_way.count > 0) {
+        uint32_t left = 0;
+        for (k = 0; k < on_way.count; ++k) {
+            const uint32_t number = on_way.lane[k];
+            acdf_tile_walk_step(words, tables, point->codes, ACDF_CUT_WAVE_ROWS, &walk[number]);
+            on_way.lane[left] = number;
+            left += (uint32_t) !(walk[number].node & ACDF_TILE_FLAG);
+        }
+        on_way.count = left;
     }
     for (k = 0; k < walked.count; ++k) {
         const uint32_t number = walked.lane[k];
@@ -183,9 +164,8 @@ ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, co
     const uint8_t* tree = local->blend.tree;
     const uint32_t units = local->environment.tree_units;
     double inside[ACDF_CUT_WAVE];
-    AcdfCutLanes curved;
-    AcdfCutTurns turns;
-    uint32_t i, k;
+    AcdfCutLanes on_way, curved;
+    uint32_t i, k, in_curves;
     curved.count = 0;
     for (i = 0; i < count; ++i) {
         const uint32_t root = local->blend.roots ? local->blend.roots[lane[i].tile] : ACDF_NO_ROOT;
@@ -199,14 +179,18 @@ ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, co
         AcdfCutLane* one = &lane[mixed->lane[k]];
         acdf_tile_range(acdf_local_tile(local->tables, one->tile), one->range);
     }
-    turns = acdf_cut_turns(&curved);
-    while (turns.first != turns.end) {
-        const uint32_t number = acdf_cut_next(&turns);
-        AcdfCutLane* one = &lane[number];
-        const uint32_t link = acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
-        one->curve += link;
-        ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
-        acdf_cut_again(&turns, number, link != 0);
+    on_way = curved;
+    while ((in_curves = on_way.count) > 0) {
+        on_way.count = 0;
+        for (k = 0; k < in_curves; ++k) {
+            const uint32_t number = on_way.lane[k];
+            AcdfCutLane* one = &lane[number];
+            const uint32_t link = acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
+            one->curve += link;
+            ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
+            on_way.lane[on_way.count] = number;
+            on_way.count += (uint32_t)(link != 0);
+        }
     }
     for (k = 0; k < curved.count; ++k) {
         AcdfCutLane* one = &lane[curved.lane[k]];
@@ -250,9 +234,8 @@ ACDF_INLINE void acdf_cut_wave_found(const AcdfLocal* local, uint32_t count, con
     const uint8_t* tree = local->blend.tree;
     const uint32_t units = local->environment.tree_units;
     double inside[ACDF_CUT_WAVE];
-    AcdfCutLanes curved;
-    AcdfCutTurns turns;
-    uint32_t i, k;
+    AcdfCutLanes on_way, curved;
+    uint32_t i, k, in_curves;
     curved.count = 0;
     for (i = 0; i < count; ++i) {
         const uint32_t root = lane[i].probability > 0.0 ? acdf_local_tile_root(local, lane[i].tile) : ACDF_NO_ROOT;
@@ -261,15 +244,19 @@ ACDF_INLINE void acdf_cut_wave_found(const AcdfLocal* local, uint32_t count, con
         curved.lane[curved.count] = i;
         curved.count += (uint32_t)(root != ACDF_NO_ROOT);
     }
-    turns = acdf_cut_turns(&curved);
-    while (turns.first != turns.end) {
-        const uint32_t number = acdf_cut_next(&turns);
-        AcdfCutLane* one = &lane[number];
-        const uint32_t link =
-            acdf_curve_locate(tree, units, one->curve, square[number], one->range, &inside[number]);
-        one->curve += link;
-        ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
-        acdf_cut_again(&turns, number, link != 0);
+    on_way = curved;
+    while ((in_curves = on_way.count) > 0) {
+        on_way.count = 0;
+        for (k = 0; k < in_curves; ++k) {
+            const uint32_t number = on_way.lane[k];
+            AcdfCutLane* one = &lane[number];
+            const uint32_t link =
+                acdf_curve_locate(tree, units, one->curve, square[number], one->range, &inside[number]);
+            one->curve += link;
+            ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
+            on_way.lane[on_way.count] = number;
+            on_way.count += (uint32_t)(link != 0);
+        }
     }
     for (k = 0; k < curved.count; ++k) {
         AcdfCutLane* one = &lane[curved.lane[k]];
