@@ -1,14 +1,12 @@
 // Any bytes: reading them as a manifest of `acdf batch` gives a job or one fault for each line, in order.
+#include "tests/fuzz/require.h"
 #include "tools/batch/manifest.h"
 
 #include <cstdint>
-#include <cstdlib>
 
 namespace {
 
-void require(bool condition) {
-    if (!condition) std::abort();
-}
+using acdf_test::require;
 
 bool is_text(const std::string& text) {
     for (const char c : text)

@@ -2,29 +2,15 @@
 // has a fixed size, so some inputs are repeated behind a good header until they have it.
 #include "input/image.h"
 #include "input/merl.h"
+#include "tests/fuzz/brdf_values.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 namespace {
 
 using namespace acdf::input;
-
-void require(bool condition) {
-    if (!condition) std::abort();
-}
-
-void require_good(const Brdf& brdf) {
-    const double directions[][3] = {
-        {0.0, 0.0, 1.0}, {0.6, 0.0, 0.8}, {-0.8, 0.0, 0.6}, {0.0, 1.0, 1e-9}, {0.0, 0.6, -0.8}};
-    for (const auto& wo : directions)
-        for (const auto& wi : directions) {
-            double rgb[3];
-            brdf.evaluate(wo, wi, rgb);
-            for (const double v : rgb) require(std::isfinite(v) && v >= 0.0);
-        }
-}
+using acdf_test::require;
+using acdf_test::require_good;
 
 void parse(const std::uint8_t* data, std::size_t size) {
     try {

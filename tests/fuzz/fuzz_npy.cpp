@@ -1,10 +1,10 @@
 // Any bytes: reading them as an .npy file gives a whole array of good numbers or one line of text. The mutator
 // keeps magic and header length right most of the time, so that the parser behind them is reached.
 #include "input/npy.h"
+#include "tests/fuzz/require.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -14,12 +14,10 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace {
 
+using acdf_test::require;
+
 constexpr std::uint8_t start[10] = {0x93, 'N', 'U', 'M', 'P', 'Y', 1, 0, 0, 0};
 constexpr char dict[] = "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }\n";
-
-void require(bool condition) {
-    if (!condition) std::abort();
-}
 
 void require_good(const acdf::input::NpyArray& array) {
     std::uint64_t count = 1;

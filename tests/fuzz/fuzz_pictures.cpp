@@ -3,12 +3,12 @@
 // channel.
 #include "images/float_map.h"
 #include "images/radiance.h"
+#include "tests/fuzz/require.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -16,10 +16,7 @@
 namespace {
 
 using namespace acdf::images;
-
-void require(bool condition) {
-    if (!condition) std::abort();
-}
+using acdf_test::require;
 
 /// Bytes as a file that has a path and lies in memory.
 class MemoryFile {

@@ -5,13 +5,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 namespace acdf_test {
-
-inline void require(bool condition) {
-    if (!condition) std::abort();
-}
 
 /// splitmix64: cheap to start, as each input starts one.
 class FuzzRandom {

@@ -2,10 +2,9 @@
 // The mutator starts from whole files, isotropic and not, RGB and spectral.
 #include "input/image.h"
 #include "input/rgl_brdf.h"
+#include "tests/fuzz/brdf_values.h"
 #include "tests/lib/input/brdf.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
@@ -13,21 +12,8 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace {
 
 using namespace acdf::input;
-
-void require(bool condition) {
-    if (!condition) std::abort();
-}
-
-void require_good(const Brdf& brdf) {
-    const double directions[][3] = {
-        {0.0, 0.0, 1.0}, {0.6, 0.0, 0.8}, {-0.8, 0.0, 0.6}, {0.0, 1.0, 1e-9}, {0.0, 0.6, -0.8}};
-    for (const auto& wo : directions)
-        for (const auto& wi : directions) {
-            double rgb[3];
-            brdf.evaluate(wo, wi, rgb);
-            for (const double v : rgb) require(std::isfinite(v) && v >= 0.0);
-        }
-}
+using acdf_test::require;
+using acdf_test::require_good;
 
 acdf::test::Bytes seed_file(unsigned seed) {
     acdf::test::RglParts parts;

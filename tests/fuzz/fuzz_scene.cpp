@@ -1,17 +1,14 @@
 // Any bytes: reading them as a scene of `acdf render` gives one that is within its limits, or an error of one line.
+#include "tests/fuzz/require.h"
 #include "tools/render/scene_file.h"
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 namespace {
 
 using acdf::measure::Vec3;
-
-void require(bool condition) {
-    if (!condition) std::abort();
-}
+using acdf_test::require;
 
 bool is_text(const std::string& text) {
     for (const char c : text)

@@ -3,6 +3,7 @@
 // breaks.
 #pragma once
 
+#include "tests/fuzz/require.h"
 #include "tests/fuzz/sample_waves.h"
 
 #include <acdf/acdf.h>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tests/fuzz/fuzz_random.h"
+#include "tests/fuzz/require.h"
 #include "tests/lib/reader/grouped.h"
 #include "tests/lib/reader/no_pieces.h"
 
