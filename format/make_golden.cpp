@@ -13,14 +13,13 @@
 #include "compress/fit.h"
 #include "compress/store.h"
 #include "golden_samples.h"
+#include "write_file.h"
 
 #include <acdf/sphere.h>
 
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <fstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -330,12 +329,6 @@ Golden brdf_separate() {
     return {"brdf_separate", store(tree, d)};
 }
 
-void write(const std::string& path, const void* data, std::size_t size) {
-    std::ofstream out(path, std::ios::binary);
-    out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-    if (!out.flush()) throw std::runtime_error("cannot write " + path);
-}
-
 } // namespace
 
 int main(int argc, char** argv) try {
@@ -369,8 +362,8 @@ int main(int argc, char** argv) try {
           brdf("brdf_floor", {0.25f, 0.75f}, 1, ACDF_VIEWS_MIRRORED, 0.25f),
           brdf_separate()}) {
         const std::string text = golden_samples(golden.name, golden.bytes);
-        write(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
-        write(folder + golden.name + ".txt", text.data(), text.size());
+        write_file(folder + golden.name + ".acdf", golden.bytes.data(), golden.bytes.size());
+        write_file(folder + golden.name + ".txt", text.data(), text.size());
     }
     return 0;
 } catch (const std::exception& error) {

@@ -3,13 +3,13 @@
 //
 //   make_vectors OUTDIR FILE.acdf...
 #include "compress/store.h"
+#include "write_file.h"
 
 #include <acdf/reader.h>
 
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -265,12 +265,6 @@ std::string rows_of(const acdf::File& file) {
     }
 }
 
-void write(const std::string& path, const void* data, std::size_t size) {
-    std::ofstream out(path, std::ios::binary);
-    out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-    if (!out.flush()) throw std::runtime_error("cannot write " + path);
-}
-
 } // namespace
 
 int main(int argc, char** argv) try {
@@ -281,7 +275,7 @@ int main(int argc, char** argv) try {
     const std::string folder = std::string(argv[1]) + "/";
     if (argc == 2) {
         const auto table = table_file();
-        write(folder + "table.acdf", table.data(), table.size());
+        write_file(folder + "table.acdf", table.data(), table.size());
     }
     for (int i = 2; i < argc; ++i) {
         acdf::File file;
@@ -291,7 +285,7 @@ int main(int argc, char** argv) try {
         const acdf::Status status = acdf::File::open(path.c_str(), file, walked);
         if (!status.ok()) throw std::runtime_error(status.message);
         const std::string text = rows_of(file);
-        write(folder + name.substr(0, name.rfind('.')) + ".csv", text.data(), text.size());
+        write_file(folder + name.substr(0, name.rfind('.')) + ".csv", text.data(), text.size());
     }
     return 0;
 } catch (const std::exception& error) {

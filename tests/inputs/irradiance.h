@@ -15,8 +15,6 @@
 
 namespace acdf_test {
 
-using Normal = std::array<float, 3>;
-
 inline double dot(const float a[3], const float b[3]) {
     return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
 }

@@ -28,13 +28,6 @@
 
 namespace acdf_test {
 
-inline Normal random_direction(std::mt19937_64& random) {
-    Normal n;
-    const double z = 2.0 * uniform(random) - 1.0;
-    direction_of(kPi * (2.0 * uniform(random) - 1.0), z, n.data());
-    return n;
-}
-
 // ---- files ----------------------------------------------------------------------------------------------
 
 struct LocalFileOptions {

@@ -1,6 +1,8 @@
 // Targets made of a formula, for tests: small, asymmetric in both axes, and the extremes that break fits.
 #pragma once
 
+#include "tests/inputs/directions.h"
+
 #include "compress/target.h"
 
 #include <cmath>
@@ -13,8 +15,6 @@
 
 namespace acdf_test {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Azimuth of the centre of a column, in (-pi, pi).
 inline double centre_phi(std::uint32_t column, std::uint32_t columns) {
     return kPi - 2.0 * kPi * (column + 0.5) / columns;
@@ -23,13 +23,6 @@ inline double centre_phi(std::uint32_t column, std::uint32_t columns) {
 /// z halfway through a row.
 inline double centre_z(std::uint32_t row, std::uint32_t rows) {
     return 0.5 * (std::cos(kPi * row / rows) + std::cos(kPi * (row + 1.0) / rows));
-}
-
-inline void direction_of(double phi, double z, float direction[3]) {
-    const double sin_theta = std::sqrt((1.0 - z) * (1.0 + z));
-    direction[0] = static_cast<float>(sin_theta * std::cos(phi));
-    direction[1] = static_cast<float>(sin_theta * std::sin(phi));
-    direction[2] = static_cast<float>(z);
 }
 
 /// An environment whose texel (column, row) has the value f(column, row).
@@ -61,9 +54,6 @@ inline acdf::compress::Target octahedral(const acdf::compress::Target& target) {
     red.parameterization = ACDF_PARAM_OCTAHEDRAL;
     return acdf::compress::environment_target(rgb.data(), target.columns, target.rows, red);
 }
-
-/// A uniform number in [0, 1) with 53 bits, the same with every standard library.
-inline double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 /// Log-normal texels, a share of them dark.
 inline acdf::compress::Target noise_target(std::uint32_t columns, std::uint32_t rows, std::uint64_t seed,

@@ -66,12 +66,11 @@ TEST(Company, VarianceIsThatOfTheSlowReference) {
             Made made;
             make(probe, kind, made);
             std::mt19937_64 engine(20051); // the normals of build::random_normals
-            const auto uniform = [&] { return double(engine() >> 11) * 0x1p-53; };
             double sum = 0.0, lit = 0.0;
             for (int i = 0; i < (kind.local ? 256 : 64); ++i) {
                 Vector n{};
-                const double z = 1.0 - 2.0 * uniform();
-                acdf_test::direction_of(kPi * (2.0 * uniform() - 1.0), z, n.data());
+                const double z = 1.0 - 2.0 * acdf_test::uniform(engine);
+                acdf_test::direction_of(kPi * (2.0 * acdf_test::uniform(engine) - 1.0), z, n.data());
                 const double variance = slow_variance(probe, n, kind.company, made);
                 if (variance < 0.0) continue;
                 sum += variance;

@@ -1,4 +1,6 @@
 // Files of places: a floor with a wall on it, in the light of a sky with a sun. Exact sums are the judge.
+#include "tests/inputs/directions.h"
+
 #include <acdf/builder.h>
 
 #include <gtest/gtest.h>
@@ -12,10 +14,13 @@
 namespace {
 
 using namespace acdf;
+using acdf_test::kPi;
+using acdf_test::Normal;
+using acdf_test::random_direction;
+using acdf_test::uniform;
 using builder::PlacePoint;
 
 constexpr int kColumns = 96, kRows = 48;
-constexpr double kPi = 3.14159265358979323846;
 
 struct Vec {
     double x, y, z;
@@ -162,7 +167,6 @@ double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const
 void expect_unbiased(const Built& built, const Wall& wall, int count) {
     constexpr int samples = 2000;
     std::mt19937_64 random(3);
-    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
     double sum = 0.0, square = 0.0;
     for (int i = 0; i < count; ++i) {
         PlacePoint point;
@@ -173,7 +177,7 @@ void expect_unbiased(const Built& built, const Wall& wall, int count) {
         EXPECT_EQ(truth.lost, 0);
         double mean = 0.0;
         for (int k = 0; k < samples; ++k)
-            mean += sampled(built.view(), at, point, wall, uniform(), uniform()) / samples;
+            mean += sampled(built.view(), at, point, wall, uniform(random), uniform(random)) / samples;
         const double error =
             std::sqrt(std::max(truth.variance, 1e-9 * truth.irradiance * truth.irradiance) / samples);
         const double z = error > 0.0 ? (mean - truth.irradiance) / error : mean;
@@ -241,19 +245,11 @@ TEST(PlaceFiles, DrawWhatAPlaceSees) {
 
 TEST(PlaceFiles, LoseNothingThatANormalMaySee) {
     std::mt19937_64 random(7);
-    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
-    const auto direction = [&](float out[3]) {
-        const double z = 2.0 * uniform() - 1.0, phi = 2.0 * kPi * uniform(), r = std::sqrt(1.0 - z * z);
-        out[0] = float(r * std::cos(phi));
-        out[1] = float(r * std::sin(phi));
-        out[2] = float(z);
-    };
     for (int i = 0; i < 100000; ++i) {
-        float n[3], d[3];
-        direction(n);
-        direction(d);
-        const float x[3] = {float(9.0 * uniform() - 4.5), float(9.0 * uniform() - 4.5),
-                            float(2.5 * uniform() - 0.2)};
+        const Normal normal = random_direction(random), direction = random_direction(random);
+        const float *const n = normal.data(), *const d = direction.data();
+        const float x[3] = {float(9.0 * uniform(random) - 4.5), float(9.0 * uniform(random) - 4.5),
+                            float(2.5 * uniform(random) - 0.2)};
         const bool drawn = placed().view().pdf(placed().view().at(x, n), d) > 0.0f;
         ASSERT_EQ(drawn, placed().view().pdf(n, d) > 0.0f);
         const double cosine =

@@ -1,5 +1,6 @@
 // Files of places with portals: a room with a window, in the light of a smooth sky. Sums over the window judge
 // them.
+#include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 
 #include <acdf/builder.h>
@@ -15,9 +16,11 @@
 namespace {
 
 using namespace acdf;
+using acdf_test::kPi;
+using acdf_test::Normal;
+using acdf_test::random_direction;
+using acdf_test::uniform;
 using builder::PlacePoint;
-
-constexpr double kPi = 3.14159265358979323846;
 
 double light_from(const double d[3]) {
     return 0.4 + 0.3 * d[2] + 2.0 * std::exp(-6.0 * ((d[0] - 0.8) * (d[0] - 0.8) + (d[1] - 0.5) * (d[1] - 0.5)));
@@ -169,7 +172,6 @@ void expect_as_summed(const RoomFile& made, const Room& room, int count, double 
     constexpr int samples = 1000;
     count = acdf_test::repeated(count);
     std::mt19937_64 random(11);
-    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
     double sum = 0.0, square = 0.0;
     for (int i = 0; i < count; ++i) {
         PlacePoint point;
@@ -179,7 +181,7 @@ void expect_as_summed(const RoomFile& made, const Room& room, int count, double 
         EXPECT_EQ(truth.lost, 0);
         double mean = 0.0;
         for (int k = 0; k < samples; ++k) {
-            const DirectionSample s = made.view().sample(at, uniform(), uniform());
+            const DirectionSample s = made.view().sample(at, uniform(random), uniform(random));
             ASSERT_GT(s.pdf, 0.0f);
             ASSERT_EQ(made.view().pdf(at, s.direction), s.pdf);
             const double cosine = cosine_of(point, s.direction);
@@ -226,19 +228,11 @@ TEST(PortalFiles, HaveLessNoiseThanPlacesAlone) {
 
 TEST(PortalFiles, LoseNothingThatANormalMaySee) {
     std::mt19937_64 random(7);
-    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
-    const auto direction = [&](float out[3]) {
-        const double z = 2.0 * uniform() - 1.0, phi = 2.0 * kPi * uniform(), r = std::sqrt(1.0 - z * z);
-        out[0] = float(r * std::cos(phi));
-        out[1] = float(r * std::sin(phi));
-        out[2] = float(z);
-    };
     for (int i = 0; i < 100000; ++i) {
-        float n[3], d[3];
-        direction(n);
-        direction(d);
-        const float x[3] = {float(4.2 * uniform() - 2.1), float(4.2 * uniform() - 2.1),
-                            float(2.2 * uniform() - 0.1)};
+        const Normal normal = random_direction(random), direction = random_direction(random);
+        const float *const n = normal.data(), *const d = direction.data();
+        const float x[3] = {float(4.2 * uniform(random) - 2.1), float(4.2 * uniform(random) - 2.1),
+                            float(2.2 * uniform(random) - 0.1)};
         if (windowed().view().pdf(n, d) > 0.0f) {
             ASSERT_GT(windowed().view().pdf(windowed().view().at(x, n), d), 0.0f);
         }

@@ -15,19 +15,10 @@
 
 namespace acdf_test {
 
-using Normal = std::array<float, 3>;
-
 inline double dot(const float* a, const float* b) {
     return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
 }
 
-/// Uniform over the sphere.
-inline Normal random_direction(std::mt19937_64& random) {
-    const double z = 2.0 * uniform(random) - 1.0, phi = kPi * (2.0 * uniform(random) - 1.0);
-    Normal n;
-    direction_of(phi, z, n.data());
-    return n;
-}
 inline std::vector<Normal> random_normals(int count, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::vector<Normal> out;

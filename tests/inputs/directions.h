@@ -1,0 +1,32 @@
+// Directions of tests, and random ones.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace acdf_test {
+
+constexpr double kPi = 3.14159265358979323846;
+
+using Normal = std::array<float, 3>;
+
+inline void direction_of(double phi, double z, float direction[3]) {
+    const double sin_theta = std::sqrt((1.0 - z) * (1.0 + z));
+    direction[0] = static_cast<float>(sin_theta * std::cos(phi));
+    direction[1] = static_cast<float>(sin_theta * std::sin(phi));
+    direction[2] = static_cast<float>(z);
+}
+
+/// In [0, 1), the same with every standard library.
+inline double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// Uniform over the sphere.
+inline Normal random_direction(std::mt19937_64& random) {
+    const double z = 2.0 * uniform(random) - 1.0, phi = kPi * (2.0 * uniform(random) - 1.0);
+    Normal n;
+    direction_of(phi, z, n.data());
+    return n;
+}
+
+} // namespace acdf_test
