@@ -104,21 +104,29 @@ ACDF_LANE View same_view(const AcdfBrdfView& view) {
     return out;
 }
 
-/* acdf_brdf_view_pdf of an array of directions: sixteen at once. */
+/* Densities of a view, of up to `Lanes` directions. */
+template <int Lanes>
+ACDF_LANE void some_view_densities(const WavefrontTable& t, const AcdfBrdfView& view, const float (*wi)[3],
+                                   std::size_t count, float* out) {
+    DensitiesOf<Lanes / kWidth> d;
+    for (View& v : d.view) v = same_view(view);
+    float last[Lanes][3] = {}, told[Lanes];
+    if (count < Lanes) std::memcpy(last, wi, count * sizeof *wi);
+    find(t, count < Lanes ? last : wi, &d);
+    end(t, d, told);
+    std::memcpy(out, told, count * sizeof *told);
+}
+
+/* acdf_brdf_view_pdf of an array of directions: sixteen at once, or as many as are left. */
 ACDF_LANE void view_densities(const WavefrontTable& t, const AcdfBrdfView& view, const float (*wi)[3],
                               std::size_t count, float* out) {
-    constexpr int groups = 16 / kWidth;
-    constexpr std::size_t lanes = 16;
-    DensitiesOf<groups> d;
-    for (View& v : d.view) v = same_view(view);
-    for (std::size_t first = 0; first < count; first += lanes) {
-        const std::size_t some = count - first < lanes ? count - first : lanes;
-        float last[lanes][3] = {}, told[lanes];
-        if (some < lanes) std::memcpy(last, wi + first, some * sizeof *wi);
-        find(t, some < lanes ? last : wi + first, &d);
-        end(t, d, told);
-        std::memcpy(out + first, told, some * sizeof *told);
+    constexpr std::size_t most = 16, few = 8;
+    for (; count > few; count -= most, wi += most, out += most) {
+        some_view_densities<most>(t, view, wi, count < most ? count : most, out);
+        if (count <= most) return;
     }
+    if (count > kWidth) some_view_densities<few>(t, view, wi, count, out);
+    else if (count > 0) some_view_densities<kWidth>(t, view, wi, count, out);
 }
 
 } // namespace

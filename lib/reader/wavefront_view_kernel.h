@@ -71,7 +71,7 @@ ACDF_LANE void view_samples(const WavefrontTable& t, const AcdfBrdf& brdf, const
     std::memcpy(out, drawn, some * sizeof *out);
 }
 
-/* acdf_brdf_view_sample of an array of numbers: up to sixteen at once. */
+/* acdf_brdf_view_sample of an array of numbers: sixteen at once, or as many as are left. */
 ACDF_LANE void view_samples(const WavefrontTable& t, const AcdfBrdf& brdf, const AcdfBrdfView& view,
                             const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
     constexpr std::size_t most = 16, few = 8;
@@ -79,7 +79,8 @@ ACDF_LANE void view_samples(const WavefrontTable& t, const AcdfBrdf& brdf, const
         view_samples<most / kWidth>(t, brdf, view, u, count < most ? count : most, out);
         if (count <= most) return;
     }
-    if (count > 0) view_samples<few / kWidth>(t, brdf, view, u, count, out);
+    if (count > kWidth) view_samples<few / kWidth>(t, brdf, view, u, count, out);
+    else if (count > 0) view_samples<1>(t, brdf, view, u, count, out);
 }
 
 } // namespace

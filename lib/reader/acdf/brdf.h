@@ -80,7 +80,7 @@ typedef struct AcdfBrdfVectors {
                          AcdfDirectionSample* out);
 } AcdfBrdfVectors;
 
-enum { ACDF_BRDF_FEWEST = 4 }; /* fewer are not worth vectors */
+enum { ACDF_BRDF_FEWEST = 2 }; /* fewer are not worth vectors */
 
 /* The same of wi[i] into out[i], i < count: they wait for memory together. */
 ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,

@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 /* As many as are on their way at once, and fewer than are worth vectors; rows are those of nearly all points. */
-enum { ACDF_CUT_WAVE = 16, ACDF_CUT_FEWEST = 4, ACDF_CUT_WAVE_ROWS = 3 };
+enum { ACDF_CUT_WAVE = 16, ACDF_CUT_FEWEST = 2, ACDF_CUT_WAVE_ROWS = 3 };
 
 /* The same by vectors of this process's processor, which the linked library has: files that it opens name them.
  * Cuts have parts, and points are such as acdf_cut_by_vectors approves. */
