@@ -14,7 +14,8 @@
 extern "C" {
 #endif
 
-enum { ACDF_TILE_STEPS = 20 };
+/* Steps that a record holds; levels of splits that the first cache line of a row holds. */
+enum { ACDF_TILE_STEPS = 20, ACDF_TILE_UPPER = 6 };
 
 /* A tile, in a cache line: where it lies, and the way to it. */
 typedef struct AcdfTileRecord {
@@ -86,24 +87,33 @@ ACDF_INLINE uint32_t acdf_tile_at(const uint32_t* words, const AcdfTileTables* t
     return node & ~ACDF_TILE_FLAG;
 }
 
+/* Multiplies what rows give to the halves that some steps lead to. */
+ACDF_INLINE void acdf_tile_follow(const double* codes, const uint8_t* const* row, const int rows,
+                                  const uint16_t* step, const uint16_t* end, double* part) {
+    int i;
+    for (; step < end; ++step) {
+        const size_t turn = *step, split = turn >> 1, upper = turn & 1u;
+        for (i = 0; i < rows; ++i) part[i] *= codes[2 * (size_t)row[i][split] + upper];
+    }
+}
+
 /* What a mixture gives to a tile, of all that it gives: the products of acdf_blend_find_rows from step `first` on.
- */
+ * Tiles below a horizon are mostly told by the upper splits, so that the rest of their rows is not waited for. */
 ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
                                         const uint8_t* const* row, const int rows, const AcdfTileRecord* tile,
                                         uint32_t first) {
     const double* codes = acdf_tile_codes(words, tables);
+    const uint32_t depth = tile->depth, most = ACDF_TILE_UPPER, upper = depth < most ? depth : most;
     const uint16_t* step = tile->step;
-    const uint16_t* end;
-    double part[ACDF_MAX_ROWS_MIXED];
+    double part[ACDF_MAX_ROWS_MIXED], sum = 0.0;
     int i;
-    if (tile->depth > ACDF_TILE_STEPS)
+    if (depth > ACDF_TILE_STEPS)
         step = (const uint16_t*)(const void*)(words + tables->paths) + (step[0] | (uint32_t)step[1] << 16);
     for (i = 0; i < rows; ++i) part[i] = 1.0;
-    for (end = step + tile->depth, step += first; step < end; ++step) {
-        const uint32_t split = *step >> 1;
-        const double* side = codes + (*step & 1u);
-        for (i = 0; i < rows; ++i) part[i] *= side[2 * row[i][split]];
-    }
+    acdf_tile_follow(codes, row, rows, step + first, step + upper, part);
+    for (i = 0; i < rows; ++i) sum += part[i];
+    if (!(sum > 0.0)) return 0.0;
+    acdf_tile_follow(codes, row, rows, step + (first > upper ? first : upper), step + depth, part);
     return acdf_mixture_of(mix, rows, part);
 }
 
