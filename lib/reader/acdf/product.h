@@ -327,19 +327,18 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::size_t count, const double (*u)[2],
                                                       ProductSample* out) const noexcept {
-    std::size_t of_light[ACDF_CUT_WAVE], of_lobe[ACDF_CUT_WAVE], lit = 0, reflected = 0;
+    std::size_t of_light[ACDF_CUT_WAVE], of_lobe[ACDF_CUT_WAVE], lit = 0;
     double rest[ACDF_CUT_WAVE][2];
     ProductSample drawn[ACDF_CUT_WAVE];
     float directions[ACDF_CUT_WAVE][3], wi[ACDF_CUT_WAVE][3], light[ACDF_CUT_WAVE], lobe[ACDF_CUT_WAVE];
     for (std::size_t i = 0; i < count; ++i) {
         const double x = acdf_unit_interval(u[i][0]);
-        const bool is_lit = !(x < point.share);
         rest[lit][0] = (x - point.share) / (1.0 - point.share);
         rest[lit][1] = u[i][1];
-        of_light[lit] = of_lobe[reflected] = i;
-        lit += is_lit ? 1 : 0;
-        reflected += is_lit ? 0 : 1;
+        of_light[lit] = of_lobe[i - lit] = i;
+        lit += static_cast<std::size_t>(!(x < point.share));
     }
+    const std::size_t reflected = count - lit;
     acdf_cut_sample_wave(&light_, &point.light, &point.cut, rest, lit, drawn);
     for (std::size_t k = 0; k < lit; ++k) {
         out[of_light[k]] = drawn[k];
