@@ -39,6 +39,12 @@ struct CellPart {
     }
 };
 
+/// A segment of a curve as it is stored.
+struct CellSegment {
+    std::uint32_t from, to;    ///< cumulative values
+    std::uint32_t first, last; ///< positions
+};
+
 /// The segments of a curve in the cell `above` that it divides, one after the other. What is the same for all is
 /// kept by value: it is not to be read again after each store.
 class CellParts {
@@ -48,34 +54,58 @@ public:
           position_code_(ACDF_CURVE_POSITION_CODE(curve.header)), maximum_(acdf_curve_maximum(&curve)),
           all_(maximum_), next_(first), low_(above.low[axis_]), high_(above.high[axis_]), width_(high_ - low_),
           end_(above.last[axis_]), origin_(position_code_ == 0 ? above.first[axis_] : 0) {
-        if (first == 0) border_ = {0, 0.0, above.first[axis_]};
+        if (first == 0) border_ = {0, above.first[axis_]};
         else border_ = border(first);
+        from_ = border_.cumulative / all_;
     }
     std::uint32_t axis() const { return axis_; }
     /// The distance to the child of the next segment; 0: it ends.
     std::uint32_t link() const { return acdf_curve_link(&curve_, next_); }
-    CellPart next() {
-        const std::uint32_t i = next_++;
+    CellSegment segment() {
         const Border from = border_;
-        border_ = next_ < curve_.segments ? border(next_) : Border{maximum_, 1.0, end_};
-        return {static_cast<double>(border_.cumulative - from.cumulative) / all_,
-                low_ + width_ * from.part,
-                border_.cumulative != maximum_ ? low_ + width_ * border_.part : high_,
-                from.position,
-                border_.position,
-                border_.cumulative == from.cumulative,
+        ++next_;
+        border_ = next_ < curve_.segments ? border(next_) : Border{maximum_, end_};
+        return {from.cumulative, border_.cumulative, from.position, border_.position};
+    }
+    /// Random numbers of a segment.
+    double low(const CellSegment& segment) const { return low_ + width_ * (segment.from / all_); }
+    double high(const CellSegment& segment) const { return high(segment, segment.to / all_); }
+    /// All of the next segment. Only where each of those before was asked for so: one division less.
+    CellPart next() {
+        const std::uint32_t i = next_;
+        const double from = from_;
+        const CellSegment segment = this->segment();
+        from_ = segment.to / all_;
+        return {static_cast<double>(segment.to - segment.from) / all_,
+                low_ + width_ * from,
+                high(segment, from_),
+                segment.first,
+                segment.last,
+                segment.to == segment.from,
                 curve_.tilts && reinterpret_cast<const std::int16_t*>(curve_.tilts)[i] != 0};
+    }
+    /// What a segment leaves of the cell, where nothing is tilted.
+    Cell cell(const Cell& above, const CellSegment& segment) const {
+        return CellPart{static_cast<double>(segment.to - segment.from) / all_,
+                        low(segment),
+                        high(segment),
+                        segment.first,
+                        segment.last,
+                        segment.to == segment.from,
+                        false}
+            .in(above, axis_);
     }
 
 private:
     struct Border {
-        std::uint32_t cumulative;
-        double part; ///< the same as a part of all
-        std::uint32_t position;
+        std::uint32_t cumulative, position;
     };
+    double high(const CellSegment& segment, double part) const {
+        return segment.to != maximum_ ? low_ + width_ * part : high_;
+    }
     Border border(std::uint32_t i) const {
-        const std::uint32_t cumulative = acdf_load(curve_.cumulative, i - 1, cumulative_code_);
-        return {cumulative, cumulative / all_, origin_ + acdf_load(curve_.positions, i - 1, position_code_)};
+        return {acdf_load(curve_.cumulative, i - 1, cumulative_code_),
+                origin_ + acdf_load(curve_.positions, i - 1, position_code_)};
     }
 
     AcdfCurve curve_;
@@ -85,6 +115,7 @@ private:
     double low_, high_, width_;
     std::uint32_t end_, origin_;
     Border border_;
+    double from_; ///< the part of all at which the next segment begins
 };
 
 /// Calls add(above, axis, part, same) for each cell of segments [first, last) of a curve at `at`, which divides

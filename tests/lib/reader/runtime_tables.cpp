@@ -161,6 +161,46 @@ TEST(RuntimeTables, ServeFilesOfAnySize) {
     }
 }
 
+// Groups of an environment, by some instructions.
+std::vector<std::uint32_t> groups_by(const AcdfEnvironment& environment, std::uint32_t tree_units,
+                                     acdf::Instructions most, std::size_t most_bytes) {
+    const acdf::TreeSurvey survey(environment, tree_units);
+    AcdfBlock block = {};
+    std::vector<std::uint32_t> words;
+    const AcdfGroups* const groups = acdf::make_groups(environment, survey, most_bytes, {}, block, nullptr, most);
+    if (groups) words.assign(acdf_group_words(groups, 0), acdf_group_words(groups, groups->words));
+    acdf::give_block({}, block);
+    return words;
+}
+
+// Bit for bit, of cells that lie in their lanes and of those that go on in the next block.
+TEST(RuntimeTables, OfGroupsAreTheSameByAnyInstructions) {
+    int compared = 0;
+    const auto compare = [&](const std::vector<std::uint8_t>& bytes) {
+        const EnvironmentPair pair(bytes, Tables::own);
+        const AcdfEnvironment environment = pair.plain.environment().data();
+        for (const std::size_t most : {std::size_t{1} << 14, std::size_t{1} << 16, 40 * bytes.size()}) {
+            const auto plain = groups_by(environment, environment.tree_units, acdf::Instructions::none, most);
+            for (const auto instructions : {acdf::Instructions::avx2, acdf::Instructions::avx512})
+                ASSERT_EQ(plain, groups_by(environment, environment.tree_units, instructions, most));
+            compared += !plain.empty();
+        }
+    };
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        RandomOptions options = varied_options(seed);
+        options.tilts = false;
+        options.octahedral = seed % 7 < 3;
+        SCOPED_TRACE(seed);
+        compare(RandomTree(seed, options).make().encode());
+    }
+    for (const bool square : {false, true}) {
+        acdf::compress::FitOptions options;
+        options.goal.cells = 9000;
+        compare(stored(square ? octahedral(noise_target(512, 256, 9)) : studio(512), options));
+    }
+    EXPECT_GT(compared, 100);
+}
+
 // Two cells, of which one ends just before phi = 3/4 pi, where pieces of the other begin to count azimuths anew.
 TEST(RuntimeTables, KnowAQuarterFromTheNext) {
     std::ifstream in(ACDF_TEST_DIR "/fuzz/regressions/fuzz_reader/directions_of_the_next_quarter.acdf",
