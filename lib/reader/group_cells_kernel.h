@@ -109,7 +109,7 @@ public:
     }
 
 private:
-    GroupLanes& lanes() { return blocks_[block_]; }
+    GroupLanes& lanes() { return *lanes_; }
 
     // Cells of segments [first, last) of the curve at `at` and of the curves below them, in their order. A path
     // passes at most 64 curves.
@@ -119,21 +119,20 @@ private:
         const std::uint32_t axis = acdf_curve_axis(&curve), maximum = acdf_curve_maximum(&curve);
         const double low = above.low[axis], high = above.high[axis], width = high - low, all = maximum;
         acdf::Cell part = above;
-        std::uint32_t to = acdf_curve_cumulative(&curve, first);
+        CurveBorder to = border(curve, first, above);
         for (std::uint32_t i = first; i < last; ++i) {
-            const std::uint32_t from = to, link = acdf_curve_link(&curve, i);
-            AcdfRange range = {above.first[axis], above.last[axis], 0.0};
-            to = acdf_curve_cumulative(&curve, i + 1);
-            acdf_curve_narrow(&curve, i, &range);
+            const CurveBorder from = to;
+            const std::uint32_t link = acdf_curve_link(&curve, i);
+            to = border(curve, i + 1, above);
             if (link == 0) {
-                add(curve, above, from, to, range);
+                add(curve, above, from, to);
                 continue;
             }
-            part.probability = above.probability * (static_cast<double>(to - from) / all);
-            part.low[axis] = low + width * (from / all);
-            part.high[axis] = to != maximum ? low + width * (to / all) : high;
-            part.first[axis] = range.low;
-            part.last[axis] = range.high;
+            part.probability = above.probability * (static_cast<double>(to.cumulative - from.cumulative) / all);
+            part.low[axis] = low + width * from.part;
+            part.high[axis] = to.cumulative != maximum ? low + width * to.part : high;
+            part.first[axis] = from.position;
+            part.last[axis] = to.position;
             if (add_short(at + link, part)) continue;
             const AcdfCurve below = acdf_curve_at(tree_, at + link);
             gather(at + link, below, part, 0, below.segments);
@@ -156,16 +155,30 @@ private:
         fill_lanes(to.last[other] + at, above.last[other]);
     }
 
+    // Between segments of a curve, or at its ends.
+    struct CurveBorder {
+        std::uint32_t cumulative, position;
+        double part; ///< of all
+    };
+    static CurveBorder border(const AcdfCurve& curve, std::uint32_t i, const acdf::Cell& above) {
+        const std::uint32_t axis = acdf_curve_axis(&curve), code = ACDF_CURVE_POSITION_CODE(curve.header);
+        if (i == 0) return {0, above.first[axis], 0.0};
+        if (i == curve.segments) return {acdf_curve_maximum(&curve), above.last[axis], 1.0};
+        const std::uint32_t cumulative =
+            acdf_load(curve.cumulative, i - 1, ACDF_CURVE_CUMULATIVE_CODE(curve.header));
+        return {cumulative, (code == 0 ? above.first[axis] : 0) + acdf_load(curve.positions, i - 1, code),
+                cumulative / static_cast<double>(acdf_curve_maximum(&curve))};
+    }
+
     // A cell that a segment is.
-    void add(const AcdfCurve& curve, const acdf::Cell& above, std::uint32_t from, std::uint32_t to,
-             const AcdfRange& range) {
+    void add(const AcdfCurve& curve, const acdf::Cell& above, const CurveBorder& from, const CurveBorder& to) {
         GroupLanes& lane = lanes();
         const std::uint32_t axis = acdf_curve_axis(&curve);
         set_lanes(axis, acdf_curve_maximum(&curve), above);
-        lane.from[lane.count] = from;
-        lane.to[lane.count] = to;
-        lane.first[axis][lane.count] = range.low;
-        lane.last[axis][lane.count] = range.high;
+        lane.from[lane.count] = from.cumulative;
+        lane.to[lane.count] = to.cumulative;
+        lane.first[axis][lane.count] = from.position;
+        lane.last[axis][lane.count] = to.position;
         grow(1);
     }
 
@@ -234,13 +247,13 @@ private:
     }
 
     void next_block() {
-        if (++block_ == kGroupBlocks) put_blocks();
+        if (++lanes_ == blocks_ + kGroupBlocks) put_blocks();
         lanes().count = 0;
     }
 
     void put_blocks() {
-        for (int i = 0; i < block_; ++i) put(blocks_[i]);
-        block_ = 0;
+        for (const GroupLanes* block = blocks_; block < lanes_; ++block) put(*block);
+        lanes_ = blocks_;
     }
 
     void put(const GroupLanes& lanes) {
@@ -268,10 +281,9 @@ private:
     std::uint32_t *boxes_, *more_; // of the next group, of the next block of others
     AcdfGroupCell* cells_;
     float* densities_;
-    std::size_t left_;        // cells
-    std::uint32_t begun_ = 0; // groups
-    int block_ = 0;           // that is gathered
-    GroupLanes blocks_[kGroupBlocks];
+    std::size_t left_;                                   // cells
+    std::uint32_t begun_ = 0;                            // groups
+    GroupLanes blocks_[kGroupBlocks], *lanes_ = blocks_; // those that are gathered
     GroupHeights heights_;
     AcdfGroupCell last_cells_[kGroupLanes];
     float last_densities_[kGroupLanes];
