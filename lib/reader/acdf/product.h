@@ -80,9 +80,7 @@ public:
                             ProductSample* out) const noexcept;
     /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
     /// of the lobe's own sampler is.
-    ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept {
-        return density(point, direction, light_pdf(point, direction));
-    }
+    ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept;
     /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of lights.
     ACDF_METHOD void pdf(const Point& point, std::size_t count, const float (*directions)[3],
                          float* out) const noexcept;
@@ -106,7 +104,7 @@ private:
                                PartRating* ratings) const noexcept;
     ACDF_METHOD void divide(Point& point, const LobeGuides& guides, PartRating* ratings) const noexcept;
     ACDF_METHOD float light_pdf(const Point& point, const float direction[3]) const noexcept;
-    ACDF_METHOD float density(const Point& point, const float direction[3], float light) const noexcept;
+    ACDF_METHOD float lobe_pdf(const Point& point, const float direction[3]) const noexcept;
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
     /// Whether a cut is drawn from, and the lobe.
     ACDF_METHOD static bool draws_both(const Point& point) noexcept {
@@ -282,22 +280,27 @@ ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const f
     return acdf_local_pdf_at(&light_, &point.light, direction);
 }
 
-/// Of the mixture; `light` is that of its first part.
 template <class AnyLobe>
-ACDF_METHOD float ProductSampler<AnyLobe>::density(const Point& point, const float direction[3],
-                                                   float light) const noexcept {
+ACDF_METHOD float ProductSampler<AnyLobe>::lobe_pdf(const Point& point, const float direction[3]) const noexcept {
     float wi[3];
-    if (!(point.share >= 0.0)) return 0.0f;
     point.frame.to_local(direction, wi);
-    return mixed(point, light, lobe_.pdf(point.lobe, wi));
+    return lobe_.pdf(point.lobe, wi);
 }
 
-/// The same where the lobe's is known, too.
+/// Of the mixture, by those of its parts.
 template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::mixed(const Point& point, float light, float lobe) noexcept {
     const double pdf = (1.0 - point.share) * double{light} + point.share * double{lobe};
     if (!(pdf > 0.0)) return 0.0f;
     return static_cast<float>(acdf_clamp(pdf, 1.17549435e-38, 3.402823466e38));
+}
+
+template <class AnyLobe>
+ACDF_METHOD float ProductSampler<AnyLobe>::pdf(const Point& point, const float direction[3]) const noexcept {
+    if (!(point.share >= 0.0)) return 0.0f;
+    const float lobe =
+        lobe_pdf(point, direction); // first: it waits for itself while the light's branches are guessed
+    return mixed(point, light_pdf(point, direction), lobe);
 }
 
 template <class AnyLobe>
@@ -319,7 +322,7 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
         out = acdf_local_sample_at(&light_, &point.light, rest, u1);
         if (out.pdf > 0.0f) out.pdf = light_pdf(point, out.direction);
     }
-    if (out.pdf > 0.0f) out.pdf = density(point, out.direction, out.pdf);
+    if (out.pdf > 0.0f) out.pdf = mixed(point, out.pdf, lobe_pdf(point, out.direction));
     return out;
 }
 
