@@ -135,6 +135,10 @@ ACDF_FN void acdf_window_visible(const AcdfPlaceMixture* place, const uint8_t** 
         for (c = 0; c < count; ++c) out[c] += place->weight[i] * acdf_visibility(rows[i][first + c]);
 }
 
+/* The light between interpolated sums of up to 2^32 is less than this far off: where it is no more it may be none.
+ */
+#define ACDF_LEAST_LIGHT 0x1p-16
+
 /* Weighs the pieces of a window: its light, times the mean of the cosines at the corners, times what is visible. */
 ACDF_FN void acdf_window_weigh(const AcdfPortalTable* table, const double normal[3], const double* visible,
                                AcdfWindow* window) {
@@ -164,7 +168,7 @@ ACDF_FN void acdf_window_weigh(const AcdfPortalTable* table, const double normal
             const double density =
                 (cosine[now][j + 1] + cosine[now][j] + (cosine[before][j + 1] + cosine[before][j])) *
                 (0.25 * (double)map->unit) * visible[(i - 1) * pieces + j];
-            const float weight = (float)(light > 0.0 ? density * light : 0.0);
+            const float weight = (float)(light > ACDF_LEAST_LIGHT ? density * light : 0.0);
             window->piece[i - 1][j] = weight;
             window->density[i - 1][j] = (float)(weight > 0.0f ? density : 0.0);
             window->weight += (double)weight;
@@ -272,20 +276,22 @@ ACDF_FN uint32_t acdf_draw_part(const double* weight, uint32_t count, double* u)
 }
 
 /* Where, from `low` to `high` on axis 0 of a map, u of the light between two places on axis 1 lies before; on axis
- * 1 the same of the cells of one column. */
+ * 1 the same of the cells of one column. *cell becomes the one it lies in or ends at, which has light. */
 ACDF_FN double acdf_map_column(const uint32_t* sums, uint32_t size, const double low[2], const double high[2],
-                               double u) {
+                               double u, uint32_t* cell) {
     const double from = acdf_map_sum(sums, size, low[0], high[1]) - acdf_map_sum(sums, size, low[0], low[1]);
     const double to = acdf_map_sum(sums, size, high[0], high[1]) - acdf_map_sum(sums, size, high[0], low[1]);
     const double sought = from + u * (to - from);
     uint32_t first = acdf_map_cell(low[0], size), last = acdf_map_cell(high[0], size);
     double a, b, at_a, at_b;
-    while (first < last) { /* the last column that begins with no more */
+    while (first < last) { /* the last column that begins with no more, but for those at the end without light */
         const uint32_t middle = first + (last - first + 1) / 2;
         const double x = (double)middle;
-        if (acdf_map_sum(sums, size, x, high[1]) - acdf_map_sum(sums, size, x, low[1]) <= sought) first = middle;
+        const double begin = acdf_map_sum(sums, size, x, high[1]) - acdf_map_sum(sums, size, x, low[1]);
+        if (begin <= sought && begin < to - ACDF_LEAST_LIGHT) first = middle;
         else last = middle - 1;
     }
+    *cell = first;
     a = low[0] > (double)first ? low[0] : (double)first;
     b = high[0] < (double)first + 1.0 ? high[0] : (double)first + 1.0;
     at_a = acdf_map_sum(sums, size, a, high[1]) - acdf_map_sum(sums, size, a, low[1]);
@@ -298,17 +304,19 @@ ACDF_FN double acdf_map_below(const uint32_t* sums, uint32_t size, uint32_t colu
     const double lower = (double)(at[1] - at[0]), upper = (double)(at[size + 2] - at[size + 1]);
     return lower + (y - (double)row) * (upper - lower);
 }
-ACDF_FN double acdf_map_row(const uint32_t* sums, uint32_t size, uint32_t column, double low, double high,
-                            double u) {
+ACDF_FN double acdf_map_row(const uint32_t* sums, uint32_t size, uint32_t column, double low, double high, double u,
+                            uint32_t* cell) {
     const double from = acdf_map_below(sums, size, column, low), to = acdf_map_below(sums, size, column, high);
     const double sought = from + u * (to - from);
     uint32_t first = acdf_map_cell(low, size), last = acdf_map_cell(high, size);
     double a, b, at_a, at_b;
     while (first < last) {
         const uint32_t middle = first + (last - first + 1) / 2;
-        if (acdf_map_below(sums, size, column, (double)middle) <= sought) first = middle;
+        const double begin = acdf_map_below(sums, size, column, (double)middle);
+        if (begin <= sought && begin < to) first = middle;
         else last = middle - 1;
     }
+    *cell = first;
     a = low > (double)first ? low : (double)first;
     b = high < (double)first + 1.0 ? high : (double)first + 1.0;
     at_a = acdf_map_below(sums, size, column, a);
@@ -316,9 +324,28 @@ ACDF_FN double acdf_map_row(const uint32_t* sums, uint32_t size, uint32_t column
     return at_b > at_a ? a + (b - a) * acdf_clamp((sought - at_a) / (at_b - at_a), 0.0, 1.0) : a;
 }
 
-/* Of a tangent drawn between two sides: so far inside that rounding the direction does not carry it out. */
+/* How far from a tangent a direction stays, so that rounding does not carry it across. */
+ACDF_FN double acdf_tangent_border(double t) { return 0x1p-22 * (1.0 + t * t); }
+
+/* The tangent of a place on an axis of a map that was drawn in a cell, inside of the cell where its borders lie
+ * between `low` and `high`. */
+ACDF_FN double acdf_inside_cell(double at, double size, uint32_t cell, double low, double high) {
+    const double begin = (double)cell, end = begin + 1.0;
+    double t = acdf_unbend(at, size);
+    if (begin > low) {
+        const double side = acdf_unbend(begin, size), least = side + acdf_tangent_border(side);
+        if (t < least) t = least;
+    }
+    if (end < high) {
+        const double side = acdf_unbend(end, size), most = side - acdf_tangent_border(side);
+        if (t > most) t = most;
+    }
+    return t;
+}
+
+/* A tangent that was drawn between two sides, inside of them. */
 ACDF_FN double acdf_inside_piece(double t, double low, double high) {
-    const double steepest = fabs(low) > fabs(high) ? low : high, border = 0x1p-22 * (1.0 + steepest * steepest);
+    const double border = acdf_tangent_border(fabs(low) > fabs(high) ? low : high);
     if (!(high - low > 2.0 * border)) return 0.5 * (low + high);
     return acdf_clamp(t, low + border, high - border);
 }
@@ -330,6 +357,7 @@ ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfWindow* w
     const uint32_t* sums = acdf_window_sums(table, window->map);
     const uint32_t size = table->header->size, pieces = table->header->pieces;
     double low[2], high[2], side[2][2], t[2], d[3], at, length;
+    uint32_t column, row;
     int i;
     for (i = 0; i < 2; ++i) {
         side[i][0] = acdf_piece_side(window, i, piece[i], pieces);
@@ -337,10 +365,12 @@ ACDF_FN void acdf_piece_sample(const AcdfPortalTable* table, const AcdfWindow* w
         low[i] = acdf_bend(side[i][0], (double)size);
         high[i] = acdf_bend(side[i][1], (double)size);
     }
-    at = acdf_map_column(sums, size, low, high, u[0]);
-    t[0] = acdf_inside_piece(acdf_unbend(at, (double)size), side[0][0], side[0][1]);
-    at = acdf_map_row(sums, size, acdf_map_cell(at, size), low[1], high[1], u[1]);
-    t[1] = acdf_inside_piece(acdf_unbend(at, (double)size), side[1][0], side[1][1]);
+    at = acdf_map_column(sums, size, low, high, u[0], &column);
+    at = acdf_inside_cell(at, (double)size, column, low[0], high[0]);
+    t[0] = acdf_inside_piece(at, side[0][0], side[0][1]);
+    at = acdf_map_row(sums, size, column, low[1], high[1], u[1], &row);
+    at = acdf_inside_cell(at, (double)size, row, low[1], high[1]);
+    t[1] = acdf_inside_piece(at, side[1][0], side[1][1]);
     for (i = 0; i < 3; ++i)
         d[i] = t[0] * (double)map->axis[0][i] + t[1] * (double)map->axis[1][i] + (double)map->axis[2][i];
     length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);

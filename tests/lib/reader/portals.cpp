@@ -143,6 +143,47 @@ TEST(Portals, NumbersAreClampedAndAtTheEndsSafe) {
     for (const auto& d : bad) EXPECT_EQ(loaded.view().pdf(point, d), 0.0f);
 }
 
+/// Cells without light stand between those with light, and at the ends: nothing is drawn there, whatever the
+/// numbers.
+TEST(Portals, NothingIsDrawnInCellsWithoutLight) {
+    LocalSpec spec = windowed_local();
+    for (PortalMapSpec& map : spec.portals->maps) map.light = {0, 0, 0, 0, 0, 5, 7, 0, 0, 0, 9, 0, 0, 0, 0, 0};
+    const LoadedLocal loaded(spec);
+    int seen = 0;
+    for (const auto& n : kNormalsInside)
+        for (const auto& x : kInside) {
+            const AcdfLocalPoint point = loaded.view().at(x, n);
+            if (point.windows.count == 0) continue;
+            ++seen;
+            const double row = point.windows.of_row;
+            for (double u0 : {row, row + 0x1p-53, 0.5 + 0.5 * row, 0.75 + 0.25 * row, 1.0 - 0x1p-24, 1.0})
+                for (double u1 : {0.0, 0x1p-30, 0.25, 0.5, 0.75, 1.0 - 0x1p-53, 1.0}) {
+                    const acdf::DirectionSample s = loaded.view().sample(point, u0, u1);
+                    const double of_row = row * acdf_local_row_pdf(&loaded.view().data(), &point, s.direction);
+                    EXPECT_GT(s.pdf, 1.001 * of_row) << u0 << ' ' << u1;
+                }
+        }
+    EXPECT_GT(seen, 10);
+}
+
+/// What a window shows of a dark cell is nothing, whatever rounding makes of large sums around it.
+TEST(Portals, RoundingIsNoLight) {
+    LocalSpec spec = windowed_local();
+    spec.portals->portals = {{{4, 0.3f, 1.3f}, {1, 2}, 0}};
+    spec.portals->maps.resize(1);
+    spec.portals->maps[0].unit = 1e30f;
+    spec.portals->maps[0].light = {0, 0, 1000000007, 0, 0, 0, 0, 0, 3000000001, 0, 0, 0, 0, 0, 0, 0};
+    spec.portals->rows = std::vector<Bytes>(4, Bytes(5, 250));
+    const LoadedLocal loaded(spec);
+    for (int i = 0; i < 100; ++i) {
+        const float x[] = {0, -0.002f * static_cast<float>(i), 1};
+        EXPECT_EQ(loaded.view().at(x, kNormalsInside[0]).windows.count, 0) << i;
+    }
+    spec.portals->maps[0].light[10] = 1;
+    const float x[] = {0, 0, 1};
+    EXPECT_EQ(LoadedLocal(spec).view().at(x, kNormalsInside[0]).windows.count, 1);
+}
+
 /// A place that draws by its row alone, one behind a wall, one outside, and a normal alone see no windows.
 TEST(Portals, WhoSeesNoWindowDrawsByItsRow) {
     const LoadedLocal loaded(windowed_local()), rows(placed_local());
