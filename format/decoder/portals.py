@@ -6,7 +6,7 @@ from .refused import require
 from .sphere import clamp, direction_of, f32, of_unit_length, pdf32
 from .tiles import sum_of
 
-STEEPEST, THINNEST, BORDER = 4096, 2.0**-12, 2.0**-22
+STEEPEST, THINNEST, BORDER, LEAST_LIGHT = 4096, 2.0**-12, 2.0**-22, 2.0**-16
 
 
 def dot(a, b):
@@ -120,7 +120,7 @@ class Window:
                 light = sums[x + 1, y + 1] - sums[x + 1, y] - (sums[x, y + 1] - sums[x, y])
                 corners = cosine[x + 1, y + 1] + cosine[x + 1, y] + (cosine[x, y + 1] + cosine[x, y])
                 density = corners * (0.25 * self.map.unit) * v
-                self.w[x, y] = f32(density * light) if light > 0 else 0.0
+                self.w[x, y] = f32(density * light) if light > LEAST_LIGHT else 0.0
                 self.D[x, y] = f32(density) if self.w[x, y] > 0 else 0.0
         self.weight = sum_of([self.w[x, y] for x in range(K) for y in range(K)])
 
@@ -145,35 +145,50 @@ class Window:
         of = self.portals
         sides = [(self.side(0, x), self.side(0, x + 1)), (self.side(1, y), self.side(1, y + 1))]
         low, high = [of.bend(s[0]) for s in sides], [of.bend(s[1]) for s in sides]
-        at = self.invert(low[0], high[0], u[0],
-                         lambda m: of.sum(self.map, m, high[1]) - of.sum(self.map, m, low[1]))
-        t, i = [inside(of.unbend(at), *sides[0])], of.cell(at)
+        u_at, i = self.invert(low[0], high[0], u[0],
+                              lambda m: of.sum(self.map, m, high[1]) - of.sum(self.map, m, low[1]), LEAST_LIGHT)
 
         def below(m):
             j = of.cell(m)
             step = [row[i + 1] - row[i] for row in self.map.sums[j:j + 2]]
             return step[0] + (m - j) * (step[1] - step[0])
 
-        t.append(inside(of.unbend(self.invert(low[1], high[1], u[1], below)), *sides[1]))
+        v_at, j = self.invert(low[1], high[1], u[1], below, 0)
+        t = [inside(self.in_cell(at, cell, low[k], high[k]), *sides[k]) for k, at, cell in ((0, u_at, i), (1, v_at, j))]
         d = [t[0] * a + t[1] * b + c for a, b, c in zip(*self.map.axis)]
         length = math.sqrt(dot(d, d))
         return [f32(v / length) for v in d]
 
-    def invert(self, low, high, u, function):
-        """Where u of what a function grows by, linear within cells, lies before."""
-        start = function(low)
-        sought = start + u * (function(high) - start)
-        first = max(i for i in range(self.portals.cell(low), self.portals.cell(high) + 1)
-                    if i == self.portals.cell(low) or function(i) <= sought)
+    def invert(self, low, high, u, function, least):
+        """Where u of what a function grows by, linear within cells, lies before, and the cell with light there."""
+        start, end = function(low), function(high)
+        sought = start + u * (end - start)
+        first = self.portals.cell(low)
+        first = max([first] + [i for i in range(first + 1, self.portals.cell(high) + 1)
+                               if function(i) <= sought and function(i) < end - least])
         a, b = max(low, first), min(high, first + 1)
         at_a, at_b = function(a), function(b)
-        return a + (b - a) * clamp((sought - at_a) / (at_b - at_a), 0, 1) if at_b > at_a else a
+        return a + (b - a) * clamp((sought - at_a) / (at_b - at_a), 0, 1) if at_b > at_a else a, first
+
+    def in_cell(self, at, cell, low, high):
+        """The tangent, inside of the cell's borders between low and high."""
+        t = self.portals.unbend(at)
+        if cell > low:
+            side = self.portals.unbend(cell)
+            t = max(t, side + border(side))
+        if cell + 1 < high:
+            side = self.portals.unbend(cell + 1)
+            t = min(t, side - border(side))
+        return t
+
+
+def border(t):
+    return BORDER * (1 + t * t)
 
 
 def inside(t, low, high):
-    m = low if abs(low) > abs(high) else high
-    border = BORDER * (1 + m * m)
-    return clamp(t, low + border, high - border) if high - low > 2 * border else 0.5 * (low + high)
+    away = border(low if abs(low) > abs(high) else high)
+    return clamp(t, low + away, high - away) if high - low > 2 * away else 0.5 * (low + high)
 
 
 def draw_part(weights, u):
