@@ -6,7 +6,7 @@ from .refused import require
 from .sphere import clamp, direction_of, f32, of_unit_length, pdf32
 from .tiles import sum_of
 
-STEEPEST, THINNEST, BORDER, LEAST_LIGHT = 4096, 2.0**-12, 2.0**-22, 2.0**-16
+STEEPEST, THINNEST, BORDER, LEAST_LIGHT = 4096, 2.0**-12, 2.0**-22, 2.0**-48
 
 
 def dot(a, b):
@@ -120,7 +120,7 @@ class Window:
                 light = sums[x + 1, y + 1] - sums[x + 1, y] - (sums[x, y + 1] - sums[x, y])
                 corners = cosine[x + 1, y + 1] + cosine[x + 1, y] + (cosine[x, y + 1] + cosine[x, y])
                 density = corners * (0.25 * self.map.unit) * v
-                self.w[x, y] = f32(density * light) if light > LEAST_LIGHT else 0.0
+                self.w[x, y] = f32(density * light) if light > LEAST_LIGHT * sums[x + 1, y + 1] else 0.0
                 self.D[x, y] = f32(density) if self.w[x, y] > 0 else 0.0
         self.weight = sum_of([self.w[x, y] for x in range(K) for y in range(K)])
 
@@ -146,7 +146,8 @@ class Window:
         sides = [(self.side(0, x), self.side(0, x + 1)), (self.side(1, y), self.side(1, y + 1))]
         low, high = [of.bend(s[0]) for s in sides], [of.bend(s[1]) for s in sides]
         u_at, i = self.invert(low[0], high[0], u[0],
-                              lambda m: of.sum(self.map, m, high[1]) - of.sum(self.map, m, low[1]), LEAST_LIGHT)
+                              lambda m: of.sum(self.map, m, high[1]) - of.sum(self.map, m, low[1]),
+                              LEAST_LIGHT * of.sum(self.map, high[0], high[1]))
 
         def below(m):
             j = of.cell(m)

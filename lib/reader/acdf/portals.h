@@ -135,9 +135,8 @@ ACDF_FN void acdf_window_visible(const AcdfPlaceMixture* place, const uint8_t** 
         for (c = 0; c < count; ++c) out[c] += place->weight[i] * acdf_visibility(rows[i][first + c]);
 }
 
-/* The light between interpolated sums of up to 2^32 is less than this far off: where it is no more it may be none.
- */
-#define ACDF_LEAST_LIGHT 0x1p-16
+/* The light between interpolated sums is less than this part of the largest of them off: no more may be none. */
+#define ACDF_LEAST_LIGHT 0x1p-48
 
 /* Weighs the pieces of a window: its light, times the mean of the cosines at the corners, times what is visible. */
 ACDF_FN void acdf_window_weigh(const AcdfPortalTable* table, const double normal[3], const double* visible,
@@ -168,7 +167,7 @@ ACDF_FN void acdf_window_weigh(const AcdfPortalTable* table, const double normal
             const double density =
                 (cosine[now][j + 1] + cosine[now][j] + (cosine[before][j + 1] + cosine[before][j])) *
                 (0.25 * (double)map->unit) * visible[(i - 1) * pieces + j];
-            const float weight = (float)(light > ACDF_LEAST_LIGHT ? density * light : 0.0);
+            const float weight = (float)(light > ACDF_LEAST_LIGHT * below[now][j + 1] ? density * light : 0.0);
             window->piece[i - 1][j] = weight;
             window->density[i - 1][j] = (float)(weight > 0.0f ? density : 0.0);
             window->weight += (double)weight;
@@ -280,7 +279,8 @@ ACDF_FN uint32_t acdf_draw_part(const double* weight, uint32_t count, double* u)
 ACDF_FN double acdf_map_column(const uint32_t* sums, uint32_t size, const double low[2], const double high[2],
                                double u, uint32_t* cell) {
     const double from = acdf_map_sum(sums, size, low[0], high[1]) - acdf_map_sum(sums, size, low[0], low[1]);
-    const double to = acdf_map_sum(sums, size, high[0], high[1]) - acdf_map_sum(sums, size, high[0], low[1]);
+    const double most = acdf_map_sum(sums, size, high[0], high[1]);
+    const double to = most - acdf_map_sum(sums, size, high[0], low[1]);
     const double sought = from + u * (to - from);
     uint32_t first = acdf_map_cell(low[0], size), last = acdf_map_cell(high[0], size);
     double a, b, at_a, at_b;
@@ -288,7 +288,7 @@ ACDF_FN double acdf_map_column(const uint32_t* sums, uint32_t size, const double
         const uint32_t middle = first + (last - first + 1) / 2;
         const double x = (double)middle;
         const double begin = acdf_map_sum(sums, size, x, high[1]) - acdf_map_sum(sums, size, x, low[1]);
-        if (begin <= sought && begin < to - ACDF_LEAST_LIGHT) first = middle;
+        if (begin <= sought && begin < to - ACDF_LEAST_LIGHT * most) first = middle;
         else last = middle - 1;
     }
     *cell = first;
