@@ -79,9 +79,10 @@ public:
             mean_irradiance += irradiance / double(bin.normals.size());
             best = std::max(best, inverse_.back());
         }
-        // What lies below all of the samples, but above the horizon of a normal between them.
+        // What lies below all of the samples, but above the horizon of a normal between them: all there is, where
+        // no sample sees any light.
         edge_ = bin.gap > 0.0 ? bin.gap + reach : 0.0;
-        glimpse_ = 1e-8 * best * best;
+        glimpse_ = best > 0.0 ? 1e-8 * best * best : 1.0;
     }
     double mean_irradiance = 0.0;
 
@@ -106,6 +107,11 @@ private:
 struct OneBin {
     Target target;
     double irradiance = 0.0;
+
+    /// Its part of all light: nothing is drawn where that is 0.
+    float share(double total) const {
+        return target.total > 0.0 ? static_cast<float>(std::max(irradiance / total, 1e-12)) : 0.0f;
+    }
 };
 
 OneBin target_of(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
@@ -200,9 +206,8 @@ private:
     static constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
     void grow(const OneBin& bin, std::size_t index, std::size_t cells) {
-        shares_[index] = static_cast<float>(bin.irradiance / total_);
+        shares_[index] = bin.share(total_);
         if (!(bin.target.total > 0.0)) {
-            shares_[index] = 0.0f;
             Grid dark = grid_of(bin.target);
             partitions_[index].emplace(dark, 1.0);
             return;
@@ -266,10 +271,10 @@ SeparateFit fit_each(const Target& target, const std::vector<LightPoint>& light,
         if (!(bins.weight[b] > 0.0)) continue;
         const OneBin bin = target_of(target, light, bins, b, kind);
         stored[b] = true;
+        out.shares[b] = bin.share(total);
         Flattened dark;
         if (bin.target.total > 0.0) {
             trees.append(fit(bin.target, own).cascade);
-            out.shares[b] = static_cast<float>(bin.irradiance / total);
         } else {
             flatten_nothing(ACDF_AXIS_PHI, dark);
             trees.append(dark.cascade);

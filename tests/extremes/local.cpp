@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace {
@@ -69,6 +70,33 @@ TEST(ExtremeLocal, LampsAtTheHorizonAreCovered) {
                 }
                 if (s.pdf > 0.0f) {
                     EXPECT_EQ(s.pdf, view.pdf(n, s.direction));
+                }
+            }
+        }
+}
+
+// Texels as wide as a hemisphere: normals see a part of a lamp whose middle is below the horizon of all of their
+// bin.
+TEST(ExtremeLocal, TexelsOfCoarseMapsAreCovered) {
+    std::mt19937_64 random(17);
+    for (const auto& [columns, rows] : {std::array{1u, 1u}, {2u, 1u}, {1u, 2u}, {8u, 2u}, {8u, 4u}, {16u, 8u}})
+        for (const bool sharing : {true, false}) {
+            const std::uint32_t column = columns / 3, row = rows / 3;
+            const LocalMap map = map_of(lit_texel(columns, rows, column, row, 1.0, 0.0), 3, sharing);
+            const auto view = map.view();
+            for (int i = 0; i < 300; ++i) {
+                const Normal n = random_direction(random);
+                bool lit = false;
+                for (std::uint32_t k = 0; k < 81; ++k) {
+                    float d[3];
+                    direction_of(kPi - 2.0 * kPi * (column + (k % 9 + 0.5) / 9.0) / columns,
+                                 std::cos(kPi * (row + (k / 9 + 0.5) / 9.0) / rows), d);
+                    if (dot(n.data(), d) <= 0.0) continue;
+                    lit = true;
+                    EXPECT_GT(view.pdf(n.data(), d), 0.0f) << columns << " x " << rows << " " << i << " " << k;
+                }
+                if (lit) {
+                    EXPECT_GT(view.sample(n.data(), 0.3, 0.6).pdf, 0.0f) << columns << " x " << rows << " " << i;
                 }
             }
         }
