@@ -16,6 +16,8 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <new>
+#include <vector>
 
 using namespace acdf_test;
 
@@ -157,6 +159,38 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
             }
         });
     EXPECT_GT(drawn, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
+}
+
+// A point is made in memory that holds anything: nothing is read of it that was not written.
+TEST(Product, PointsAreTheSameInAnyMemory) {
+    for (std::uint32_t seed = 0; seed < 8; ++seed) {
+        const LoadedLocal loaded(random_local(seed, false));
+        std::mt19937_64 rng(seed);
+        const AcdfLocal light = loaded.light();
+        const TestLobe lobe{widths[seed % 3]};
+        const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
+        const Vector wo = random_view(rng, frame);
+        for (const Sampler& sampler : {Sampler(light.environment, lobe), Sampler(light, lobe)}) {
+            struct Draw {
+                acdf::ProductSample sample;
+                float pdf;
+            };
+            std::vector<Draw> drawn[2];
+            for (const int byte : {0, 1}) {
+                alignas(Sampler::Point) unsigned char memory[sizeof(Sampler::Point)];
+                std::memset(memory, byte, sizeof memory);
+                const Sampler::Point& point = *new (memory) Sampler::Point(sampler.at(frame, wo.v));
+                std::mt19937_64 numbers(7);
+                for (int i = 0; i < 100; ++i) {
+                    const double u0 = unit(numbers), u1 = unit(numbers);
+                    const acdf::ProductSample s = sampler.sample(point, u0, u1);
+                    drawn[byte].push_back({s, sampler.pdf(point, random_normal(numbers).v)});
+                }
+            }
+            for (std::size_t i = 0; i < drawn[0].size(); ++i)
+                ASSERT_EQ(std::memcmp(&drawn[0][i], &drawn[1][i], sizeof(Draw)), 0) << seed << ' ' << i;
+        }
+    }
 }
 
 constexpr acdf::Instructions each_instructions[] = {acdf::Instructions::none, acdf::Instructions::avx2,
