@@ -55,6 +55,9 @@ struct HalfGrid {
     Latitude latitude(double row_position) const { return Latitude(row_position / row_resolution); }
 };
 
+/// The least share of all stored albedos that a bin is stored with: black views keep a density.
+constexpr double kLeastShare = 1e-12;
+
 /// The square of a view's normalised density over the half-vectors: what a fit needs to know of it.
 struct ViewTarget {
     View view;

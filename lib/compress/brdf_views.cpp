@@ -65,7 +65,7 @@ private:
         const std::size_t columns = views_.phi.size();
         const auto &f = values_[i * columns + k], &low = values_[a * columns + k], &high = values_[b * columns + k];
         double wa = (1.0 - t) * views_.at(a, k).albedo, wb = t * views_.at(b, k).albedo;
-        if (!(wa + wb > 0.0)) return 0.0;
+        if (!(wa + wb > 0.0)) return views_.at(i, k).albedo > 0.0 ? kWorst : 0.0;
         wa /= wa + wb;
         wb = 1.0 - wa;
         double sum = 0.0;

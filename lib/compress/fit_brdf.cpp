@@ -61,7 +61,8 @@ Between around(const std::vector<std::size_t>& nodes, std::size_t views, std::si
 class SharedFit {
 public:
     SharedFit(const BrdfViews& views, const HorizonSquares& horizon, Nodes nodes, std::uint32_t most_cells)
-        : views_(views), horizon_(horizon), nodes_(std::move(nodes)), mixtures_(mix()), targets_(serve()),
+        : views_(views), horizon_(horizon), nodes_(std::move(nodes)), albedos_(stored_albedos()),
+          total_(std::accumulate(albedos_.begin(), albedos_.end(), 0.0)), mixtures_(mix()), targets_(serve()),
           partition_(views.measures, targets_, most_cells) {}
 
     BrdfFit fit(std::uint32_t cells, bool mirrored, double max_weight) const {
@@ -96,6 +97,17 @@ private:
         return nodes_.x[bin / nodes_.phi.size()] * views_.phi.size() + nodes_.phi[bin % nodes_.phi.size()];
     }
 
+    /// Of the stored views. Where all of these are black they count alike, for the views between them.
+    std::vector<double> stored_albedos() const {
+        std::vector<double> out;
+        for (std::size_t b = 0; b < nodes_.bins(); ++b) out.push_back(views_.targets[view_of(b)].albedo);
+        if (std::any_of(out.begin(), out.end(), [](double a) { return a > 0.0; })) return out;
+        double sum = 0.0;
+        for (const ViewTarget& target : views_.targets) sum += target.albedo;
+        std::fill(out.begin(), out.end(), sum / double(views_.targets.size()));
+        return out;
+    }
+
     /// The bytes of all rows, which become what the bytes stand for.
     static void store_rows(const TileTree& tree, RowProbabilities& rows, StoredRows& out) {
         out.codes.clear();
@@ -116,7 +128,7 @@ private:
                 const std::size_t bin = i * nodes_.phi.size() + j;
                 if (!(share > 0.0)) return;
                 out[v].bin[out[v].count] = static_cast<std::uint32_t>(bin);
-                out[v].share[out[v].count++] = share * std::max(views_.targets[view_of(bin)].albedo, 1e-12);
+                out[v].share[out[v].count++] = share * std::max(albedos_[bin], kLeastShare * total_);
             };
             add(x.lower, phi.lower, (1.0 - x.t) * (1.0 - phi.t));
             add(x.lower, phi.upper, (1.0 - x.t) * phi.t);
@@ -203,10 +215,8 @@ private:
         out.mirrored = mirrored;
         out.phi_views = static_cast<std::uint32_t>(nodes_.phi.size());
         for (const std::size_t i : nodes_.x) out.nodes.push_back(static_cast<float>(views_.x[i]));
-        std::vector<double> albedo;
-        for (std::size_t b = 0; b < nodes_.bins(); ++b) albedo.push_back(views_.targets[view_of(b)].albedo);
-        out.total = std::accumulate(albedo.begin(), albedo.end(), 0.0);
-        for (const double a : albedo) out.shares.push_back(static_cast<float>(std::max(a / out.total, 1e-12)));
+        out.total = total_;
+        for (const double a : albedos_) out.shares.push_back(static_cast<float>(std::max(a / total_, kLeastShare)));
         Cascade nothing;
         nothing.curves.resize(1);
         nothing.curves[0].probability = {1.0};
@@ -229,6 +239,8 @@ private:
     const BrdfViews& views_;
     const HorizonSquares& horizon_;
     Nodes nodes_;
+    std::vector<double> albedos_;         ///< one a bin
+    double total_;                        ///< of those
     std::vector<SharedMixture> mixtures_; ///< one a view, without moments
     std::vector<SharedTarget> targets_;   ///< one a bin
     SharedPartition partition_;

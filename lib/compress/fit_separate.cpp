@@ -161,7 +161,7 @@ BrdfFit fit_separate(const Reflected& reflected, const BrdfOptions& options) {
     out.total = std::accumulate(albedo.begin(), albedo.end(), 0.0);
     if (!(out.total > 0.0))
         throw NoEnergy("it reflects nothing to any view looked at, so there is nothing to sample");
-    for (const double a : albedo) out.shares.push_back(static_cast<float>(std::max(a / out.total, 1e-12)));
+    for (const double a : albedo) out.shares.push_back(static_cast<float>(std::max(a / out.total, kLeastShare)));
     if (options.fit == ACDF_FIT_VARIANCE) out.tree = fit_variance(targets, grid, options, out);
     else out.tree = encode_tree(fit_each(targets, grid, options));
     return out;

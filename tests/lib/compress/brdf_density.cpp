@@ -233,6 +233,44 @@ TEST(BrdfFit, smallerGoalsTakeFewerBytes) {
     EXPECT_THROW(make_brdf(std::make_unique<LobeBrdf>(0.2, 0.2), budget(1000)), std::runtime_error);
 }
 
+/// Matte, to views between two angles alone.
+class RingBrdf : public acdf::build::Brdf {
+public:
+    static constexpr double from = 0.7, to = 0.8; ///< of cos(theta_o)
+    RingBrdf() { name = "ring"; }
+    void evaluate(const double wo[3], const double wi[3], double rgb[3]) const override {
+        rgb[0] = rgb[1] = rgb[2] = wo[2] > from && wo[2] < to && wi[2] > 0.0 ? 0.25 : 0.0;
+    }
+};
+
+// Views are stored where light is; where they may not be, those between black ones still count.
+TEST(BrdfFit, servesLitViewsAmongBlackOnes) {
+    for (const std::uint32_t stored : {0u, 2u}) {
+        acdf::build::BrdfFileOptions options = budget(8 << 10);
+        options.fit.theta_views = stored;
+        const auto brdf = make_brdf(std::make_unique<RingBrdf>(), options);
+        const acdf::BrdfView view = brdf->view();
+        const auto [fewest, most] = stored ? std::pair{0.01, 1.0} : std::pair{0.25, 1.0};
+        for (const double cosine : {0.72, 0.75, 0.78}) {
+            const Direction wo = at_angles(cosine, 0.4);
+            EXPECT_GT(view.albedo(wo.data()), fewest * kPi / 4.0) << stored;
+            EXPECT_LT(view.albedo(wo.data()), most * kPi / 4.0 * 1.01) << stored;
+            std::mt19937_64 random(5);
+            std::uniform_real_distribution<double> u(0.0, 1.0);
+            for (int i = 0; i < 500; ++i) {
+                const Direction wi = at_angles(std::sqrt(u(random)), 6.3 * u(random));
+                EXPECT_GT(view.pdf(wo.data(), wi.data()), 0.0f) << stored;
+                const acdf::DirectionSample s = view.sample(wo.data(), u(random), u(random));
+                EXPECT_GT(s.pdf, 0.0f) << stored;
+            }
+        }
+        EXPECT_EQ(brdf->made.accuracy.support_violations, 0u);
+        if (!stored) {
+            EXPECT_LT(brdf->made.accuracy.relative_variance, 0.3);
+        }
+    }
+}
+
 TEST(BrdfFit, nothingToReflectIsRefused) {
     EXPECT_THROW(make_brdf(std::make_unique<LobeBrdf>(1e200, 1e200, 0.0), budget(24 << 10)), std::invalid_argument);
 }
