@@ -5,6 +5,7 @@
 #include "input/npy.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
+#include "tools/cli/comma_list.h"
 #include "tools/cli/company_options.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
@@ -182,9 +183,8 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
         ->check(CLI::Range(0u, 5u))
         ->option_text("K [0]")
         ->group("Axes");
-    command.add_option("--names", options.table.names, "Names of all axes in order, for `acdf info` and --range")
-        ->delimiter(',')
-        ->type_name("")
+    comma_separated(command.add_option("--names", options.table.names,
+                                       "Names of all axes in order, for `acdf info` and --range"))
         ->option_text("A,B,... [x0,x1,...]")
         ->group("Axes");
     command

@@ -51,6 +51,20 @@ std::vector<std::vector<double>> rows_of(const std::string& csv) {
     return rows;
 }
 
+TEST_F(LocalCommands, ListsEndWithTheirWord) {
+    const Result last = run_acdf({"sample", shared, "-n", "3", "--normal", "0,0.6,0.8"});
+    EXPECT_EQ(last.code, 0) << last.err;
+    for (const std::vector<std::string>& list : std::vector<std::vector<std::string>>{
+             {"--normal", "0,0.6,0.8"}, {"--normal=0,0.6,0.8"}, {"--normal", "0", "0.6", "0.8"}}) {
+        std::vector<std::string> arguments = {"sample", "-n", "3"};
+        arguments.insert(arguments.end(), list.begin(), list.end());
+        arguments.push_back(shared);
+        EXPECT_EQ(run_acdf(arguments).out, last.out) << list.back();
+    }
+    expect_refused({"sample", "-n", "1", "--normal", "0,1", shared}, 2, "--normal");
+    expect_refused({"table", "--names", "a,b", shared, "-o", folder / "out.acdf"}, 1, shared); // is no array
+}
+
 TEST_F(LocalCommands, InfoTellsWhatBinsShare) {
     const json report = json::parse(run_acdf({"info", "--json", shared}).out);
     EXPECT_EQ(report["kind"], "local");

@@ -1,5 +1,6 @@
 #include "tools/batch/options.h"
 
+#include "tools/cli/comma_list.h"
 #include "tools/cli/options.h"
 
 #include <CLI/CLI.hpp>
@@ -14,11 +15,9 @@ void add_what(CLI::App& command, BatchArguments& options) {
                     "object a line (*.jsonl; - is stdin); with --merge-reports: reports")
         ->type_name("")
         ->group("Input");
-    command
-        .add_option("--kind", options.kinds, "What probes become where no manifest says it: env, local, or both")
-        ->delimiter(',')
+    comma_separated(command.add_option("--kind", options.kinds,
+                                       "What probes become where no manifest says it: env, local, or both"))
         ->check(CLI::IsMember({"env", "local"}).description(""))
-        ->type_name("")
         ->option_text("NAME,... [env]")
         ->group("Input");
     command

@@ -1,6 +1,7 @@
 // --normal: for which surface a local environment is asked.
 #pragma once
 
+#include "tools/cli/comma_list.h"
 #include "tools/commands.h"
 #include "tools/plot/local.h"
 
@@ -15,13 +16,12 @@ namespace acdf::tools {
 
 inline CLI::Option* add_normal(CLI::App& command, std::vector<float>& normal, const char* group,
                                const char* remark = "") {
-    return command
-        .add_option("--normal", normal,
-                    std::string("For a local environment, the normal of the surface, of any length (0,0,1 is up)") +
-                        remark)
-        ->expected(3)
-        ->delimiter(',')
-        ->type_name("")
+    return comma_separated(
+               command.add_option(
+                   "--normal", normal,
+                   std::string("For a local environment, the normal of the surface, of any length (0,0,1 is up)") +
+                       remark),
+               3)
         ->option_text("X,Y,Z")
         ->group(group);
 }

@@ -1,6 +1,8 @@
 // Points of tables as text, and the bin they are in.
 #pragma once
 
+#include "tools/cli/comma_list.h"
+
 #include <acdf/reader.h>
 
 #include <CLI/CLI.hpp>
@@ -13,11 +15,9 @@ namespace acdf::tools {
 
 /// --at: an index for each indexed axis.
 inline void add_bin(CLI::App& command, std::vector<std::uint32_t>& at, const char* group) {
-    command
-        .add_option("--at", at,
-                    "Of a table with indexed axes: which bin, by its index on each of them, from 0 (--at 3,0)")
-        ->delimiter(',')
-        ->type_name("")
+    comma_separated(
+        command.add_option(
+            "--at", at, "Of a table with indexed axes: which bin, by its index on each of them, from 0 (--at 3,0)"))
         ->option_text("I,J,...")
         ->group(group);
 }

@@ -1,5 +1,6 @@
 // acdf plot: a density in false colours, as in Lawrence et al. 2005, Fig. 5 and 9.
 #include "tools/cli/choice.h"
+#include "tools/cli/comma_list.h"
 #include "tools/cli/help.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/normal_option.h"
@@ -265,10 +266,7 @@ void add_mesh_options(CLI::App& command, PlotArguments& options) {
     for (const auto& [name, target, help] :
          {std::tuple{"--from", &options.from, "Where the camera is, in the coordinates of the mesh"},
           std::tuple{"--to", &options.to, "Where it looks at"}})
-        command.add_option(name, *target, help)
-            ->expected(3)
-            ->delimiter(',')
-            ->type_name("")
+        comma_separated(command.add_option(name, *target, help), 3)
             ->option_text("X,Y,Z [all of the mesh is seen]")
             ->group("Cells over a mesh");
 }
@@ -296,14 +294,12 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_normal(command, options->normal, "Input",
                "; the white line is its horizon. Without it the six axes are shown");
-    command
-        .add_option(
+    comma_separated(
+        command.add_option(
             "--place", options->place,
             "For a file that tells places apart (acdf local --places), the position in its scene; without it "
-            "what is drawn where a position is not known")
-        ->expected(3)
-        ->delimiter(',')
-        ->type_name("")
+            "what is drawn where a position is not known"),
+        3)
         ->option_text("X,Y,Z")
         ->group("Input");
     add_mesh_options(command, *options);

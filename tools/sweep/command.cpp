@@ -3,6 +3,7 @@
 #include "input/brdf.h"
 #include "input/file_name.h"
 #include "tools/cli/choice.h"
+#include "tools/cli/comma_list.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
 #include "tools/cli/mesh_places.h"
@@ -238,18 +239,15 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         ->group("Sweep");
     options.scene.add(command, "For --kind places: the mesh (.obj, .ply, .instances) whose places are told apart",
                       "Sweep");
-    command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas")
-        ->delimiter(',')
-        ->type_name("")
+    comma_separated(command.add_option("--budgets", options.budgets, "Sizes to try, separated by commas"))
         ->option_text("SIZES [4KiB,16KiB,64KiB,256KiB,1MB for env]")
         ->group("Sweep");
-    command
-        .add_option("--fits", options.sweep.fits,
-                    "Fits to try, separated by commas. env: variance, cascade, cdf, pdf, uniform; local: variance, "
-                    "separate (a tree for each normal), cdf (the paper's); places: places, variance (by normals "
-                    "alone); brdf: variance, separate, cdf, uniform")
-        ->delimiter(',')
-        ->type_name("")
+    comma_separated(
+        command.add_option(
+            "--fits", options.sweep.fits,
+            "Fits to try, separated by commas. env: variance, cascade, cdf, pdf, uniform; local: variance, "
+            "separate (a tree for each normal), cdf (the paper's); places: places, variance (by normals "
+            "alone); brdf: variance, separate, cdf, uniform"))
         ->option_text("NAMES [all of the kind; local: variance,cdf]")
         ->group("Sweep");
     command
