@@ -5,7 +5,6 @@
 #include "input/npy.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/comma_list.h"
 #include "tools/cli/company_options.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/goal_options.h"
@@ -28,6 +27,7 @@
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <sstream>
 
 namespace acdf::tools {
 namespace {
@@ -35,7 +35,7 @@ namespace {
 struct TableArguments {
     std::string array, other, output;
     std::vector<std::string> ranges;
-    std::string budget;
+    std::string budget, names;
     input::NpyOptions input;
     builder::TableOptions table;
     const CLI::App* command = nullptr;
@@ -51,6 +51,17 @@ bool parse_number(const std::string& text, Number& value) {
     const char* const end = text.data() + text.size();
     const auto [rest, error] = std::from_chars(text.data(), end, value);
     return error == std::errc{} && rest == end;
+}
+
+/// "theta,phi": a name an axis, none of them empty.
+std::vector<std::string> names_of(const std::string& text) {
+    std::vector<std::string> names;
+    std::istringstream rest(text + ',');
+    for (std::string name; std::getline(rest, name, ',');) {
+        if (name.empty()) throw CLI::ValidationError("--names", "needs a value between all commas");
+        names.push_back(name);
+    }
+    return names;
 }
 
 /// The axis that `text` names or counts. Axes without names are x0, x1, ...
@@ -145,6 +156,7 @@ builder::Table build(TableArguments& options, const input::NpyArray& array) {
 
 void run(TableArguments& options) {
     read_goal(*options.command, options.budget, options.table.goal);
+    if (options.given("--names")) options.table.names = names_of(options.names);
     const auto limit = limit_threads(options.threads);
     Output output(options.output, options.force, {options.array, options.other}); // refuses early, before the work
     const input::NpyArray array = input::read_npy(options.array, options.input);
@@ -183,8 +195,8 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
         ->check(CLI::Range(0u, 5u))
         ->option_text("K [0]")
         ->group("Axes");
-    comma_separated(command.add_option("--names", options.table.names,
-                                       "Names of all axes in order, for `acdf info` and --range"))
+    command.add_option("--names", options.names, "Names of all axes in order, for `acdf info` and --range")
+        ->type_name("")
         ->option_text("A,B,... [x0,x1,...]")
         ->group("Axes");
     command

@@ -247,6 +247,7 @@ void write_output(const std::string& path, const std::vector<std::uint8_t>& byte
 }
 
 void make_folder(const std::string& path) {
+    if (path == "-") fail(path, "is no folder; give one to write to");
     std::error_code error;
     std::filesystem::create_directories(path, error);
     if (error) fail(path, "cannot make this folder: " + error.message());
