@@ -104,7 +104,11 @@ private:
                                PartRating* ratings) const noexcept;
     ACDF_METHOD void divide(Point& point, const LobeGuides& guides, PartRating* ratings) const noexcept;
     ACDF_METHOD float light_pdf(const Point& point, const float direction[3]) const noexcept;
-    ACDF_METHOD float lobe_pdf(const Point& point, const float direction[3]) const noexcept;
+    ACDF_METHOD float lobe_pdf(const Point& point, const float direction[3]) const noexcept {
+        float wi[3];
+        point.frame.to_local(direction, wi);
+        return lobe_.pdf(point.lobe, wi);
+    }
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
     /// Whether a cut is drawn from, and the lobe.
     ACDF_METHOD static bool draws_both(const Point& point) noexcept {
@@ -282,13 +286,6 @@ ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const f
     return acdf_local_pdf_at(&light_, &point.light, direction);
 }
 
-template <class AnyLobe>
-ACDF_METHOD float ProductSampler<AnyLobe>::lobe_pdf(const Point& point, const float direction[3]) const noexcept {
-    float wi[3];
-    point.frame.to_local(direction, wi);
-    return lobe_.pdf(point.lobe, wi);
-}
-
 /// Of the mixture, by those of its parts.
 template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::mixed(const Point& point, float light, float lobe) noexcept {
@@ -300,8 +297,7 @@ ACDF_METHOD float ProductSampler<AnyLobe>::mixed(const Point& point, float light
 template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0)) return 0.0f;
-    const float lobe =
-        lobe_pdf(point, direction); // first: it waits for itself while the light's branches are guessed
+    const float lobe = lobe_pdf(point, direction); // first: it waits while the light's branches are guessed
     return mixed(point, light_pdf(point, direction), lobe);
 }
 
