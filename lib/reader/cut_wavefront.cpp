@@ -1,7 +1,7 @@
 // Which loops serve products.
 #include "cut_wavefront.h"
 
-#include "environment_wavefront.h"
+#include "instructions.h"
 
 #include <algorithm>
 

@@ -8,9 +8,6 @@
 
 namespace acdf {
 
-/// The best that this processor has.
-Instructions instructions_of_this_processor() noexcept;
-
 #if ACDF_WAVEFRONT_X86
 // Of environments that have runtime tables.
 void environment_sample_avx2(const AcdfEnvironment&, const double (*)[2], std::size_t, AcdfDirectionSample*);

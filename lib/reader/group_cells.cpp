@@ -1,7 +1,7 @@
 #include "group_cells.h"
 
-#include "environment_wavefront.h"
 #include "group_cells_kernel.h"
+#include "instructions.h"
 
 #include <algorithm>
 

@@ -216,7 +216,8 @@ private:
     bool is_plain(const AcdfCurve& curve) const {
         static_assert(ACDF_CURVE_CUMULATIVE_CODE(kOtherBits) == 2 && ACDF_CURVE_POSITION_CODE(kOtherBits) == 3 &&
                       ACDF_CURVE_LINK_CODE(kOtherBits) == 3 && (kOtherBits & ACDF_CURVE_TILTED) != 0);
-        return (curve.header & kOtherBits) == 0 && end_ - curve.positions >= curve.segments + kLoadedBehind;
+        return (curve.header & kOtherBits) == 0 &&
+               end_ - curve.positions >= static_cast<std::ptrdiff_t>(curve.segments) + kLoadedBehind;
     }
 
     // The cells of a curve, if it is one of those.

@@ -1,7 +1,7 @@
 // Local environment files many times at once. What a single call waits for, memory and the splits on the way to a
 // tile, is asked for by several of them side by side; the operations are the same ones, on any processor.
 #include "local_wavefront.h"
-#include "environment_wavefront.h"
+#include "instructions.h"
 
 #include <algorithm>
 

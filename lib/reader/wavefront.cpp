@@ -1,7 +1,7 @@
 // The tables of BrdfWavefront, and which loops serve.
 #include "wavefront.h"
 
-#include "environment_wavefront.h"
+#include "instructions.h"
 #include "make_brdf_tables.h"
 #include "memory.h"
 
