@@ -143,7 +143,7 @@ __attribute__((noinline)) std::uint32_t take_turns(const AcdfLocal& local, const
     return tilted;
 }
 
-/* acdf_cut_wave_curves, or acdf_cut_wave_found, of all cells. */
+/* acdf_cut_wave_curves of all cells. */
 template <bool Finds>
 ACDF_LANE void follow_in_turns(const AcdfLocal& local, const Cells& cells, Boxes* done) {
     CurveLane lane[ACDF_CUT_WAVE];

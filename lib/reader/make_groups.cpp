@@ -154,7 +154,7 @@ bool GroupsMaker::gather(u32 most_cells) {
 // Groups below the curve that is `next` in the order of the survey, in their order.
 bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
     const AcdfCurve curve = acdf_curve_at(environment_.tree, at);
-    CellParts parts(curve, above, 0);
+    CellParts parts(curve, above);
     const u32 axis = parts.axis(), other = 1 - axis;
     const bool narrow_across = is_narrow(other, above.first[other], above.last[other]);
     Group group = {{kNoCurve, 0, 0}, 0, above};

@@ -49,15 +49,12 @@ struct CellSegment {
 /// kept by value: it is not to be read again after each store.
 class CellParts {
 public:
-    CellParts(const AcdfCurve& curve, const Cell& above, std::uint32_t first)
+    CellParts(const AcdfCurve& curve, const Cell& above)
         : curve_(curve), axis_(acdf_curve_axis(&curve)), cumulative_code_(ACDF_CURVE_CUMULATIVE_CODE(curve.header)),
           position_code_(ACDF_CURVE_POSITION_CODE(curve.header)), maximum_(acdf_curve_maximum(&curve)),
-          all_(maximum_), next_(first), low_(above.low[axis_]), high_(above.high[axis_]), width_(high_ - low_),
-          end_(above.last[axis_]), origin_(position_code_ == 0 ? above.first[axis_] : 0) {
-        if (first == 0) border_ = {0, above.first[axis_]};
-        else border_ = border(first);
-        from_ = border_.cumulative / all_;
-    }
+          all_(maximum_), low_(above.low[axis_]), high_(above.high[axis_]), width_(high_ - low_),
+          end_(above.last[axis_]),
+          origin_(position_code_ == 0 ? above.first[axis_] : 0), border_{0, above.first[axis_]} {}
     std::uint32_t axis() const { return axis_; }
     /// The distance to the child of the next segment; 0: it ends.
     std::uint32_t link() const { return acdf_curve_link(&curve_, next_); }
@@ -111,39 +108,32 @@ private:
     AcdfCurve curve_;
     std::uint32_t axis_, cumulative_code_, position_code_, maximum_;
     double all_; ///< the maximum
-    std::uint32_t next_;
+    std::uint32_t next_ = 0;
     double low_, high_, width_;
     std::uint32_t end_, origin_;
     Border border_;
-    double from_; ///< the part of all at which the next segment begins
+    double from_ = 0.0; ///< the part of all at which the next segment begins
 };
 
-/// Calls add(above, axis, part, same) for each cell of segments [first, last) of a curve at `at`, which divides
-/// the cell `above`, and of the curves below them, in their order, as long as it returns true. Returns whether it
+/// Calls add(above, axis, part, same) for each cell of a curve at `at`, which divides the cell `above`, and of the
+/// curves below it, in their order, as long as it returns true. Returns whether it
 /// always did. Where `same`, `above` and `axis` are those of the call before. A path passes at most 64 curves.
 template <class Add>
-bool each_cell(const std::uint8_t* tree, std::uint32_t at, const AcdfCurve& curve, std::uint32_t first,
-               std::uint32_t last, const Cell& above, Add& add) {
-    CellParts parts(curve, above, first);
+bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, const Add& add) {
+    const AcdfCurve curve = acdf_curve_at(tree, at);
+    CellParts parts(curve, above);
     bool same = false;
-    for (std::uint32_t i = first; i < last; ++i) {
+    for (std::uint32_t i = 0; i < curve.segments; ++i) {
         const std::uint32_t link = parts.link();
         const CellPart part = parts.next();
         if (link == 0) {
             if (!add(above, parts.axis(), part, same)) return false;
-        } else {
-            const AcdfCurve below = acdf_curve_at(tree, at + link);
-            if (!each_cell(tree, at + link, below, 0, below.segments, part.in(above, parts.axis()), add))
-                return false;
+        } else if (!each_cell(tree, at + link, part.in(above, parts.axis()), add)) {
+            return false;
         }
         same = link == 0;
     }
     return true;
-}
-template <class Add>
-bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, Add&& add) {
-    const AcdfCurve curve = acdf_curve_at(tree, at);
-    return each_cell(tree, at, curve, 0, curve.segments, above, add);
 }
 
 /// The part of a cell's side that lies in one piece of the sphere: from low to high random numbers.

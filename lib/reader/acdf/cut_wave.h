@@ -158,8 +158,9 @@ ACDF_INLINE void acdf_cut_wave_tiles(const AcdfLocal* local, const AcdfLocalPoin
     }
 }
 
-/* Draws cells of tiles. */
-ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, const AcdfCutLanes* mixed,
+/* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes draw.
+ */
+ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, const uint32_t (*square)[2],
                                       AcdfCutLane* lane) {
     const uint8_t* tree = local->blend.tree;
     const uint32_t units = local->environment.tree_units;
@@ -168,24 +169,22 @@ ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, co
     uint32_t i, k, in_curves;
     curved.count = 0;
     for (i = 0; i < count; ++i) {
-        const uint32_t root = local->blend.roots ? local->blend.roots[lane[i].tile] : ACDF_NO_ROOT;
+        const uint32_t root = lane[i].probability > 0.0 ? acdf_local_tile_root(local, lane[i].tile) : ACDF_NO_ROOT;
         lane[i].curve = root;
         inside[i] = 1.0;
         curved.lane[curved.count] = i;
         curved.count += (uint32_t)(root != ACDF_NO_ROOT);
     }
     for (k = 0; k < curved.count; ++k) ACDF_PREFETCH(tree + 2 * (size_t)lane[curved.lane[k]].curve);
-    for (k = 0; k < mixed->count; ++k) {
-        AcdfCutLane* one = &lane[mixed->lane[k]];
-        acdf_tile_range(acdf_local_tile(local->tables, one->tile), one->range);
-    }
     on_way = curved;
     while ((in_curves = on_way.count) > 0) {
         on_way.count = 0;
         for (k = 0; k < in_curves; ++k) {
             const uint32_t number = on_way.lane[k];
             AcdfCutLane* one = &lane[number];
-            const uint32_t link = acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
+            const uint32_t link =
+                square ? acdf_curve_locate(tree, units, one->curve, square[number], one->range, &inside[number])
+                       : acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
             one->curve += link;
             ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
             on_way.lane[on_way.count] = number;
@@ -194,7 +193,8 @@ ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, co
     }
     for (k = 0; k < curved.count; ++k) {
         AcdfCutLane* one = &lane[curved.lane[k]];
-        one->probability = acdf_positive(one->probability * acdf_positive(inside[curved.lane[k]]));
+        const double found = inside[curved.lane[k]];
+        one->probability = found > 0.0 ? acdf_positive(one->probability * acdf_positive(found)) : 0.0;
     }
 }
 
@@ -221,47 +221,14 @@ ACDF_FN void acdf_cut_sample_wave(const AcdfLocal* local, const AcdfLocalPoint* 
         acdf_cut_wave_parts(cut, u + first, some, lane);
         acdf_cut_wave_lights(local, point, cut, some, lane, &mixed);
         acdf_cut_wave_tiles(local, point, &mixed, lane);
-        acdf_cut_wave_curves(local, some, &mixed, lane);
+        for (i = 0; i < mixed.count; ++i) {
+            AcdfCutLane* one = &lane[mixed.lane[i]];
+            acdf_tile_range(acdf_local_tile(local->tables, one->tile), one->range);
+        }
+        acdf_cut_wave_curves(local, some, 0, lane);
         for (i = 0; i < some; ++i)
             out[first + i] =
                 acdf_cut_place(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
-    }
-}
-
-/* Finds cells of tiles that hold squares. */
-ACDF_INLINE void acdf_cut_wave_found(const AcdfLocal* local, uint32_t count, const uint32_t (*square)[2],
-                                     AcdfCutLane* lane) {
-    const uint8_t* tree = local->blend.tree;
-    const uint32_t units = local->environment.tree_units;
-    double inside[ACDF_CUT_WAVE];
-    AcdfCutLanes on_way, curved;
-    uint32_t i, k, in_curves;
-    curved.count = 0;
-    for (i = 0; i < count; ++i) {
-        const uint32_t root = lane[i].probability > 0.0 ? acdf_local_tile_root(local, lane[i].tile) : ACDF_NO_ROOT;
-        lane[i].curve = root;
-        inside[i] = 1.0;
-        curved.lane[curved.count] = i;
-        curved.count += (uint32_t)(root != ACDF_NO_ROOT);
-    }
-    on_way = curved;
-    while ((in_curves = on_way.count) > 0) {
-        on_way.count = 0;
-        for (k = 0; k < in_curves; ++k) {
-            const uint32_t number = on_way.lane[k];
-            AcdfCutLane* one = &lane[number];
-            const uint32_t link =
-                acdf_curve_locate(tree, units, one->curve, square[number], one->range, &inside[number]);
-            one->curve += link;
-            ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
-            on_way.lane[on_way.count] = number;
-            on_way.count += (uint32_t)(link != 0);
-        }
-    }
-    for (k = 0; k < curved.count; ++k) {
-        AcdfCutLane* one = &lane[curved.lane[k]];
-        const double found = inside[curved.lane[k]];
-        one->probability = found > 0.0 ? acdf_positive(one->probability * acdf_positive(found)) : 0.0;
     }
 }
 
@@ -304,7 +271,7 @@ ACDF_FN void acdf_cut_pdf_wave(const AcdfLocal* local, const AcdfLocalPoint* poi
             one->given = acdf_local_found_tile(local, point, &mix, one->tile, one->part->depth, one->range);
             one->probability = acdf_cut_found_probability(local, cut, one->part, &mix, one->tile, one->given);
         }
-        acdf_cut_wave_found(local, (uint32_t)some, (const uint32_t(*)[2])square, lane);
+        acdf_cut_wave_curves(local, (uint32_t)some, (const uint32_t(*)[2])square, lane);
         for (i = 0; i < some; ++i) {
             const double p = lane[i].probability;
             out[first + i] =
