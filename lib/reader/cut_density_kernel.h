@@ -1,8 +1,9 @@
 // Densities of cuts (acdf/cut_sample.h) over vectors, operation by operation. Internal linkage: see local_kernel.h.
 #pragma once
 
-#include "cut_curve_vectors.h"
 #include "local_density_kernel.h"
+
+#include <acdf/cut_wave.h>
 
 namespace {
 
@@ -51,10 +52,9 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
         ACDF_PREFETCH(&cut.part[part[i]].low[0]);
         ACDF_PREFETCH(&cut.part[part[i]].probability);
     }
-    for (std::size_t i = 0; i < count; ++i)
-        acdf_local_ahead(&local, acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]));
+    ask_for_curves(local, cells);
     weigh_cut_tiles(local, point, cut, part, &cells);
-    follow_in_turns<true>(local, cells, &done);
+    find_cells<true>(local, cells, &done);
     lost |= told_densities(local, cells, done, out);
     for (; lost; lost &= lost - 1) {
         const auto lane = (std::size_t)__builtin_ctzll(lost);

@@ -2,7 +2,6 @@
 // tiles and directions as LocalWavefront draws them. Internal linkage: see local_kernel.h.
 #pragma once
 
-#include "cut_curve_vectors.h"
 #include "local_kernel.h"
 
 #include <acdf/cut_wave.h>
@@ -137,10 +136,8 @@ ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& poi
     const unsigned light = lanes(lit) & there, mixed = lanes(less(all(0.0), mixture)) & (there ^ light);
     const Vector own = unit_interval((of_lights - lights) / (sum - lights));
     const std::size_t to = walks->count;
-    for (int i = 0; i < kRows; ++i) {
+    for (int i = 0; i < kRows; ++i)
         store_packed(&walks->weight[i][to], i == 0 ? rows[0] : i == 1 ? rows[1] : last[0], mixed);
-        stored(&walks->row[i][to], Integer{} + (long long)(std::uintptr_t)point.codes[i]);
-    }
     store_packed(&walks->x[0][to], own * mixture, mixed);
     store_packed(&walks->x[1][to], u[1] * mixture, mixed);
     store_packed(&walks->mixture[to], mixture, mixed);
@@ -172,10 +169,11 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
         const unsigned there = (1u << std::min<std::size_t>(count - at, ACDF_WIDTH)) - 1u;
         lost |= (std::uint64_t)enter_parts(local, point, cut, ways, at, there, &walks, &cells) << at;
     }
-    walk(*local.tables, &walks);
+    walk(*local.tables, SameRows{point.codes}, &walks);
     end_walks(
-        walks, [&](std::size_t at, Vector of_all) { return loaded(&walks.probability[at]) * of_all; }, &cells);
-    follow_in_turns<false>(local, cells, &done);
+        local, walks, [&](std::size_t at, Vector of_all) { return loaded(&walks.probability[at]) * of_all; },
+        &cells);
+    find_cells<false>(local, cells, &done);
     lost |= place_cells(local, cells, done, out);
     for (; lost; lost &= lost - 1) {
         const auto lane = (std::size_t)__builtin_ctzll(lost);

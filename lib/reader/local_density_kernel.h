@@ -1,7 +1,7 @@
 // Densities of LocalWavefront over vectors, operation by operation as in acdf/local.h; see local_kernel.h.
 #pragma once
 
-#include "local_tile_vectors.h"
+#include "local_curve_vectors.h"
 #include "local_wavefront.h"
 #include "row_vectors.h"
 
@@ -139,7 +139,7 @@ ACDF_LANE Floats cell_densities(const AcdfLocal& local, const Cells& cells, cons
         const std::size_t at = first + ACDF_WIDTH * half;
         const Integer low = loaded(&done.low[1][at]), high = loaded(&done.high[1][at]);
         const Vector width = converted(loaded(&done.high[0][at])) - converted(loaded(&done.low[0][at]));
-        const Vector given = (Vector)loaded_from(cells.probability, loaded(&done.number[at]));
+        const Vector given = loaded(&cells.probability[at]);
         const Mask some = both(less(all(0.0), given), less(all(0.0), loaded(&done.product[at])));
         const double* const z = acdf_local_heights(local.tables);
         const Vector area = local.tables->octahedral
@@ -158,9 +158,8 @@ ACDF_LANE std::uint64_t told_densities(const AcdfLocal& local, const Cells& cell
         alignas(64) float told[kLanes];
         *(Floats*)told = cell_densities(local, cells, done, first);
         for (std::size_t i = 0; i < kLanes && first + i < cells.count; ++i) {
-            const auto lane = (std::size_t)done.number[first + i];
-            out[lane] = told[i];
-            lost |= (std::uint64_t)done.lost[first + i] << lane;
+            out[first + i] = told[i];
+            lost |= (std::uint64_t)done.lost[first + i] << (first + i);
         }
     }
     return lost;
@@ -174,7 +173,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
                              std::size_t count, float* out) {
     Seen seen;
     Cells cells;
-    Boxes live, done;
+    Boxes done;
     alignas(64) double given[kRoom];
     Points room;
     std::uint64_t lost = 0;
@@ -186,13 +185,13 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << more) - 1u)) << first;
     }
     lost |= find_all_squares(local, directions, count, &cells);
-    enter_tiles<true>(local, cells, &live, &done);
+    ask_for_curves(local, cells);
     for (std::size_t i = 0; i < count; ++i) {
         if (i + kAhead < count) ask_for_rows(*local.tables, seen, cells, i + kAhead);
         given[i] = share_of(*local.tables, seen, i, (std::uint32_t)cells.tile[i]);
     }
     weigh_tiles(local, seen, cells.tile, given, count, cells.probability);
-    find_cells<true>(local, &live, &done);
+    find_cells<true>(local, cells, &done);
     lost |= told_densities(local, cells, done, out);
     for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
 }

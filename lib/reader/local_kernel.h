@@ -8,7 +8,7 @@
 // borders are left to the functions of acdf/local.h.
 #pragma once
 
-#include "local_tile_vectors.h"
+#include "local_curve_vectors.h"
 #include "local_wavefront.h"
 #include "row_vectors.h"
 
@@ -51,53 +51,77 @@ ACDF_LANE void draw_lights(const AcdfLocal& local, const Points& p, const Vector
     cells->count += (std::size_t)__builtin_popcount(mask);
 }
 
-/* acdf_tile_walk_begin of the lanes of a mask, at split `root`. */
-ACDF_LANE void begin_walks(const Points& p, const Vector u[2], unsigned mask, Integer lane, std::uint32_t root,
-                           Walks* walks) {
-    const std::size_t at = walks->count;
-    for (int i = 0; i < kRows; ++i) {
-        store_packed(&walks->weight[i][at], p.weight[i], mask);
-        store_packed(&walks->row[i][at], p.row[i], mask);
+/// Where the codes of lanes are: in rows of each lane's own, and in those of one point.
+struct OwnRows {
+    ACDF_LANE_MEMBER void keep(const Points& p, unsigned mask, Walks* walks) const {
+        const std::size_t at = walks->count;
+        for (int i = 0; i < kRows; ++i) store_packed(&walks->row[i][at], p.row[i], mask);
+        for (std::size_t k = at; k < at + (std::size_t)__builtin_popcount(mask); ++k)
+            for (const auto& row : walks->row) ACDF_PREFETCH((const std::uint8_t*)row[k]);
     }
+    ACDF_LANE_MEMBER void end(Walks* walks, std::size_t room) const {
+        for (auto& row : walks->row) std::fill(row + walks->count, row + room, row[0]);
+    }
+    ACDF_LANE_MEMBER void bytes(const Walks& walks, std::size_t at, Integer place,
+                                const std::uint8_t* byte[kRows][ACDF_WIDTH]) const {
+        for (int i = 0; i < kRows; ++i) pointers_of(loaded(&walks.row[i][at]) + place, byte[i]);
+    }
+};
+struct SameRows {
+    const std::uint8_t* const* row;
+    ACDF_LANE_MEMBER void keep(const Points&, unsigned, Walks*) const {}
+    ACDF_LANE_MEMBER void end(Walks*, std::size_t) const {}
+    ACDF_LANE_MEMBER void bytes(const Walks&, std::size_t, Integer place,
+                                const std::uint8_t* byte[kRows][ACDF_WIDTH]) const {
+        const std::uint8_t* number[ACDF_WIDTH];
+        pointers_of(place, number);
+        for (int i = 0; i < kRows; ++i)
+            for (int k = 0; k < ACDF_WIDTH; ++k) byte[i][k] = row[i] + (std::uintptr_t)number[k];
+    }
+};
+
+/* acdf_tile_walk_begin of the lanes of a mask, at split `root`. */
+template <class Rows>
+ACDF_LANE void begin_walks(const Points& p, const Rows& rows, const Vector u[2], unsigned mask, Integer lane,
+                           std::uint32_t root, Walks* walks) {
+    const std::size_t at = walks->count;
+    for (int i = 0; i < kRows; ++i) store_packed(&walks->weight[i][at], p.weight[i], mask);
     store_packed(&walks->x[0][at], u[0] * p.sum - p.lights, mask);
     store_packed(&walks->x[1][at], u[1] * p.mixture, mask);
     store_packed(&walks->mixture[at], p.mixture, mask);
     store_packed(&walks->sum[at], p.sum, mask);
     store_packed(&walks->node[at], Integer{} + root, mask);
     store_packed(&walks->lane[at], lane, mask);
+    rows.keep(p, mask, walks);
     walks->count += (std::size_t)__builtin_popcount(mask);
-    for (std::size_t i = at; i < walks->count; ++i)
-        for (int k = 0; k < kRows; ++k) ACDF_PREFETCH((const std::uint8_t*)walks->row[k][i]);
 }
 
 // ---- splits ----------------------------------------------------------------------------------------------------
 
-constexpr std::uint8_t kAllLower = 255; // the code that gives all to the lower half
-
-/* acdf_tile_walk_step of a vector. Returns whether any lane goes on. Lanes at a tile stay what they are, as if all
- * were given to the lower half: its sum is `chosen` then, and the quotient 1. */
-ACDF_LANE bool step(const double* codes, const AcdfSplit* splits, Walks* w, std::size_t at) {
+/* acdf_tile_walk_step of a vector. Returns whether any lane goes on. Lanes at a tile stay what they are. */
+template <class Rows>
+ACDF_LANE bool step(const double* codes, const AcdfSplit* splits, const Rows& rows, Walks* w, std::size_t at) {
     const Integer node = loaded(&w->node[at]), place = node & 0x7FFF, split = loaded_from(splits, place);
     const Mask ended = has(node, ACDF_TILE_FLAG), axis1 = has(split, 1);
+    const std::uint8_t* byte[kRows][ACDF_WIDTH];
     Vector code[kRows][2], half[2], weight[kRows];
+    rows.bytes(*w, at, place, byte);
     for (int i = 0; i < kRows; ++i) {
-        const std::uint8_t* byte[ACDF_WIDTH];
         const double* from[ACDF_WIDTH];
-        pointers_of(
-            choose(ended, Integer{} + (long long)(std::uintptr_t)&kAllLower, loaded(&w->row[i][at]) + place), byte);
-        for (int k = 0; k < ACDF_WIDTH; ++k) from[k] = codes + 2 * std::size_t{*byte[k]};
+        for (int k = 0; k < ACDF_WIDTH; ++k) from[k] = codes + 2 * std::size_t{*byte[i][k]};
         gather_pairs(from, code[i]);
         weight[i] = loaded(&w->weight[i][at]);
     }
     for (int k = 0; k < 2; ++k)
         half[k] = (weight[0] * code[0][k] + weight[1] * code[1][k]) + weight[2] * code[2][k];
     const Vector x[2] = {loaded(&w->x[0][at]), loaded(&w->x[1][at])}, along = choose(axis1, x[1], x[0]);
-    const Mask upper = without(less(all(0.0), half[1]), less(along, half[0]));
-    const Vector taken = choose(upper, half[1], half[0]);
-    const Vector other = choose(axis1, x[0], x[1]) * (taken / loaded(&w->chosen[at]));
+    const Vector whole = loaded(&w->chosen[at]);
+    const Mask upper = without(without(less(all(0.0), half[1]), less(along, half[0])), ended);
+    const Vector taken = choose(ended, whole, choose(upper, half[1], half[0]));
+    const Vector other = choose(axis1, x[0], x[1]) * (taken / whole);
     const Vector left = along - choose(upper, half[0], all(0.0));
     for (int i = 0; i < kRows; ++i) {
-        const Vector given = choose(upper, code[i][1], code[i][0]);
+        const Vector given = choose(ended, all(1.0), choose(upper, code[i][1], code[i][0]));
         stored(&w->weight[i][at], weight[i] * given);
         stored(&w->part[i][at], loaded(&w->part[i][at]) * given);
     }
@@ -109,7 +133,8 @@ ACDF_LANE bool step(const double* codes, const AcdfSplit* splits, Walks* w, std:
     return lanes(has(reached, ACDF_TILE_FLAG)) + 1 != 1u << ACDF_WIDTH;
 }
 
-ACDF_LANE void walk(const AcdfLocalTables& tables, Walks* w) {
+template <class Rows>
+ACDF_LANE void walk(const AcdfLocalTables& tables, const Rows& rows, Walks* w) {
     const std::uint32_t* const words = acdf_local_words(&tables);
     const double* const codes = acdf_tile_codes(words, &tables.tiles);
     const AcdfSplit* const splits = acdf_tile_splits(words, &tables.tiles);
@@ -124,12 +149,13 @@ ACDF_LANE void walk(const AcdfLocalTables& tables, Walks* w) {
     }
     /* What stands behind the last lane is at a tile. */
     for (std::size_t i = w->count; i < count * ACDF_WIDTH; ++i) w->node[i] = ACDF_TILE_FLAG;
+    rows.end(w, count * ACDF_WIDTH);
     while (count > 0) {
         std::size_t left = 0;
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t at = live[k];
             live[left] = at;
-            left += step(codes, splits, w, at);
+            left += step(codes, splits, rows, w, at);
         }
         count = left;
     }
@@ -138,7 +164,9 @@ ACDF_LANE void walk(const AcdfLocalTables& tables, Walks* w) {
 /* acdf_tile_walk_end, acdf_local_drawn_tile and acdf_local_tile_probability of all lanes, into cells behind others;
  * `scaled(at, of_all)`: the probabilities of a vector of tiles that are such a part of all. */
 template <class Scaled>
-ACDF_LANE void end_walks(const Walks& w, const Scaled& scaled, Cells* cells) {
+ACDF_LANE void end_walks(const AcdfLocal& local, const Walks& w, const Scaled& scaled, Cells* cells) {
+    for (std::size_t i = 0; i < w.count; ++i)
+        ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)w.node[i] & ~ACDF_TILE_FLAG));
     for (std::size_t at = 0, to = cells->count; at < w.count; at += ACDF_WIDTH, to += ACDF_WIDTH) {
         const Vector chosen = loaded(&w.chosen[at]), mixture = loaded(&w.mixture[at]);
         for (int k = 0; k < 2; ++k) {
@@ -201,7 +229,7 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
         const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, d, direction);
         store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), drawn);
         for (std::size_t i = 0; i < kLanes && first + i < done.count; ++i) {
-            const std::size_t lane = (std::size_t)cells.lane[done.number[first + i]];
+            const std::size_t lane = (std::size_t)cells.lane[first + i];
             out[lane] = drawn[i];
             lost |= (std::uint64_t)((refused >> i & 1u) | (std::uint32_t)done.lost[first + i]) << lane;
         }
@@ -213,12 +241,12 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
 
 /* Draws of up to kBlock lanes; `at(lane, count, points)` sets the points of a vector from a lane on, of which
  * `count` are there; `alone(lane)` draws singly. */
-template <class At, class Alone>
-ACDF_LANE void draw_block(const AcdfLocal& local, const At& at, const Alone& alone, const double (*u)[2],
-                          std::size_t count, AcdfDirectionSample* out) {
+template <class Rows, class At, class Alone>
+ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at, const Alone& alone,
+                          const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
     Walks walks;
     Cells cells;
-    Boxes live, done;
+    Boxes done;
     Points room;
     std::uint64_t lost = 0;
     walks.count = cells.count = 0;
@@ -234,15 +262,17 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const At& at, const Alone& alo
         const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
         const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.lights)) & served;
         lost |= (std::uint64_t)(served ^ there) << first;
-        begin_walks(p, v, served ^ light, lane, local.tables->tiles.root, &walks);
+        begin_walks(p, rows, v, served ^ light, lane, local.tables->tiles.root, &walks);
         if (light) draw_lights(local, p, v, light, lane, &cells);
     }
-    for (std::size_t i = 0; i < cells.count; ++i) cells.tile[i] = local.lights[cells.tile[i]].tile;
-    walk(*local.tables, &walks);
+    for (std::size_t i = 0; i < cells.count; ++i) {
+        cells.tile[i] = local.lights[cells.tile[i]].tile;
+        ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]));
+    }
+    walk(*local.tables, rows, &walks);
     end_walks(
-        walks, [](std::size_t, Vector of_all) { return of_all; }, &cells);
-    enter_tiles<false>(local, cells, &live, &done);
-    find_cells<false>(local, &live, &done);
+        local, walks, [](std::size_t, Vector of_all) { return of_all; }, &cells);
+    find_cells<false>(local, cells, &done);
     lost |= place_cells(local, cells, done, out);
     for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
 }
@@ -251,7 +281,7 @@ ACDF_LANE void sample_all(const AcdfLocal& local, const float (*normals)[3], con
                           std::size_t count, AcdfDirectionSample* out) {
     for (std::size_t first = 0; first < count; first += kBlock, normals += kBlock, u += kBlock, out += kBlock)
         draw_block(
-            local, PointsOf{local, normals},
+            local, OwnRows{}, PointsOf{local, normals},
             [&](std::size_t lane) { out[lane] = acdf_local_sample(&local, normals[lane], u[lane][0], u[lane][1]); },
             u, std::min(count - first, kBlock), out);
 }
@@ -260,7 +290,7 @@ ACDF_LANE void sample_all(const AcdfLocal& local, const AcdfLocalPoint& point, c
     const OnePoint points(local, point);
     for (std::size_t first = 0; first < count; first += kBlock, u += kBlock, out += kBlock)
         draw_block(
-            local, points,
+            local, SameRows{point.codes}, points,
             [&](std::size_t lane) { out[lane] = acdf_local_sample_at(&local, &point, u[lane][0], u[lane][1]); }, u,
             std::min(count - first, kBlock), out);
 }

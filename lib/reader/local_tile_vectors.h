@@ -1,11 +1,14 @@
-// What draws and densities of LocalWavefront share: tiles that are entered, and densities of cells. Internal
+// What draws and densities of LocalWavefront share: lanes in tiles and in cells, and densities of cells. Internal
 // linkage: see local_kernel.h.
 #pragma once
 
-#include "local_curve_vectors.h"
 #include "local_point_vectors.h"
 
+#include <cstddef>
+
 namespace {
+
+constexpr std::size_t kBlock = 64, kRoom = kBlock + ACDF_WIDTH; // lanes, and what is written behind them
 
 /// Lanes in tiles.
 struct Cells {
@@ -14,47 +17,25 @@ struct Cells {
     alignas(64) long long square[2][kRoom], lane[kRoom], tile[kRoom];
 };
 
-/* Enters the tiles, whose curves are asked for: those that are cells are done. */
-template <bool Finds>
-ACDF_LANE void enter_tiles(const AcdfLocal& local, const Cells& cells, Boxes* live, Boxes* done) {
-    live->count = done->count = 0;
-    for (std::size_t i = 0; i < cells.count; ++i) {
-        const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]);
-        Boxes* const to = tile->root == ACDF_NO_ROOT ? done : live;
-        const std::size_t at = to->count++;
-        acdf_local_ahead(&local, tile);
-        for (int axis = 0; axis < 2; ++axis) {
-            if (Finds) to->square[axis][at] = cells.square[axis][i];
-            else to->u[axis][at] = cells.u[axis][i];
-            to->low[axis][at] = tile->low[axis];
-            to->high[axis][at] = tile->high[axis];
-        }
-        to->product[at] = 1.0;
-        to->curve[at] = tile->root;
-        to->number[at] = (long long)i;
-    }
-}
+/// Lanes in cells, in the order of the tiles that those are in.
+struct Boxes {
+    std::size_t count;
+    alignas(64) double u[2][kRoom], product[kRoom]; // product: of the curves
+    alignas(64) long long low[2][kRoom], high[2][kRoom];
+    bool lost[kRoom]; // left to the single call
+};
 
 /* Ends a list of cells: what stands behind the last one is one of the file, too. */
 ACDF_LANE void end_boxes(std::size_t count, Boxes* boxes) {
     boxes->count = count;
     for (std::size_t i = count; i % kLanes > 0; ++i) {
-        boxes->number[i] = 0;
         for (int axis = 0; axis < 2; ++axis) boxes->low[axis][i] = boxes->high[axis][i] = 0;
     }
 }
 
-/* Follows the curves of all tiles. */
-template <bool Finds>
-ACDF_LANE void find_cells(const AcdfLocal& local, Boxes* live, Boxes* done) {
-    follow_all<Finds>(local.blend.tree, local.environment.tree_units, live, done);
-    end_boxes(done->count, done);
-}
-
 /* Their probabilities, by those of the tiles, which are above 0, as are the products. */
 ACDF_LANE Vector probabilities(const Cells& cells, const Boxes& done, std::size_t at) {
-    return positive((Vector)loaded_from(cells.probability, loaded(&done.number[at])) *
-                    positive(loaded(&done.product[at])));
+    return positive(loaded(&cells.probability[at]) * positive(loaded(&done.product[at])));
 }
 
 /* acdf_area_pdf of doubles that are floats already. */

@@ -17,7 +17,6 @@ ACDF_LANE Mask less(Vector a, Vector b) { return _mm512_cmp_pd_mask((__m512d)a, 
 ACDF_LANE Mask has(Integer x, long long some) {
     return _mm512_test_epi64_mask((__m512i)x, _mm512_set1_epi64(some));
 }
-ACDF_LANE Mask equal(Integer a, Integer b) { return _mm512_cmpeq_epi64_mask((__m512i)a, (__m512i)b); }
 ACDF_LANE Mask negative(Integer x) { return _mm512_movepi64_mask((__m512i)x); }
 ACDF_LANE Integer widened(Signed x, int half) {
     return (Integer)_mm512_cvtepi32_epi64(half ? _mm512_extracti64x4_epi64((__m512i)x, 1)
@@ -116,37 +115,6 @@ ACDF_LANE Integer two_bytes_at(Integer address) {
     pointers_of(address, at);
     for (int i = 0; i < ACDF_WIDTH; ++i) value[i] = *at[i];
     return loaded(value);
-}
-
-// ---- bytes in 64 bits ------------------------------------------------------------------------------------------
-
-#if ACDF_WIDTH == 8
-#define ACDF_BYTES(name) (Integer) _mm512_##name
-typedef __m512i Bytes;
-ACDF_LANE Bytes repeated(__m128i x) { return _mm512_broadcast_i32x4(x); }
-#else
-#define ACDF_BYTES(name) (Integer) _mm256_##name
-typedef __m256i Bytes;
-ACDF_LANE Bytes repeated(__m128i x) { return _mm256_broadcastsi128_si256(x); }
-#endif
-ACDF_LANE Integer shifted_left(Integer x, Integer by) { return ACDF_BYTES(sllv_epi64((Bytes)x, (Bytes)by)); }
-ACDF_LANE Integer shifted_right(Integer x, Integer by) { return ACDF_BYTES(srlv_epi64((Bytes)x, (Bytes)by)); }
-/* How many of eight bytes are above a key up to 255. */
-ACDF_LANE Integer bytes_above(Integer x, Integer key) {
-    const Bytes order = repeated(_mm_setr_epi8(0, 0, 0, 0, 0, 0, 0, 0, 8, 8, 8, 8, 8, 8, 8, 8));
-    const Integer keys = ACDF_BYTES(shuffle_epi8((Bytes)key, order));
-    const Integer more = ACDF_BYTES(subs_epu8((Bytes)x, (Bytes)keys));
-    const Integer one = ACDF_BYTES(min_epu8((Bytes)more, (Bytes)(Integer{} + 0x0101010101010101)));
-    return ACDF_BYTES(sad_epu8((Bytes)one, (Bytes)Integer{}));
-}
-/* How many of eight pairs of bytes, four each, are above a key up to 65535. */
-ACDF_LANE Integer pairs_above(Integer first, Integer last, Integer key) {
-    const Bytes order = repeated(_mm_setr_epi8(0, 1, 0, 1, 0, 1, 0, 1, 8, 9, 8, 9, 8, 9, 8, 9));
-    const Integer keys = ACDF_BYTES(shuffle_epi8((Bytes)key, order)), one = Integer{} + 0x0001000100010001;
-    Integer more[2] = {ACDF_BYTES(subs_epu16((Bytes)first, (Bytes)keys)),
-                       ACDF_BYTES(subs_epu16((Bytes)last, (Bytes)keys))};
-    for (Integer& m : more) m = ACDF_BYTES(min_epu16((Bytes)m, (Bytes)one));
-    return ACDF_BYTES(sad_epu8((Bytes)(more[0] + more[1]), (Bytes)Integer{}));
 }
 
 // ---- pairs of doubles, and packed lanes ------------------------------------------------------------------------

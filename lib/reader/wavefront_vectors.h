@@ -15,6 +15,7 @@ typedef long long Integer __attribute__((vector_size(8 * ACDF_WIDTH))); // also 
 typedef unsigned long long Unsigned __attribute__((vector_size(8 * ACDF_WIDTH)));
 
 #define ACDF_LANE static inline __attribute__((always_inline))
+#define ACDF_LANE_MEMBER __attribute__((always_inline))
 
 // ---- what the instructions are called --------------------------------------------------------------------------
 
