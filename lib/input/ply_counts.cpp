@@ -56,13 +56,18 @@ public:
     void check() {
         const PlyHeader header = read_header();
         for (const PlyElement& element : header.elements)
-            if (!(header.format == "ascii" ? check_lines(element) : check_bytes(element, header.format))) return;
+            if (!(header.format == "ascii" ? check_lines(element) : check_bytes(element, header.format)))
+                fail("it ends before the elements that its header claims; it is cut short or damaged");
     }
 
 private:
     [[noreturn]] void fail(const char* what) const { throw input_error(path_, what); }
     [[noreturn]] void fail_list() const {
         fail("a list in it claims more elements than the file has bytes; it is damaged");
+    }
+
+    [[noreturn]] void fail_line() const {
+        fail("a line of it has fewer numbers than its header says; it is cut short or damaged");
     }
 
     PlyHeader read_header() {
@@ -108,21 +113,31 @@ private:
     /// An element of a text, each on its line. False where the file ends before.
     bool check_lines(const PlyElement& element) {
         std::string line;
-        for (std::uint64_t i = 0; i < element.count; ++i) {
-            if (!std::getline(file_, line)) return false;
+        for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+            if (!next_line(line)) return false;
             const char* at = line.c_str();
             for (const PlyProperty& property : element.properties) {
                 std::uint64_t items = 1;
-                if (property.count.bytes > 0 && !take_count(at, line.size(), items)) break;
-                for (; items > 0; --items) take_word(at);
+                if (property.count.bytes > 0 && !take_count(at, line.size(), items)) fail_line();
+                for (; items > 0; --items)
+                    if (!take_word(at)) fail_line();
             }
         }
         return true;
     }
 
-    static void take_word(const char*& at) {
+    /// The next line that is not blank: the importer skips those that are.
+    bool next_line(std::string& line) {
+        while (std::getline(file_, line))
+            if (line.find_first_not_of(" \t\r") != std::string::npos) return true;
+        return false;
+    }
+
+    static bool take_word(const char*& at) {
         while (*at == ' ' || *at == '\t' || *at == '\r') ++at;
+        const char* const begin = at;
         while (*at != '\0' && *at != ' ' && *at != '\t' && *at != '\r') ++at;
+        return at != begin;
     }
 
     /// The length of a list in a line of so many characters; false where there is no number.
@@ -162,8 +177,9 @@ private:
 
     bool skip(std::uint64_t bytes) {
         if (bytes > size_) return false;
-        if (bytes > 0) file_.ignore(static_cast<std::streamsize>(bytes));
-        return file_.good();
+        const auto wanted = static_cast<std::streamsize>(bytes);
+        if (bytes > 0) file_.ignore(wanted);
+        return file_.good() && (bytes == 0 || file_.gcount() == wanted);
     }
 
     /// A negative one is more than any file has: so the importer takes it.
