@@ -110,7 +110,8 @@ endif()
 
 if(TARGET acdf)
     install(TARGETS acdf RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
-    install(TARGETS acdf_images_module acdf_openexr_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/acdf COMPONENT tools)
+    install(TARGETS acdf_images_module acdf_openexr_module acdf_text_module
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/acdf COMPONENT tools)
 endif()
 
 # The Python package: where Debian's interpreter looks; in a wheel at its root.

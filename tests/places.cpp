@@ -7,6 +7,7 @@ const char kTestData[] = ACDF_TEST_DATA;
 const char kProgram[] = ACDF_PROGRAM;
 const char kImagesModule[] = ACDF_IMAGES_MODULE;
 const char kOpenExrModule[] = ACDF_OPENEXR_MODULE;
+const char kTextModule[] = ACDF_TEXT_MODULE;
 const char kOtherModule[] = ACDF_OTHER_MODULE;
 const char kMakeGolden[] = ACDF_MAKE_GOLDEN;
 const char kExamples[] = ACDF_EXAMPLES;

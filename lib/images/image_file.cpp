@@ -6,7 +6,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 namespace acdf::images {
 namespace {
@@ -42,13 +41,6 @@ bool ImageFile::read(const Rows& rows, float* to) {
     // What is wrong with a file, and whether it can be read all the same, OpenImageIO tells.
     const ImageReader& other = module().reader;
     return reader_ != &other && open(other) && reader_->read(image_.get(), rows, to, error_);
-}
-
-std::vector<std::uint8_t> encode(const Picture& picture, const Encoding& encoding) {
-    std::vector<std::uint8_t> bytes;
-    std::string error;
-    if (!module().encode(picture, encoding, bytes, error)) throw std::runtime_error(encoding.name + ": " + error);
-    return bytes;
 }
 
 } // namespace acdf::images

@@ -39,7 +39,4 @@ private:
     std::unique_ptr<void, void (*)(void*)> image_{nullptr, nullptr};
 };
 
-/// The bytes of an image file. Throws std::runtime_error: the encoding's name, and why not.
-std::vector<std::uint8_t> encode(const Picture& picture, const Encoding& encoding);
-
 } // namespace acdf::images

@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void fail(const std::string& path, std::string why) {
     if (why.rfind(path + ": ", 0) == 0) why = why.substr(path.size() + 2);
-    throw std::runtime_error(path + ": this module, which reads and writes images, cannot be loaded (" + why +
+    throw std::runtime_error(path + ": this module, which pictures need, cannot be loaded (" + why +
                              "); install acdf again");
 }
 
@@ -51,13 +51,18 @@ const Table& load(const std::string& name) {
 } // namespace
 
 // Once in all threads; after a failure the next call tries again.
-const Module& module() {
-    static const Module& loaded = load<Module>("acdf_images");
+const ReaderModule& module() {
+    static const ReaderModule& loaded = load<ReaderModule>("acdf_images");
     return loaded;
 }
 
-const ReaderModule& openexr_module() {
-    static const ReaderModule& loaded = load<ReaderModule>("acdf_openexr");
+const OpenExrModule& openexr_module() {
+    static const OpenExrModule& loaded = load<OpenExrModule>("acdf_openexr");
+    return loaded;
+}
+
+const TextModule& text_module() {
+    static const TextModule& loaded = load<TextModule>("acdf_text");
     return loaded;
 }
 

@@ -1,6 +1,6 @@
-// What the program and the modules that hold OpenImageIO and OpenEXR say to each other. OpenImageIO brings some 250
-// shared libraries, which take longer to load than most commands to run: its module is opened when the first image
-// is that neither we nor OpenEXR alone can read.
+// What the program and the modules that hold OpenImageIO, OpenEXR and FreeType say to each other. OpenImageIO
+// brings some 250 shared libraries, which take longer to load than most commands to run: its module is opened when
+// the first image is that neither we nor OpenEXR alone can read.
 #pragma once
 
 #include "images/picture.h"
@@ -40,20 +40,6 @@ struct Rows {
     std::ptrdiff_t pixel_stride, row_stride;
 };
 
-struct Attribute {
-    std::string name, text;
-    bool is_number = false; ///< then `number` counts
-    int number = 0;
-};
-
-/// How a picture is stored.
-struct Encoding {
-    std::string name;                  ///< a file name, whose extension says the format
-    bool eight_bits = false;           ///< rounded; else float
-    std::vector<std::string> channels; ///< names; empty: R, G and B
-    std::vector<Attribute> attributes;
-};
-
 /// How an image file is read, by the module or by ourselves.
 struct ImageReader {
     /// Null and `error` where the file cannot be read. `threads` 0: all cores.
@@ -77,31 +63,35 @@ struct ReaderModule {
     ImageReader reader;
 };
 
-/// The module of OpenImageIO, whose reader is of every format that it reads.
-struct Module : ReaderModule {
-    /// An image file in memory. False and `error` where it cannot be made.
-    bool (*encode)(const Picture& picture, const Encoding& encoding, std::vector<std::uint8_t>& bytes,
-                   std::string& error);
-
-    /// One channel in [0, 1] to RGB: `knots` of evenly spaced colours, or the map called `name` where there are
-    /// none.
-    bool (*colour_map)(const Picture& positions, const std::string& name, const std::vector<float>& knots,
-                       Picture& colours, std::string& error);
-    /// Pixels from the pen's position to the end of the text; false where there is no such font.
-    bool (*text_width)(const std::string& text, int size, const std::string& font, int& width);
-    /// ASCII in one RGB colour; x is where the pen begins, y its baseline.
-    void (*draw_text)(Picture& picture, int x, int y, const std::string& text, int size, const std::string& font,
-                      const float colour[3]);
+struct OpenExrModule : ReaderModule {
+    /// An image file in memory: floats, a name for each channel of the picture. False and `error` where it cannot
+    /// be made.
+    bool (*encode)(const Picture& picture, const std::vector<std::string>& channels, const std::vector<Note>& notes,
+                   std::vector<std::uint8_t>& bytes, std::string& error);
 };
 
-/// Opened on the first call, by any thread, and kept. The file is at ACDF_IMAGES_FOLDER from the running program's
-/// folder; a program that lies elsewhere defines acdf_images_folder (module.cpp). Throws std::runtime_error that
-/// names the file where it is missing, damaged or of another version. It exports, as extern "C", a function without
-/// arguments that returns a pointer to its table: acdf_images_module.
-const Module& module();
+/// Text in ASCII, of `size` pixels, by the font of a file.
+struct TextModule {
+    const char* version;
+    /// Pixels from the pen's position to the end of the text; false where the font cannot be used.
+    bool (*width)(const std::string& text, int size, const std::string& font, int& width);
+    /// In one colour on RGB; x is where the pen begins, y its baseline.
+    void (*draw)(Picture& picture, int x, int y, const std::string& text, int size, const std::string& font,
+                 const float colour[3]);
+};
 
-/// The same of the module that reads usual OpenEXR files, which exports acdf_openexr_module: opening what else
-/// there is returns null.
-const ReaderModule& openexr_module();
+/// The module of OpenImageIO, which reads every format. Opened on the first call, by any thread, and kept. The file
+/// is at ACDF_IMAGES_FOLDER from the running program's folder; a program that lies elsewhere defines
+/// acdf_images_folder (module.cpp). Throws std::runtime_error that names the file where it is missing, damaged or
+/// of another version. It exports, as extern "C", a function without arguments that returns a pointer to its table:
+/// acdf_images_module.
+const ReaderModule& module();
+
+/// The same of the module that reads and writes usual OpenEXR files, which exports acdf_openexr_module: opening
+/// what else there is returns null.
+const OpenExrModule& openexr_module();
+
+/// The same of FreeType's, which exports acdf_text_module.
+const TextModule& text_module();
 
 } // namespace acdf::images

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace acdf::images {
@@ -23,6 +24,12 @@ private:
         return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
                static_cast<std::size_t>(channels);
     }
+};
+
+/// What an image file says of itself: a text in UTF-8 by a keyword in ASCII, of which "Description" and "Software"
+/// are known to every format.
+struct Note {
+    std::string name, text;
 };
 
 } // namespace acdf::images

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # installed_program.sh BUILD MAKE_SKY: installs the program alone, moves it elsewhere, and reads an image with it. The
-# program itself is not linked with OpenImageIO or OpenEXR: its modules, which lie beside it, are.
+# program itself is not linked with OpenImageIO, OpenEXR or FreeType: its modules, which lie beside it, are.
 set -euo pipefail
 build=$1 make_sky=$2
 work=$build/program
@@ -12,17 +12,21 @@ cmake --install "$build" --prefix "$work/installed" --component tools >install.l
 mv installed prefix
 module=$(find prefix -name acdf_images.so)
 openexr=$(find prefix -name acdf_openexr.so)
-diff <(find prefix -type f | sort) <(printf '%s\n' prefix/bin/acdf "$module" "$openexr" | sort)
+text=$(find prefix -name acdf_text.so)
+diff <(find prefix -type f | sort) <(printf '%s\n' prefix/bin/acdf "$module" "$openexr" "$text" | sort)
 
 needed() { readelf -d "$1" | grep NEEDED; }
 needed "$module" | grep -q OpenImageIO
 needed "$openexr" | grep -q OpenEXR
-if needed "$openexr" | grep OpenImageIO; then
-    echo "the module of OpenEXR is linked with OpenImageIO" >&2
-    exit 1
-fi
+needed "$text" | grep -q freetype
+for light in "$openexr" "$text"; do
+    if needed "$light" | grep OpenImageIO; then
+        echo "$light is linked with OpenImageIO" >&2
+        exit 1
+    fi
+done
 needed prefix/bin/acdf | grep -q libstdc++
-if needed prefix/bin/acdf | grep -E 'OpenImageIO|OpenEXR'; then
+if needed prefix/bin/acdf | grep -E 'OpenImageIO|OpenEXR|freetype'; then
     echo "acdf is linked with a library of images" >&2
     exit 1
 fi

@@ -1,10 +1,16 @@
-// A module of a version that never was, in the place of either.
+// A module of a version that never was, in the place of any.
 #include "images/module.h"
 
-extern "C" const acdf::images::Module* acdf_images_module() {
-    static acdf::images::Module functions{};
+extern "C" const acdf::images::OpenExrModule* acdf_openexr_module() {
+    static acdf::images::OpenExrModule functions{};
     functions.version = "0.0";
     return &functions;
 }
 
-extern "C" const acdf::images::ReaderModule* acdf_openexr_module() { return acdf_images_module(); }
+extern "C" const acdf::images::ReaderModule* acdf_images_module() { return acdf_openexr_module(); }
+
+extern "C" const acdf::images::TextModule* acdf_text_module() {
+    static acdf::images::TextModule functions{};
+    functions.version = "0.0";
+    return &functions;
+}

@@ -2,6 +2,7 @@
 #include "tests/inputs/places.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
+#include "tools/plot/legend.h"
 
 #include <cstdlib>
 #include <set>
@@ -40,6 +41,8 @@ bool has(const std::set<std::string>& names, const std::string& beginning) {
     return found != names.end() && found->rfind(beginning, 0) == 0;
 }
 
+const char* const kModules[] = {acdf_test::kImagesModule, acdf_test::kOpenExrModule, acdf_test::kTextModule};
+
 class Startup : public testing::Test {
 protected:
     Folder folder;
@@ -53,7 +56,7 @@ protected:
         npy.resize(127, ' ');
         write_text(table, npy + "\n" + std::string("\0\0\x80\x3F\0\0\0\x40\0\0\x40\x40\0\0\x80\x40", 16)); // 1 to 4
     }
-    /// 32 x 16 texels, as OpenImageIO alone reads them and as OpenEXR does; opens the module in this process.
+    /// 32 x 16 texels, as OpenImageIO alone reads them and as OpenEXR does.
     void write_images() {
         std::vector<float> rgb(32 * 16 * 3);
         for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = 1.0f + static_cast<float>(i / 3 % 7);
@@ -74,12 +77,16 @@ protected:
         return fs::canonical(place.parent_path()) / place.filename();
     }
     void expect_refused(const std::string& program, const std::string& why) {
-        expect_refused(program, place_of(acdf_test::kImagesModule), why,
-                       {{"env", image, "-o", folder / "x.acdf", "-q"},
-                        {"plot", sky, "-o", folder / "x.png", "-q"},
-                        {"batch", image, "-o", folder / "out", "-q"}});
+        expect_refused(
+            program, place_of(acdf_test::kImagesModule), why,
+            {{"env", image, "-o", folder / "x.acdf", "-q"}, {"batch", image, "-o", folder / "out", "-q"}});
         expect_refused(program, place_of(acdf_test::kOpenExrModule), why,
-                       {{"env", exr, "-o", folder / "x.acdf", "-q"}, {"batch", exr, "-o", folder / "out", "-q"}});
+                       {{"env", exr, "-o", folder / "x.acdf", "-q"},
+                        {"plot", sky, "-o", folder / "x.exr", "-q"},
+                        {"batch", exr, "-o", folder / "out", "-q"}});
+        if (!tools::find_font().empty())
+            expect_refused(program, place_of(acdf_test::kTextModule), why,
+                           {{"plot", sky, "-o", folder / "x.png", "-q"}});
     }
     void expect_refused(const std::string& program, const std::string& module, const std::string& why,
                         const std::vector<std::vector<std::string>>& commands) {
@@ -92,6 +99,7 @@ protected:
         }
         EXPECT_FALSE(fs::exists(folder / "x.acdf"));
         EXPECT_FALSE(fs::exists(folder / "x.png"));
+        EXPECT_FALSE(fs::exists(folder / "x.exr"));
     }
 };
 
@@ -126,7 +134,6 @@ TEST_F(Startup, LoadsThemWhereThereIs) {
     write_images();
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"env", image, "-o", folder / "x.acdf", "-q"},
-          {"plot", sky, "-o", folder / "x.png", "-q"},
           {"batch", image, "-o", folder / "out", "--dry-run", "--json"}}) {
         const std::set<std::string> names = loaded_by(command);
         EXPECT_TRUE(has(names, "libOpenImageIO")) << command[0];
@@ -151,11 +158,25 @@ TEST_F(Startup, LoadsNoMoreThanOpenExrWhereThatIsEnough) {
     EXPECT_FALSE(has(names, "acdf_")); // which needs neither
 }
 
+TEST_F(Startup, LoadsNoMoreThanAFontForAPicture) {
+    const bool text = !tools::find_font().empty();
+    const std::set<std::string> labelled = loaded_by({"plot", sky, "-o", folder / "x.png", "-q"});
+    EXPECT_EQ(has(labelled, "acdf_text"), text);
+    EXPECT_FALSE(has(labelled, "acdf_images"));
+    EXPECT_FALSE(has(labelled, "acdf_openexr"));
+    EXPECT_LT(labelled.size(), 25u);
+    const std::set<std::string> plain = loaded_by({"plot", sky, "-o", folder / "y.png", "-q", "--no-legend"});
+    EXPECT_FALSE(has(plain, "acdf_"));
+    const std::set<std::string> floats = loaded_by({"plot", sky, "-o", folder / "x.exr", "-q"});
+    EXPECT_TRUE(has(floats, "acdf_openexr"));
+    EXPECT_FALSE(has(floats, "acdf_images"));
+    EXPECT_FALSE(has(floats, "acdf_text"));
+}
+
 TEST_F(Startup, TheProgramAndItsModulesMayBeMovedTogether) {
     write_images();
     const std::string program = copied_program();
-    fs::copy_file(acdf_test::kImagesModule, place_of(acdf_test::kImagesModule));
-    fs::copy_file(acdf_test::kOpenExrModule, place_of(acdf_test::kOpenExrModule));
+    for (const char* module : kModules) fs::copy_file(module, place_of(module));
     for (const std::string& probe : {image, exr}) {
         const Result result = run_acdf({"env", probe, "-o", folder / "x.acdf", "--force"}, "", program);
         EXPECT_EQ(result.code, 0) << result.err;
@@ -174,8 +195,7 @@ TEST_F(Startup, AMissingModuleIsNamed) {
 TEST_F(Startup, ADamagedModuleIsNamed) {
     write_images();
     const auto damage = [&](const std::string& bytes) {
-        for (const char* module : {acdf_test::kImagesModule, acdf_test::kOpenExrModule})
-            write_text(place_of(module), bytes);
+        for (const char* module : kModules) write_text(place_of(module), bytes);
     };
     damage("no library");
     expect_refused(copied_program(), "too short");
@@ -185,8 +205,7 @@ TEST_F(Startup, ADamagedModuleIsNamed) {
 
 TEST_F(Startup, AModuleOfAnotherVersionIsNamed) {
     write_images();
-    for (const char* module : {acdf_test::kImagesModule, acdf_test::kOpenExrModule})
-        fs::copy_file(acdf_test::kOtherModule, place_of(module));
+    for (const char* module : kModules) fs::copy_file(acdf_test::kOtherModule, place_of(module));
     expect_refused(copied_program(), "it is of version 0.0, not ");
 }
 

@@ -1,6 +1,6 @@
 #include "tools/demo/probes.h"
 
-#include "images/image_file.h"
+#include "images/openexr.h"
 #include "tools/cli/output.h"
 
 #include <array>
@@ -75,8 +75,7 @@ void write_probe(const DemoProbe& probe, const std::string& path, bool force) {
     Output output(path, force);
     images::Picture picture(probe.width, probe.height);
     picture.values = probe.rgb;
-    const std::vector<std::uint8_t> bytes =
-        images::encode(picture, {probe.name + ".exr", false, {}, {{"compression", "zip"}}});
+    const std::vector<std::uint8_t> bytes = images::encode_exr(picture, {"R", "G", "B"}, {});
     output.write(bytes.data(), bytes.size());
     output.commit();
 }

@@ -1,28 +1,35 @@
 #include "tools/plot/colour.h"
 
-#include "images/module.h"
-
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <vector>
 
 namespace acdf::tools {
 namespace {
 
-// "Turbo" (A. Mikhailov, "Turbo, an improved rainbow colormap for visualization", 2019) without its ends, where it
-// fades to near-black: the largest density shall be red, not brown, and the smallest no neighbour of zero_colour.
-constexpr double first_colour = 0.05, last_colour = 0.91;
+/// Evenly spaced colours of a map, sRGB, with straight lines between them.
+using Knots = std::vector<Colour>;
 
-// sRGB; the ends are equally dark.
-const std::vector<float> diverging_knots = {0.16f, 0.33f, 0.66f, 0.93f, 0.93f, 0.91f, 0.70f, 0.15f, 0.17f};
+// The spectrum backwards, in steps that look about as large: from one knot to the next 0.12 to 0.18 in Oklab (B.
+// Ottosson, 2020). Hue falls all the way. Lightness rises to yellow and falls to a red as dark as blue, so that
+// neither end is a neighbour of zero_colour.
+const Knots rainbow_knots = {{0.34f, 0.14f, 0.60f}, {0.24f, 0.36f, 0.92f}, {0.10f, 0.60f, 0.92f},
+                             {0.08f, 0.76f, 0.72f}, {0.34f, 0.86f, 0.36f}, {0.80f, 0.88f, 0.20f},
+                             {0.98f, 0.66f, 0.14f}, {0.92f, 0.38f, 0.08f}, {0.72f, 0.07f, 0.04f}};
 
-images::Picture colours(const images::Picture& position, ColourMap map) {
-    images::Picture out;
-    std::string error;
-    const std::vector<float> knots = map == ColourMap::rainbow ? std::vector<float>() : diverging_knots;
-    if (!images::module().colour_map(position, "turbo", knots, out, error))
-        throw std::runtime_error("cannot make colours: " + error);
+// The ends are equally dark.
+const Knots diverging_knots = {{0.16f, 0.33f, 0.66f}, {0.93f, 0.93f, 0.91f}, {0.70f, 0.15f, 0.17f}};
+
+/// At `t` in [0, 1].
+Colour colour_at(const Knots& knots, float t) {
+    const float place = t * static_cast<float>(knots.size() - 1);
+    const std::size_t below = std::min(static_cast<std::size_t>(place), knots.size() - 2);
+    const float share = place - static_cast<float>(below);
+    Colour out;
+    for (std::size_t c = 0; c < out.size(); ++c)
+        out[c] = knots[below][c] + share * (knots[below + 1][c] - knots[below][c]);
     return out;
 }
 
@@ -33,26 +40,16 @@ float linear_to_srgb(float linear) {
 }
 
 images::Picture false_colour(const DensityImage& image, const DensityRange& range, ColourMap map) {
-    const double first = map == ColourMap::rainbow ? first_colour : 0.0,
-                 last = map == ColourMap::rainbow ? last_colour : 1.0;
-    const int width = image.map.width, height = image.map.height;
-    images::Picture scalar(width, height, 1);
-    tbb::parallel_for(std::size_t{0}, image.density.size(), [&](std::size_t i) {
-        const double density = static_cast<double>(image.density[i]);
-        const double t = density > 0.0 ? range.position(density) : 0.0;
-        scalar.values[i] = static_cast<float>(first + t * (last - first));
-    });
-    images::Picture colour = colours(scalar, map);
+    const Knots& knots = map == ColourMap::rainbow ? rainbow_knots : diverging_knots;
+    images::Picture picture(image.map.width, image.map.height);
     tbb::parallel_for(std::size_t{0}, image.density.size(), [&](std::size_t i) {
         const float density = image.density[i];
-        for (std::size_t c = 0; c < 3; ++c) {
-            float& value = colour.values[3 * i + c];
-            if (density > 0.0f && map == ColourMap::rainbow)
-                value = linear_to_srgb(value); // OpenImageIO's colour maps are linear light
-            else if (!(density > 0.0f)) value = density == 0.0f ? zero_colour[c] : background[c];
-        }
+        Colour colour = density == 0.0f ? zero_colour : background;
+        if (density > 0.0f)
+            colour = colour_at(knots, static_cast<float>(range.position(static_cast<double>(density))));
+        std::copy(colour.begin(), colour.end(), picture.values.begin() + static_cast<std::ptrdiff_t>(3 * i));
     });
-    return colour;
+    return picture;
 }
 
 } // namespace acdf::tools

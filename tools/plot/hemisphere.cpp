@@ -64,9 +64,9 @@ private:
     /// Text around a place.
     void write(double x, double y, const char* text, const Colour& colour) const {
         int column, row, width = 0;
-        if (font_.empty() || !images::module().text_width(text, size_, font_, width)) return;
+        if (font_.empty() || !images::text_module().width(text, size_, font_, width)) return;
         place(x, y, column, row);
-        images::module().draw_text(picture_, column - width / 2, row + size_ * 2 / 5, text, size_, font_,
+        images::text_module().draw(picture_, column - width / 2, row + size_ * 2 / 5, text, size_, font_,
                                    colour.data());
     }
 

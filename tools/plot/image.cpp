@@ -1,39 +1,31 @@
 #include "tools/plot/image.h"
 
-#include "images/image_file.h"
+#include "images/openexr.h"
+#include "images/png.h"
 
 #include <algorithm>
 
 namespace acdf::tools {
 namespace {
 
-using images::Attribute;
-
-const Attribute zip{"compression", "zip"};
-
-std::vector<std::uint8_t> encode(const images::Picture& picture, images::Encoding encoding,
-                                 const ImageNotes& notes) {
-    encoding.attributes.push_back({"Software", notes.software});
-    encoding.attributes.push_back({"ImageDescription", notes.description});
-    return images::encode(picture, encoding);
+std::vector<images::Note> in_file(const ImageNotes& notes) {
+    return {{"Software", notes.software}, {"Description", notes.description}};
 }
 
 } // namespace
 
 std::vector<std::uint8_t> encode_png(const images::Picture& picture, const ImageNotes& notes) {
-    return encode(picture,
-                  {"picture.png", true, {}, {{"oiio:ColorSpace", "sRGB"}, {"png:compressionLevel", "", true, 9}}},
-                  notes);
+    return images::encode_png(picture, in_file(notes));
 }
 
 std::vector<std::uint8_t> encode_rgb_exr(const images::Picture& picture, const ImageNotes& notes) {
-    return encode(picture, {"picture.exr", false, {}, {zip}}, notes);
+    return images::encode_exr(picture, {"R", "G", "B"}, in_file(notes));
 }
 
 std::vector<std::uint8_t> encode_exr(const DensityImage& image, const ImageNotes& notes) {
     images::Picture picture(image.map.width, image.map.height, 1);
     std::replace_copy(image.density.begin(), image.density.end(), picture.values.begin(), shows_nothing, 0.0f);
-    return encode(picture, {"picture.exr", false, {"Y"}, {zip}}, notes);
+    return images::encode_exr(picture, {"Y"}, in_file(notes));
 }
 
 } // namespace acdf::tools

@@ -1,5 +1,6 @@
 #include "tools/plot/legend.h"
 
+#include "images/font.h"
 #include "images/module.h"
 #include "tools/plot/colour.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr Colour ink = {0.12f, 0.12f, 0.12f};
 
-// OpenImageIO 2.4 garbles what is not ASCII.
+// Text is drawn in ASCII.
 std::string to_ascii(const std::string& utf8) {
     std::string out;
     for (const char c : utf8) {
@@ -29,12 +30,12 @@ public:
 
     int width(const std::string& text, int size) const {
         int out = 0;
-        return images::module().text_width(text, size, font_, out) ? out : 0;
+        return images::text_module().width(text, size, font_, out) ? out : 0;
     }
 
     /// Text that begins at x; `y` is the baseline. Returns where it ends.
     int write(int x, int y, const std::string& text, int size) const {
-        images::module().draw_text(image_, x, y, text, size, font_, ink.data());
+        images::text_module().draw(image_, x, y, text, size, font_, ink.data());
         return x + width(text, size);
     }
 
@@ -134,8 +135,10 @@ int LegendLayout::row_of(double density, const DensityRange& range) const {
 }
 
 std::string find_font() {
-    for (const char* name : {"DejaVuSans", "LiberationSans-Regular", "NotoSans-Regular", "FreeSans", "Arial"})
-        if (int width = 0; images::module().text_width("0", 16, name, width)) return name;
+    for (const char* name : {"DejaVuSans", "LiberationSans-Regular", "NotoSans-Regular", "FreeSans", "Arial"}) {
+        const std::string path = images::find_font_file(name);
+        if (int width = 0; !path.empty() && images::text_module().width("0", 16, path, width)) return path;
+    }
     return {};
 }
 

@@ -36,7 +36,7 @@ struct Legend {
     ColourMap colours = ColourMap::rainbow;
 };
 
-/// A font that the module of images can draw with, by name; empty where the system has none.
+/// The path of a font that text can be drawn with; empty where the system has none.
 std::string find_font();
 
 /// `picture` (RGB floats as displayed) with a title and a colour bar: a tick at each power of ten, small ticks

@@ -21,7 +21,7 @@ images::Picture arranged(const std::vector<Panel>& panels, int columns, const st
             std::copy_n(panels[i].picture.at(0, row), 3 * width, out.at(x, y + row));
         constexpr Colour text = {0.12f, 0.12f, 0.12f};
         if (!font.empty())
-            images::module().draw_text(out, x, y - size / 2, panels[i].label.c_str(), size, font, text.data());
+            images::text_module().draw(out, x, y - size / 2, panels[i].label.c_str(), size, font, text.data());
     }
     return out;
 }

@@ -1,6 +1,9 @@
-// The module that reads usual OpenEXR files: one part in rows, of R, G and B, maybe with A, in floats. What else
-// there is, and whatever is wrong with a file, is left to OpenImageIO, which takes a hundred times longer to load.
+// The module that writes OpenEXR files (write.cpp) and reads usual ones: one part in rows, of R, G and B, maybe
+// with A, in floats. What else there is, and whatever is wrong with a file, is left to OpenImageIO, which takes a
+// hundred times longer to load.
 #include "images/one_part.h"
+#include "threads.h"
+#include "write.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -8,19 +11,15 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <exception>
 #include <memory>
-#include <thread>
 
 namespace acdf::images {
 namespace {
-
-constexpr std::int64_t kPixelsOfThreads = 1 << 20; // from where on several threads read an image
 
 Window window_of(const Imath::Box2i& box) {
     return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
@@ -72,18 +71,12 @@ struct OpenExr {
     std::vector<std::string> channels;
 };
 
-/// Once: others may be reading.
-void start_threads(int count) {
-    static const bool started = (Imf::setGlobalThreadCount(count), true);
-    static_cast<void>(started);
-}
-
 bool open_file(const std::string& path, int threads, OpenExr& out) {
-    if (threads == 0) threads = static_cast<int>(std::thread::hardware_concurrency());
-    out.file = std::make_unique<Imf::InputFile>(path.c_str(), threads > 1 ? threads : 0);
+    const int count = thread_count(threads);
+    out.file = std::make_unique<Imf::InputFile>(path.c_str(), count);
     const Imf::Header& header = out.file->header();
     const Window data = window_of(header.dataWindow());
-    if (threads > 1 && std::int64_t{data.width} * data.height >= kPixelsOfThreads) start_threads(threads);
+    start_threads(count, std::int64_t{data.width} * data.height);
     out.channels = usual_channels(header.channels());
     return !header.hasTileDescription() && out.file->isComplete() && !out.channels.empty() &&
            attributes_are_usual(header);
@@ -143,9 +136,9 @@ std::string text(const void*, const char* name) {
 } // namespace
 } // namespace acdf::images
 
-extern "C" __attribute__((visibility("default"))) const acdf::images::ReaderModule* acdf_openexr_module() {
+extern "C" __attribute__((visibility("default"))) const acdf::images::OpenExrModule* acdf_openexr_module() {
     using namespace acdf::images;
-    static const ReaderModule functions = {ACDF_VERSION,
-                                           {open, close, seek_one_part, read, text, no_integer, no_real}};
+    static const OpenExrModule functions = {
+        {ACDF_VERSION, {open, close, seek_one_part, read, text, no_integer, no_real}}, encode_openexr};
     return &functions;
 }
