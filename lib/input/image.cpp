@@ -2,6 +2,7 @@
 
 #include "images/image_file.h"
 #include "input/file_name.h"
+#include "input/other_kind.h"
 #include "input/transfer.h"
 
 #include <algorithm>
@@ -104,8 +105,10 @@ bool overlap(const Window& a, const Window& b) {
 class Reader {
 public:
     Reader(const std::string& path, int threads) : path_(path), file_(path, threads) {
-        if (!file_.is_open())
-            fail("no image that can be read (" + file_.error() + "); give an .exr, .hdr, .tif or .tx");
+        if (file_.is_open()) return;
+        const std::string kind = kind_of_no_image(path);
+        fail(kind.empty() ? "no image that can be read (" + file_.error() + "); give an .exr, .hdr, .tif or .tx"
+                          : kind);
     }
 
     Image read(const std::function<TakeRows(const Image& image)>& stream) {

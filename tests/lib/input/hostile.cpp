@@ -1,9 +1,11 @@
 // Files that are damaged, cut short or no images: one clear line each, never a crash or half a probe.
+#include "input/merl.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/input/write.h"
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <random>
 
 namespace {
@@ -21,6 +23,19 @@ TEST(InputHostile, NoFileFolderEmptyText) {
         write_bytes(folder.file(name), "Dear sir,\nthis is not an image.\n");
         EXPECT_CONTAINS(refusal(folder.file(name)), "no image");
     }
+}
+
+TEST(InputHostile, FilesOfOtherKindsAreCalledByTheirNames) {
+    const Folder folder;
+    write_bytes(folder.file("a"), "\xab\x41\x43\x44\x46" + std::string(100, ' '));
+    EXPECT_CONTAINS(refusal(folder.file("a")), "it is an .acdf file; give the image");
+    write_bytes(folder.file("a"), "tensor_file" + std::string(100, '\0'));
+    EXPECT_CONTAINS(refusal(folder.file("a")), "acdf brdf takes");
+    write_bytes(folder.file("a"), "\x93NUMPY" + std::string(100, '\0'));
+    EXPECT_CONTAINS(refusal(folder.file("a")), "acdf table takes");
+    write_bytes(folder.file("a"), "");
+    std::filesystem::resize_file(folder.file("a"), MerlLayout::bytes);
+    EXPECT_CONTAINS(refusal(folder.file("a")), "MERL BRDF");
 }
 
 std::vector<std::string> sample_files(const Folder& folder) {
