@@ -15,6 +15,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -70,9 +71,20 @@ std::string what_is_wrong(const CLI::ParseError& error) {
     return text;
 }
 
+// CLI11 tells words that nothing takes last first, and knows no word for a command that is none.
+std::string what_is_extra(const CLI::App& program) {
+    const std::vector<std::string> words = program.remaining(true);
+    if (program.get_subcommands().empty() && !words.empty() && words.front().rfind('-', 0) != 0)
+        return "there is no command '" + on_one_line(words.front()) + "'";
+    std::string text;
+    for (const std::string& word : words) text += " " + word;
+    return "not expected:" + on_one_line(text);
+}
+
 int usage_error(const CLI::App& program, const CLI::ParseError& error) {
     const std::string name = called(program);
-    say(name + ": " + what_is_wrong(error) + "; see `" + name + " --help`");
+    const bool extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+    say(name + ": " + (extra ? what_is_extra(program) : what_is_wrong(error)) + "; see `" + name + " --help`");
     return exit_usage;
 }
 

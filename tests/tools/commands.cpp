@@ -110,6 +110,9 @@ TEST_F(Commands, CompletionsKnowEveryCommandAndOption) {
 TEST_F(Commands, WrongUsageIsExitCode2AndOneLine) {
     expect_one_line_error(run_acdf({"--no-such-option"}), 2, "--no-such-option");
     expect_one_line_error(run_acdf({"no-such-command"}), 2, "no-such-command");
+    expect_one_line_error(run_acdf({"Env", sky, "-o", folder / "out"}), 2, "there is no command 'Env'");
+    expect_one_line_error(run_acdf({""}), 2, "there is no command ''");
+    expect_one_line_error(run_acdf({"sample", sky, "-n", "1", "--sed", "7"}), 2, "not expected: --sed 7");
     expect_one_line_error(run_acdf({"sample", sky, "-n", "many"}), 2, "many");
     expect_one_line_error(run_acdf({"sample", sky, "-n", "0"}), 2, "acdf sample --help");
     expect_one_line_error(run_acdf({"sample", sky, "-n", "-1"}), 2, "acdf sample --help");

@@ -299,7 +299,8 @@ void add_scene_options(CLI::App& command, RenderArguments& options) {
                     "places-portals:4MB, "
                     "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
                     "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
-                    "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...)")
+                    "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...), product(local:1MB,brdf:64KiB) and "
+                    "others of docs/render.md")
         ->option_text("TEXT ...")
         ->expected(1)
         ->take_all()
