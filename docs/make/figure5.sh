@@ -29,8 +29,7 @@ work=$(mktemp -d)
 trap 'rm -rf -- "$work"' EXIT
 
 plot() { # FILE OUT [OPTION...]
-    "$acdf" plot "$1" -o "$2" --probe-projection angular --projection angular --width "$panel" --range "$range" \
-        --no-knots --quiet "${@:3}"
+    "$acdf" plot "$1" -o "$2" --projection angular --width "$panel" --range "$range" --no-knots --quiet "${@:3}"
 }
 
 json_number() { # KEY, JSON on stdin
@@ -64,14 +63,14 @@ make_panel u64 "(e) uniform, 64 x 64" --fit uniform --knots 64x64 --order z
 make_panel a64 "(f) adaptive (paper), 64 x 64" --fit cdf --knots 64x64 --order z
 make_panel variance "(d) minimum variance" --fit variance --cells 4096
 
-plot "$probe" "$work/full.png" --no-legend
+plot "$probe" "$work/full.png" --no-legend --probe-projection angular
 # What is left is rounding: the table samples the probe exactly.
 details=$(awk -v v="$full" 'BEGIN { printf v < 1e-6 ? "relative variance below 1e-6" : "relative variance %.3g", v }')
 printf '%-12s %s\n' full "$details"
 add_caption "$work/full.png" "(a) full-resolution CDF" "$details"
 
 # The colour bar is the part of a plot with legend right of the picture and below the title.
-plot "$probe" "$work/legend.png"
+plot "$probe" "$work/legend.png" --probe-projection angular
 read -r width height < <(oiiotool --info "$work/legend.png" | sed -n 's/.* : *\([0-9]*\) x *\([0-9]*\),.*/\1 \2/p')
 left=$((panel + 20))
 oiiotool "$work/legend.png" --cut "$((width - left))x$height+$left+0" -d uint8 -o "$work/bar.png"
