@@ -214,7 +214,7 @@ AcdfGroups* GroupsMaker::make(std::size_t most_bytes, const AcdfAllocator& alloc
             4 * (sizeof(AcdfGroups) / 4 + groups_.bytes() / 4 + (groups_.size() + more_) * ACDF_GROUP_WORDS +
                  whole_lines(cells * sizeof(AcdfGroupCell) / 4) + whole_lines(cells) +
                  whole_lines(heights_.bytes() / 4));
-        SquaresMaker numbers(scratch_), places(scratch_);
+        SquaresMaker numbers(scratch_, instructions_), places(scratch_, instructions_);
         if (others > most_bytes) continue;
         if (!numbers.make(numbers_, kDrawnBits, SquaresMaker::kUsualWork, most_bytes - others)) return nullptr;
         const std::size_t but_places = others + 4 * numbers.words();

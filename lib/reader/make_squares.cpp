@@ -18,6 +18,8 @@ constexpr std::size_t kLookedAt = 32; // cells, to choose an axis
 
 constexpr std::size_t kUsualBoxes = 4; // for each block that there will be
 
+constexpr std::size_t kRoomBehind = 2 * ACDF_BLOCK_CELLS; // lists: kBehindList, and what is less than a block
+
 constexpr KeySpan kNone = {1, 0};
 
 struct AxisOfBlock {
@@ -87,25 +89,58 @@ bool SquaresMaker::make(const KeyBoxes& boxes, u32 key_bits, std::size_t work_a_
     most_words_ = most_bytes / 4;
     work_ = work_a_box * (count + ACDF_BLOCK_CELLS);
     const Rectangle whole = {{0, 0}, {key_bits, key_bits}};
-    list_.reserve(4 * count + ACDF_BLOCK_CELLS);
+    const Frame frame = framed(whole);
     const std::size_t blocks = count / kUsualBoxes + 1;
     block_boxes_.reserve(blocks * ACDF_BLOCK_CELLS);
     block_cells_.reserve(blocks * ACDF_BLOCK_CELLS);
     block(whole, 0); // no cells: the empty one
-    std::uint16_t* const listed = list_.add(count, 0);
-    std::size_t some = 0;
-    for (std::size_t i = 0; listed && i < count; ++i) {
-        listed[some] = static_cast<std::uint16_t>(i);
-        some += (spans_[0][i].low <= spans_[0][i].high) & (spans_[1][i].low <= spans_[1][i].high);
-    }
-    list_.cut(some);
+    if (!list_all(count, frame)) return false;
     u32 bits = 0;
     while (bits < kMostBits && (std::size_t{3} << bits) < 2 * count) ++bits;
     grid_ = shaped(whole, 0, bits, 0);
     entries_.add(std::size_t{1} << bits, kEmptyEntry);
-    divide(grid_, whole, 0);
+    divide(grid_, whole, frame, 0);
     return !(entries_.failed() || finer_.failed() || block_boxes_.failed() || block_cells_.failed() ||
              list_.failed());
+}
+
+SquaresMaker::Frame SquaresMaker::framed(const Rectangle& rectangle) {
+    Frame frame = {{rectangle.origin[0], rectangle.origin[1]}, {0, 0}};
+    for (int axis = 0; axis < 2; ++axis)
+        if (rectangle.log2[axis] > kListedBits) frame.shift[axis] = rectangle.log2[axis] - kListedBits;
+    return frame;
+}
+
+Halving SquaresMaker::halving(const Rectangle& rectangle, const Frame& frame, int axis) {
+    const u32 middle = rectangle.origin[axis] + (1u << (rectangle.log2[axis] - 1)) - frame.origin[axis];
+    const u32 low = 2 * kListedBits * static_cast<u32>(axis), high = low + kListedBits;
+    const ListedBox step = middle >> frame.shift[axis], side = kListedLast;
+    return {side << low, step << low, side << high, step << high};
+}
+
+// A box in the list of a rectangle that it touches.
+ListedBox SquaresMaker::listed(std::size_t box, const Frame& frame) const {
+    ListedBox sides = box;
+    for (int axis = 1; axis >= 0; --axis) {
+        const KeySpan& span = spans_[axis][box];
+        const u32 origin = frame.origin[axis], low = std::max(span.low, origin);
+        const u32 first = (low - origin) >> frame.shift[axis], last = (span.high - origin) >> frame.shift[axis];
+        sides = sides << 2 * kListedBits | ListedBox{std::min(last, kListedLast)} << kListedBits | first;
+    }
+    return sides;
+}
+
+// All boxes that have keys of both axes.
+bool SquaresMaker::list_all(std::size_t count, const Frame& frame) {
+    if (!list_.reserve(2 * count + kRoomBehind)) return false;
+    ListedBox* const list = list_.add(count, 0);
+    std::size_t some = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        list[some] = listed(i, frame);
+        some += (spans_[0][i].low <= spans_[0][i].high) & (spans_[1][i].low <= spans_[1][i].high);
+    }
+    list_.cut(some);
+    return true;
 }
 
 // Halves the entries of a grid as often as it has bits, each time along the axis where that cuts fewer cells.
@@ -117,7 +152,7 @@ SquaresMaker::Grid SquaresMaker::shaped(const Rectangle& rectangle, std::size_t 
     u32 low[2][kLookedAt] = {}, high[2][kLookedAt] = {}; // those that are not set are cut by nothing
     for (std::size_t k = first, i = 0; k < list_.size(); k += step, ++i)
         for (int axis = 0; axis < 2; ++axis) {
-            const KeySpan& span = spans_[axis][list_[k]];
+            const KeySpan& span = spans_[axis][listed_number(list_[k])];
             const u32 end = rectangle.origin[axis] + ((1u << rectangle.log2[axis]) - 1);
             low[axis][i] = std::max(span.low, rectangle.origin[axis]);
             high[axis][i] = std::min(span.high, end);
@@ -144,60 +179,51 @@ SquaresMaker::Grid SquaresMaker::shaped(const Rectangle& rectangle, std::size_t 
 }
 
 // The cells of the rectangle are the list from `first` on, at the end of the stack.
-void SquaresMaker::divide(const Grid& grid, const Rectangle& rectangle, std::size_t first) {
-    const std::size_t end = list_.size(), count = end - first;
+void SquaresMaker::divide(const Grid& grid, const Rectangle& rectangle, const Frame& frame, std::size_t first) {
+    const std::size_t count = list_.size() - first;
     if (count <= ACDF_BLOCK_CELLS) return fill(grid, rectangle, block(rectangle, first));
     if (work_ < 2 * count || list_.failed() || words() > most_words_) { // the entries stay empty
         complete_ = false;
         return;
     }
-    work_ -= 2 * count;
-    const int axis = best_axis(grid, rectangle, first);
-    if (axis < 0) return refine(grid, rectangle, first);
-    Rectangle half = rectangle;
-    const u32 middle = rectangle.origin[axis] + (1u << --half.log2[axis]);
-    if (!list_.reserve(end + 2 * count + 1)) return;
-    const KeySpan* const spans = spans_[axis];
-    const std::uint16_t* const cells = list_.data() + first;
-    std::uint16_t* const lower = list_.data() + end;
-    std::uint16_t* const upper = lower + count;
-    std::size_t lowers = 0, uppers = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint16_t cell = cells[i];
-        lower[lowers] = upper[uppers] = cell;
-        lowers += spans[cell].low < middle;
-        uppers += spans[cell].high >= middle;
+    const bool may[2] = {rectangle.log2[0] > grid.shift[0], rectangle.log2[1] > grid.shift[1]};
+    if ((may[0] && rectangle.log2[0] <= frame.shift[0]) || (may[1] && rectangle.log2[1] <= frame.shift[1])) {
+        const Frame closer = framed(rectangle); // steps are too coarse
+        for (std::size_t i = first; i < list_.size(); ++i) list_[i] = listed(listed_number(list_[i]), closer);
+        return divide(grid, rectangle, closer, first);
     }
-    list_.cut(end + count + uppers);
-    half.origin[axis] = middle;
-    divide(grid, half, end + count);
-    list_.cut(end + lowers);
+    work_ -= 2 * count;
+    const int axis = best_axis(grid, rectangle, frame, first);
+    if (axis < 0) return refine(grid, rectangle, frame, first);
+    const std::size_t above = first + count + kBehindList;
+    if (!list_.reserve(above + count + kRoomBehind)) return;
+    const HalvedCounts counts =
+        lists_.halve(list_.data() + first, count, halving(rectangle, frame, axis), list_.data() + above);
+    Rectangle half = rectangle;
+    half.origin[axis] += 1u << --half.log2[axis];
+    list_.cut(above + counts.upper);
+    divide(grid, half, frame, above);
+    list_.cut(first + counts.lower);
     half.origin[axis] = rectangle.origin[axis];
-    divide(grid, half, end);
-    list_.cut(end);
+    divide(grid, half, frame, first);
+    list_.cut(first);
 }
 
 // The axis whose middle cuts fewer cells, of some; -1 where the rectangle is as small as an entry.
-int SquaresMaker::best_axis(const Grid& grid, const Rectangle& rectangle, std::size_t first) const {
+int SquaresMaker::best_axis(const Grid& grid, const Rectangle& rectangle, const Frame& frame,
+                            std::size_t first) const {
     const bool may[2] = {rectangle.log2[0] > grid.shift[0], rectangle.log2[1] > grid.shift[1]};
     if (!may[0] || !may[1]) return may[0] ? 0 : may[1] ? 1 : -1;
-    const u32 middle[2] = {rectangle.origin[0] + (1u << (rectangle.log2[0] - 1)),
-                           rectangle.origin[1] + (1u << (rectangle.log2[1] - 1))};
-    std::size_t cut[2] = {0, 0};
-    const std::size_t step = 1 + (list_.size() - first) / kLookedAt;
-    for (std::size_t i = first; i < list_.size(); i += step) {
-        for (int axis = 0; axis < 2; ++axis) { // begins below and does not end there
-            const KeySpan& span = spans_[axis][list_[i]];
-            cut[axis] += span.low < middle[axis];
-            cut[axis] -= span.high < middle[axis];
-        }
-    }
+    const Halving across[2] = {halving(rectangle, frame, 0), halving(rectangle, frame, 1)};
+    const std::size_t count = list_.size() - first;
+    std::size_t cut[2];
+    lists_.count_cuts(list_.data() + first, count, 1 + count / kLookedAt, across, cut);
     if (cut[0] != cut[1]) return cut[0] < cut[1] ? 0 : 1;
     return rectangle.log2[0] >= rectangle.log2[1] ? 0 : 1;
 }
 
 // A finer grid in a rectangle as small as an entry.
-void SquaresMaker::refine(const Grid& grid, const Rectangle& rectangle, std::size_t first) {
+void SquaresMaker::refine(const Grid& grid, const Rectangle& rectangle, const Frame& frame, std::size_t first) {
     const std::size_t number = (finer_.size() >> ACDF_FINER_BITS);
     if (rectangle.log2[0] + rectangle.log2[1] < ACDF_FINER_BITS || number >> 28 ||
         !finer_.add(1u << ACDF_FINER_BITS, kEmptyEntry)) {
@@ -206,7 +232,7 @@ void SquaresMaker::refine(const Grid& grid, const Rectangle& rectangle, std::siz
     }
     const Grid finer = shaped(rectangle, first, ACDF_FINER_BITS, number + 1);
     fill(grid, rectangle, ACDF_SQUARES_FINER | finer.bits[0] << 28 | static_cast<u32>(number));
-    divide(finer, rectangle, first);
+    divide(finer, rectangle, frame, first);
 }
 
 /// Adds a block with the cells from `first` on and returns its entry.
@@ -222,17 +248,18 @@ u32 SquaresMaker::block(const Rectangle& rectangle, std::size_t first) {
     // Always sixteen, the first one again for those that lack: nothing depends on how many there are.
     const std::size_t end = list_.size();
     if (!list_.reserve(end + ACDF_BLOCK_CELLS)) return kEmptyEntry;
-    std::fill_n(list_.data() + end, ACDF_BLOCK_CELLS, count > 0 ? list_[first] : std::uint16_t{0});
-    const std::uint16_t* const listed = list_.data() + first;
+    std::fill_n(list_.data() + end, ACDF_BLOCK_CELLS, count > 0 ? list_[first] : ListedBox{0});
+    std::uint16_t numbers[ACDF_BLOCK_CELLS];
+    for (std::size_t i = 0; i < ACDF_BLOCK_CELLS; ++i) numbers[i] = listed_number(list_[first + i]);
     for (int i = 0; i < ACDF_BLOCK_CELLS; ++i)
-        cells[i] = static_cast<std::uint16_t>(listed[i] & -static_cast<int>(i < static_cast<int>(count)));
+        cells[i] = static_cast<std::uint16_t>(numbers[i] & -static_cast<int>(i < static_cast<int>(count)));
     u32 shift[2];
     for (int axis = 0; axis < 2; ++axis) {
         shift[axis] = rectangle.log2[axis] > kByteBits ? rectangle.log2[axis] - kByteBits : 0;
         const AxisOfBlock along = {static_cast<int>(rectangle.origin[axis]),
                                    static_cast<int>((1u << rectangle.log2[axis]) - 1),
                                    static_cast<int>(shift[axis])};
-        set_sides(along, count > 0 ? spans_[axis] : &kNone, listed, static_cast<int>(count),
+        set_sides(along, count > 0 ? spans_[axis] : &kNone, numbers, static_cast<int>(count),
                   bytes + 2 * ACDF_BLOCK_CELLS * axis);
     }
     return shift[0] << 26 | shift[1] << 21 | static_cast<u32>(number);

@@ -1,6 +1,7 @@
 // Makes the grids of acdf/squares.h.
 #pragma once
 
+#include "box_lists.h"
 #include "growable.h"
 
 #include <acdf/squares.h>
@@ -43,8 +44,10 @@ private:
 /// The arrays of an AcdfSquares.
 class SquaresMaker {
 public:
-    explicit SquaresMaker(Scratch* scratch = nullptr) noexcept
-        : entries_(scratch), finer_(scratch), block_boxes_(scratch), block_cells_(scratch), list_(scratch) {}
+    /// The same grids by any instructions, of which `most` are the best that are used.
+    explicit SquaresMaker(Scratch* scratch = nullptr, Instructions most = Instructions::avx512) noexcept
+        : lists_(box_lists(most)), entries_(scratch), finer_(scratch), block_boxes_(scratch), block_cells_(scratch),
+          list_(scratch) {}
 
     /// Over boxes (at most 65536) of keys of `key_bits` bits. Boxes without keys of an axis are in no block. The
     /// work is in proportion to how many there are, whatever the boxes: where it would be more, entries name the
@@ -73,20 +76,29 @@ private:
         std::uint32_t bits[2], shift[2];
         std::size_t number; ///< 0: the coarsest; else that of the finer grid, and 1
     };
+    /// Where the boxes of a list were written: sides are told from its origin, in steps of 2^shift keys.
+    struct Frame {
+        std::uint32_t origin[2], shift[2];
+    };
+    static Frame framed(const Rectangle& rectangle);
+    static Halving halving(const Rectangle& rectangle, const Frame& frame, int axis);
+    ListedBox listed(std::size_t box, const Frame& frame) const;
+    bool list_all(std::size_t count, const Frame& frame);
     Grid shaped(const Rectangle& rectangle, std::size_t first, std::uint32_t bits, std::size_t number) const;
-    void divide(const Grid& grid, const Rectangle& rectangle, std::size_t first);
-    void refine(const Grid& grid, const Rectangle& rectangle, std::size_t first);
+    void divide(const Grid& grid, const Rectangle& rectangle, const Frame& frame, std::size_t first);
+    void refine(const Grid& grid, const Rectangle& rectangle, const Frame& frame, std::size_t first);
     std::uint32_t block(const Rectangle& rectangle, std::size_t first);
     void fill(const Grid& grid, const Rectangle& rectangle, std::uint32_t entry);
-    int best_axis(const Grid& grid, const Rectangle& rectangle, std::size_t first) const;
+    int best_axis(const Grid& grid, const Rectangle& rectangle, const Frame& frame, std::size_t first) const;
 
+    const BoxLists& lists_;
     const KeySpan* spans_[2] = {nullptr, nullptr}; ///< of each axis
     Grid grid_ = {};
     std::size_t work_ = 0, most_words_ = 0; ///< work that is left
     bool complete_ = true;
     Growable<std::uint32_t> entries_, finer_, block_boxes_;
     Growable<std::uint16_t> block_cells_;
-    Growable<std::uint16_t> list_; ///< a stack of lists of cells: of the rectangle, of both halves, of theirs
+    Growable<ListedBox> list_; ///< a stack of lists of cells: of the lower half of a rectangle, of the upper one
 };
 
 } // namespace acdf
