@@ -1,39 +1,16 @@
-// What is reckoned of sixteen cells of a group, in loops that compilers make vectors of: no lane branches. One
-// source a set of instructions, compiled for it; nothing here may be inline with external linkage, lest the linker
-// picks code that the processor does not have.
+// What is reckoned of sixteen cells of a group. Internal linkage: see cell_lanes_kernel.h.
 #pragma once
 
+#include "cell_lanes_kernel.h"
 #include "group_cells.h"
 
 #include <cmath>
 
 namespace {
 
-constexpr int kGroupLanes = ACDF_BLOCK_CELLS;
-constexpr int kLanesTogether = 8; // that are written together: some past the last cell
-
 // Where a draw in a cell is told to lie is less than 2^-24 radians off.
 constexpr double kAngleSteps = 0x1p8;
 constexpr double kNeverSure = 0x1p-32; // a width of numbers for which AcdfGroupAxis::scale is 1
-
-/// Cells of a group as their curves tell them, one a lane. In lanes that none is in others are, or none yet.
-struct GroupLanes {
-    static constexpr int kRoom = kGroupLanes + kLanesTogether;
-
-    /// Cumulative values of the segment, and the maximum. Equal ones: a dark cell.
-    alignas(64) double from[kRoom] = {}, to[kRoom] = {}, all[kRoom];
-    /// Random numbers of what the curve divides, along its axis and across.
-    double low[kRoom] = {}, high[kRoom] = {}, across_low[kRoom] = {}, across_high[kRoom] = {};
-    double axis[kRoom] = {}; ///< of the curve
-    double probability[kRoom] = {};
-    std::uint32_t first[2][kRoom] = {}, last[2][kRoom] = {}; ///< positions
-    std::uint32_t group = 0;
-    int count = 0;
-
-    GroupLanes() {
-        for (double& most : all) most = 1.0;
-    }
-};
 
 /// Where they lie in the tables: room for all lanes.
 struct GroupBlock {
@@ -51,30 +28,25 @@ struct GroupGrid {
 
 /// What trigonometry tells of the rows of lanes.
 struct GroupHeights {
-    alignas(64) double height[kGroupLanes] = {}; ///< the part of the solid angle that they make
-    double sine[kGroupLanes] = {};               ///< of the angle to the pole, where that is least
+    alignas(64) double height[kCellLanes] = {}; ///< the part of the solid angle that they make
+    double sine[kCellLanes] = {};               ///< of the angle to the pole, where that is least
 };
 
 /// An axis of cells.
 struct GroupAxisLanes {
-    alignas(64) double low[kGroupLanes], high[kGroupLanes]; // numbers
+    alignas(64) double low[kCellLanes], high[kCellLanes]; // numbers
     // How far a direction moves across, were it as fast everywhere as where it is fastest, and by what to divide
     // that.
-    double reach[kGroupLanes], slowness[kGroupLanes];
+    double reach[kCellLanes], slowness[kCellLanes];
     // What is left of numbers in the group: the first that leads to the cell, in steps of 2^-32; how many do; the
     // lower and the upper side of its box, in steps of 2^-8.
-    double number[kGroupLanes], width[kGroupLanes], from[kGroupLanes], to[kGroupLanes];
-    std::uint32_t side[2][kGroupLanes];                // from and to, rounded down
-    alignas(64) std::uint32_t low_number[kGroupLanes]; // as of AcdfGroupAxis
-    float scale[kGroupLanes];
+    double number[kCellLanes], width[kCellLanes], from[kCellLanes], to[kCellLanes];
+    std::uint32_t side[2][kCellLanes];                // from and to, rounded down
+    alignas(64) std::uint32_t low_number[kCellLanes]; // as of AcdfGroupAxis
+    float scale[kCellLanes];
 };
 
-// How many positions a lane takes, of less than 2^31.
-static inline double steps_of(const GroupLanes& in, int axis, int i) {
-    return static_cast<std::int32_t>(in.last[axis][i] - in.first[axis][i]);
-}
-
-static inline void find_heights(const GroupGrid& grid, const GroupLanes& in, GroupHeights& out) {
+static inline void find_heights(const GroupGrid& grid, const CellLanes& in, GroupHeights& out) {
     for (int i = 0; i < in.count; ++i) {
         const std::uint32_t first = in.first[1][i], last = in.last[1][i];
         if (grid.square) {
@@ -88,24 +60,9 @@ static inline void find_heights(const GroupGrid& grid, const GroupLanes& in, Gro
     }
 }
 
-// The numbers of each axis; what the curve does not divide keeps its own.
-static inline void narrow_lanes(const GroupLanes& in, GroupAxisLanes axes[2]) {
-    for (int i = 0; i < kGroupLanes; ++i) {
-        const double width = in.high[i] - in.low[i];
-        const double from = in.low[i] + width * (in.from[i] / in.all[i]);
-        const double part = in.low[i] + width * (in.to[i] / in.all[i]),
-                     to = in.to[i] != in.all[i] ? part : in.high[i];
-        const bool first = in.axis[i] == 0.0;
-        axes[0].low[i] = first ? from : in.across_low[i];
-        axes[1].low[i] = first ? in.across_low[i] : from;
-        axes[0].high[i] = first ? to : in.across_high[i];
-        axes[1].high[i] = first ? in.across_high[i] : to;
-    }
-}
-
-static inline void measure_lanes(const GroupGrid& grid, const GroupLanes& in, const GroupHeights& heights,
+static inline void measure_lanes(const GroupGrid& grid, const CellLanes& in, const GroupHeights& heights,
                                  GroupAxisLanes axes[2]) {
-    for (int i = 0; i < kGroupLanes; ++i) {
+    for (int i = 0; i < kCellLanes; ++i) {
         axes[0].reach[i] = steps_of(in, 0, i) * grid.step[0];
         axes[1].reach[i] = grid.square ? steps_of(in, 1, i) * grid.step[1] : heights.height[i];
         axes[0].slowness[i] = 1.0;
@@ -115,9 +72,9 @@ static inline void measure_lanes(const GroupGrid& grid, const GroupLanes& in, co
 
 // No numbers are in the boxes of dark cells, and of those too narrow: the lower sides of these are above all, and
 // the upper ones below.
-static inline void place_lanes(const GroupLanes& in, double group_low, double scale, GroupAxisLanes& axis) {
+static inline void place_lanes(const CellLanes& in, double group_low, double scale, GroupAxisLanes& axis) {
     const double drawn = group_low < 1.0 ? 1.0 : 0.0;
-    for (int i = 0; i < kGroupLanes; ++i) {
+    for (int i = 0; i < kCellLanes; ++i) {
         const double low = (axis.low[i] - group_low) * scale, width = (axis.high[i] - axis.low[i]) * scale;
         const double lifted = 0.5 * (low + std::fabs(low)), within = lifted < 1.0 ? lifted : 1.0;
         const double steps = within * 0x1p32, end = (low + width) * 256.0, upper = end > 0.0 ? end : 0.0;
@@ -132,7 +89,7 @@ static inline void place_lanes(const GroupLanes& in, double group_low, double sc
 }
 
 static inline void round_lanes(GroupAxisLanes& axis) {
-    for (int i = 0; i < kGroupLanes; ++i) {
+    for (int i = 0; i < kCellLanes; ++i) {
         const auto high = static_cast<std::int32_t>(axis.number[i] * 0x1p-16); // vectors convert to no more bits
         const auto low = static_cast<std::int32_t>(axis.number[i] - high * 0x1p16);
         axis.low_number[i] = static_cast<std::uint32_t>(high) << 16 | static_cast<std::uint32_t>(low);
@@ -143,11 +100,9 @@ static inline void round_lanes(GroupAxisLanes& axis) {
 }
 
 #ifdef ACDF_SQUARES_SSE2
-static inline __m128i four_words(const void* at) { return _mm_loadu_si128(static_cast<const __m128i*>(at)); }
-
 static inline void set_group_cells(const GroupAxisLanes axes[2], AcdfGroupCell* out) {
     auto* const to = reinterpret_cast<__m128i*>(out);
-    for (int i = 0; i < kGroupLanes; i += 4) {
+    for (int i = 0; i < kCellLanes; i += 4) {
         const __m128i low[2] = {four_words(axes[0].low_number + i), four_words(axes[1].low_number + i)};
         const __m128i scale[2] = {four_words(axes[0].scale + i), four_words(axes[1].scale + i)};
         const __m128i a[2] = {_mm_unpacklo_epi32(low[0], scale[0]), _mm_unpackhi_epi32(low[0], scale[0])};
@@ -175,24 +130,24 @@ static inline void set_group_bytes(const std::uint32_t* side, std::uint32_t less
 }
 #else
 static inline void set_group_cells(const GroupAxisLanes axes[2], AcdfGroupCell* out) {
-    for (int i = 0; i < kGroupLanes; ++i)
+    for (int i = 0; i < kCellLanes; ++i)
         out[i] = {{{axes[0].low_number[i], axes[0].scale[i]}, {axes[1].low_number[i], axes[1].scale[i]}}};
 }
 
 static inline void set_group_bytes(const std::uint32_t* side, std::uint32_t less, int count, int without,
                                    std::uint8_t* out) {
-    for (int i = 0; i < kGroupLanes; ++i)
+    for (int i = 0; i < kCellLanes; ++i)
         out[i] =
             static_cast<std::uint8_t>(i < count ? (side[i] - less) ^ 0x80u : static_cast<std::uint32_t>(without));
 }
 #endif
 
-static inline void set_group_boxes(const AcdfGroup& group, const GroupLanes& in, const GroupAxisLanes axes[2],
+static inline void set_group_boxes(const AcdfGroup& group, const CellLanes& in, const GroupAxisLanes axes[2],
                                    int count, std::uint8_t* boxes) {
     std::uint8_t* const positions = boxes + 4 * ACDF_GROUP_POSITIONS;
     for (int axis = 0; axis < 2; ++axis) {
         const std::uint32_t corner = group.first[axis];
-        const int at = 2 * axis * kGroupLanes, upper = at + kGroupLanes;
+        const int at = 2 * axis * kCellLanes, upper = at + kCellLanes;
         set_group_bytes(axes[axis].side[0], 0, count, 0x7F, boxes + at);
         set_group_bytes(axes[axis].side[1], 0, count, 0x80, boxes + upper);
         set_group_bytes(in.first[axis], corner, count, 0x7F, positions + at);
@@ -200,22 +155,8 @@ static inline void set_group_boxes(const AcdfGroup& group, const GroupLanes& in,
     }
 }
 
-// As acdf_area_pdf.
-static inline void set_group_densities(const GroupGrid& grid, const GroupLanes& in, const GroupHeights& heights,
-                                       float* out) {
-    for (int i = 0; i < kGroupLanes; ++i) {
-        const double area = 2.0 * ACDF_PI * steps_of(in, 0, i) * heights.height[i];
-        const double product = in.probability[i] * ((in.to[i] - in.from[i]) / in.all[i]);
-        const double positive = product > 0x1p-1000 ? product : 0x1p-1000; // acdf_positive
-        const double pdf = positive * grid.columns / area;
-        const double most = 3.402823466e38, least = 1.17549435e-38;
-        const double told = pdf >= most ? most : pdf > least ? pdf : least;
-        out[i] = static_cast<float>(in.from[i] < in.to[i] ? told : 0.0);
-    }
-}
-
 // Of all lanes; boxes of as many as there are cells. Of a group of one cell the tables tell where it lies.
-static inline void reckon_group_lanes(const GroupGrid& grid, const AcdfGroup& group, const GroupLanes& in,
+static inline void reckon_group_lanes(const GroupGrid& grid, const AcdfGroup& group, const CellLanes& in,
                                       GroupHeights& heights, const GroupBlock& out) {
     GroupAxisLanes axes[2];
     find_heights(grid, in, heights);
@@ -228,7 +169,7 @@ static inline void reckon_group_lanes(const GroupGrid& grid, const AcdfGroup& gr
     set_group_cells(axes, out.cells);
     if (group.count == 1) out.cells[0] = {};
     set_group_boxes(group, in, axes, group.count == 1 ? 0 : in.count, out.boxes);
-    set_group_densities(grid, in, heights, out.densities);
+    set_densities(grid.columns, in, heights.height, out.densities);
 }
 
 } // namespace

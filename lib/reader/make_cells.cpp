@@ -4,6 +4,7 @@
 #include "make_sides.h"
 #include "make_squares.h"
 #include "memory.h"
+#include "piece_cells.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,6 @@ constexpr u32 kNumberBits = 31;
 constexpr double kNumberSteps = 0x1p31;
 constexpr std::size_t kLeastBytes = 84;          // a cell, with its part of both grids
 constexpr std::size_t kLeastDirectionBytes = 16; // of them, of the grid of directions
-// A draw stays this part of its numbers inside its piece: more than a float rounds.
-constexpr double kPart = 0x1p-21;
 constexpr KeySpan kNoKeys = {1, 0};
 // Tables for shaders may be made for minutes: no part of them may be missing.
 constexpr std::size_t kWholeWork = std::size_t{1} << 14;
@@ -37,11 +36,12 @@ struct AxisParts {
     AxisPart part[5]; // set as far as they are counted
 };
 
-class CellsMaker {
+class CellsMaker final : private PieceSink {
 public:
     /// total: tables that answer always.
-    CellsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, bool total, Scratch* scratch)
-        : environment_(environment), survey_(survey), scratch_(scratch),
+    CellsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, bool total, Scratch* scratch,
+               Instructions most)
+        : environment_(environment), survey_(survey), scratch_(scratch), instructions_(most),
           sides_(acdf_environment_grid(&environment)), total_(total), pieces_(scratch), ends_(scratch),
           densities_(scratch), numbers_(scratch), keys_(scratch) {}
 
@@ -50,7 +50,11 @@ public:
     AcdfCells* assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block);
 
 private:
-    bool add(const Cell& cell, u32 axis, bool same);
+    bool is_remembered() const;
+    bool add_all();
+    bool room(PieceRows& rows) noexcept override;
+    void keep(std::size_t count) noexcept override;
+    bool add_cut(const Cell& cell) noexcept override;
     bool add_whole(const Cell& cell);
     void cut(const Cell& cell, u32 axis);
     void add_piece(const AxisPart& azimuth, const AxisPart& height, float pdf);
@@ -59,40 +63,69 @@ private:
     AcdfEnvironment environment_;
     const TreeSurvey& survey_;
     Scratch* scratch_;
+    Instructions instructions_;
     Sides sides_;
     bool total_;
     Growable<AcdfPiece> pieces_;
     Growable<AcdfPieceEnds> ends_;
     Growable<float> densities_;
     KeyBoxes numbers_, keys_;
-    AxisParts parts_[2] = {}; ///< of the last cell's axes
+    AxisParts parts_[2] = {}; ///< of a cell that is cut
 };
 
 bool CellsMaker::gather(std::size_t most_bytes) {
-    const Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows},
-                        false, false};
     if (!survey_.done()) return false;
-    const std::size_t cells = survey_.cells(), about = cells + cells / 16 + 64; // pieces
+    const std::size_t cells = survey_.cells(), about = cells + cells / 16 + 64; // pieces, and room for sixteen
     if (cells > kMostPieces || cells * kLeastBytes > most_bytes) return false;  // before any work is spent on them
     if (!(pieces_.reserve(about) && densities_.reserve(about) && numbers_.reserve(about) && keys_.reserve(about)))
         return false;
-    const bool done = sides_.remember(survey_.most_steps()) &&
-                      each_cell(environment_.tree, environment_.root, whole,
-                                [&](const Cell& above, u32 axis, const CellPart& part, bool same) {
-                                    const Cell cell = part.in(above, axis);
-                                    return total_ ? add_whole(cell) : add(cell, axis, same);
-                                }) &&
-                      pieces_.size() <= kMostPieces;
+    const bool done = sides_.remember(survey_.most_steps()) && add_all() && pieces_.size() <= kMostPieces;
     return done &&
            !(pieces_.failed() || ends_.failed() || densities_.failed() || numbers_.failed() || keys_.failed());
 }
 
-// Where `same`, the cell is where the last one was but for `along`: the other axis is cut as it was.
-bool CellsMaker::add(const Cell& cell, u32 along, bool same) {
+// Whether cells can be reckoned sixteen at a time.
+bool CellsMaker::is_remembered() const {
+    if (environment_.parameterization != ACDF_PARAM_OCTAHEDRAL) return sides_.tangents() && sides_.rows();
+    return std::max(environment_.columns, environment_.rows) >> 31 == 0;
+}
+
+bool CellsMaker::add_all() {
+    const Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows},
+                        false, false};
+    if (!total_ && is_remembered())
+        return write_piece_cells({environment_, sides_.tangents(), sides_.rows(), *this}, instructions_);
+    return each_cell(environment_.tree, environment_.root, whole,
+                     [&](const Cell& above, u32 axis, const CellPart& part) {
+                         const Cell cell = part.in(above, axis);
+                         return total_ ? add_whole(cell) : add_cut(cell);
+                     });
+}
+
+bool CellsMaker::room(PieceRows& rows) noexcept {
+    const std::size_t count = pieces_.size(), more = count + ACDF_BLOCK_CELLS;
+    if (count > kMostPieces ||
+        !(pieces_.reserve(more) && densities_.reserve(more) && numbers_.reserve(more) && keys_.reserve(more)))
+        return false;
+    rows = {pieces_.data() + count,
+            densities_.data() + count,
+            {numbers_.axis(0) + count, numbers_.axis(1) + count},
+            {keys_.axis(0) + count, keys_.axis(1) + count}};
+    return true;
+}
+
+void CellsMaker::keep(std::size_t count) noexcept {
+    const std::size_t all = pieces_.size() + count;
+    pieces_.cut(all);
+    densities_.cut(all);
+    numbers_.cut(all);
+    keys_.cut(all);
+}
+
+bool CellsMaker::add_cut(const Cell& cell) noexcept {
     if (pieces_.size() > kMostPieces) return false;
     const float pdf = sides_.density(cell);
-    cut(cell, along);
-    if (!same || parts_[1 - along].drawn == cell.dark) cut(cell, 1 - along);
+    for (u32 axis = 0; axis < 2; ++axis) cut(cell, axis);
     for (int r = 0; r < parts_[1].count; ++r)
         for (int c = 0; c < parts_[0].count; ++c) add_piece(parts_[0].part[c], parts_[1].part[r], pdf);
     return true;
@@ -117,10 +150,12 @@ struct Steps {
 };
 Steps steps_within(const Side& side) {
     const double width = side.high - side.low, number = width / std::fabs(side.local[1] - side.local[0]);
-    return {
-        static_cast<std::int64_t>((side.low + std::max(side.margin[0] * number, kPart * width)) * kNumberSteps) + 2,
-        static_cast<std::int64_t>((side.high - std::max(side.margin[1] * number, kPart * width)) * kNumberSteps) -
-            1};
+    return {static_cast<std::int64_t>((side.low + std::max(side.margin[0] * number, kPiecePart * width)) *
+                                      kNumberSteps) +
+                2,
+            static_cast<std::int64_t>((side.high - std::max(side.margin[1] * number, kPiecePart * width)) *
+                                      kNumberSteps) -
+                1};
 }
 
 // An axis whose numbers lead to it; where it is `down`, they are counted from the upper end.
@@ -234,7 +269,7 @@ void CellsMaker::add_piece(const AxisPart& azimuth, const AxisPart& height, floa
 AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) {
     const std::size_t count = pieces_.size();
     const std::size_t work = total_ ? kWholeWork : SquaresMaker::kUsualWork;
-    SquaresMaker numbers(scratch_), directions(scratch_);
+    SquaresMaker numbers(scratch_, instructions_), directions(scratch_, instructions_);
     const std::size_t others = pieces_.bytes() + densities_.bytes() + count * kLeastDirectionBytes;
     if (others > most_bytes || !numbers.make(numbers_, kNumberBits, work, most_bytes - others) ||
         4 * numbers.words() > most_bytes - others || !directions.make(keys_, sides_.key_bits(), work))
@@ -264,14 +299,15 @@ AcdfCells* CellsMaker::assemble(std::size_t most_bytes, const AcdfAllocator& all
 } // namespace
 
 AcdfCells* make_cells(const AcdfEnvironment& environment, const TreeSurvey& survey, std::size_t most_bytes,
-                      const AcdfAllocator& allocator, AcdfBlock& block, Scratch* scratch) noexcept {
-    CellsMaker maker(environment, survey, false, scratch);
+                      const AcdfAllocator& allocator, AcdfBlock& block, Scratch* scratch,
+                      Instructions most) noexcept {
+    CellsMaker maker(environment, survey, false, scratch, most);
     return maker.gather(most_bytes) ? maker.assemble(most_bytes, allocator, block) : nullptr;
 }
 
 AcdfCells* make_shader_cells(const AcdfEnvironment& environment, const TreeSurvey& survey,
                              AcdfBlock& block) noexcept {
-    CellsMaker maker(environment, survey, true, nullptr);
+    CellsMaker maker(environment, survey, true, nullptr, Instructions::avx512);
     return maker.gather(SIZE_MAX) ? maker.assemble(SIZE_MAX, {}, block) : nullptr;
 }
 

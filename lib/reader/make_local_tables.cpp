@@ -72,7 +72,7 @@ bool PiecesMaker::gather(u32 node, const Cell& box) {
     }
     const u32 tile = node & ~ACDF_TILE_FLAG, root = local_.blend.roots ? local_.blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return add(box, tile);
-    return each_cell(local_.blend.tree, root, box, [&](const Cell& above, u32 axis, const CellPart& part, bool) {
+    return each_cell(local_.blend.tree, root, box, [&](const Cell& above, u32 axis, const CellPart& part) {
         return add(part.in(above, axis), tile);
     });
 }

@@ -9,10 +9,6 @@ namespace {
 
 using u32 = std::uint32_t;
 
-// A draw stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
-constexpr double kMargin = 0x1p-20;
-constexpr u32 kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
-
 } // namespace
 
 // Tangent of the local azimuth between columns.
@@ -28,7 +24,7 @@ Sides::Row Sides::row_of(u32 row, u32 rows) {
     const bool south = 2 * std::uint64_t{row} > rows;
     const double s = acdf_sine(static_cast<double>(south ? rows - row : row) / rows * (0.5 * ACDF_PI));
     const double cap = 2.0 * s * s;
-    return {acdf_row_z(row, rows), cap, kMargin * std::sqrt(cap * (2.0 - cap)) + kMargin * kMargin};
+    return {acdf_row_z(row, rows), cap, kSideMargin * std::sqrt(cap * (2.0 - cap)) + kSideMargin * kSideMargin};
 }
 
 double Sides::height(const Cell& cell) const {
@@ -46,7 +42,7 @@ bool Sides::remember(std::size_t most) {
     return !(tangents_.failed() || heights_.failed());
 }
 
-// The margin is at least kMargin as an angle: ACDF_OCTAHEDRAL_LEAST_SPEED.
+// The margin is at least kSideMargin as an angle: ACDF_OCTAHEDRAL_LEAST_SPEED.
 int Sides::square_side(const Cell& cell, int axis, Side& out) const {
     const double count = axis == 0 ? columns_ : rows_, sign = axis == 0 ? -2.0 : 2.0;
     const double ends[2] = {cell.first[axis] / count, cell.last[axis] / count};
@@ -55,7 +51,7 @@ int Sides::square_side(const Cell& cell, int axis, Side& out) const {
     out.high = cell.high[axis];
     for (int i = 0; i < 2; ++i) {
         out.local[i] = sign * (ends[i] - 0.5);
-        out.margin[i] = kMargin;
+        out.margin[i] = kSideMargin;
         out.key[i] = ends[i] * static_cast<double>(ACDF_SQUARE_STEPS);
     }
     out.beyond = out.key[1] + 1.0;
@@ -86,7 +82,7 @@ int Sides::azimuths(const Cell& cell, Side* out) const {
         side.high = to == high ? cell.high[0] : number(to);
         side.local[0] = 2.0 * ACDF_PI * (piece.middle - from / columns);
         side.local[1] = 2.0 * ACDF_PI * (piece.middle - to / columns);
-        side.margin[0] = side.margin[1] = kMargin;
+        side.margin[0] = side.margin[1] = kSideMargin;
         const double tangents[2] = {to == end && piece.end < 1.0 ? -1.0 : tangent(last),
                                     from == low ? tangent(first) : 1.0};
         side.beyond = 2.0 * (piece.quarter + 1.0) * static_cast<double>(ACDF_SLOPE_STEPS);
@@ -102,7 +98,7 @@ int Sides::azimuths(const Cell& cell, Side* out) const {
 int Sides::heights(const Cell& cell, Side* out) const {
     if (octahedral()) return square_side(cell, 1, out[0]);
     const Row ends[2] = {row(cell.first[1]), row(cell.last[1])};
-    const Row equator = {0.0, 1.0, kMargin};
+    const Row equator = {0.0, 1.0, kSideMargin};
     const auto equator_number = [&] {
         return cell.low[1] + ends[0].z * ((cell.high[1] - cell.low[1]) / (ends[0].z - ends[1].z));
     };

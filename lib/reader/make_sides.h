@@ -115,23 +115,19 @@ private:
     double from_ = 0.0; ///< the part of all at which the next segment begins
 };
 
-/// Calls add(above, axis, part, same) for each cell of a curve at `at`, which divides the cell `above`, and of the
-/// curves below it, in their order, as long as it returns true. Returns whether it
-/// always did. Where `same`, `above` and `axis` are those of the call before. A path passes at most 64 curves.
+/// Calls add(above, axis, part) for each cell of a curve at `at`, which divides the cell `above`, and of the curves
+/// below it, in their order, as long as it returns true. Returns whether it always did. A path passes at most 64
+/// curves.
 template <class Add>
 bool each_cell(const std::uint8_t* tree, std::uint32_t at, const Cell& above, const Add& add) {
     const AcdfCurve curve = acdf_curve_at(tree, at);
     CellParts parts(curve, above);
-    bool same = false;
     for (std::uint32_t i = 0; i < curve.segments; ++i) {
         const std::uint32_t link = parts.link();
         const CellPart part = parts.next();
-        if (link == 0) {
-            if (!add(above, parts.axis(), part, same)) return false;
-        } else if (!each_cell(tree, at + link, part.in(above, parts.axis()), add)) {
+        if (link == 0 ? !add(above, parts.axis(), part)
+                      : !each_cell(tree, at + link, part.in(above, parts.axis()), add))
             return false;
-        }
-        same = link == 0;
     }
     return true;
 }
@@ -151,6 +147,12 @@ struct Side {
     std::uint32_t last_key() const { return static_cast<std::uint32_t>(key[1] < beyond ? key[1] : beyond - 1.0); }
 };
 
+/// A draw stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
+constexpr double kSideMargin = 0x1p-20;
+/// A draw stays this part of its numbers inside its piece: more than a float rounds.
+constexpr double kPiecePart = 0x1p-21;
+constexpr std::uint32_t kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
+
 /// Cuts cells of a grid.
 class Sides {
 public:
@@ -168,13 +170,16 @@ public:
     std::uint32_t key_bits() const { return octahedral() ? ACDF_SQUARE_BITS : ACDF_DIRECTION_BITS; }
     /// Density of a cell without tilts, sr^-1; 0 for a dark one.
     float density(const Cell& cell) const;
-
-private:
     /// What the trigonometry of a border between rows gives.
     struct Row {
         double z, cap; ///< cosine, 1 - |cosine|
         double margin; ///< of the angle, as a difference of z
     };
+    /// Of each column and row, where they are remembered; else null.
+    const double* tangents() const { return tangents_.size() > 0 ? tangents_.data() : nullptr; }
+    const Row* rows() const { return heights_.size() > 0 ? heights_.data() : nullptr; }
+
+private:
     bool octahedral() const { return acdf_grid_is_octahedral(&grid_) != 0; }
     int square_side(const Cell& cell, int axis, Side& out) const;
     double tangent(std::uint32_t column) const {

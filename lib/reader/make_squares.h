@@ -35,6 +35,7 @@ public:
     }
     std::size_t size() const noexcept { return spans_[1].size(); }
     bool failed() const noexcept { return spans_[0].failed() || spans_[1].failed(); }
+    KeySpan* axis(int i) noexcept { return spans_[i].data(); }
     const KeySpan* axis(int i) const noexcept { return spans_[i].data(); }
 
 private:

@@ -141,7 +141,7 @@ ACDF_EXPORT std::size_t acdf_web_cells(const Opened* opened, u32* out, std::size
     const acdf::Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment.columns, environment.rows},
                               false, false};
     std::size_t count = 0;
-    const auto add = [&](const acdf::Cell& above, u32 axis, const acdf::CellPart& part, bool) {
+    const auto add = [&](const acdf::Cell& above, u32 axis, const acdf::CellPart& part) {
         if (count < most) {
             const acdf::Cell cell = part.in(above, axis);
             const u32 ends[4] = {cell.first[0], cell.last[0], cell.first[1], cell.last[1]};
