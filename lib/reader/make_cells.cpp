@@ -36,7 +36,7 @@ struct AxisParts {
     AxisPart part[5]; // set as far as they are counted
 };
 
-class CellsMaker final : private PieceSink {
+class CellsMaker {
 public:
     /// total: tables that answer always.
     CellsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, bool total, Scratch* scratch,
@@ -52,9 +52,10 @@ public:
 private:
     bool is_remembered() const;
     bool add_all();
-    bool room(PieceRows& rows) noexcept override;
-    void keep(std::size_t count) noexcept override;
-    bool add_cut(const Cell& cell) noexcept override;
+    PieceSink sink() noexcept;
+    bool room(PieceRows& rows) noexcept;
+    void keep(std::size_t count) noexcept;
+    bool add_cut(const Cell& cell) noexcept;
     bool add_whole(const Cell& cell);
     void cut(const Cell& cell, u32 axis);
     void add_piece(const AxisPart& azimuth, const AxisPart& height, float pdf);
@@ -94,12 +95,18 @@ bool CellsMaker::add_all() {
     const Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows},
                         false, false};
     if (!total_ && is_remembered())
-        return write_piece_cells({environment_, sides_.tangents(), sides_.rows(), *this}, instructions_);
+        return write_piece_cells({environment_, sides_.tangents(), sides_.rows(), sink()}, instructions_);
     return each_cell(environment_.tree, environment_.root, whole,
                      [&](const Cell& above, u32 axis, const CellPart& part) {
                          const Cell cell = part.in(above, axis);
                          return total_ ? add_whole(cell) : add_cut(cell);
                      });
+}
+
+PieceSink CellsMaker::sink() noexcept {
+    return {this, [](void* maker, PieceRows& rows) noexcept { return static_cast<CellsMaker*>(maker)->room(rows); },
+            [](void* maker, std::size_t count) noexcept { static_cast<CellsMaker*>(maker)->keep(count); },
+            [](void* maker, const Cell& cell) noexcept { return static_cast<CellsMaker*>(maker)->add_cut(cell); }};
 }
 
 bool CellsMaker::room(PieceRows& rows) noexcept {

@@ -20,18 +20,15 @@ struct PieceRows {
     KeySpan *numbers[2], *keys[2]; ///< of each axis
 };
 
-/// Takes pieces in the order of their cells.
-class PieceSink {
-public:
+/// Takes pieces in the order of their cells: `maker` is what the functions are called with.
+struct PieceSink {
+    void* maker;
     /// False where there is no room: nothing else is asked for then.
-    virtual bool room(PieceRows& rows) noexcept = 0;
+    bool (*room)(void* maker, PieceRows& rows) noexcept;
     /// As many were written there.
-    virtual void keep(std::size_t count) noexcept = 0;
-    /// The pieces of a cell that may lie in several.
-    virtual bool add_cut(const Cell& cell) noexcept = 0;
-
-protected:
-    ~PieceSink() = default;
+    void (*keep)(void* maker, std::size_t count) noexcept;
+    /// The pieces of a cell that may lie in several; false as of `room`.
+    bool (*add_cut)(void* maker, const Cell& cell) noexcept;
 };
 
 /// What is the same for all cells.
@@ -39,7 +36,7 @@ struct PieceCells {
     const AcdfEnvironment& environment; ///< less than 2^31 columns and rows; no tilts
     const double* tangents;             ///< of each border between columns; not on the square
     const Sides::Row* rows;             ///< of each border between rows; not on the square
-    PieceSink& sink;
+    PieceSink sink;
 };
 
 /// Of all cells of the tree, by the best instructions that the processor has, up to `most`: the same bits by any.

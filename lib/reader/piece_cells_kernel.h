@@ -213,14 +213,14 @@ public:
 
     void put(const CellLanes& lanes) {
         acdf::PieceRows rows;
-        room_ = room_ && of_.sink.room(rows);
+        room_ = room_ && of_.sink.room(of_.sink.maker, rows);
         if (!room_) return;
         double cut = 0.0;
         reckon(lanes);
         for (int i = 0; i < lanes.count; ++i) cut += borders_.cut[i];
         if (cut > 0.0) return put_one_by_one(lanes, rows);
         put_all(lanes, rows);
-        of_.sink.keep(static_cast<std::size_t>(lanes.count));
+        of_.sink.keep(of_.sink.maker, static_cast<std::size_t>(lanes.count));
     }
 
 private:
@@ -261,10 +261,10 @@ private:
         put_all(lanes, {pieces, densities, {numbers[0], numbers[1]}, {keys[0], keys[1]}});
         for (int i = 0; i < lanes.count && room_; ++i) {
             if (borders_.cut[i] > 0.0) {
-                room_ = of_.sink.add_cut(cell(lanes, i));
+                room_ = of_.sink.add_cut(of_.sink.maker, cell(lanes, i));
                 continue;
             }
-            room_ = of_.sink.room(rows);
+            room_ = of_.sink.room(of_.sink.maker, rows);
             if (!room_) return;
             *rows.pieces = pieces[i];
             *rows.densities = densities[i];
@@ -272,7 +272,7 @@ private:
                 *rows.numbers[axis] = numbers[axis][i];
                 *rows.keys[axis] = keys[axis][i];
             }
-            of_.sink.keep(1);
+            of_.sink.keep(of_.sink.maker, 1);
         }
     }
 

@@ -1,6 +1,7 @@
 // Environments with groups of cells (acdf/groups.h), which large files alone have.
 #pragma once
 
+#include "make_cells.h"
 #include "make_groups.h"
 #include "memory.h"
 
