@@ -25,24 +25,42 @@ ACDF_LANE std::uint32_t find_squares(const AcdfLocal& local, const float (*direc
     return bits(~sure);
 }
 
-/* acdf_tile_at of a vector. */
-ACDF_LANE void find_tiles(const AcdfLocalTables& tables, Cells* cells, std::size_t at) {
+/* A step of acdf_tile_at of a vector. Returns whether any lane goes on. */
+ACDF_LANE bool tile_step(const AcdfSplit* splits, std::size_t at, Cells* cells) {
+    const Integer node = loaded(&cells->tile[at]), split = loaded_from(splits, node & 0x7FFF);
+    const Integer square = choose(has(split, 1), loaded(&cells->square[1][at]), loaded(&cells->square[0][at]));
+    const Mask below = negative((square << 3 | 7) - (split & 0xFFFFFFFF));
+    const Integer child = choose(below, split, split >> 16) >> 32 & 0xFFFF;
+    const Integer reached = choose(has(node, ACDF_TILE_FLAG), node, child);
+    stored(&cells->tile[at], reached);
+    return lanes(has(reached, ACDF_TILE_FLAG)) + 1 != 1u << ACDF_WIDTH;
+}
+
+/* acdf_tile_at of all lanes, and of those behind them that have squares: one step of each vector in turn. */
+ACDF_LANE void find_tiles(const AcdfLocalTables& tables, Cells* cells) {
     const std::uint32_t* const words = acdf_local_words(&tables);
     const AcdfTileTables& t = tables.tiles;
-    const Integer square[2] = {loaded(&cells->square[0][at]), loaded(&cells->square[1][at])};
-    const Integer entry = ((square[1] >> t.shift[1]) << t.bits0) + (square[0] >> t.shift[0]);
-    const Integer key[2] = {square[0] << 3 | 7, square[1] << 3 | 7};
-    const Integer base = Integer{} + (long long)(std::uintptr_t)(words + t.grid);
-    Integer node = two_bytes_at(base + entry * 2);
-    for (;;) {
-        const Mask ended = has(node, ACDF_TILE_FLAG);
-        if (lanes(ended) + 1 == 1u << ACDF_WIDTH) break;
-        const Integer split = loaded_from(acdf_tile_splits(words, &t), node & 0x7FFF), place = split & 0xFFFFFFFF;
-        const Mask below = negative(choose(has(split, 1), key[1], key[0]) - place);
-        const Integer child = choose(below, split, split >> 16) >> 32 & 0xFFFF;
-        node = choose(ended, node, child);
+    const Integer grid = Integer{} + (long long)(std::uintptr_t)(words + t.grid);
+    std::size_t live[kRoom / ACDF_WIDTH], going = 0;
+    for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH) {
+        const Integer column = loaded(&cells->square[0][at]) >> t.shift[0];
+        const Integer row = loaded(&cells->square[1][at]) >> t.shift[1];
+        const Integer node = two_bytes_at(grid + ((row << t.bits0) + column) * 2);
+        stored(&cells->tile[at], node);
+        live[going] = at;
+        going += lanes(has(node, ACDF_TILE_FLAG)) + 1 != 1u << ACDF_WIDTH;
     }
-    stored(&cells->tile[at], node & 0x7FFF);
+    while (going > 0) {
+        std::size_t left = 0;
+        for (std::size_t k = 0; k < going; ++k) {
+            const std::size_t at = live[k];
+            live[left] = at;
+            left += tile_step(acdf_tile_splits(words, &t), at, cells);
+        }
+        going = left;
+    }
+    for (std::size_t at = 0; at < cells->count; at += ACDF_WIDTH)
+        stored(&cells->tile[at], loaded(&cells->tile[at]) & 0x7FFF);
 }
 
 /* Squares and tiles of up to kBlock lanes. Returns those of which floats do not tell. */
@@ -55,9 +73,8 @@ ACDF_LANE std::uint64_t find_all_squares(const AcdfLocal& local, const float (*d
         if (more < kLanes) std::memcpy(last, directions + first, more * sizeof *directions);
         const std::uint32_t refused = find_squares(local, more < kLanes ? last : directions + first, first, cells);
         lost |= (std::uint64_t)(refused & ((1u << more) - 1u)) << first;
-        for (std::size_t half = 0; half < kLanes; half += ACDF_WIDTH)
-            find_tiles(*local.tables, cells, first + half);
     }
+    find_tiles(*local.tables, cells);
     return lost;
 }
 
