@@ -13,8 +13,6 @@
 
 namespace {
 
-constexpr std::uint32_t kTurns = 16; // lanes in curves at a time
-
 /// A lane in curves.
 struct alignas(64) CurveLane {
     double u[2]; // of draws: what is left of the random numbers
@@ -25,7 +23,7 @@ struct alignas(64) CurveLane {
 
 /// Numbers of lanes.
 struct LanesOnWay {
-    std::uint32_t count, lane[kTurns];
+    std::uint32_t count, lane[kBlock];
 };
 
 /// What is the same for all curves of up to eight segments whose cumulative values have one byte, or two.
@@ -117,13 +115,13 @@ ACDF_LANE std::uint32_t turn_of(std::uint32_t header, const std::uint32_t* squar
 
 /* All lanes on their way, in turns. Returns those whose cells have tilts, a bit each. */
 template <bool Finds>
-__attribute__((noinline)) std::uint32_t take_turns(const AcdfLocal& local, const std::uint32_t (*square)[2],
-                                                   LanesOnWay on_way, CurveLane* lanes) {
+__attribute__((noinline)) std::uint64_t take_turns(const AcdfLocal& local, const std::uint32_t (*square)[2],
+                                                   LanesOnWay& on_way, CurveLane* lanes) {
     const std::uint8_t* const tree = local.blend.tree;
     const std::size_t units =
         local.environment.tree_units; /* what is loaded of a curve is not all there at the end */
     const std::uint8_t* const near_end = tree + 2 * (units > 15 ? units - 15 : 0);
-    std::uint32_t tilted = 0;
+    std::uint64_t tilted = 0;
     while (const std::uint32_t count = on_way.count) {
         std::uint32_t left = 0;
         for (std::uint32_t k = 0; k < count; ++k) {
@@ -139,7 +137,7 @@ __attribute__((noinline)) std::uint32_t take_turns(const AcdfLocal& local, const
                 const auto at = (std::uint32_t)((std::size_t)(lane.at - tree) / 2);
                 link = Finds ? acdf_curve_find(tree, at, square[number], lane.range, nullptr, &lane.inside)
                              : acdf_curve_sample(tree, at, lane.u, lane.range, &lane.inside);
-                tilted |= (std::uint32_t)(lane.range[0].tilt != 0.0 || lane.range[1].tilt != 0.0) << number;
+                tilted |= (std::uint64_t)(lane.range[0].tilt != 0.0 || lane.range[1].tilt != 0.0) << number;
             }
             lane.at += 2 * std::size_t{link};
             ACDF_PREFETCH(lane.at);
@@ -151,18 +149,18 @@ __attribute__((noinline)) std::uint32_t take_turns(const AcdfLocal& local, const
     return tilted;
 }
 
-/* Up to kTurns lanes from one on at where their tiles begin. Returns those whose tiles have curves. */
+/* All lanes at where their tiles begin. Returns those whose tiles have curves. */
 template <bool Finds>
-ACDF_LANE LanesOnWay enter_tiles(const AcdfLocal& local, const Cells& cells, std::size_t first, std::uint32_t count,
-                                 std::uint32_t (*square)[2], CurveLane* lane) {
+ACDF_LANE LanesOnWay enter_tiles(const AcdfLocal& local, const Cells& cells, std::uint32_t (*square)[2],
+                                 CurveLane* lane) {
     LanesOnWay on_way;
     on_way.count = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells.tile[first + i]);
+    for (std::uint32_t i = 0; i < cells.count; ++i) {
+        const AcdfTileRecord* const tile = acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]);
         acdf_local_ahead(&local, tile);
         for (int axis = 0; axis < 2; ++axis) {
-            if (Finds) square[i][axis] = (std::uint32_t)cells.square[axis][first + i];
-            else lane[i].u[axis] = cells.u[axis][first + i];
+            if (Finds) square[i][axis] = (std::uint32_t)cells.square[axis][i];
+            else lane[i].u[axis] = cells.u[axis][i];
             lane[i].range[axis].tilt = 0.0;
         }
         acdf_tile_range(tile, lane[i].range);
@@ -177,22 +175,18 @@ ACDF_LANE LanesOnWay enter_tiles(const AcdfLocal& local, const Cells& cells, std
 /* Follows the curves of all tiles. */
 template <bool Finds>
 ACDF_LANE void find_cells(const AcdfLocal& local, const Cells& cells, Boxes* done) {
-    for (std::size_t first = 0; first < cells.count; first += kTurns) {
-        CurveLane lane[kTurns];
-        std::uint32_t square[kTurns][2];
-        const auto count = (std::uint32_t)std::min<std::size_t>(cells.count - first, kTurns);
-        const LanesOnWay on_way = enter_tiles<Finds>(local, cells, first, count, square, lane);
-        const std::uint32_t tilted = take_turns<Finds>(local, square, on_way, lane);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const std::size_t to = first + i;
-            for (int axis = 0; axis < 2; ++axis) {
-                if (!Finds) done->u[axis][to] = lane[i].u[axis];
-                done->low[axis][to] = lane[i].range[axis].low;
-                done->high[axis][to] = lane[i].range[axis].high;
-            }
-            done->product[to] = lane[i].inside;
-            done->lost[to] = (tilted >> i & 1) != 0;
+    CurveLane lane[kBlock];
+    std::uint32_t square[kBlock][2];
+    LanesOnWay on_way = enter_tiles<Finds>(local, cells, square, lane);
+    const std::uint64_t tilted = take_turns<Finds>(local, square, on_way, lane);
+    for (std::size_t i = 0; i < cells.count; ++i) {
+        for (int axis = 0; axis < 2; ++axis) {
+            if (!Finds) done->u[axis][i] = lane[i].u[axis];
+            done->low[axis][i] = lane[i].range[axis].low;
+            done->high[axis][i] = lane[i].range[axis].high;
         }
+        done->product[i] = lane[i].inside;
+        done->lost[i] = (tilted >> i & 1) != 0;
     }
     end_boxes(cells.count, done);
 }

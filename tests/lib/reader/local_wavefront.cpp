@@ -95,8 +95,7 @@ void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t c
     EXPECT_EQ(samples[count].pdf, 7.0f);
     EXPECT_EQ(pdfs[count], 7.0f);
     for (std::size_t i = 0; i < count; i += 40)
-        for (const std::size_t at_a_point :
-             {i % 67, i % 131}) // fewer than curves are followed for, and several blocks
+        for (const std::size_t at_a_point : {i % 67, i % 131}) // one block, and several
             expect_one_point(view, wavefront, view.at(normals[i]), u + i, directions + i,
                              std::min(count - i, at_a_point));
 }
