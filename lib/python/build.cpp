@@ -160,8 +160,13 @@ Brdf called_brdf(const py::object& function, const Options& options, Raised& rai
         const bool fine = raised.run([&] {
             const py::object value = py::reinterpret_borrow<py::object>(function)(
                 py::make_tuple(wo[0], wo[1], wo[2]), py::make_tuple(wi[0], wi[1], wi[2]));
-            const auto all = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
-            if (!all) throw py::error_already_set();
+            // NumPy takes None for NaN, and ensure() forgets what it raised.
+            using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
+            const auto all = value.is_none() ? Values() : Values::ensure(value);
+            if (value.is_none() || !all)
+                throw py::type_error("the BRDF returned a " +
+                                     std::string(py::str(py::type::of(value).attr("__name__"))) +
+                                     ", not one number or three");
             if (all.size() != 1 && all.size() != 3)
                 throw py::value_error("the BRDF returned " + std::to_string(all.size()) + " numbers, not 1 or 3");
             for (int c = 0; c < 3; ++c) rgb[c] = all.data()[all.size() == 1 ? 0 : c];

@@ -161,6 +161,9 @@ class Errors(unittest.TestCase):
             acdf.build_brdf(fail, budget="2KiB")
         with self.assertRaisesRegex(ValueError, "returned 2 numbers"):
             acdf.build_brdf(lambda wo, wi: [1, 2], budget="2KiB")
+        for wrong, name in ((None, "NoneType"), ("bright", "str"), ({}, "dict")):
+            with self.assertRaisesRegex(TypeError, f"returned a {name}, not one number or three"):
+                acdf.build_brdf(lambda wo, wi: wrong, budget="2KiB")
 
 
 class Documentation(unittest.TestCase):
