@@ -201,7 +201,7 @@ std::vector<JobResult> run_with_progress(const BatchArguments& options, const st
 }
 
 int tell(const BatchArguments& options, const BatchReport& report) {
-    if (options.json) std::fputs(json_text(to_json(report)).c_str(), stdout);
+    if (options.json) std::fputs(to_json(report).c_str(), stdout);
     else if (!options.quiet) put(summary_table(report));
     return report.count(JobResult::Status::failed) > 0 ? exit_failed : exit_done;
 }

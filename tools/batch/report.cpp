@@ -1,5 +1,6 @@
 #include "tools/batch/report.h"
 
+#include "tools/cli/json.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 
@@ -141,15 +142,15 @@ std::size_t BatchReport::count(Status status) const {
         std::count_if(jobs.begin(), jobs.end(), [&](const JobResult& job) { return job.status == status; }));
 }
 
-nlohmann::ordered_json to_json(const BatchReport& report) {
+std::string to_json(const BatchReport& report) {
     Json jobs = Json::array();
     for (const JobResult& job : report.jobs) jobs.push_back(to_json(job));
-    return {{"batch", report.batch},
-            {"shard", {{"index", report.shard.index}, {"count", report.shard.count}}},
-            {"done", report.count(Status::done)},
-            {"up_to_date", report.count(Status::up_to_date)},
-            {"failed", report.count(Status::failed)},
-            {"jobs", std::move(jobs)}};
+    return json_text({{"batch", report.batch},
+                      {"shard", {{"index", report.shard.index}, {"count", report.shard.count}}},
+                      {"done", report.count(Status::done)},
+                      {"up_to_date", report.count(Status::up_to_date)},
+                      {"failed", report.count(Status::failed)},
+                      {"jobs", std::move(jobs)}});
 }
 
 BatchReport parse_report(const std::string& text) {

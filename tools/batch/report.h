@@ -4,8 +4,6 @@
 #include "tools/batch/plan.h"
 #include "tools/batch/shard.h"
 
-#include <nlohmann/json.hpp>
-
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -33,7 +31,8 @@ struct BatchReport {
     std::size_t count(JobResult::Status status) const;
 };
 
-nlohmann::ordered_json to_json(const BatchReport& report);
+/// Indented, with a line end. Bytes that are no UTF-8 become U+FFFD.
+std::string to_json(const BatchReport& report);
 
 /// Throws std::invalid_argument where `text` is no report.
 BatchReport parse_report(const std::string& text);

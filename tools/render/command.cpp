@@ -1,7 +1,6 @@
 // acdf render: direct lighting of a scene with several samplers.
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
-#include "tools/cli/json.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
@@ -236,7 +235,7 @@ void run(const RenderArguments& options) {
         throw Failure(options.scene + ": " + error.what());
     }
     PictureWriter(folder, *scene, done).all(stems(done.options.samplers));
-    const std::string json = json_text(render_json(*scene, done));
+    const std::string json = render_json(*scene, done);
     folder.write("render.json", {json.begin(), json.end()});
     if (options.json) std::fputs(json.c_str(), stdout);
     else std::fputs(render_table(*scene, done).c_str(), stdout);

@@ -1,5 +1,6 @@
 #include "tools/render/report.h"
 
+#include "tools/cli/json.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 
@@ -172,7 +173,7 @@ const char* to_string(measure::Numbers numbers) {
     return numbers == measure::Numbers::sobol ? "sobol" : "independent";
 }
 
-ordered_json render_json(const LoadedScene& scene, const RenderRun& run) {
+std::string render_json(const LoadedScene& scene, const RenderRun& run) {
     const ComparisonOptions& o = run.options;
     ordered_json out{{"scene", run.scene},
                      {"description", scene.file.description},
@@ -190,7 +191,7 @@ ordered_json render_json(const LoadedScene& scene, const RenderRun& run) {
     out.update(pass_json(run.passes.front(), o));
     for (std::size_t i = 1; i < run.passes.size(); ++i)
         out[to_string(run.passes[i].numbers)] = pass_json(run.passes[i], o);
-    return out;
+    return json_text(out);
 }
 
 std::string render_table(const LoadedScene& scene, const RenderRun& run) {

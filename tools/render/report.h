@@ -3,8 +3,6 @@
 
 #include "tools/render/run.h"
 
-#include <nlohmann/json.hpp>
-
 #include <string>
 #include <vector>
 
@@ -27,8 +25,8 @@ struct RenderRun {
     std::vector<RenderPass> passes; ///< one or two; pictures are those of the first
 };
 
-/// Files that were written are named by the caller. Keys are stable, numbers exact.
-nlohmann::ordered_json render_json(const LoadedScene& scene, const RenderRun& run);
+/// Files that were written are named by the caller. Keys are stable, numbers exact. Indented, with a line end.
+std::string render_json(const LoadedScene& scene, const RenderRun& run);
 
 std::string render_table(const LoadedScene& scene, const RenderRun& run);
 

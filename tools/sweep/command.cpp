@@ -5,7 +5,6 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/comma_list.h"
 #include "tools/cli/help.h"
-#include "tools/cli/json.h"
 #include "tools/cli/mesh_places.h"
 #include "tools/cli/messages.h"
 #include "tools/cli/number_range.h"
@@ -24,7 +23,6 @@
 #include "tools/sweep/text.h"
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -206,7 +204,7 @@ void run(SweepArguments& options) {
     Output html(path("report.html"), options.force, {options.source});
 
     const Sweep sweep = make_sweep(options, kind);
-    const std::string text = json_text(sweep_json(sweep));
+    const std::string text = sweep_json(sweep);
     csv.write(sweep_csv(sweep));
     json.write(text);
     html.write(sweep_html(sweep));

@@ -1,9 +1,8 @@
 #include "tools/sweep/text.h"
 
+#include "tools/cli/json.h"
 #include "tools/cli/noise.h"
 #include "tools/sweep/advice.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -151,7 +150,7 @@ std::string sweep_csv(const Sweep& sweep) {
     return out + "\n";
 }
 
-nlohmann::ordered_json sweep_json(const Sweep& sweep) {
+std::string sweep_json(const Sweep& sweep) {
     const Advice advice = advise(sweep);
     nlohmann::ordered_json out = {
         {"kind", to_string(sweep.kind)},
@@ -185,7 +184,7 @@ nlohmann::ordered_json sweep_json(const Sweep& sweep) {
         each["biased"] = std::isinf(row.relative_variance);
         out["rows"].push_back(std::move(each));
     }
-    return out;
+    return json_text(out);
 }
 
 } // namespace acdf::tools

@@ -3,8 +3,6 @@
 
 #include "tools/sweep/sweep.h"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <variant>
 #include <vector>
@@ -31,6 +29,6 @@ std::string exact_text(const SweepValue& value);
 /// Quotes around what needs them (RFC 4180), lines end in LF.
 std::string sweep_csv(const Sweep& sweep);
 /// null where unknown or infinite (then "biased" is true).
-nlohmann::ordered_json sweep_json(const Sweep& sweep);
+std::string sweep_json(const Sweep& sweep);
 
 } // namespace acdf::tools

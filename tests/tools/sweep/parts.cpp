@@ -230,7 +230,7 @@ std::vector<std::map<std::string, std::string>> points_of(const std::string& htm
 
 void expect_consistent(const Sweep& sweep) {
     const auto csv = parse_csv(sweep_csv(sweep));
-    const nlohmann::ordered_json json = sweep_json(sweep);
+    const auto json = nlohmann::json::parse(sweep_json(sweep));
     const std::string html = sweep_html(sweep);
     ASSERT_EQ(csv.size(), sweep.rows.size() + 1);
     ASSERT_EQ(json["rows"].size(), sweep.rows.size());
