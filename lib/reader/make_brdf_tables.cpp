@@ -14,7 +14,9 @@ namespace acdf {
 namespace {
 
 using u32 = std::uint32_t;
+using i32 = std::int32_t;
 
+constexpr u32 kNoSplit = 0xFFFFFFFFu;
 constexpr u32 kMostGuessBits = 5, kLeastGuessBits = 4;
 
 /// Words of `count` items, up to the next cache line.
@@ -26,8 +28,8 @@ std::size_t words_of(std::size_t count) {
 bool is_power_of_two(u32 x) { return x != 0 && (x & (x - 1)) == 0; }
 
 struct BrdfCell {
-    u32 side[2][2]; // of each axis: the first position, and the last one
-    std::uint64_t ways;
+    u32 side[2][2];  // of each axis: the first position, and the last one
+    u32 split[2][2]; // at which those sides lie; of the table's own none
     double area() const {
         return static_cast<double>(side[0][1] - side[0][0]) * static_cast<double>(side[1][1] - side[1][0]);
     }
@@ -53,13 +55,14 @@ private:
         return static_cast<std::size_t>(std::upper_bound(first, last, static_cast<std::int32_t>(position)) - first);
     }
     bool find_borders();
-    void gather(u32 node, const BrdfCell& box, u32 depth);
+    void gather(u32 node, const BrdfCell& box);
     std::size_t lay_out(AcdfBrdfTables& out, bool grid, u32 guess_bits) const;
     bool choose(AcdfBrdfTables& out) const;
     void place_views(double* nodes, std::uint16_t* guide) const;
     void place_borders(int axis, std::int32_t* out, std::uint16_t* guide) const;
     void place_grid(std::uint16_t* out) const;
-    void place_paths(AcdfBrdfPath* out) const;
+    u32 cell_beyond(u32 cell, u32 axis, u32 upper) const;
+    void place_paths(u32 node, const AcdfBrdfPath& above, u32 depth, AcdfBrdfPath* out) const;
     void add_parts(const std::uint8_t* row, u32 node, double product, double* out) const;
     template <class T>
     static T* at(AcdfBrdfTables* tables, u32 word) {
@@ -91,7 +94,7 @@ bool BrdfTablesMaker::find_borders() {
 }
 
 // A path passes at most 48 splits.
-void BrdfTablesMaker::gather(u32 node, const BrdfCell& box, u32 depth) {
+void BrdfTablesMaker::gather(u32 node, const BrdfCell& box) {
     if (node & ACDF_TILE_FLAG) {
         cells_[node & ~ACDF_TILE_FLAG] = box;
         return;
@@ -100,17 +103,17 @@ void BrdfTablesMaker::gather(u32 node, const BrdfCell& box, u32 depth) {
     for (u32 upper = 0; upper < 2; ++upper) {
         BrdfCell part = box;
         part.side[split.place & 7u][1 - upper] = split.place >> 3;
-        part.ways |= std::uint64_t{upper} << depth;
-        gather(split.child[upper], part, depth + 1);
+        part.split[split.place & 7u][1 - upper] = node;
+        gather(split.child[upper], part);
     }
 }
 
 bool BrdfTablesMaker::gather() {
     stride_ = std::size_t{views()} + 1;
     if (sizeof(double) * stride_ * cells() > most_bytes_) return false;
-    const BrdfCell whole = {{{0, brdf_.columns}, {0, brdf_.rows}}, 0};
+    const BrdfCell whole = {{{0, brdf_.columns}, {0, brdf_.rows}}, {{kNoSplit, kNoSplit}, {kNoSplit, kNoSplit}}};
     if (!find_borders() || !cells_.add(cells(), whole)) return false;
-    gather(acdf_blend_root(&brdf_.blend), whole, 0);
+    gather(acdf_blend_root(&brdf_.blend), whole);
     return true;
 }
 
@@ -182,7 +185,8 @@ AcdfBrdfTables* BrdfTablesMaker::assemble(const AcdfAllocator& allocator, AcdfBl
     for (u32 i = 0; i < cells(); ++i) at<double>(tables, layout.areas)[i] = cells_[i].area();
     if (layout.grid) place_grid(at<std::uint16_t>(tables, layout.grid));
     if (!layout.guesses) return tables;
-    place_paths(at<AcdfBrdfPath>(tables, layout.paths));
+    const AcdfBrdfPath whole = {1, {}, {static_cast<i32>(brdf_.columns), static_cast<i32>(brdf_.rows)}, {}, {}};
+    place_paths(acdf_blend_root(&brdf_.blend), whole, 0, at<AcdfBrdfPath>(tables, layout.paths));
     guess_brdf_cells(brdf_, layout.guess_bits, at<std::uint16_t>(tables, layout.guesses));
     return tables;
 }
@@ -222,13 +226,38 @@ void BrdfTablesMaker::place_grid(std::uint16_t* out) const {
     }
 }
 
-void BrdfTablesMaker::place_paths(AcdfBrdfPath* out) const {
-    for (u32 i = 0; i < cells(); ++i) {
-        out[i].ways = cells_[i].ways;
-        for (int axis = 0; axis < 2; ++axis) {
-            out[i].low[axis] = static_cast<std::int32_t>(cells_[i].side[axis][0]);
-            out[i].high[axis] = static_cast<std::int32_t>(cells_[i].side[axis][1]);
+/// The cell across the middle of a side, itself where there is none.
+u32 BrdfTablesMaker::cell_beyond(u32 cell, u32 axis, u32 upper) const {
+    const BrdfCell& from = cells_[cell];
+    if (from.split[axis][upper] == kNoSplit) return cell;
+    const u32 middle = from.side[1 - axis][0] + (from.side[1 - axis][1] - from.side[1 - axis][0]) / 2;
+    u32 node = brdf_.blend.splits[from.split[axis][upper]].child[upper];
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit& split = brdf_.blend.splits[node];
+        node = split.child[(split.place & 7u) == axis ? 1 - upper : middle >= split.place >> 3];
+    }
+    return node & ~ACDF_TILE_FLAG;
+}
+
+// A path passes at most 48 splits.
+void BrdfTablesMaker::place_paths(u32 node, const AcdfBrdfPath& above, u32 depth, AcdfBrdfPath* out) const {
+    if (node & ACDF_TILE_FLAG) {
+        const u32 cell = node & ~ACDF_TILE_FLAG;
+        out[cell] = above;
+        for (u32 way = 0; way < 4; ++way)
+            out[cell].beyond[way] = static_cast<std::uint16_t>(cell_beyond(cell, way >> 1, 1 - (way & 1)));
+        return;
+    }
+    const AcdfSplit& split = brdf_.blend.splits[node];
+    const u32 axis = split.place & 7u;
+    for (u32 upper = 0; upper < 2; ++upper) {
+        AcdfBrdfPath path = above;
+        (upper ? path.low : path.high)[axis] = static_cast<i32>(split.place >> 3);
+        if (depth < ACDF_PATH_SPLITS) {
+            path.splits[depth] = static_cast<std::uint16_t>(node);
+            path.ways += std::uint64_t{3 + (axis << 1 | upper)} << 2 * depth; // the 1 there becomes 4
         }
+        place_paths(split.child[upper], path, depth + 1, out);
     }
 }
 

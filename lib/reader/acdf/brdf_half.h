@@ -20,7 +20,7 @@ ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], doub
     half[0] = view->wo[0] + x;
     half[1] = view->wo[1] + y;
     half[2] = view->wo[2] + z;
-    place->length = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+    place->length = acdf_brdf_root(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
     place->dot = fabs(view->wo[0] * half[0] + view->wo[1] * half[1] + view->wo[2] * half[2]);
     return acdf_is_unit_square(length2) && place->length > 0.0;
 }
@@ -61,8 +61,8 @@ ACDF_INLINE uint32_t acdf_brdf_step(double position, uint32_t resolution) {
  * is; *radius is sin(theta_h). */
 ACDF_INLINE double acdf_brdf_reflect_at(const AcdfBrdf* brdf, const AcdfBrdfView* view, double x, double cap,
                                         double sign, float wi[3], double* radius) {
-    const double hz = 1.0 - cap, sin_theta = sqrt(cap * (2.0 - cap));
-    const double scale = sin_theta / sqrt(view->turn[0] * view->turn[0] + view->turn[1] * view->turn[1]);
+    const double hz = 1.0 - cap, sin_theta = acdf_brdf_root(cap * (2.0 - cap));
+    const double scale = sin_theta / acdf_brdf_root(view->turn[0] * view->turn[0] + view->turn[1] * view->turn[1]);
     double sine, cosine, hx, hy, dot;
     acdf_sincospi(acdf_brdf_mirrored(brdf) ? sign * x : 2.0 * x - 1.0, &sine, &cosine);
     hx = scale * (view->turn[0] * cosine - view->turn[1] * sine);

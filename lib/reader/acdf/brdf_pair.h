@@ -78,25 +78,29 @@ static const AcdfPairWay acdf_pair_ways[4] = {
 #undef ACDF_ALL
 #undef ACDF_ONE
 
-/* Goes a way at a split where rows have these codes. Returns whether the random numbers lead there; where nothing
- * is left of the weight they may not. */
-ACDF_INLINE int acdf_pair_step(AcdfPairWalk* walk, const double* code0, const double* code1, uint32_t axis,
-                               uint32_t upper) {
-    const AcdfPairWay* way = &acdf_pair_ways[axis << 1 | upper];
-    const size_t to = (size_t)upper << 8; /* 256 codes of upper parts follow those of lower ones */
+/* Both lanes: their sum. */
+ACDF_INLINE __m128d acdf_pair_sum(__m128d of) { return _mm_add_pd(of, _mm_shuffle_pd(of, of, 1)); }
+
+/* Goes a way at a split where rows have these codes. Returns whether the random numbers lead there, else leaves all
+ * as it was; where nothing is left of the weight they may not. */
+ACDF_INLINE int acdf_pair_step(AcdfPairWalk* walk, const double* code0, const double* code1, uint32_t to) {
+    const AcdfPairWay* way = &acdf_pair_ways[to];
+    const size_t part = (size_t)(to & 1u) << 8; /* 256 codes of upper parts follow those of lower ones */
     const __m128d lower = _mm_mul_pd(walk->weight, _mm_loadh_pd(_mm_load_sd(code0), code1));
+    const __m128d low = acdf_pair_sum(lower);
+    const uint32_t below = (uint32_t)_mm_movemask_pd(_mm_cmplt_pd(walk->x, low));
+    __m128d chosen, scale;
+    /* A bit for each `to` and, of both axes, whether x is below the border. */
+    if (!(0x569Au >> (below << 2 | to) & 1u)) return 0;
     /* weight - lower, or lower */
-    const __m128d weight =
-        _mm_andnot_pd(_mm_set1_pd(-0.0), _mm_sub_pd(_mm_and_pd(walk->weight, way->upper.lanes), lower));
-    const __m128d sums = _mm_add_pd(_mm_unpacklo_pd(lower, weight), _mm_unpackhi_pd(lower, weight));
-    const __m128d low = _mm_unpacklo_pd(sums, sums), chosen = _mm_unpackhi_pd(sums, sums);
-    const __m128d below = _mm_xor_pd(_mm_cmplt_pd(walk->x, low), way->upper.lanes);
-    const __m128d scale = _mm_or_pd(_mm_and_pd(_mm_div_pd(chosen, walk->chosen), way->other.lanes), way->one.lanes);
+    walk->weight = _mm_and_pd(_mm_sub_pd(_mm_and_pd(walk->weight, way->upper.lanes), lower),
+                              _mm_castsi128_pd(_mm_set1_epi64x(0x7FFFFFFFFFFFFFFF)));
+    chosen = acdf_pair_sum(walk->weight);
+    scale = _mm_or_pd(_mm_and_pd(_mm_div_pd(chosen, walk->chosen), way->other.lanes), way->one.lanes);
     walk->x = _mm_mul_pd(_mm_sub_pd(walk->x, _mm_and_pd(low, way->cut.lanes)), scale);
-    walk->weight = weight;
     walk->chosen = chosen;
-    walk->part = _mm_mul_pd(walk->part, _mm_loadh_pd(_mm_load_sd(code0 + to), code1 + to));
-    return _mm_movemask_pd(_mm_or_pd(below, way->other.lanes)) == 3;
+    walk->part = _mm_mul_pd(walk->part, _mm_loadh_pd(_mm_load_sd(code0 + part), code1 + part));
+    return 1;
 }
 
 /* The cell that the random numbers u lead to half-way between two views. */
@@ -157,27 +161,34 @@ ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView*
     const uint8_t *row0 = view->row[0], *row1 = view->row[1];
     const __m128d weight = _mm_set_pd(view->pair[1], view->pair[0]);
     const __m128d whole = _mm_add_pd(weight, _mm_shuffle_pd(weight, weight, 1));
-    uint32_t node = acdf_blend_root(&brdf->blend), cell = acdf_brdf_guess(tables, view->lower, u);
-    uint64_t ways = paths[cell].ways;
+    const AcdfBrdfPath* path = &paths[acdf_brdf_guess(tables, view->lower, u)];
+    uint64_t ways = path->ways;
+    size_t depth = 0;
     AcdfPairWalk walk;
     __m128d share;
     walk.weight = weight;
     walk.part = _mm_set1_pd(1.0);
     walk.chosen = whole;
     walk.x = _mm_mul_pd(_mm_set_pd(u[1], u[0]), whole);
-    for (; !(node & ACDF_TILE_FLAG); ways >>= 1) {
-        const uint32_t upper = (uint32_t)ways & 1u;
-        AcdfPairWalk next = walk;
-        if (!acdf_pair_step(&next, codes + row0[node], codes + row1[node], splits[node].place & 1u, upper)) {
-            next = walk;
-            cell = acdf_brdf_pair_walk(brdf, row0, row1, node, &next);
-            walk = next;
-            break;
+    while (ways > 1) {
+        const uint32_t split = path->splits[depth], way = (uint32_t)ways & 3u;
+        if (acdf_pair_step(&walk, codes + row0[split], codes + row1[split], way)) {
+            ways >>= 2;
+            ++depth;
+            continue;
         }
-        walk = next;
-        node = splits[node].child[upper];
+        do { /* across sides, until one is this split's */
+            path = &paths[path->beyond[way]];
+            ways = path->ways >> 2 * depth;
+        } while (((ways ^ way) & 1u) == 0);
     }
-    *drawn = &paths[cell];
+    if (depth == ACDF_PATH_SPLITS) {
+        AcdfPairWalk rest = walk; /* what is called gets its address: the walk stays in registers */
+        const uint32_t upper = (uint32_t)(path->ways >> (2 * depth - 2)) & 1u;
+        path = &paths[acdf_brdf_pair_walk(brdf, row0, row1, splits[path->splits[depth - 1]].child[upper], &rest)];
+        walk = rest;
+    }
+    *drawn = path;
     if (!(_mm_cvtsd_f64(walk.chosen) > 0.0)) return 0.0;
     *left = _mm_div_pd(walk.x, walk.chosen);
     share = _mm_mul_pd(weight, walk.part);

@@ -40,12 +40,15 @@ typedef struct AcdfBrdfTables {
 } AcdfBrdfTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfBrdfTables) == 128);
 
-/* How a cell is reached, and where it lies. */
+/* How a cell is reached, and where it lies: a cache line. */
+#define ACDF_PATH_SPLITS 16
 typedef struct AcdfBrdfPath {
-    uint64_t ways; /* at each split, from the lowest bit on: 1 is its upper part */
+    uint64_t ways; /* two bits a split, from the lowest on: 1 its upper part, 2 axis 1; 1 stands behind the last */
     int32_t low[2], high[2];
+    uint16_t beyond[4];                /* by the way to a side's split: the cell across the side's middle */
+    uint16_t splits[ACDF_PATH_SPLITS]; /* the first ones on the path */
 } AcdfBrdfPath;
-ACDF_STATIC_ASSERT(sizeof(AcdfBrdfPath) == 24);
+ACDF_STATIC_ASSERT(sizeof(AcdfBrdfPath) == 64);
 
 ACDF_INLINE const void* acdf_brdf_words(const AcdfBrdfTables* tables, uint32_t at) {
     return (const uint32_t*)(const void*)tables + at;

@@ -37,8 +37,20 @@ typedef struct AcdfBrdfView {
 
 ACDF_FN int acdf_brdf_mirrored(const AcdfBrdf* brdf) { return (brdf->views->flags & ACDF_VIEWS_MIRRORED) != 0; }
 
+/* The square root, without the branch to what sets errno. */
+ACDF_INLINE double acdf_brdf_root(double x) {
+#ifdef ACDF_SQUARES_SSE2
+    const __m128d of = _mm_set_sd(x);
+    return _mm_cvtsd_f64(_mm_sqrt_sd(of, of));
+#else
+    return sqrt(x);
+#endif
+}
+
 /* sqrt(1 - cos(theta)): nearly proportional to the angle at normal incidence, and dense enough at grazing. */
-ACDF_FN double acdf_view_coordinate(double cos_theta) { return cos_theta < 1.0 ? sqrt(1.0 - cos_theta) : 0.0; }
+ACDF_FN double acdf_view_coordinate(double cos_theta) {
+    return cos_theta < 1.0 ? acdf_brdf_root(1.0 - cos_theta) : 0.0;
+}
 
 /* The last node, but not the very last one, that is at most x; else 0. */
 ACDF_FN uint32_t acdf_view_lower(const float* nodes, uint32_t count, double x) {

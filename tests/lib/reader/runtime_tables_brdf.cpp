@@ -128,6 +128,30 @@ TEST(RuntimeTablesOfBrdfs, GuessMostCells) {
     }
     EXPECT_GT(right, 600);
 }
+
+/// Where a guess is wrong, draws go on beyond a side of its cell: there lies what the middle of that side touches.
+TEST(RuntimeTablesOfBrdfs, NameCellsBeyondSides) {
+    const BrdfPair pair(many_borders().encode());
+    const AcdfBrdf brdf = pair.fast.brdf().data();
+    ASSERT_NE(pair.tables(), nullptr);
+    const auto* paths = static_cast<const AcdfBrdfPath*>(acdf_brdf_words(pair.tables(), pair.tables()->paths));
+    const std::uint32_t steps[2] = {brdf.columns, brdf.rows};
+    for (std::uint32_t cell = 0; cell < brdf.blend.tiles->tile_count; ++cell)
+        for (std::uint32_t way = 0; way < 4; ++way) {
+            const std::uint32_t axis = way >> 1, other = 1 - axis;
+            const bool below = way & 1;
+            const AcdfBrdfPath &from = paths[cell], &beyond = paths[from.beyond[way]];
+            const std::int32_t side = below ? from.low[axis] : from.high[axis];
+            if (side == (below ? 0 : static_cast<std::int32_t>(steps[axis]))) {
+                ASSERT_EQ(from.beyond[way], cell) << way;
+                continue;
+            }
+            const std::int32_t middle = from.low[other] + (from.high[other] - from.low[other]) / 2;
+            ASSERT_EQ(below ? beyond.high[axis] : beyond.low[axis], side) << cell << ' ' << way;
+            ASSERT_LE(beyond.low[other], middle) << cell << ' ' << way;
+            ASSERT_GT(beyond.high[other], middle) << cell << ' ' << way;
+        }
+}
 #endif
 
 } // namespace
