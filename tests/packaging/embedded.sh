@@ -30,7 +30,7 @@ target_link_libraries(renderer PRIVATE acdf::reader)
 install(TARGETS renderer RUNTIME DESTINATION bin)
 PROJECT
     without=()
-    for package in TBB Freetype OpenEXR OpenImageIO OpenSSL nlohmann_json CLI11 assimp pybind11 Python3 GTest; do
+    for package in TBB Freetype PNG OpenEXR OpenImageIO OpenSSL nlohmann_json CLI11 assimp pybind11 Python3 GTest; do
         without+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
     done
     "$cmake" -S $way -B $way/build -G Ninja -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" "${without[@]}" \

@@ -60,7 +60,7 @@ foreach(program build/build_environment build/embed_builder pkgconfig)
     expect_needed(${WORK}/${program} tbb z m c gcc_s stdc++ ld-linux-x86-64 ld-linux-aarch64)
     run(loaded ldd ${WORK}/${program}) # and what those load in turn
     string(TOLOWER "${loaded}" loaded)
-    if(loaded MATCHES "imageio|openexr|imath|freetype|assimp|crypto|ssl|json|cli11")
+    if(loaded MATCHES "imageio|openexr|imath|freetype|png|assimp|crypto|ssl|json|cli11")
         message(FATAL_ERROR "${program} loads ${loaded}")
     endif()
 endforeach()
