@@ -62,6 +62,7 @@ public:
     }
 
     void draw(Picture& picture, int x, int y, const float colour[3]) const {
+        if (covered_.values.empty()) return; // blanks lie nowhere
         for (int row = std::max(0, -(y + top_)); row < std::min(covered_.height, picture.height - (y + top_));
              ++row)
             for (int column = std::max(0, -(x + left_));
