@@ -2,8 +2,6 @@
 
 #include "instructions.h"
 
-#include <algorithm>
-
 namespace acdf {
 
 namespace {
@@ -37,12 +35,7 @@ constexpr BoxLists kOneByOne = {halve_one_by_one, count_cuts_one_by_one};
 } // namespace
 
 const BoxLists& box_lists(Instructions most) noexcept {
-    most = std::min(most, instructions_of_this_processor());
-#if ACDF_WAVEFRONT_X86
-    if (most == Instructions::avx512) return box_lists_avx512;
-    if (most == Instructions::avx2) return box_lists_avx2;
-#endif
-    return kOneByOne;
+    return *ACDF_BEST_OF(most, &kOneByOne, &box_lists_avx2, &box_lists_avx512);
 }
 
 } // namespace acdf

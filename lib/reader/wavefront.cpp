@@ -206,12 +206,12 @@ constexpr AcdfBrdfVectors kVectors = {view_pdfs<Densities>, view_samples<Samples
 
 const AcdfBrdfVectors* brdf_vectors(Instructions most) noexcept {
 #if ACDF_WAVEFRONT_X86
-    const Instructions best = std::min(most, instructions_of_this_processor());
-    if (best == Instructions::avx512) return &kVectors<view_pdf_avx512, view_sample_avx512>;
-    if (best == Instructions::avx2) return &kVectors<view_pdf_avx2, view_sample_avx2>;
-#endif
+    return best_of<const AcdfBrdfVectors*>(most, nullptr, &kVectors<view_pdf_avx2, view_sample_avx2>,
+                                           &kVectors<view_pdf_avx512, view_sample_avx512>);
+#else
     (void)most;
     return nullptr;
+#endif
 }
 
 BrdfWavefront::BrdfWavefront(BrdfWavefront&& other) noexcept { *this = std::move(other); }

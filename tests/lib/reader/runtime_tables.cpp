@@ -161,26 +161,19 @@ TEST(RuntimeTables, ServeFilesOfAnySize) {
     }
 }
 
-// Groups of an environment, by some instructions.
-std::vector<std::uint32_t> groups_by(const AcdfEnvironment& environment, std::uint32_t tree_units,
-                                     acdf::Instructions most, std::size_t most_bytes) {
-    const acdf::TreeSurvey survey(environment, tree_units);
+// Words of the tables of an environment that `make` makes, by some instructions: one of acdf::make_cells and
+// acdf::make_groups.
+template <class Tables>
+std::vector<std::uint32_t>
+words_by(Tables* (*make)(const AcdfEnvironment&, const acdf::TreeSurvey&, std::size_t, const AcdfAllocator&,
+                         AcdfBlock&, acdf::Scratch*, acdf::Instructions) noexcept,
+         const AcdfEnvironment& environment, acdf::Instructions most, std::size_t most_bytes) {
+    const acdf::TreeSurvey survey(environment, environment.tree_units);
     AcdfBlock block = {};
     std::vector<std::uint32_t> words;
-    const AcdfGroups* const groups = acdf::make_groups(environment, survey, most_bytes, {}, block, nullptr, most);
-    if (groups) words.assign(acdf_group_words(groups, 0), acdf_group_words(groups, groups->words));
-    acdf::give_block({}, block);
-    return words;
-}
-
-std::vector<std::uint32_t> cells_by(const AcdfEnvironment& environment, std::uint32_t tree_units,
-                                    acdf::Instructions most, std::size_t most_bytes) {
-    const acdf::TreeSurvey survey(environment, tree_units);
-    AcdfBlock block = {};
-    std::vector<std::uint32_t> words;
-    const AcdfCells* const cells = acdf::make_cells(environment, survey, most_bytes, {}, block, nullptr, most);
-    const auto* const first = reinterpret_cast<const std::uint32_t*>(cells);
-    if (cells) words.assign(first, first + cells->words);
+    const Tables* const tables = make(environment, survey, most_bytes, {}, block, nullptr, most);
+    const auto* const first = reinterpret_cast<const std::uint32_t*>(tables);
+    if (tables) words.assign(first, first + tables->words);
     acdf::give_block({}, block);
     return words;
 }
@@ -192,14 +185,14 @@ TEST(RuntimeTables, AreTheSameByAnyInstructions) {
         const EnvironmentPair pair(bytes, Tables::own);
         const AcdfEnvironment environment = pair.plain.environment().data();
         const std::size_t any = std::size_t{1} << 26;
-        const auto cells = cells_by(environment, environment.tree_units, acdf::Instructions::none, any);
+        const auto cells = words_by(acdf::make_cells, environment, acdf::Instructions::none, any);
         of_cells += !cells.empty();
         for (const auto instructions : {acdf::Instructions::avx2, acdf::Instructions::avx512})
-            ASSERT_EQ(cells, cells_by(environment, environment.tree_units, instructions, any));
+            ASSERT_EQ(cells, words_by(acdf::make_cells, environment, instructions, any));
         for (const std::size_t most : {std::size_t{1} << 14, std::size_t{1} << 16, 40 * bytes.size()}) {
-            const auto plain = groups_by(environment, environment.tree_units, acdf::Instructions::none, most);
+            const auto plain = words_by(acdf::make_groups, environment, acdf::Instructions::none, most);
             for (const auto instructions : {acdf::Instructions::avx2, acdf::Instructions::avx512})
-                ASSERT_EQ(plain, groups_by(environment, environment.tree_units, instructions, most));
+                ASSERT_EQ(plain, words_by(acdf::make_groups, environment, instructions, most));
             compared += !plain.empty();
         }
     };
