@@ -264,24 +264,72 @@ ACDF_FN AcdfDirectionSample acdf_brdf_sample(const AcdfBrdf* brdf, const float w
     return acdf_brdf_walk(brdf, wo, u0, u1);
 }
 
+/* Moves a place in a cell to the half-vector that reflects wo into the direction of wi, if that is in the cell,
+ * too: wi is taken to be as long as wo, since floats of unit length hardly are, and what they are longer by turns
+ * the half-vector of nearly opposite ones. */
+ACDF_FN void acdf_brdf_refine(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
+                              const float wi[3], double position[2], double* sign) {
+    const double nothing[2] = {0.0, 0.0};
+    double half[3], at[2], side, wo2 = 0.0, wi2 = 0.0, length2 = 0.0;
+    int k;
+    for (k = 0; k < 3; ++k) {
+        wo2 += view->wo[k] * view->wo[k];
+        wi2 += (double)wi[k] * (double)wi[k];
+    }
+    for (k = 0; k < 3; ++k) {
+        half[k] = view->wo[k] + sqrt(wo2 / wi2) * (double)wi[k];
+        length2 += half[k] * half[k];
+    }
+    if (!(length2 > 0.0)) return;
+    acdf_brdf_position(brdf, view, half, sqrt(length2), at, &side);
+    if (!acdf_brdf_inside(range, at, nothing)) return;
+    position[0] = at[0];
+    position[1] = at[1];
+    *sign = side;
+}
+
+/* The fraction t of a cell that a sample takes for a position, `margin` away from the borders where there is room
+ * for it, else in the middle. Returns whether it is in the cell when it is rounded to floats; `margin` becomes what
+ * that may move it by, the reach of acdf_brdf_reflect. */
+ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
+                            const double position[2], double sign, double margin[2], double t[2]) {
+    const double nothing[2] = {0.0, 0.0};
+    AcdfBrdfPlace place;
+    double at[2], side;
+    float wi[3];
+    int axis;
+    for (axis = 0; axis < 2; ++axis) {
+        const double wide = (double)(range[axis].high - range[axis].low);
+        const double part = acdf_clamp(margin[axis] / wide, 0x1p-30, 0.5);
+        t[axis] = acdf_clamp(acdf_brdf_fraction(&range[axis], position[axis]), part, 1.0 - part);
+        at[axis] = (double)range[axis].low + t[axis] * wide;
+    }
+    acdf_brdf_reflect(brdf, view, at, sign, wi, margin);
+    return acdf_brdf_place(brdf, view, wi, &place, &side) && acdf_brdf_inside(range, place.position, nothing);
+}
+
 /* The random numbers u[2] for which acdf_brdf_sample returns wi for wo, through the half-vector. Returns 1, or 0
- * (and u unset) where the table's density is 0. */
+ * (and u unset) where the table's density is 0. The sample lies in the cell that acdf_brdf_pdf finds, and is wi but
+ * for rounding: a coordinate is off by 2^-23 at most, and for wi nearer to a border of the cell than samples come
+ * by 2^-19 / |wo + wi| + 2^-29 / sin(theta_h), in cells that are wider. Samples that rounding would carry over a
+ * border are moved into their cell, by an eighth of it or more: of those other numbers come back than they were
+ * drawn by, which draw them as well. */
 ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const float wi[3], double u[2]) {
     const double floor = (double)brdf->views->diffuse_share;
     AcdfBrdfView view;
     AcdfBrdfPlace place;
     AcdfRange range[2];
     AcdfStratum strata[2];
-    double sign;
+    double sign, margin[2] = {0.0, 0.0}, t[2];
     int axis;
     strata[0].low = strata[1].low = 0.0;
     strata[0].width = strata[1].width = 1.0;
     if (!acdf_brdf_view(brdf, wo, &view) || !acdf_brdf_place(brdf, &view, wi, &place, &sign)) return 0;
     if (!(acdf_brdf_find(brdf, &view, &place, range, strata) > 0.0)) return 0;
-    for (axis = 0; axis < 2; ++axis) {
-        const double t = acdf_brdf_fraction(&range[axis], place.position[axis]);
-        u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t);
-    }
+    acdf_brdf_refine(brdf, &view, range, wi, place.position, &sign);
+    if (!acdf_brdf_stays(brdf, &view, range, place.position, sign, margin, t))
+        acdf_brdf_stays(brdf, &view, range, place.position, sign, margin, t);
+    for (axis = 0; axis < 2; ++axis) u[axis] = acdf_stratum_number(&strata[axis], &range[axis], t[axis]);
     if (acdf_brdf_mirrored(brdf)) u[0] = 0.5 + 0.5 * sign * u[0];
     u[1] = floor + (1.0 - floor) * u[1];
     return 1;

@@ -36,21 +36,27 @@ ACDF_INLINE double acdf_brdf_azimuth(double y, double x) {
     return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + acdf_narrow_atanpi(w)));
 }
 
+/* Where a half-vector of this length lies in the table; `sign` is on which side of the mirror. */
+ACDF_INLINE void acdf_brdf_position(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double half[3],
+                                    double length, double position[2], double* sign) {
+    const double below = acdf_sign(half[2] + 0.0); /* one below the surface reflects as its opposite does */
+    const double hx = below * (view->turn[0] * half[0] + view->turn[1] * half[1]);
+    const double hy = below * (view->turn[0] * half[1] - view->turn[1] * half[0]);
+    const double phi = acdf_brdf_azimuth(fabs(hy), hx);
+    *sign = acdf_sign(hy + 0.0);
+    position[0] = (double)brdf->columns * (acdf_brdf_mirrored(brdf) ? phi : 0.5 + 0.5 * *sign * phi);
+    position[1] = (double)brdf->rows * ((half[0] * half[0] + half[1] * half[1]) /
+                                        (length * (length + fabs(half[2])))); /* no cancellation */
+}
+
 /* Place of the half-vector of wo and wi; `sign` is on which side of the mirror it lies. Returns 0 where wi is not
  * of unit length or opposite to wo. */
 ACDF_INLINE int acdf_brdf_place(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
                                 AcdfBrdfPlace* place, double* sign) {
-    double half[3], hx, hy, phi, below;
+    double half[3];
     if (!acdf_brdf_half(view, wi, half, place)) return 0;
-    below = acdf_sign(half[2] + 0.0); /* a half-vector below the surface reflects as its opposite does */
-    hx = below * (view->turn[0] * half[0] + view->turn[1] * half[1]);
-    hy = below * (view->turn[0] * half[1] - view->turn[1] * half[0]);
-    phi = acdf_brdf_azimuth(fabs(hy), hx);
-    *sign = acdf_sign(hy + 0.0);
-    place->position[0] = (double)brdf->columns * (acdf_brdf_mirrored(brdf) ? phi : 0.5 + 0.5 * *sign * phi);
-    place->position[1] = (double)brdf->rows * ((half[0] * half[0] + half[1] * half[1]) /
-                                               (place->length * (place->length + fabs(half[2]))));
-    return 1; /* 1 - cos(theta_h) without cancellation */
+    acdf_brdf_position(brdf, view, half, place->length, place->position, sign);
+    return 1;
 }
 
 ACDF_INLINE uint32_t acdf_brdf_step(double position, uint32_t resolution) {

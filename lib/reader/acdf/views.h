@@ -140,7 +140,8 @@ public:
     ACDF_METHOD float pdf(const float wo[3], const float wi[3]) const noexcept {
         return acdf_brdf_pdf(&data_, wo, wi);
     }
-    /// The random numbers that draw wi for wo; false where the table's density is 0.
+    /// The random numbers that draw wi for wo, but for rounding (acdf_brdf_invert); false where the table's density
+    /// is 0.
     ACDF_METHOD bool invert(const float wo[3], const float wi[3], double u[2]) const noexcept {
         return acdf_brdf_invert(&data_, wo, wi, u) != 0;
     }

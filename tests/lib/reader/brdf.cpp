@@ -166,26 +166,6 @@ TEST(BrdfReader, samplesAreWhatPdfTells) {
     }
 }
 
-TEST(BrdfReader, invertsWhatItDraws) {
-    std::mt19937_64 random(13);
-    std::uniform_real_distribution<double> u(0.0, 1.0);
-    for (BrdfSpec& spec : shared_forms()) {
-        const Loaded loaded(spec.encode());
-        for (int i = 0; i < 2000; ++i) {
-            const Direction wo = at_angles(0.05 + 0.9 * u(random), 2.0 * pi * u(random));
-            const double u0 = u(random),
-                         u1 = double{spec.diffuse_share} + (1.0 - double{spec.diffuse_share}) * u(random);
-            const auto s = loaded.view().sample(wo.data(), u0, u1);
-            double back[2];
-            if (s.direction[0] * wo[0] + s.direction[1] * wo[1] + s.direction[2] * wo[2] < -0.99f)
-                continue; // opposite
-            ASSERT_TRUE(loaded.view().invert(wo.data(), s.direction, back));
-            ASSERT_NEAR(back[0], u0, 2e-3) << i;
-            ASSERT_NEAR(back[1], u1, 2e-3) << i;
-        }
-    }
-}
-
 TEST(BrdfReader, anyNumbersAreSafe) {
     const float nan = std::nanf("");
     std::vector<BrdfSpec> forms = shared_forms();
