@@ -7,6 +7,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/sizes.h"
@@ -124,7 +125,7 @@ Converted BrdfConversion::convert(const Listener& listener) {
     std::snprintf(summary, sizeof summary, "%u views, %llu cells, relative variance %.4g (mean; worst %.4g)",
                   result.theta_views * result.phi_views, static_cast<unsigned long long>(a.cells),
                   a.relative_variance, a.worst);
-    nlohmann::ordered_json told = report(result);
+    std::string told = json_text(report(result));
     return {std::move(result.bytes), a.relative_variance, std::move(told), summary};
 }
 

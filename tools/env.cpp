@@ -8,6 +8,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
@@ -219,7 +220,7 @@ Converted EnvConversion::convert(const Listener& listener) {
                   result.order != builder::Order::best
                       ? (std::string(", ") + order_name(result.order) + " first").c_str()
                       : "");
-    nlohmann::ordered_json told = report(loaded, result);
+    std::string told = json_text(report(loaded, result));
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }
 

@@ -10,6 +10,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
+#include "tools/cli/json.h"
 #include "tools/cli/mesh_places.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
@@ -245,7 +246,7 @@ Converted LocalConversion::convert(const Listener& listener) {
                       gain(result));
         listener.note(text);
     }
-    nlohmann::ordered_json told = report(loaded, result);
+    std::string told = json_text(report(loaded, result));
     const std::string summary = summary_of(result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
 }

@@ -39,7 +39,7 @@ void run(Conversion& conversion, const RunOptions& options) {
     std::FILE* out = options.output == "-" ? stderr : stdout;
     if (options.json) {
         nlohmann::ordered_json report{{"file", options.output}};
-        report.update(made.report);
+        report.update(nlohmann::ordered_json::parse(made.report));
         std::fputs(json_text(report).c_str(), out);
     } else if (!options.quiet) {
         std::fprintf(out, "%s: %s, %s\n", printable(options.output).c_str(),

@@ -4,8 +4,6 @@
 #include "tools/cli/probe_source.h"
 #include "tools/cli/progress.h"
 
-#include <nlohmann/json.hpp>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -21,7 +19,7 @@ namespace acdf::tools {
 struct Converted {
     std::vector<std::uint8_t> bytes; ///< the whole file
     double relative_variance = 0.0;  ///< as the file itself tells it
-    nlohmann::ordered_json report;   ///< for --json, but for the name of the output
+    std::string report;              ///< for --json, an object: but for the name of the output
     std::string summary;             ///< a line for people: what stands behind the file's size
 };
 
