@@ -15,12 +15,13 @@ namespace acdf::images {
 namespace {
 
 constexpr int kFewestColumns = 8, kMostColumns = 32767, kMostPictureRows = 1 << 16;
-constexpr std::size_t kLongestLine = 100, kMostLines = 100;
+constexpr std::size_t kLongestLine = 2000, kMostLines = 100; // Radiance's own commands are long
 
 struct Radiance {
     std::ifstream file;
     int width = 0, height = 0;
     std::streamoff pixels = 0; ///< where they begin
+    bool whole_pixels = false; ///< rows are not divided into components
     int next = 0;              ///< the row that the file stands at
     std::vector<unsigned char> row;
 };
@@ -39,9 +40,17 @@ bool begins_with(std::string_view line, std::string_view beginning) {
     return line.substr(0, beginning.size()) == beginning;
 }
 
+/// Whether a line tells a command that made the picture, as Radiance's programs add one each.
+bool is_command(std::string_view line) {
+    const bool begins = line[0] == '\t' || (line[0] >= 'a' && line[0] <= 'z');
+    const std::size_t end = line.find_first_of(" \t=", 1);
+    return begins && (end == std::string_view::npos || line[end] != '=');
+}
+
 /// Whether a line of the header changes nothing of how pixels are taken.
 bool is_harmless(std::string_view line) {
-    return begins_with(line, "#") || begins_with(line, "EXPOSURE=") || begins_with(line, "PRIMARIES=") ||
+    return is_command(line) || begins_with(line, "VIEW=") || begins_with(line, "SOFTWARE=") ||
+           begins_with(line, "#") || begins_with(line, "EXPOSURE=") || begins_with(line, "PRIMARIES=") ||
            line == "GAMMA=1" || line == "GAMMA=1.0";
 }
 
@@ -71,10 +80,23 @@ bool read_header(Radiance& picture) {
            picture.width >= kFewestColumns && picture.width <= kMostColumns;
 }
 
+/// What a row begins with whose components are encoded one after the other.
+std::array<int, 4> row_mark(const Radiance& picture) { return {2, 2, picture.width >> 8, picture.width & 255}; }
+
+/// Looks at how rows are encoded. False where they are not at all: OpenImageIO reads all pixels of such pictures.
+bool find_encoding(Radiance& picture) {
+    std::streambuf& bytes = *picture.file.rdbuf();
+    for (const int expected : row_mark(picture)) picture.whole_pixels |= bytes.sbumpc() != expected;
+    picture.file.seekg(0, std::ios::end);
+    const std::streamoff size = picture.file.tellg() - picture.pixels;
+    picture.file.seekg(picture.pixels);
+    return !picture.whole_pixels || size < 4 * std::streamoff{picture.width} * picture.height;
+}
+
 void* open_radiance(const std::string& path, int, Header& header, std::string&) {
     auto picture = std::make_unique<Radiance>();
     picture->file.open(path, std::ios::binary);
-    if (!read_header(*picture)) return nullptr;
+    if (!read_header(*picture) || !find_encoding(*picture)) return nullptr;
     picture->row.resize(4 * static_cast<std::size_t>(picture->width));
     header = {};
     header.format = "hdr";
@@ -107,15 +129,43 @@ bool read_component(std::streambuf& bytes, unsigned char* at, unsigned char* end
     return true;
 }
 
-bool next_row(Radiance& picture) {
+bool read_components(Radiance& picture) {
     std::streambuf& bytes = *picture.file.rdbuf();
     const auto width = static_cast<std::size_t>(picture.width);
-    for (const int expected : {2, 2, picture.width >> 8, picture.width & 255})
+    for (const int expected : row_mark(picture))
         if (bytes.sbumpc() != expected) return false;
     for (std::size_t component = 0; component < 4; ++component)
         if (!read_component(bytes, picture.row.data() + component * width,
                             picture.row.data() + (component + 1) * width))
             return false;
+    return true;
+}
+
+/// The older code: pixels, of which 1 1 1 n stands for n more of the one before, times 256 right after another
+/// such.
+bool read_whole_pixels(Radiance& picture) {
+    std::streambuf& bytes = *picture.file.rdbuf();
+    const auto width = static_cast<std::size_t>(picture.width);
+    unsigned shift = 0;
+    for (std::size_t x = 0; x < width;) {
+        unsigned char pixel[4];
+        if (bytes.sgetn(reinterpret_cast<char*>(pixel), 4) != 4) return false;
+        const bool run = pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1;
+        if (run && (x == 0 || shift > 8)) return false; // no row is as long as that
+        const std::size_t count = run ? std::size_t{pixel[3]} << shift : 1;
+        if (count > width - x) return false;
+        for (std::size_t component = 0; component < 4; ++component) {
+            unsigned char* const at = picture.row.data() + component * width + x;
+            std::memset(at, run ? at[-1] : pixel[component], count);
+        }
+        x += count;
+        shift = run ? shift + 8 : 0;
+    }
+    return true;
+}
+
+bool next_row(Radiance& picture) {
+    if (!(picture.whole_pixels ? read_whole_pixels(picture) : read_components(picture))) return false;
     ++picture.next;
     return true;
 }

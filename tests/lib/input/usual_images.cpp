@@ -5,9 +5,11 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/input/write.h"
 
+#include <array>
 #include <cstring>
 #include <functional>
 #include <random>
+#include <utility>
 
 namespace {
 
@@ -15,6 +17,7 @@ using namespace acdf;
 using namespace acdf::test;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
+using namespace std::string_literals;
 
 /// What reading a file comes to, in bands.
 struct Read {
@@ -193,7 +196,9 @@ TEST_F(UsualImages, Radiance) {
     const std::string format = "FORMAT=32-bit_rle_rgbe\n";
     for (const std::string& head : {"#?RADIANCE\n" + format + "\n",
                                     "#?RADIANCE\n# by hand\nGAMMA=1\nPRIMARIES=0 0 0 0 0 0 0 0\n" + format + "\n",
-                                    "#?RADIANCE\n" + format + "EXPOSURE=          1.0000000000000\n\n"}) {
+                                    "#?RADIANCE\n" + format + "EXPOSURE=          1.0000000000000\n\n",
+                                    "#?RADIANCE\nrpict -av 0 0 0 -x=1\n\tpfilt -1\nnormpat\nSOFTWARE=hand\n" +
+                                        format + "VIEW= -vtv -vp 1 2 3\n# " + std::string(150, 'x') + "\n\n"}) {
         write_bytes(hdr, head + size + pixels + "behind");
         EXPECT_TRUE(is_taken(hdr)) << head;
         expect_same(read_file(hdr), theirs);
@@ -212,16 +217,26 @@ TEST_F(UsualImages, UnusualRadianceIsLeftToOpenImageIO) {
     write_image(hdr, usual_spec(3, TypeDesc::FLOAT), usual_texels(3));
     const std::string bytes = read_bytes(hdr), pixels = bytes.substr(bytes.find("+X 32\n") + 6);
     const std::string begin = "#?RADIANCE\n", format = "FORMAT=32-bit_rle_rgbe\n", size = "-Y 16 +X 32\n";
-    for (const std::string& head :
-         {"#?RGBE\n" + format + "\n" + size, begin + format + "GAMMA=2.2\n\n" + size,
-          begin + "GAMMA=0.5\n" + format + "\n" + size, begin + "FORMAT=32-bit_rle_xyze\n\n" + size,
-          begin + "\n" + size, begin + format + "COLORCORR=2 2 2\n\n" + size,
-          begin + "# " + std::string(150, 'x') + "\n" + format + "\n" + size, begin + format + size,
-          begin + format + "\n" + "+Y 16 +X 32\n", begin + format + "\n" + "-Y 16 -X 32\n",
-          begin + format + "\n" + "+X 16 -Y 32\n", begin + format + "\n" + "-Y 16 +X 32 \n",
-          begin + format + "\n" + "-Y 0 +X 32\n", begin + format + "\n" + "-Y 99999999999 +X 32\n",
-          begin + format + "\n" + "-Y 64 +X 7\n", begin + format + "\r\n" + size, format + "\n" + size,
-          begin + format}) {
+    for (const std::string& head : {"#?RGBE\n" + format + "\n" + size,
+                                    begin + format + "GAMMA=2.2\n\n" + size,
+                                    begin + "GAMMA=0.5\n" + format + "\n" + size,
+                                    begin + "FORMAT=32-bit_rle_xyze\n\n" + size,
+                                    begin + "\n" + size,
+                                    begin + format + "COLORCORR=2 2 2\n\n" + size,
+                                    begin + format + "gamma=2\n\n" + size,
+                                    begin + format + "-v\n\n" + size,
+                                    begin + "# " + std::string(2500, 'x') + "\n" + format + "\n" + size,
+                                    begin + format + size,
+                                    begin + format + "\n" + "+Y 16 +X 32\n",
+                                    begin + format + "\n" + "-Y 16 -X 32\n",
+                                    begin + format + "\n" + "+X 16 -Y 32\n",
+                                    begin + format + "\n" + "-Y 16 +X 32 \n",
+                                    begin + format + "\n" + "-Y 0 +X 32\n",
+                                    begin + format + "\n" + "-Y 99999999999 +X 32\n",
+                                    begin + format + "\n" + "-Y 64 +X 7\n",
+                                    begin + format + "\r\n" + size,
+                                    format + "\n" + size,
+                                    begin + format}) {
         write_bytes(hdr, head + pixels);
         EXPECT_FALSE(is_taken(hdr)) << head;
         expect_same(read_file(hdr), read_with(images::module().reader, hdr));
@@ -230,6 +245,66 @@ TEST_F(UsualImages, UnusualRadianceIsLeftToOpenImageIO) {
     write_bytes(hdr, begin + format + "\n" + size + std::string(4 * kImageWidth * kImageHeight, '\x51'));
     expect_same(read_file(hdr), read_with(images::module().reader, hdr));
     EXPECT_FALSE(is_taken(folder.file("")));
+}
+
+/// A picture of whole pixels, one after the other; where n > 1, n times.
+struct WholePixels {
+    int columns, rows;
+    std::vector<std::pair<std::array<unsigned char, 4>, int>> pixels; ///< a run does not go on in the next row
+
+    std::string head() const {
+        return "#?RADIANCE\nrview -vf a\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(rows) + " +X " +
+               std::to_string(columns) + "\n";
+    }
+    std::string written(bool encoded) const {
+        std::string out = head();
+        for (const auto& [pixel, count] : pixels) {
+            const std::string text(pixel.begin(), pixel.end());
+            out += text;
+            for (int i = 1; i < count && !encoded; ++i) out += text;
+            for (int left = encoded ? count - 1 : 0; left > 0; left >>= 8) // the least first
+                out += {1, 1, 1, static_cast<char>(left & 255)};
+        }
+        return out;
+    }
+};
+
+WholePixels older_picture() {
+    return {300,
+            3,
+            {{{200, 100, 50, 129}, 300},
+             {{128, 0, 0, 140}, 1},
+             {{2, 200, 2, 44}, 257},
+             {{9, 9, 255, 0}, 42},
+             {{2, 2, 129, 44}, 2},
+             {{128, 1, 1, 129}, 256},
+             {{1, 255, 1, 255}, 42}}};
+}
+
+// Until 1991 Radiance encoded runs of whole pixels, which others write to this day. OpenImageIO reads them where
+// nothing is encoded.
+TEST_F(UsualImages, OlderRadiance) {
+    const WholePixels picture = older_picture();
+    write_bytes(hdr, picture.written(false));
+    EXPECT_FALSE(is_taken(hdr));
+    const Read plain = read_with(images::module().reader, hdr);
+    ASSERT_TRUE(plain.opened && plain.done);
+    expect_same(read_file(hdr), plain);
+    const std::string encoded = picture.written(true);
+    write_bytes(hdr, encoded);
+    ASSERT_TRUE(is_taken(hdr));
+    EXPECT_FALSE(read_with(images::module().reader, hdr).done);
+    expect_same(read_file(hdr), plain);
+    // Cut short anywhere, or with runs of nothing or beyond the row.
+    for (std::size_t size = picture.head().size(); size < encoded.size(); ++size) {
+        write_bytes(hdr, encoded.substr(0, size));
+        EXPECT_FALSE(read_file(hdr).done) << size;
+    }
+    for (const std::string& run :
+         {std::string("\1\1\1\1"), "\x80\0\0\x80\1\1\1\xff\1\1\1\1"s, "\x80\0\0\x80\1\1\1\0\1\1\1\0\1\1\1\1"s}) {
+        write_bytes(hdr, picture.head() + run + encoded.substr(picture.head().size()));
+        EXPECT_FALSE(read_file(hdr).done);
+    }
 }
 
 TEST_F(UsualImages, DamagedOpenExr) {
