@@ -5,6 +5,7 @@
 #include "input/file_name.h"
 #include "input/image.h"
 #include "input/merl.h"
+#include "input/other_kind.h"
 #include "input/rgl_brdf.h"
 
 #include <cerrno>
@@ -51,7 +52,10 @@ std::unique_ptr<Brdf> read_file(const std::string& path) {
         return parse_rgl(path, bytes.data(), bytes.size());
     if (bytes.size() == MerlLayout::bytes || extension == ".binary")
         return parse_merl(path, bytes.data(), bytes.size());
-    throw input_error(path, "it is no BRDF file known here; give a MERL .binary, an RGL .bsdf or an .npy file");
+    const std::string kind = kind_of_no_brdf(path);
+    throw input_error(path, kind.empty() ? "it is no BRDF file known here; give a MERL .binary, an RGL .bsdf or an "
+                                           ".npy file"
+                                         : kind);
 }
 
 } // namespace

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double channel_scale[3] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
+constexpr double kMostValue = 1e18; ///< sr^-1; as acdf::builder::ReflectanceFunction has it
+
 std::uint32_t step(double fraction, std::uint32_t steps) {
     return static_cast<std::uint32_t>(std::clamp(fraction * steps, 0.0, steps - 1.0));
 }
@@ -87,7 +89,7 @@ double mirror_asymmetry(const std::vector<float>& table) {
 std::unique_ptr<Brdf> parse_merl(const std::string& name, const std::uint8_t* data, std::size_t size) {
     check_header(name, data, size);
     std::vector<float> table(3 * MerlLayout::entries);
-    std::size_t negative = 0, bad = 0;
+    std::size_t negative = 0, positive = 0, bad = 0, huge = 0;
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < MerlLayout::entries; ++i) {
             double value;
@@ -96,11 +98,18 @@ std::unique_ptr<Brdf> parse_merl(const std::string& name, const std::uint8_t* da
             value *= channel_scale[c];
             if (!(std::abs(value) <= double{std::numeric_limits<float>::max()})) ++bad;
             else if (value < 0.0) ++negative;
-            else table[3 * i + c] = static_cast<float>(value);
+            else {
+                table[3 * i + c] = static_cast<float>(value);
+                positive += table[3 * i + c] > 0.0f;
+                huge += !(value < kMostValue);
+            }
         }
     if (bad > 0)
         throw input_error(name, std::to_string(bad) +
                                     " of its entries are NaN or infinite in single precision; download it again");
+    if (huge > 0)
+        throw input_error(name, std::to_string(huge) + " of its entries are 1e18 sr^-1 or more; download it again");
+    if (positive == 0) throw input_error(name, "none of its entries is above 0; download it again");
     const double asymmetry = mirror_asymmetry(table);
     auto brdf = std::make_unique<Merl>(std::move(table));
     brdf->name = name;

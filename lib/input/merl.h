@@ -19,7 +19,8 @@ struct MerlLayout {
 /// Evaluates as the reader published with the data: the entry whose cell holds (theta_h, theta_d, phi_d), with no
 /// interpolation; row i of theta_h begins at (i/90)^2 pi/2, those of the others are of equal size; phi_d in [-pi,
 /// 0) means phi_d + pi (reciprocity). Negative entries, which mark angles that were not measured, are 0 and counted
-/// in `notes`. `name` goes into messages. Throws Error for anything but a whole file of finite numbers.
+/// in `notes`. `name` goes into messages. Throws Error for anything but a whole file of finite numbers
+/// below 1e18 sr^-1, of which at least one is above 0.
 std::unique_ptr<Brdf> parse_merl(const std::string& name, const std::uint8_t* data, std::size_t size);
 
 } // namespace acdf::input

@@ -15,19 +15,35 @@ struct Beginning {
     const char* text;
 };
 
-constexpr Beginning beginnings[] = {
-    {"\xab\x41\x43\x44\x46", 5, "it is an .acdf file; give the image that it was made from"},
+constexpr char acdf_magic[] = "\xab\x41\x43\x44\x46";
+
+constexpr Beginning of_no_image[] = {
+    {acdf_magic, 5, "it is an .acdf file; give the image that it was made from"},
     {"tensor_file", 11, "it is a BRDF of the RGL database, which acdf brdf takes"},
     {"\x93NUMPY", 6, "it is a NumPy array, which acdf table takes"},
 };
 
-} // namespace
+constexpr Beginning of_no_brdf[] = {
+    {acdf_magic, 5, "it is an .acdf file; give the BRDF that it was made from"},
+    {"\x76\x2f\x31\x01", 4, "it is an OpenEXR image, which acdf env takes"},
+    {"#?", 2, "it is a Radiance image, which acdf env takes"},
+};
 
-std::string kind_of_no_image(const std::string& path) {
+template <std::size_t N>
+std::string told_by_beginning(const std::string& path, const Beginning (&known)[N]) {
     char first[12] = {};
     std::ifstream(path, std::ios::binary).read(first, sizeof first);
-    for (const Beginning& beginning : beginnings)
+    for (const Beginning& beginning : known)
         if (std::memcmp(first, beginning.bytes, beginning.size) == 0) return beginning.text;
+    return {};
+}
+
+} // namespace
+
+std::string kind_of_no_brdf(const std::string& path) { return told_by_beginning(path, of_no_brdf); }
+
+std::string kind_of_no_image(const std::string& path) {
+    if (std::string kind = told_by_beginning(path, of_no_image); !kind.empty()) return kind;
     std::error_code error;
     if (std::filesystem::file_size(path, error) == MerlLayout::bytes && !error)
         return "it is a MERL BRDF, which acdf brdf takes";

@@ -9,4 +9,7 @@ namespace acdf::input {
 /// nothing.
 std::string kind_of_no_image(const std::string& path);
 
+/// The same of a file that holds no BRDF.
+std::string kind_of_no_brdf(const std::string& path);
+
 } // namespace acdf::input

@@ -58,9 +58,18 @@ public:
     }
 
 private:
+    /// In radians.
+    std::vector<float> angles(const char* name, float least, float most) const {
+        std::vector<float> out = axis_of(file_, name);
+        if (!(out.front() >= least && out.back() <= most))
+            throw input_error(file_.name(),
+                              std::string("field '") + name + "' has numbers that are no such angles" + no_file);
+        return out;
+    }
+
     void read_views() {
-        out_.nodes.theta = axis_of(file_, "theta_i");
-        out_.nodes.phi = axis_of(file_, "phi_i");
+        out_.nodes.theta = angles("theta_i", 0.0f, 1.58f); // they end at pi/2
+        out_.nodes.phi = angles("phi_i", -6.3f, 6.3f);     // from -pi to pi, from 0 on, or one
         out_.isotropic = out_.nodes.phi.size() <= 2;
         const TensorField* const flag = file_.find("jacobian");
         if (!flag || flag->type != TensorType::uint8 || flag->count != 1)

@@ -62,7 +62,7 @@ Triangles read_triangles(const std::string& path, UpAxis up) {
         add_triangles(mesh, place, up, out);
         if (out.count() > most_triangles) throw input_error(path, "it has more than 2^26 triangles");
     });
-    if (out.corners.empty()) throw input_error(path, "no triangle is in it");
+    if (out.corners.empty()) throw input_error(path, "no triangle is in it whose corners are numbers below 1e30");
     return out;
 }
 

@@ -122,6 +122,12 @@ TEST(InputBrdfFiles, AreToldByWhatTheyHold) {
     EXPECT_REFUSED(open_brdf(folder.file("text.npy")), "text.npy");
     write_bytes(folder.file("text.txt"), "Dear sir");
     EXPECT_REFUSED(open_brdf(folder.file("text.txt")), "no BRDF file known here");
+    write_bytes(folder.file("a"), "\xab\x41\x43\x44\x46" + std::string(100, ' '));
+    EXPECT_REFUSED(open_brdf(folder.file("a")), "it is an .acdf file; give the BRDF");
+    write_bytes(folder.file("a"), "\x76\x2f\x31\x01" + std::string(100, ' '));
+    EXPECT_REFUSED(open_brdf(folder.file("a")), "OpenEXR image, which acdf env takes");
+    write_bytes(folder.file("a"), "#?RADIANCE\n");
+    EXPECT_REFUSED(open_brdf(folder.file("a")), "Radiance image, which acdf env takes");
     write_bytes(folder.file("empty.bsdf"), "");
     EXPECT_REFUSED(open_brdf(folder.file("empty.bsdf")), "empty");
     EXPECT_REFUSED(open_brdf(folder.file("missing.bsdf")), "no such file");

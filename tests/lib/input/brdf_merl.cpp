@@ -169,6 +169,13 @@ TEST(InputBrdfMerl, DamagedFilesAreRefused) {
     EXPECT_REFUSED(parse(patched(12 + 8 * 12345, std::nan(""))), "1 of its entries");
     EXPECT_REFUSED(parse(patched(12, HUGE_VAL)), "NaN or infinite");
     EXPECT_REFUSED(parse(patched(12, 1e300)), "NaN or infinite in single precision");
+    EXPECT_REFUSED(parse(patched(12 + 8 * 777, 1.6e21)), "1 of its entries are 1e18 sr^-1 or more");
+    Bytes dark = good;
+    std::fill(dark.begin() + MerlLayout::header, dark.end(), std::uint8_t{0});
+    EXPECT_REFUSED(parse(dark), "none of its entries is above 0");
+    for (std::size_t at = MerlLayout::header; at < dark.size(); at += sizeof(double))
+        dark[at + 7] = 0xBF; // below 0
+    EXPECT_REFUSED(parse(dark), "none of its entries is above 0");
 }
 
 } // namespace

@@ -252,6 +252,10 @@ TEST(InputBrdfRgl, DamagedFilesAreRefused) {
                    })),
                    "'theta_i' does not increase");
     EXPECT_REFUSED(parse(changed([](RglParts& p) { p.theta[1] = std::nanf(""); })), "'theta_i' are NaN");
+    for (const auto& angles : std::vector<std::vector<float>>{
+             {0.0f, 0.6f, 1.1f, 90.0f}, {-0.1f, 0.6f, 1.1f, 1.5f}, {0.0f, 0.6f, 1.1f, 3e38f}})
+        EXPECT_REFUSED(parse(changed([&](RglParts& p) { p.theta = angles; })), "'theta_i' has numbers that are no");
+    EXPECT_REFUSED(parse(changed([](RglParts& p) { p.phi = {1e30f}; })), "'phi_i' has numbers that are no");
     EXPECT_REFUSED(parse(changed([](RglParts& p) { p.vndf[5] = HUGE_VALF; })), "'vndf' are NaN or infinite");
     EXPECT_REFUSED(parse(changed([](RglParts& p) { p.colour[0] = std::nanf(""); })), "1 numbers of field 'rgb'");
     EXPECT_REFUSED(parse(changed([](RglParts& p) { std::fill(p.vndf.begin(), p.vndf.begin() + 42, 0.0f); })),

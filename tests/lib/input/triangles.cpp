@@ -101,7 +101,13 @@ TEST(MeshTriangles, OfCornersThatAreNoNumbersOrTooFarAwayAreLeftOut) {
                 "v 0 0 0\nv 1 0 0\nv 1 2 0\nv nan 2 0\nv 0 3e38 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
     EXPECT_EQ(read_triangles(folder.file("a.obj"), UpAxis::z).count(), 1u);
     write_bytes(folder.file("b.obj"), "v -3e38 0 0\nv 3e38 0 0\nv 0 3e38 0\nf 1 2 3\n");
-    EXPECT_THROW(read_triangles(folder.file("b.obj"), UpAxis::z), Error);
+    try {
+        read_triangles(folder.file("b.obj"), UpAxis::z);
+        ADD_FAILURE() << "read";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("b.obj: no triangle is in it whose corners"), std::string::npos)
+            << error.what();
+    }
 }
 
 /// Both sides of a triangle are sampled all over, whatever sequence tells the points.
