@@ -91,10 +91,11 @@ std::string PortalOption::text() const {
 void PortalOption::tell(builder::Places& places) const {
     places.portals = corners_;
     if (path.empty()) return;
-    const std::vector<std::uint8_t> bytes = read_bytes(path);
+    const std::vector<std::uint8_t> bytes = read_bytes(path, kMostSceneBytes);
     try {
-        for (const measure::Portal& portal : parse_scene({bytes.begin(), bytes.end()}).geometry.portals)
-            places.portals.push_back(told_portal(places, portal));
+        const std::vector<measure::Portal> portals = parse_scene({bytes.begin(), bytes.end()}).geometry.portals;
+        if (portals.empty()) throw SceneError("the scene tells no portals");
+        for (const measure::Portal& portal : portals) places.portals.push_back(told_portal(places, portal));
     } catch (const SceneError& error) {
         throw input::Error(path + ": " + error.what());
     }

@@ -9,6 +9,7 @@
 #include "tools/commands.h"
 #include "tools/plot/image.h"
 #include "tools/render/images.h"
+#include "tools/render/output_files.h"
 #include "tools/render/report.h"
 #include "tools/render/run.h"
 #include "tools/render/sampler_build.h"
@@ -20,7 +21,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <set>
 
 namespace acdf::tools {
 namespace {
@@ -36,7 +36,7 @@ struct RenderArguments {
 };
 
 SceneFile read_scene(const RenderArguments& options) {
-    const std::vector<std::uint8_t> bytes = read_bytes(options.scene);
+    const std::vector<std::uint8_t> bytes = read_bytes(options.scene, kMostSceneBytes);
     try {
         return parse_scene({bytes.begin(), bytes.end()});
     } catch (const SceneError& error) {
@@ -69,11 +69,6 @@ class Folder {
 public:
     Folder(std::string path, bool force) : path_(std::move(path)), force_(force) {}
 
-    /// Before any long work.
-    void refuse_existing(const std::string& name) const {
-        if (!force_ && std::filesystem::exists(at(name)))
-            throw Failure(at(name) + ": exists already; --force replaces it");
-    }
     void write(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
         write_output(at(name), bytes, force_);
     }
@@ -83,18 +78,6 @@ private:
     std::string path_;
     bool force_;
 };
-
-/// Distinct ones, in the order of the samplers.
-std::vector<std::string> stems(const std::vector<SamplerSpec>& samplers) {
-    std::vector<std::string> out;
-    std::set<std::string> used{"reference", "render"};
-    for (const SamplerSpec& spec : samplers) {
-        std::string stem = file_stem(spec);
-        for (int i = 2; !used.insert(stem).second; ++i) stem = file_stem(spec) + "-" + std::to_string(i);
-        out.push_back(stem);
-    }
-    return out;
-}
 
 class PictureWriter {
 public:
@@ -215,15 +198,29 @@ void remark(const RenderArguments& options, const LoadedScene& scene) {
         for (const std::string& note : scene.brdfs[i]->notes) say(scene.file.materials[i].brdf + ": " + note);
 }
 
+/// All files that are read.
+std::vector<std::string> inputs(const RenderArguments& options, const SceneFile& scene,
+                                const std::vector<SamplerSpec>& samplers) {
+    std::vector<std::string> out = files_of(samplers, options.data);
+    out.push_back(options.scene);
+    const auto add = [&](const std::string& name) {
+        out.push_back((std::filesystem::path(options.data) / name).string());
+    };
+    add(scene.probe);
+    for (const SceneMaterial& material : scene.materials) add(material.brdf);
+    for (const SceneMesh& mesh : scene.meshes) add(mesh.file);
+    return out;
+}
+
 void run(const RenderArguments& options) {
     const auto limit = limit_threads(options.threads);
     SceneFile file = read_scene(options);
     apply_options(options, file);
     std::vector<SamplerSpec> samplers = specs(options, file);
     const Folder folder(options.output, options.force);
-    folder.refuse_existing("render.json");
-    for (const std::string& stem : stems(samplers)) folder.refuse_existing(stem + ".exr");
     const OutputFolder made(options.output);
+    const std::vector<std::string> stems = file_stems(samplers);
+    refuse_outputs(options.output, stems, options.force, inputs(options, file, samplers));
 
     std::unique_ptr<LoadedScene> scene;
     RenderRun done;
@@ -233,8 +230,10 @@ void run(const RenderArguments& options) {
         done = render_all(options, *scene, std::move(samplers));
     } catch (const SpecError& error) {
         throw Failure(options.scene + ": " + error.what());
+    } catch (const SceneError& error) {
+        throw Failure(options.scene + ": " + error.what());
     }
-    PictureWriter(folder, *scene, done).all(stems(done.options.samplers));
+    PictureWriter(folder, *scene, done).all(stems);
     const std::string json = render_json(*scene, done);
     folder.write("render.json", {json.begin(), json.end()});
     if (options.json) std::fputs(json.c_str(), stdout);

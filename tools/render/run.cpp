@@ -2,7 +2,6 @@
 
 #include "compress/sum.h"
 #include "measure/reference.h"
-#include "tools/commands.h"
 #include "tools/demo/probes.h"
 #include "tools/render/sampler_build.h"
 
@@ -31,12 +30,14 @@ input::Probe load_light(const SceneFile& file, const std::string& data) {
         }
         names += (names.empty() ? "" : ", ") + demo.name;
     }
-    throw Failure("light.built_in: '" + file.built_in + "' is none of " + names);
+    throw SceneError("light.built_in: '" + file.built_in + "' is none of " + names);
 }
 
 std::string brdf_source(const std::string& brdf, const std::string& data) {
     const std::filesystem::path path = std::filesystem::path(data) / brdf;
-    return std::filesystem::exists(path) ? path.string() : brdf; // else a model's text, or open_brdf complains
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored) ? path.string()
+                                                  : brdf; // else a model's text, or open_brdf complains
 }
 
 double luminance_mean(const std::vector<measure::Rgb>& values) {
@@ -155,7 +156,7 @@ std::unique_ptr<LoadedScene> load_scene(const SceneFile& file, const std::string
     out->scene.light = {static_cast<std::uint32_t>(out->probe.width), static_cast<std::uint32_t>(out->probe.height),
                         out->probe.rgb.data()};
     out->points = measure::visible_points(out->scene);
-    if (out->points.points.empty()) throw Failure("the camera sees no object");
+    if (out->points.points.empty()) throw SceneError("camera: it sees no object");
     return out;
 }
 

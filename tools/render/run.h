@@ -30,7 +30,7 @@ struct LoadedScene {
     LoadedScene& operator=(const LoadedScene&) = delete;
 };
 
-/// Reads the probe and the BRDFs; file names in a scene are relative to `data`. Throws Failure and input::Error.
+/// Reads the probe and the BRDFs; file names in a scene are relative to `data`. Throws SceneError and input::Error.
 std::unique_ptr<LoadedScene> load_scene(const SceneFile& file, const std::string& data);
 
 struct ComparisonOptions {

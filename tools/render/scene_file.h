@@ -12,6 +12,9 @@
 
 namespace acdf::tools {
 
+/// No scene is longer: it has at most 1,000 objects, and what is much longer takes minutes to parse.
+constexpr std::uint64_t kMostSceneBytes = std::uint64_t{1} << 24;
+
 /// What is wrong with a scene: one line that begins with where, "objects[2].sphere.radius: ...".
 struct SceneError : std::runtime_error {
     using std::runtime_error::runtime_error;

@@ -121,6 +121,34 @@ TEST_F(RenderCommand, OverwritesOnlyWithForce) {
     EXPECT_EQ(render_once("out", {"--force", "--no-reference", "--no-timing"}).code, 0);
 }
 
+TEST_F(RenderCommand, RefusesOutputsBeforeAnyLongWork) {
+    const auto refused = [&](const Result& result, const std::string& part) {
+        EXPECT_EQ(result.code, 1) << result.err;
+        EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    };
+    for (const char* name : {"reference.exr", "reference.png", "full-cdf.png", "cosine-gain.png"}) {
+        std::filesystem::create_directory(folder / "out");
+        write_text(folder / ("out/" + std::string(name)), "mine");
+        refused(render("out", {"--samples", "65536", "--size", "4096x4096"}),
+                std::string(name) + ": exists already");
+        EXPECT_EQ(files("out"), std::set<std::string>{name});
+        std::filesystem::remove_all(folder / "out");
+    }
+    std::filesystem::create_directories(folder / "out/cosine.png");
+    refused(render("out", {"--force"}), "cosine.png: is a folder");
+    EXPECT_EQ(files("out"), std::set<std::string>{"cosine.png"});
+    // What is read is not written over, either.
+    std::filesystem::copy(folder / "scene.json", folder / "render.json");
+    refused(run_acdf(
+                {"render", "--scene", folder / "render.json", "--data", folder / "", "-o", folder / "", "--force"}),
+            "render.json: input and output are the same file");
+    EXPECT_EQ(read_text(folder / "render.json"), read_text(folder / "scene.json"));
+    std::filesystem::copy(folder / "probe.pfm", folder / "reference.exr");
+    refused(render("", {"--force", "--sampler", "mis(file:reference.exr,cosine)"}),
+            "reference.exr: input and output are the same file");
+}
+
 TEST_F(RenderCommand, SaysWhatIsWrong) {
     const auto refused = [&](const std::vector<std::string>& more, int code, const std::string& part) {
         const Result result = render("never", more);
@@ -139,6 +167,21 @@ TEST_F(RenderCommand, SaysWhatIsWrong) {
     refused({}, 1, "scene.json: the scene: lacks 'camera'");
     write_text(folder / "scene.json", small_scene("\"nonsense\""));
     refused({}, 1, "samplers: sampler 'nonsense'");
+    const auto write = [&](const std::string& was, const std::string& is) {
+        std::string scene = small_scene("\"cosine\"");
+        scene.replace(scene.find(was), was.size(), is);
+        write_text(folder / "scene.json", scene);
+    };
+    write("\"to\": [0, 0, 0.7]", "\"to\": [4, -1, 9]");
+    refused({}, 1, "scene.json: camera: looks nowhere");
+    write("\"to\": [0, 0, 0.7]", "\"to\": [9, -1, 9]");
+    refused({}, 1, "scene.json: camera: it sees no object");
+    write("\"probe\": \"probe.pfm\"", "\"built_in\": \"moon\"");
+    refused({}, 1, "scene.json: light.built_in: 'moon' is none of");
+    write("lambert:albedo=0.5", std::string(300, 'x'));
+    refused({}, 1, "no model of this name");
+    write_text(folder / "scene.json", std::string(std::size_t{1} << 25, ' '));
+    refused({}, 1, "scene.json: it is longer than 16 MiB");
     std::filesystem::remove(folder / "probe.pfm");
     write_text(folder / "scene.json", small_scene("\"cosine\""));
     refused({}, 1, "probe.pfm");

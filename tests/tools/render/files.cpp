@@ -1,5 +1,6 @@
 // Scenes as JSON, and samplers as text.
 #include "tests/tools/render/scenes.h"
+#include "tools/render/output_files.h"
 #include "tools/render/sampler_spec.h"
 
 #include <gtest/gtest.h>
@@ -248,6 +249,15 @@ TEST(RenderSampler, MistakesAreNamed) {
 TEST(RenderSampler, FileNamesArePlain) {
     EXPECT_EQ(file_stem(parse_sampler("mis(4*local:1MB,cosine)")), "mis-4-local-1MB-cosine");
     EXPECT_EQ(file_stem(parse_sampler("file:../a/b.acdf")), "file-__-a-b_acdf");
+}
+
+TEST(RenderSampler, NoTwoFilesHaveTheSameName) {
+    std::vector<SamplerSpec> samplers;
+    for (const char* text :
+         {"cosine", "cosine", "file:a", "file:a-variance", "file:a.above", "file:b-gain", "file:b"})
+        samplers.push_back(parse_sampler(text));
+    EXPECT_EQ(file_stems(samplers), (std::vector<std::string>{"cosine", "cosine-2", "file-a", "file-a-variance-2",
+                                                              "file-a_above", "file-b-gain", "file-b-2"}));
 }
 
 } // namespace

@@ -100,6 +100,8 @@ TEST(MeshPortals, MistakesAreOneLine) {
     refused({"--places", "--portals", folder / "none.json"}, 1, "none.json");
     write_text(folder / "bad.json", "{}");
     refused({"--places", "--portals", folder / "bad.json"}, 1, "bad.json");
+    write_text(folder / "bad.json", small_scene("\"cosine\""));
+    refused({"--places", "--portals", folder / "bad.json"}, 1, "bad.json: the scene tells no portals");
 }
 
 } // namespace
