@@ -173,6 +173,13 @@ TEST_F(Hostile, NamesOfChoicesAreTold) {
     expect_failure({"env", probe, "--on-black", "true", "-o", file}, 2, "'true' is none of error, uniform");
 }
 
+TEST_F(Hostile, ListsAreToldHowTheyAreWritten) {
+    for (const char* normal : {"0 0 1", "0,1", "1"})
+        expect_failure({"plot", file, "-o", folder / "n.png", "--normal", normal}, 2,
+                       "--normal: needs 3 numbers with commas between them; see");
+    expect_failure({"plot", file, "-o", folder / "n.png", "--place", "1,2"}, 2, "--place: needs 3 numbers");
+}
+
 TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
     expect_failure({"measure", file, "--against", probe, "--rivals"}, 2, "--rivals");
