@@ -14,7 +14,7 @@ strict=false
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 work=$PWD/build/portability
 mkdir -p "$work"
-reader=$(ls lib/reader/*.cpp | grep -v _avx)
+reader=$(find lib/reader -name '*.cpp' | grep -v _avx | sort)
 flags="-O1 -std=c++17 -fno-exceptions -fno-rtti -ffp-contract=off -Wall -Wextra -Werror -Iformat -Ilib/reader"
 left_out=0
 
@@ -49,8 +49,10 @@ build() {
         objects+=("$work/$name/z_$(basename "$source" .c).o")
     done
     for source in $reader; do
-        "$cxx" $flags -I"$zlib" -c "$source" -o "$work/$name/$(basename "$source" .cpp).o"
-        objects+=("$work/$name/$(basename "$source" .cpp).o")
+        local object=${source#lib/reader/}
+        object=$work/$name/${object//[\/]/_}.o
+        "$cxx" $flags -I"$zlib" -c "$source" -o "$object"
+        objects+=("$object")
     done
     "$cc" -std=c99 -O1 -ffp-contract=off -Wall -Wextra -Iformat -Ilib/reader -c tests/packaging/consumer/consumer.c \
         -o "$work/$name/consumer_c.o"

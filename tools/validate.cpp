@@ -6,7 +6,7 @@
 #include "tools/cli/options.h"
 #include "tools/commands.h"
 
-#include "reader/check.h"
+#include "reader/check/check.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,13 +1,13 @@
 // `File`: ownership and access. What is right and wrong is decided in check*.cpp.
-#include "check.h"
-#include "cut_wavefront.h"
+#include "check/check.h"
 #include "input_file.h"
-#include "make_brdf_tables.h"
-#include "make_cells.h"
-#include "make_groups.h"
-#include "make_local_tables.h"
 #include "memory.h"
-#include "wavefront.h"
+#include "tables/brdf.h"
+#include "tables/cells.h"
+#include "tables/groups.h"
+#include "tables/local.h"
+#include "waves/brdf.h"
+#include "waves/cut.h"
 
 #include <cstdarg>
 #include <cstdio>

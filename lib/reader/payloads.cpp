@@ -1,5 +1,5 @@
 // Payloads: which chunks a reader takes, and how those that are compressed are inflated.
-#include "chunk_table.h"
+#include "check/chunk_table.h"
 #include "memory.h"
 #include "planes.h"
 

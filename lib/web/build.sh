@@ -22,13 +22,13 @@ fi
 rm -f "$work"/objects/*.o
 
 # All of the reader but what opens files by name, vectors of this machine's processor and the symbols for other languages.
-for source in "$here/exports.cpp" "$root"/lib/reader/*.cpp; do
-    name=$(basename "$source" .cpp)
+for source in "$here/exports.cpp" "$root"/lib/reader/{,check/,tables/}*.cpp; do
+    name=${source#"$root/lib/"}
     case $name in
-    c_api | linked | product_c | *wavefront | *_avx* | *_windows) continue ;;
+    */c_api.cpp | */linked.cpp | */product_c.cpp | *_avx* | *_windows.cpp) continue ;;
     esac
     "$clang" "${flags[@]}" -std=c++17 -fno-exceptions -fno-rtti -isystem "$libcxx" -isystem /usr/include/wasm32-wasi \
-        "${includes[@]}" -c "$source" -o "$work/objects/$name.o"
+        "${includes[@]}" -c "$source" -o "$work/objects/${name//[\/]/_}.o"
 done
 "$clang" "${flags[@]}" -x c -std=c99 -isystem /usr/include/wasm32-wasi -c "$here/zlib/inflate.c" \
     -o "$work/objects/inflate.o"

@@ -1,5 +1,5 @@
 // What WebAssembly exports: the reader, over buffers of the module's memory. acdf.mjs makes classes of it.
-#include "reader/make_sides.h"
+#include "reader/tables/sides.h"
 
 #include <acdf/reader.h>
 #include <acdf/shader_tables.h>

@@ -1,7 +1,7 @@
 // BRDFs at their ends: mirrors, nothing but diffuse, light at grazing angles alone, and views that graze.
+#include "tests/lib/reader/waves/brdf.h"
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/synthetic.h"
-#include "tests/lib/reader/wavefront.h"
 
 #include "input/brdf.h"
 

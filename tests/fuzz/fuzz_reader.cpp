@@ -4,7 +4,7 @@
 #include "tests/fuzz/sample_file.h"
 #include "tests/lib/reader/builder.h"
 
-#include <check.h>
+#include "reader/check/check.h"
 
 using namespace acdf_test;
 

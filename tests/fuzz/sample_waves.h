@@ -4,8 +4,8 @@
 
 #include "tests/fuzz/fuzz_random.h"
 #include "tests/fuzz/require.h"
-#include "tests/lib/reader/grouped.h"
-#include "tests/lib/reader/no_pieces.h"
+#include "tests/lib/reader/tables/grouped.h"
+#include "tests/lib/reader/tables/no_pieces.h"
 
 #include <acdf/product.h>
 #include <acdf/wavefront.h>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "tests/inputs/synthetic.h"
-#include "tests/lib/reader/grouped.h"
 #include "tests/lib/reader/random.h"
-#include "tests/lib/reader/tables_pair.h"
+#include "tests/lib/reader/tables/grouped.h"
+#include "tests/lib/reader/tables/tables_pair.h"
 
 #include <acdf/reader.h>
 

@@ -4,7 +4,7 @@
 
 #include "tests/lib/reader/builder.h"
 
-#include <check.h>
+#include "reader/check/check.h"
 
 #include <gtest/gtest.h>
 

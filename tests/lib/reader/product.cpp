@@ -4,8 +4,8 @@
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 
-#include <cut_wavefront.h>
-#include <wavefront.h>
+#include "reader/waves/brdf.h"
+#include "reader/waves/cut.h"
 
 #include <acdf/product.h>
 #include <acdf/product_c.h>

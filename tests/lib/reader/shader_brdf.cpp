@@ -5,7 +5,7 @@
 #include "tests/lib/reader/half_vectors.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/walked_file.h"
-#include "tests/lib/reader/wavefront.h"
+#include "tests/lib/reader/waves/brdf.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,107 @@
+// What a BRDF asks of axes and bins, and its chunk VIEW.
+#include "check/checker.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace acdf {
+
+namespace {
+
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using ull = unsigned long long;
+
+constexpr u32 max_columns = 1u << 16, max_rows = 1u << 28, max_views = 1u << 16;
+
+/// An axis as SPEC.md §6.8 has it.
+struct Wanted {
+    const char* name;
+    u32 role;
+    double low, high;
+    u32 most;
+};
+
+constexpr Wanted wanted[] = {
+    {"phi_h", ACDF_AXIS_SAMPLED, -ACDF_PI, ACDF_PI, max_columns},
+    {"cos_theta_h", ACDF_AXIS_SAMPLED, 1.0, 0.0, max_rows},
+    {"theta_o", ACDF_AXIS_INDEXED, 0.0, 0.5 * ACDF_PI, max_views},
+    {"phi_o", ACDF_AXIS_INDEXED, -ACDF_PI, ACDF_PI, max_views},
+};
+
+const char* axis_fault(const AcdfAxis& axis, u32 i) {
+    const Wanted& w = wanted[i];
+    const bool half = i == 0 && axis.low == 0.0; // mirrored
+    if (std::strncmp(reinterpret_cast<const char*>(axis.name), w.name, sizeof axis.name) != 0) return "name";
+    if (axis.role != w.role) return "role";
+    if (axis.measure != ACDF_MEASURE_LINEAR) return "measure";
+    if ((!half && axis.low != w.low) || axis.high != w.high) return "range";
+    return axis.resolution > w.most ? "resolution" : nullptr;
+}
+
+void check_brdf_axes(const Payload& payload, Report& report, const Parts& parts) {
+    const AcdfDescription& d = *parts.description;
+    if (d.axis_count != 4) {
+        report.add(8001, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
+        return;
+    }
+    for (u32 i = 0; i < 4; ++i)
+        if (const char* fault = axis_fault(parts.axes[i], i))
+            report.add(8001, payload.at(sizeof d + i * sizeof(AcdfAxis)), "axis %u: the %s differs", i, fault);
+    const u64 bins = u64{parts.axes[2].resolution} * parts.axes[3].resolution;
+    if (bins != d.bin_count)
+        report.add(8002, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
+                   d.bin_count, static_cast<ull>(bins));
+    for (u32 i = 0; parts.bins && i < d.bin_count; ++i)
+        if (parts.bins[i].root == ACDF_NO_ROOT) report.add(8006, payload.at(0), "bin %u is not stored", i);
+}
+
+const char* views_fault(const Payload& payload, const Parts& parts) {
+    if (payload.size < sizeof(AcdfViews)) return "it ends early";
+    const AcdfViews& v = *reinterpret_cast<const AcdfViews*>(payload.data);
+    if (payload.size != sizeof v + u64{v.theta_count} * sizeof(float)) return "its length differs";
+    if (v.theta_count < 1 || v.phi_count < 1) return "there are no views";
+    if ((v.flags & ~ACDF_VIEWS_MIRRORED) != 0) return "an unknown flag is set";
+    if (parts.description->axis_count != 4) return nullptr; // rule 8001
+    if (v.theta_count != parts.axes[2].resolution || v.phi_count != parts.axes[3].resolution)
+        return "the axes have other resolutions";
+    if ((v.flags & ACDF_VIEWS_MIRRORED) != 0 ? parts.axes[0].low != 0.0 : parts.axes[0].low == 0.0)
+        return "the range of phi_h is that of another flag";
+    return (v.flags & ACDF_VIEWS_MIRRORED) != 0 && v.phi_count != 1 ? "several azimuths are mirrored" : nullptr;
+}
+
+void check_nodes(const Payload& payload, Report& report, const Parts& parts) {
+    float before = -1.0f;
+    for (u32 i = 0; i < parts.views->theta_count; ++i) {
+        const float x = parts.nodes[i];
+        if (!(x >= 0.0f && x <= 1.0f && x > before)) {
+            report.add(8004, payload.at(sizeof(AcdfViews) + u64{i} * sizeof x), "view %u is at %g", i,
+                       static_cast<double>(x));
+            return;
+        }
+        before = x;
+    }
+}
+
+} // namespace
+
+void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept {
+    if (parts.description->parameterization != ACDF_PARAM_HALF_ANGLE) return; // rule 5016: what axes mean is open
+    check_brdf_axes(description, report, parts);
+    if (!views.data) {
+        report.add(8003, description.at(0), "there is no VIEW");
+        return;
+    }
+    if (const char* fault = views_fault(views, parts)) {
+        report.add(8003, views.at(0), "%s", fault);
+        return;
+    }
+    parts.views = reinterpret_cast<const AcdfViews*>(views.data);
+    parts.nodes = reinterpret_cast<const float*>(views.data + sizeof(AcdfViews));
+    const float share = parts.views->diffuse_share;
+    if (!(share >= 0.0f && share < 1.0f))
+        report.add(8005, views.at(offsetof(AcdfViews, diffuse_share)), "it is %g", static_cast<double>(share));
+    check_nodes(views, report, parts);
+}
+
+} // namespace acdf

@@ -1,0 +1,341 @@
+// The file as a container: header, chunk table, payloads.
+#include "check/chunk_table.h"
+#include "memory.h"
+
+#include <zlib.h>
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace acdf {
+
+void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
+    if (stopped_) return;
+    Finding finding;
+    char detail[160];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(detail, sizeof detail, format, arguments);
+    va_end(arguments);
+    finding.rule = find_rule(rule);
+    finding.offset = offset;
+    finding.detail = detail;
+    ++(finding.rule->severity == Severity::error ? verdict_.errors : verdict_.warnings);
+    if (!sink_(finding, context_)) stopped_ = true;
+}
+
+namespace {
+
+using u8 = std::uint8_t;
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using ull = unsigned long long; // for printf
+
+constexpr u8 magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
+
+u32 crc(u32 seed, const u8* bytes, u64 size) { return static_cast<u32>(crc32_z(seed, bytes, size)); }
+
+// ---- header ---------------------------------------------------------------------------------------------
+
+struct Signature {
+    const char* bytes;
+    std::size_t size;
+    const char* text;
+};
+
+// What people pass by mistake, and what transfers do to the magic.
+constexpr Signature signatures[] = {
+    {"\x76\x2f\x31\x01", 4, "this is an OpenEXR image; `acdf env` makes an .acdf file of it"},
+    {"#?RADIANCE", 10, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
+    {"#?RGBE", 6, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
+    {"\x89PNG", 4, "this is a PNG image, which holds no radiance"},
+    {"\x93NUMPY", 6, "this is a NumPy array; `acdf table` makes an .acdf file of it"},
+    {"II*\0", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
+    {"MM\0*", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
+    {"tensor_file", 11, "this is an RGL .bsdf file; `acdf brdf` makes an .acdf file of it"},
+    {"\x1f\x8b", 2, "this is a gzip file; inflate it first"},
+    {"\xab\x41\x43\x44\x46  \xbb\x0a\x1a\x0a", 11,
+     "a transfer in text mode turned CR LF into LF; transfer it as binary"},
+    {"\xab\x41\x43\x44\x46  \xbb\x0d\x0d\x0a", 11,
+     "a transfer in text mode turned LF into CR LF; transfer it as binary"},
+    {"\x2b\x41\x43\x44\x46  \x3b", 8, "a transfer cut the highest bit of each byte; transfer it as binary"},
+    {"\xab\x41\x43\x44\x46", 5, "it starts like an .acdf file, but its magic is damaged"},
+};
+
+const char* what_is_it(const u8* bytes, u64 size) {
+    for (const Signature& s : signatures)
+        if (size >= s.size && std::memcmp(bytes, s.bytes, s.size) == 0) return s.text;
+    u32 dims[3];
+    constexpr u64 merl_size = 12 + u64{3} * 8 * 90 * 90 * 180;
+    if (size == merl_size) {
+        std::memcpy(dims, bytes, sizeof dims);
+        if (dims[0] == 90 && dims[1] == 90 && dims[2] == 180)
+            return "this is a MERL BRDF; `acdf brdf` makes an .acdf file of it";
+    }
+    return "this is not an .acdf file";
+}
+
+// False where the rest cannot be read with any meaning.
+bool check_start(const u8* bytes, u64 size, Report& report) {
+    if (size != 0 && std::memcmp(bytes, magic, size < sizeof magic ? size : sizeof magic) != 0) {
+        report.add(2002, 0, "%s", what_is_it(bytes, size));
+        return false;
+    }
+    if (size < sizeof(AcdfHeader)) {
+        report.add(2001, size, "the file has %llu bytes", static_cast<ull>(size));
+        return false;
+    }
+    const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
+    if (header.version_major != ACDF_VERSION_MAJOR) {
+        report.add(2003, offsetof(AcdfHeader, version_major), "version %u.%u needs a %s reader",
+                   header.version_major, header.version_minor,
+                   header.version_major > ACDF_VERSION_MAJOR ? "newer" : "pre-release");
+        return false;
+    }
+    return true;
+}
+
+void check_file_length(const AcdfHeader& header, u64 size, Report& report) {
+    const u64 length = header.file_length;
+    if (length == size) return;
+    if (length > size)
+        report.add(2005, offsetof(AcdfHeader, file_length), "truncated: %llu bytes of %llu are there",
+                   static_cast<ull>(size), static_cast<ull>(length));
+    else
+        report.add(2005, offsetof(AcdfHeader, file_length), "%llu extra bytes after the %llu of the file",
+                   static_cast<ull>(size - length), static_cast<ull>(length));
+}
+
+bool check_header(const u8* bytes, u64 size, Report& report) {
+    if (!check_start(bytes, size, report)) return false;
+    const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
+    const u64 table_end = sizeof(AcdfHeader) + u64{header.chunk_count} * sizeof(AcdfChunk);
+    const bool count_ok = header.chunk_count >= 1 && header.chunk_count <= ACDF_MAX_CHUNKS;
+    const bool table_ok = count_ok && table_end <= size;
+    if (table_ok) {
+        const u32 expected = crc(crc(0, bytes, offsetof(AcdfHeader, header_crc)), bytes + sizeof(AcdfHeader),
+                                 table_end - sizeof(AcdfHeader));
+        if (expected != header.header_crc)
+            report.add(2004, offsetof(AcdfHeader, header_crc),
+                       "%08x is stored, %08x is right: header or chunk table are damaged", header.header_crc,
+                       expected);
+    }
+    check_file_length(header, size, report);
+    if (header.kind < ACDF_KIND_ENVIRONMENT || header.kind > ACDF_KIND_TABLE)
+        report.add(2006, offsetof(AcdfHeader, kind), "kind %u is unknown", header.kind);
+    for (u32 bit = 0; bit < 32; ++bit)
+        if (header.required_features >> bit & 1)
+            report.add(2007, offsetof(AcdfHeader, required_features),
+                       "feature bit %u is unknown: a newer reader is needed", bit);
+    for (u32 i = 0; i < 5; ++i)
+        if (header.reserved[i] != 0)
+            report.add(2008, offsetof(AcdfHeader, reserved) + 4 * i, "it is %08x", header.reserved[i]);
+    if (!table_ok)
+        report.add(3001, offsetof(AcdfHeader, chunk_count),
+                   count_ok ? "the table of %u chunks ends after the file" : "%u chunks", header.chunk_count);
+    return table_ok;
+}
+
+// ---- chunk table ----------------------------------------------------------------------------------------
+
+constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
+
+// Whether a known chunk has a place in files of a kind.
+bool belongs(int known, u32 kind) {
+    if (known == chunk_local || known == chunk_places || known == chunk_portals) return kind == ACDF_KIND_LOCAL;
+    if (known == chunk_views) return kind == ACDF_KIND_BRDF;
+    if (known == chunk_company) return kind != ACDF_KIND_BRDF;
+    if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
+    return true;
+}
+
+// Whether a reader that does not know a chunk must refuse the file.
+bool is_critical(int known) { return known != chunk_metadata && known != chunk_places && known != chunk_portals; }
+
+bool is_all_printable(u32 type) {
+    return is_printable(type, 0) && is_printable(type, 1) && is_printable(type, 2) && is_printable(type, 3);
+}
+
+void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& report) {
+    const AcdfChunk& chunk = table.chunks[i];
+    const int known = known_chunk(chunk.type);
+    const u64 at = table.offset_of(i);
+    const ChunkName name(chunk.type);
+    const bool critical = chunk.flags & ACDF_CHUNK_FLAG_CRITICAL;
+    if (!is_all_printable(chunk.type))
+        report.add(3014, at, "chunk %u: %08x, in the order of its bytes '%s'", i, chunk.type, name.text);
+    else if (known < 0 && critical)
+        report.add(3002, at, "the critical chunk '%s' (%08x) is unknown: a newer reader is needed", name.text,
+                   chunk.type);
+    if (known >= 0 && !belongs(known, kind)) report.add(3013, at, "'%s' with kind %u", name.text, kind);
+    for (u32 j = 0; j < i; ++j)
+        if (table.chunks[j].type == chunk.type) {
+            report.add(3003, at, "chunks %u and %u are both '%s'", j, i, name.text);
+            break;
+        }
+    if (chunk.codec > (chunk.type == ACDF_CHUNK_TREE ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB))
+        report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
+    if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
+        report.add(3009, at + offsetof(AcdfChunk, flags), "flags %08x of '%s'", chunk.flags, name.text);
+    else if (known >= 0 && critical != is_critical(known))
+        report.add(3009, at + offsetof(AcdfChunk, flags), "'%s' is marked %s", name.text,
+                   critical ? "critical" : "ancillary");
+    if (chunk.reserved != 0)
+        report.add(3009, at + offsetof(AcdfChunk, reserved), "`reserved` of '%s' is not zero", name.text);
+}
+
+// Returns the end of the payload; `expected` is where it must start.
+u64 check_place(ChunkTable& table, u32 i, u64 expected, u64 size, Report& report) {
+    const AcdfChunk& chunk = table.chunks[i];
+    const u64 at = table.offset_of(i);
+    const ChunkName name(chunk.type);
+    table.inside[i] = true;
+    if (chunk.offset != expected) {
+        report.add(3006, at + offsetof(AcdfChunk, offset), "'%s' starts at byte %llu instead of %llu", name.text,
+                   static_cast<ull>(chunk.offset), static_cast<ull>(expected));
+        table.inside[i] = false;
+    }
+    if (chunk.offset > size || chunk.stored_length > size - chunk.offset) {
+        report.add(3007, at + offsetof(AcdfChunk, stored_length),
+                   "'%s' has %llu bytes from byte %llu, the file %llu", name.text,
+                   static_cast<ull>(chunk.stored_length), static_cast<ull>(chunk.offset), static_cast<ull>(size));
+        table.inside[i] = false;
+        table.legal = false;
+        return expected;
+    }
+    if (!table.inside[i]) table.legal = false;
+    return chunk.offset + chunk.stored_length;
+}
+
+void check_lengths(const ChunkTable& table, u32 i, Report& report) {
+    const AcdfChunk& chunk = table.chunks[i];
+    const u64 at = table.offset_of(i) + offsetof(AcdfChunk, raw_length);
+    const ChunkName name(chunk.type);
+    if (chunk.codec == ACDF_CODEC_NONE && chunk.raw_length != chunk.stored_length)
+        report.add(3010, at, "'%s': %llu stored, %llu raw", name.text, static_cast<ull>(chunk.stored_length),
+                   static_cast<ull>(chunk.raw_length));
+    // Division, so that nothing overflows. The longest match of deflate makes 258 bytes of 2 bits.
+    if (chunk.codec != ACDF_CODEC_NONE && chunk.raw_length / 1032 > chunk.stored_length)
+        report.add(3011, at, "'%s': %llu bytes cannot come from %llu", name.text,
+                   static_cast<ull>(chunk.raw_length), static_cast<ull>(chunk.stored_length));
+}
+
+void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& report) {
+    u64 end = table.end();
+    table.legal = true;
+    for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
+        check_type_and_flags(table, i, header.kind, report);
+        end = check_place(table, i, round_up(end, ACDF_ALIGNMENT), size, report);
+        check_lengths(table, i, report);
+    }
+    for (const u32 type : required_types) {
+        bool found = false;
+        for (u32 i = 0; i < table.count; ++i) found = found || table.chunks[i].type == type;
+        if (!found) report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(type).text);
+    }
+    end = round_up(end, ACDF_ALIGNMENT);
+    if (table.legal && header.file_length != end)
+        report.add(3008, offsetof(AcdfHeader, file_length), "`file_length` is %llu, the chunks end at %llu",
+                   static_cast<ull>(header.file_length), static_cast<ull>(end));
+}
+
+// ---- payloads -------------------------------------------------------------------------------------------
+
+void check_padding(const ChunkTable& table, const u8* bytes, u64 size, Report& report) {
+    u64 begin = table.end();
+    for (u32 i = 0; i <= table.count && !report.stopped(); ++i) {
+        const u64 rounded = round_up(begin, ACDF_ALIGNMENT);
+        const u64 end = rounded < size ? rounded : size;
+        for (u64 at = begin; at < end; ++at)
+            if (bytes[at] != 0) {
+                report.add(4002, at, "it is %02x", bytes[at]);
+                break;
+            }
+        if (i < table.count) begin = table.chunks[i].offset + table.chunks[i].stored_length;
+    }
+}
+
+void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
+    for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
+        const AcdfChunk& chunk = table.chunks[i];
+        if (!table.inside[i]) continue;
+        const u32 right = crc(0, bytes + chunk.offset, chunk.stored_length);
+        if (right != chunk.crc)
+            report.add(4001, chunk.offset, "'%s' is damaged: %08x is stored, %08x is right",
+                       ChunkName(chunk.type).text, chunk.crc, right);
+    }
+}
+
+} // namespace
+
+Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink, void* context, Parts& parts,
+              const AcdfAllocator& allocator) noexcept {
+    Report report(sink, context);
+    if (!check_header(bytes, size, report) || report.stopped()) return report.verdict();
+    const AcdfHeader& header = *reinterpret_cast<const AcdfHeader*>(bytes);
+    ChunkTable table = {};
+    table.chunks = reinterpret_cast<const AcdfChunk*>(bytes + sizeof(AcdfHeader));
+    table.count = header.chunk_count;
+    check_table(table, header, size, report);
+    if (table.legal && !report.stopped()) check_padding(table, bytes, size, report);
+    if (!report.stopped()) check_crcs(table, bytes, report);
+    Payloads payloads;
+    if (!report.stopped()) read_payloads(table, bytes, limits, allocator, report, parts, payloads);
+    const Payload& description = payloads.of[chunk_description];
+    if (description.data && !report.stopped()) check_description(description, header.kind, report, parts);
+    if (payloads.of[chunk_metadata].data && !report.stopped())
+        check_metadata(payloads.of[chunk_metadata], report, parts);
+    if (!parts.description || report.stopped()) return report.verdict();
+    TileBoxes boxes;
+    if (belongs(chunk_tiles, header.kind)) // else rule 3013
+        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], report, parts, boxes);
+    const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
+    if (tiles_ok && !report.stopped())
+        check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
+    if (header.kind == ACDF_KIND_LOCAL && !report.stopped())
+        check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
+    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_places].data && !report.stopped())
+        check_places(payloads.of[chunk_places], report, parts);
+    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_portals].data && !report.stopped())
+        check_portals(payloads.of[chunk_portals], report, parts);
+    if (header.kind == ACDF_KIND_BRDF && !report.stopped())
+        check_brdf_kind(description, payloads.of[chunk_views], report, parts);
+    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped())
+        check_environment(description, payloads.of[chunk_bins], report, parts);
+    if (header.kind == ACDF_KIND_TABLE && !report.stopped())
+        check_table_kind(description, payloads.of[chunk_bins], report, parts);
+    if (payloads.of[chunk_company].data && belongs(chunk_company, header.kind) && !report.stopped())
+        check_company(payloads.of[chunk_company], header.kind, report, parts);
+    return report.verdict();
+}
+
+Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
+                 const Limits& limits) noexcept {
+    const u8* data = static_cast<const u8*>(bytes);
+    void* copy = nullptr;
+    Parts parts;
+    Verdict verdict;
+    if (size > limits.max_file_bytes) {
+        Report report(sink, context);
+        report.add(1004, 0, "%llu bytes, the limit is %llu", static_cast<ull>(size),
+                   static_cast<ull>(limits.max_file_bytes));
+        return report.verdict();
+    }
+    if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
+        copy = std::malloc(size ? size : 1);
+        if (!copy) {
+            Report report(sink, context);
+            report.add(1003, 0, "%llu bytes for a copy", static_cast<ull>(size));
+            return report.verdict();
+        }
+        data = static_cast<const u8*>(std::memcpy(copy, bytes, size));
+    }
+    verdict = check(data, size, limits, sink, context, parts);
+    give_block({}, parts.inflated);
+    std::free(copy);
+    return verdict;
+}
+
+} // namespace acdf

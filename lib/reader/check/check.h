@@ -1,0 +1,79 @@
+// Every check of a file, once: `File` stops at the first error, `acdf validate` reports all.
+#pragma once
+
+#include "check/rules.h"
+
+#include <cstring>
+#include <type_traits>
+
+namespace acdf {
+
+/// A broken rule.
+struct Finding {
+    const Rule* rule = nullptr;
+    std::uint64_t offset = 0; ///< byte in the file; for a compressed chunk that of its first stored byte
+    const char* detail = "";  ///< what was found and, if it helps, what to do; valid during the call
+};
+
+/// Called for each finding; returns false to stop.
+using FindingSink = bool (*)(const Finding& finding, void* context);
+
+struct Verdict {
+    std::uint64_t errors = 0, warnings = 0;
+    bool valid() const noexcept { return errors == 0; }
+};
+
+/// Reports every finding that the checks can go on to, in the order of the rules' ranges. Any bytes, at any
+/// alignment; reads nothing outside them; linear in the size and in what the compressed chunks inflate to.
+Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
+                 const Limits& limits = {}) noexcept;
+
+/// The same with any callable `sink(const Finding&)` that returns void, or bool (false: stop).
+template <class Sink>
+Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits& limits = {}) {
+    using Target = std::remove_reference_t<Sink>;
+    return validate(
+        bytes, size,
+        [](const Finding& finding, void* context) -> bool {
+            Target& target = *static_cast<Target*>(context);
+            if constexpr (std::is_same_v<decltype(target(finding)), void>) return target(finding), true;
+            else return target(finding);
+        },
+        const_cast<void*>(static_cast<const void*>(&sink)), limits);
+}
+
+/// A length in META, at any alignment.
+inline std::uint32_t load_u32(const std::uint8_t* bytes) noexcept {
+    std::uint32_t value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+/// Where the parts of a file lie once found: what `File` keeps.
+struct Parts {
+    const AcdfDescription* description = nullptr;
+    const AcdfAxis* axes = nullptr; ///< description->axis_count
+    const AcdfBin* bins = nullptr;  ///< description->bin_count
+    const std::uint8_t* tree = nullptr;
+    std::uint32_t tree_units = 0;
+    const AcdfViews* views = nullptr;          ///< of a BRDF
+    const float* nodes = nullptr;              ///< views->theta_count
+    const AcdfTiles* tiles = nullptr;          ///< null where bins share nothing
+    const AcdfSplit* splits = nullptr;         ///< tiles->tile_count - 1
+    const std::uint32_t* tile_roots = nullptr; ///< tiles->tile_count, or null: all tiles are cells
+    const std::uint8_t* rows = nullptr;        ///< tiles->row_count rows of tiles->tile_count - 1 codes
+    const AcdfLocalHeader* local = nullptr;    ///< of local environments
+    const AcdfLight* lights = nullptr;         ///< local->light_count
+    const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
+    AcdfPlaceTable places = {};                ///< of local environments; its header is null where absent
+    AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
+    const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
+    std::uint32_t metadata_count = 0;
+    AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
+};
+
+/// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.
+Verdict check(const std::uint8_t* bytes, std::uint64_t size, const Limits& limits, FindingSink sink, void* context,
+              Parts& parts, const AcdfAllocator& allocator = {}) noexcept;
+
+} // namespace acdf

@@ -1,0 +1,146 @@
+// What a local environment asks of axes and bins, and its chunk LOCL.
+#include "check/checker.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace acdf {
+
+namespace {
+
+using u8 = std::uint8_t;
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using ull = unsigned long long;
+
+constexpr u32 max_subdivisions = 1024;
+
+bool named(const AcdfAxis& axis, const char* name) {
+    return std::strncmp(reinterpret_cast<const char*>(axis.name), name, sizeof axis.name) == 0;
+}
+
+// An octahedron's corners: 4 n^2 + 2 of them.
+const char* octahedral_fault(const AcdfAxis& axis) {
+    if (!named(axis, "normal")) return "name";
+    if (axis.role != ACDF_AXIS_INDEXED) return "role";
+    if (axis.measure != ACDF_MEASURE_LINEAR) return "measure";
+    if (axis.low != 0.0 || axis.high != axis.resolution) return "range";
+    for (u32 n = 1; n <= max_subdivisions; ++n)
+        if (axis.resolution == 4 * n * n + 2) return nullptr;
+    return "resolution";
+}
+
+const char* grid_fault(const AcdfAxis& axis, bool theta) {
+    if (!named(axis, theta ? "normal theta" : "normal phi")) return "name";
+    if (axis.role != ACDF_AXIS_INDEXED) return "role";
+    if (axis.measure != ACDF_MEASURE_LINEAR) return "measure";
+    if (axis.low != (theta ? 0.0 : ACDF_PI) || axis.high != (theta ? ACDF_PI : -ACDF_PI)) return "range";
+    return axis.resolution > 65536 ? "resolution" : nullptr;
+}
+
+void check_local_axes(const Payload& payload, Report& report, const Parts& parts) {
+    const AcdfDescription& d = *parts.description;
+    if (d.axis_count != 3 && d.axis_count != 4) {
+        report.add(7003, payload.at(offsetof(AcdfDescription, axis_count)), "it has %u axes", d.axis_count);
+        return;
+    }
+    check_environment_axes(payload, report, parts);
+    u64 bins = 1;
+    for (u32 i = 2; i < d.axis_count; ++i) {
+        const AcdfAxis& axis = parts.axes[i];
+        const char* fault = d.axis_count == 3 ? octahedral_fault(axis) : grid_fault(axis, i == 2);
+        if (fault) report.add(7003, payload.at(sizeof d + i * sizeof axis), "axis %u: the %s differs", i, fault);
+        bins *= axis.resolution;
+    }
+    if (bins != d.bin_count && d.bin_count != 0) // 0: rule 5007
+        report.add(7004, payload.at(offsetof(AcdfDescription, bin_count)), "it has %u bins, its axes make %llu",
+                   d.bin_count, static_cast<ull>(bins));
+}
+
+// What is wrong with a light; null if nothing.
+const char* light_fault(const AcdfLight& light, const TileBox& box) {
+    double square = 0.0;
+    for (float x : light.direction) square += static_cast<double>(x) * static_cast<double>(x);
+    if (!(std::fabs(square - 1.0) < 1e-3)) return "direction";
+    if (!(light.radius > 0.0f && light.radius <= 2.0f)) return "radius";
+    if (!(light.share > 0.0f && std::isfinite(light.share))) return "share";
+    return std::memcmp(light.low, box.low, sizeof light.low) == 0 &&
+                   std::memcmp(light.high, box.high, sizeof light.high) == 0
+               ? nullptr
+               : "box";
+}
+
+void check_lights(const Payload& payload, const TileBoxes& boxes, Report& report, const Parts& parts) {
+    const u32 tiles = boxes.of ? parts.tiles->tile_count : 0;
+    for (u32 i = 0; i < parts.local->light_count && !report.stopped(); ++i) {
+        const AcdfLight& light = parts.lights[i];
+        const char* fault = light.tile < tiles && (i == 0 || light.tile > parts.lights[i - 1].tile)
+                                ? light_fault(light, boxes.of[light.tile])
+                                : "tile";
+        if (fault)
+            report.add(7006, payload.at(sizeof(AcdfLocalHeader) + i * sizeof light), "light %u: its %s", i, fault);
+    }
+}
+
+// The side of one split that leads to a tile.
+struct Step {
+    u32 split;
+    bool upper;
+};
+
+// The splits on the way to the box of a tile; returns how many.
+u32 path_to(const AcdfLight& light, const Parts& parts, Step path[ACDF_MAX_SPLITS_DEEP]) {
+    u32 count = 0;
+    for (u32 node = parts.tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG; !(node & ACDF_TILE_FLAG);) {
+        const AcdfSplit& split = parts.splits[node];
+        const bool upper = light.low[split.place & 7u] >= split.place >> 3;
+        path[count++] = {node, upper};
+        node = split.child[upper];
+    }
+    return count;
+}
+
+// Light is drawn as a light or in the mixture, but not both.
+void check_light_rows(const Payload& payload, Report& report, const Parts& parts) {
+    const u32 width = parts.tiles->tile_count - 1, bins = parts.bins ? parts.description->bin_count : 0;
+    for (u32 i = 0; i < parts.local->light_count && !report.stopped(); ++i) {
+        Step path[ACDF_MAX_SPLITS_DEEP];
+        const u32 steps = path_to(parts.lights[i], parts, path);
+        for (u32 b = 0; b < bins; ++b) {
+            if (parts.bins[b].root >= parts.tiles->row_count || !(parts.bins[b].share > 0.0f)) continue;
+            const u8* row = parts.rows + u64{parts.bins[b].root} * width;
+            bool dark = false;
+            for (u32 s = 0; s < steps && !dark; ++s) dark = row[path[s].split] == (path[s].upper ? 255 : 0);
+            if (dark) continue;
+            report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfLight)), "light %u in bin %u", i,
+                       b);
+            break;
+        }
+    }
+}
+
+} // namespace
+
+void check_local_kind(const Payload& description, const Payload& payload, const TileBoxes& boxes, Report& report,
+                      Parts& parts) noexcept {
+    check_local_axes(description, report, parts);
+    const u64 errors = report.verdict().errors;
+    const auto* header = reinterpret_cast<const AcdfLocalHeader*>(payload.data);
+    if (!payload.data) {
+        report.add(7005, description.at(0), "LOCL is missing");
+        return;
+    }
+    if (payload.size < sizeof *header || header->light_count > ACDF_MAX_LIGHTS ||
+        payload.size != sizeof *header + header->light_count * sizeof(AcdfLight)) {
+        report.add(7005, payload.at(0), "LOCL has %llu bytes", static_cast<ull>(payload.size));
+        return;
+    }
+    if (!(header->cosine_share >= 0.0f && header->cosine_share < 1.0f))
+        report.add(7005, payload.at(0), "`cosine_share` is %g", static_cast<double>(header->cosine_share));
+    parts.local = header;
+    parts.lights = reinterpret_cast<const AcdfLight*>(payload.data + sizeof *header);
+    if (parts.tiles || !boxes.given) check_lights(payload, boxes, report, parts); // else told of TILE
+    if (parts.rows && report.verdict().errors == errors) check_light_rows(payload, report, parts);
+}
+
+} // namespace acdf

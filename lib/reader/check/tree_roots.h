@@ -1,0 +1,87 @@
+// A tree that is being checked, and where it begins. Not installed.
+#pragma once
+
+#include "check/checker.h"
+
+#include <acdf/sample.h>
+
+namespace acdf {
+
+struct CheckedTree {
+    const Payload& payload;
+    const Payload& bins;
+    const Parts& parts;
+    std::uint32_t kind;
+    const TileBoxes& tiles; ///< where bins share them
+    std::uint32_t units;
+
+    const std::uint8_t* data() const { return payload.data; }
+    bool sampled(std::uint32_t axis) const {
+        return axis < parts.description->axis_count && parts.axes[axis].role == ACDF_AXIS_SAMPLED;
+    }
+    std::uint32_t unit(std::uint32_t at) const { return reinterpret_cast<const std::uint16_t*>(payload.data)[at]; }
+};
+
+/// Where a tree begins.
+struct TreeRoot {
+    std::uint32_t unit;
+    const TileBox* box;  ///< null: everything
+    std::uint64_t at;    ///< the place in the file that says so
+    std::uint32_t index; ///< of the bin or tile
+};
+
+/// The trees of each bin or, where bins share tiles, of each tile, one after the other. Unit 0 is one too in local
+/// environments, and in BRDFs whose tiles have none.
+class TreeRoots {
+public:
+    explicit TreeRoots(const CheckedTree& tree)
+        : tree_(tree), indexed_(tree.kind == ACDF_KIND_LOCAL || tree.kind == ACDF_KIND_BRDF),
+          whole_(tree.kind == ACDF_KIND_LOCAL ||
+                 (indexed_ && tree.parts.tiles && tree.parts.tiles->root_count == 0)),
+          count_(tree.parts.tiles ? tree.parts.tiles->root_count : tree.parts.description->bin_count) {}
+
+    /// False behind the last one.
+    bool next(TreeRoot& root) {
+        if (whole_) {
+            whole_ = false;
+            root = {0, nullptr, tree_.payload.at(0), 0};
+            return true;
+        }
+        while (next_ < count_) {
+            const std::uint32_t i = next_++;
+            const std::uint64_t entry = i;
+            if (tree_.tiles.of)
+                root = {tree_.parts.tile_roots[i], &tree_.tiles.of[i],
+                        tree_.tiles.roots.at(entry * sizeof(std::uint32_t)), i};
+            else root = {tree_.parts.bins[i].root, nullptr, tree_.bins.at(entry * sizeof(AcdfBin)), i};
+            if (!indexed_ || root.unit != ACDF_NO_ROOT) return true;
+        }
+        return false;
+    }
+
+private:
+    const CheckedTree& tree_;
+    bool indexed_, whole_; ///< whether some may have none; whether unit 0 is still to come
+    std::uint32_t count_, next_ = 0;
+};
+
+/// Codes of sizes that there are.
+inline bool header_is_legal(std::uint32_t header) {
+    return ACDF_CURVE_CUMULATIVE_CODE(header) <= 2 && ACDF_CURVE_POSITION_CODE(header) <= 2;
+}
+
+/// The number of segments of a curve, 0 where it is missing, too large or written in the wrong form.
+inline std::uint32_t segments_of(const CheckedTree& tree, std::uint32_t unit) {
+    const std::uint32_t few = tree.unit(unit) >> ACDF_CURVE_SEGMENTS_SHIFT;
+    if (few != 0) return few;
+    if (tree.units - unit < 3) return 0;
+    const std::uint32_t many = tree.unit(unit + 1) | tree.unit(unit + 2) << 16;
+    return many > ACDF_CURVE_SHORT_SEGMENTS && many <= ACDF_MAX_SEGMENTS ? many : 0;
+}
+
+/// Whether all is right with a tree that lies as most do: behind each curve what is below it, each curve below one
+/// segment, roots in their order, those inside other trees with the same box. In one pass and without memory; where
+/// it is false, the tree may be right nevertheless, and what is wrong remains to be found.
+bool is_right_in_preorder(const CheckedTree& tree) noexcept;
+
+} // namespace acdf

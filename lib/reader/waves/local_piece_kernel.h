@@ -1,0 +1,155 @@
+// Densities of LocalWavefront over vectors, of files that have pieces of cells: acdf_local_table_pdf of
+// acdf/local.h, operation by operation; see local_kernel.h. Only the first piece that may hold a direction is
+// looked at.
+#pragma once
+
+#include "waves/local_density_kernel.h"
+#include "waves/search_vectors.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+/// The directions of a block in their pieces.
+struct PieceLanes {
+    Sought sought;
+    alignas(64) float along[kSearched], cap[kSearched];
+    alignas(64) double probability[kSearched],
+        area[kSearched]; // of the piece's cell in its tile; see AcdfTilePiece
+    alignas(64) long long tile[kSearched];
+};
+
+/* acdf_direction_place of all lanes, and the blocks that lead to their pieces. Returns the lanes of which floats do
+ * not tell. */
+ACDF_LANE std::uint32_t find_places(const AcdfLocalTables& tables, const Search& s, const float (*directions)[3],
+                                    PieceLanes* lanes) {
+    std::uint32_t refused = 0;
+    for (std::size_t first = 0; first < kSearched; first += kLanes) {
+        Floats w[3];
+        Words key[2];
+        load_vectors(directions + first, w);
+        refused |= bits(direction_place(tables.octahedral != 0, w, (Floats*)&lanes->along[first],
+                                        (Floats*)&lanes->cap[first], key))
+                   << first;
+        find_blocks(s, key[0], key[1], &lanes->sought, first);
+    }
+    return refused;
+}
+
+/* Looks at the pieces that were found, and asks for what rows give to their tiles. Returns the lanes that lie
+ * elsewhere. */
+ACDF_LANE std::uint32_t enter_pieces(const AcdfTilePiece* pieces, const long long (*parts)[kRoom],
+                                     PieceLanes* lanes) {
+    std::uint32_t lost = 0;
+    for (std::size_t i = 0; i < kSearched; ++i) {
+        const AcdfTilePiece& piece = pieces[lanes->sought.cell[i]];
+        const float d0 = piece.origin[0] - lanes->along[i], d1 = lanes->cap[i] - piece.origin[1];
+        const std::uint32_t held0 = acdf_float_bits(d0) < acdf_float_bits(piece.width[0]);
+        const std::uint32_t held1 = acdf_float_bits(d1) < acdf_float_bits(piece.width[1]);
+        lost |= (~(held0 & held1) & 1u) << i;
+        lanes->tile[i] = piece.tile;
+        lanes->probability[i] = piece.probability;
+        lanes->area[i] = piece.area;
+        for (int k = 0; k < kRows; ++k) ACDF_PREFETCH((const double*)parts[k][i] + piece.tile);
+    }
+    return lost;
+}
+
+/* The addresses of what a vector of rows, which are those of codes, give to tiles. */
+ACDF_LANE Integer parts_of(const AcdfLocal& local, Integer row) {
+    const AcdfLocalTables& tables = *local.tables;
+    const auto first = (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(&tables), &tables.tiles, 0);
+    const auto parts = (long long)(std::uintptr_t)acdf_local_parts(&tables, 0, 0);
+    const Integer number =
+        truncated(converted(row - first) / (double)tables.tiles.stride); /* the quotient is exact */
+    return multiplied(number, 8ll * local.blend.tiles->tile_count) + parts;
+}
+
+/* Densities of up to kSearched lanes; `at` and `alone` as in draw_block. */
+template <class At, class Alone>
+ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at, const Alone& alone,
+                           const float (*directions)[3], std::size_t count, float* out) {
+    const auto* const pieces = (const AcdfTilePiece*)(const void*)(s.tables + local.tables->pieces);
+    Seen seen;
+    PieceLanes lanes;
+    Points room;
+    float last[kSearched][3] = {};
+    alignas(64) double given[kRoom], probability[kRoom];
+    if (count < kSearched) std::memcpy(last, directions, count * sizeof *directions);
+    std::uint32_t lost = find_places(*local.tables, s, count < kSearched ? last : directions, &lanes);
+    ask_for_blocks(s, lanes.sought);
+    for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
+        const std::size_t more = std::min<std::size_t>(count - first, ACDF_WIDTH);
+        const Points& p = at(first, more, &room);
+        keep(p, first, &seen);
+        for (int k = 0; k < kRows; ++k) stored(&seen.row[k][first], parts_of(local, p.row[k]));
+        lost |= (~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
+    }
+    lost |= find_cells(s, &lanes.sought, [pieces](std::size_t piece) { ACDF_PREFETCH(pieces + piece); });
+    for (std::size_t i = (count + ACDF_WIDTH - 1) / ACDF_WIDTH * ACDF_WIDTH; i < kSearched; ++i)
+        for (int k = 0; k < kRows; ++k) seen.row[k][i] = seen.row[k][0];
+    lost |= enter_pieces(pieces, seen.row, &lanes);
+    for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
+        const Integer tile = loaded(&lanes.tile[first]) * 8;
+        Vector share = all(0.0);
+        for (int k = 0; k < kRows; ++k)
+            share += loaded(&seen.weight[k][first]) * (Vector)loaded_at(loaded(&seen.row[k][first]) + tile);
+        stored(&given[first], share);
+    }
+    weigh_tiles(local, seen, lanes.tile, given, count, probability);
+    for (std::size_t first = 0; first < kSearched; first += kLanes) {
+        Vector pdf[2];
+        for (std::size_t half = 0; half < 2; ++half) {
+            const std::size_t i = first + ACDF_WIDTH * half;
+            const Vector of_tile = loaded(&probability[i]), of_cell = loaded(&lanes.probability[i]);
+            const Mask some = both(less(all(0.0), of_tile), less(all(0.0), of_cell));
+            pdf[half] = choose(
+                some, area_pdf(positive(of_tile * of_cell), local.environment.columns, loaded(&lanes.area[i])),
+                all(0.0));
+        }
+        alignas(64) float told[kLanes];
+        *(Floats*)told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
+        if (first < count) std::memcpy(out + first, told, std::min(count - first, kLanes) * sizeof *out);
+    }
+    if (count < kSearched) lost &= (1u << count) - 1u;
+    for (; lost; lost &= lost - 1) alone((std::size_t)acdf_lowest_bit(lost));
+}
+
+// ---- all of an array -------------------------------------------------------------------------------------------
+
+/* Densities by pieces where a file has them; block(first, more) has a type of its own for each. */
+template <class PointsFrom, class AloneFrom>
+ACDF_LANE void pdf_all(const AcdfLocal& local, const float (*directions)[3], std::size_t count, float* out,
+                       const PointsFrom& points_from, const AloneFrom& alone) {
+    const auto in_blocks = [&](std::size_t size, const auto& block) {
+        for (std::size_t first = 0; first < count; first += size)
+            block(
+                points_from(first), [&alone, first](std::size_t lane) { alone(first + lane); }, directions + first,
+                std::min(count - first, size), out + first);
+    };
+    if (local.tables->pieces) {
+        const Search s = search_of(local.tables, local.tables->directions);
+        in_blocks(kSearched, [&](const auto&... rest) { piece_block(local, s, rest...); });
+    } else {
+        in_blocks(kBlock, [&](const auto&... rest) { density_block(local, rest...); });
+    }
+}
+ACDF_LANE void pdf_all(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
+                       std::size_t count, float* out) {
+    pdf_all(
+        local, directions, count, out,
+        [&](std::size_t first) {
+            return PointsOf{local, normals + first};
+        },
+        [&](std::size_t i) { out[i] = acdf_local_pdf(&local, normals[i], directions[i]); });
+}
+ACDF_LANE void pdf_all(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
+                       std::size_t count, float* out) {
+    const OnePoint points(local, point);
+    pdf_all(
+        local, directions, count, out, [&](std::size_t) -> const OnePoint& { return points; },
+        [&](std::size_t i) { out[i] = acdf_local_pdf_at(&local, &point, directions[i]); });
+}
+
+} // namespace
