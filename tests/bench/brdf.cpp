@@ -10,9 +10,9 @@
 
 #include "build/brdf.h"
 #include "input/rgl_brdf.h"
-#include "measure/brdf_samplers.h"
-#include "measure/brdf_table.h"
-#include "measure/rgl_sampler.h"
+#include "measure/samplers/brdf_samplers.h"
+#include "measure/samplers/brdf_table.h"
+#include "measure/samplers/rgl_sampler.h"
 
 #include <acdf/wavefront.h>
 

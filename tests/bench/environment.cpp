@@ -10,8 +10,8 @@
 
 #include "compress/fit.h"
 #include "compress/store.h"
-#include "measure/alias_table.h"
-#include "measure/hierarchical_warp.h"
+#include "measure/samplers/alias_table.h"
+#include "measure/samplers/hierarchical_warp.h"
 
 #include <acdf/wavefront.h>
 

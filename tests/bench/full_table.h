@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compress/target.h"
-#include "measure/full_cdf.h"
+#include "measure/samplers/full_cdf.h"
 
 #include <acdf/grid.h>
 

@@ -3,8 +3,8 @@
 #include "build/local.h"
 #include "tests/inputs/synthetic.h"
 
-#include "measure/local_rivals.h"
-#include "measure/tiling.h"
+#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/tiling.h"
 
 #include <benchmark/benchmark.h>
 

@@ -9,8 +9,8 @@
 // Variances are summed over all texels, with a shadow ray to the middle of each. The same sums are what samples are
 // held to: the mean of those of all points, and each point's own, in standard errors.
 #include "build/builder/sources.h"
-#include "measure/point_sums.h"
-#include "measure/surface_points.h"
+#include "measure/scenes/point_sums.h"
+#include "measure/scenes/surface_points.h"
 #include "tools/render/portals.h"
 #include "tools/render/run.h"
 #include "tools/render/sampler_build.h"

@@ -3,7 +3,7 @@
 //
 // Processor time of the thread, the least of some turns in which all take part. Each call has another normal,
 // another view and other random numbers; those of a turn are those of the one before, where nothing else is said.
-#include "measure/ggx_lobe.h"
+#include "measure/samplers/ggx_lobe.h"
 
 #include <acdf/product.h>
 #include <acdf/reader.h>

@@ -6,7 +6,7 @@
 // density of the cut is from integrating to 1, by summation over the squares of the grid, for a few pairs; samples
 // whose density pdf() tells otherwise; samples and random directions with light and BRDF but without density; pairs
 // whose mean is farther than 4 standard errors from that of another sampler, half light and half BRDF.
-#include "measure/ggx_lobe.h"
+#include "measure/samplers/ggx_lobe.h"
 
 #include <acdf/product.h>
 #include <acdf/reader.h>

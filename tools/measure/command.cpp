@@ -1,7 +1,7 @@
 // acdf measure: how accurate a file is, by summation over its source.
 #include "build/brdf.h"
 #include "build/environment_accuracy.h"
-#include "measure/full_cdf.h"
+#include "measure/samplers/full_cdf.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"

@@ -1,6 +1,6 @@
 #include "tools/plot/cells.h"
 
-#include "measure/scene.h"
+#include "measure/scenes/scene.h"
 #include "tools/commands.h"
 #include "tools/plot/colour.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "images/picture.h"
-#include "measure/scene_points.h"
+#include "measure/scenes/scene_points.h"
 #include "tools/plot/colour.h"
 #include "tools/plot/range.h"
 

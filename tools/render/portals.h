@@ -1,7 +1,7 @@
 // The portals of a scene for files of places.
 #pragma once
 
-#include "measure/scene.h"
+#include "measure/scenes/scene.h"
 
 #include <acdf/builder.h>
 

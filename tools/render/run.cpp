@@ -1,7 +1,7 @@
 #include "tools/render/run.h"
 
 #include "compress/sum.h"
-#include "measure/reference.h"
+#include "measure/scenes/reference.h"
 #include "tools/demo/probes.h"
 #include "tools/render/sampler_build.h"
 

@@ -3,8 +3,8 @@
 
 #include "build/own_terms.h"
 #include "input/brdf.h"
-#include "measure/estimator.h"
-#include "measure/scene_points.h"
+#include "measure/samplers/estimator.h"
+#include "measure/scenes/scene_points.h"
 #include "tools/render/sampler_spec.h"
 
 #include <memory>

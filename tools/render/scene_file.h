@@ -2,7 +2,7 @@
 #pragma once
 
 #include "input/probe.h"
-#include "measure/scene.h"
+#include "measure/scenes/scene.h"
 
 #include <array>
 #include <cstdint>

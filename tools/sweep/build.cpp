@@ -1,7 +1,7 @@
 #include "tools/sweep/build.h"
 
 #include "build/local_accuracy.h"
-#include "measure/light_samplers.h"
+#include "measure/samplers/light_samplers.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 #include "tools/plot/image.h"

@@ -1,7 +1,7 @@
 // What the sweeps of all kinds are put together from.
 #pragma once
 
-#include "measure/light_sampler.h"
+#include "measure/samplers/light_sampler.h"
 #include "tools/plot/colour.h"
 #include "tools/sweep/sweep.h"
 

@@ -1,7 +1,7 @@
 // The sweep of environment files.
 #include "build/local_accuracy.h"
 #include "build/own_terms.h"
-#include "measure/full_cdf.h"
+#include "measure/samplers/full_cdf.h"
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"
 #include "tools/plot/knots.h"

@@ -1,6 +1,6 @@
 #include "tools/sweep/occluders.h"
 
-#include "measure/scene_points.h"
+#include "measure/scenes/scene_points.h"
 
 #include <tbb/parallel_for.h>
 

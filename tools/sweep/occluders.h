@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compress/target.h"
-#include "measure/scene.h"
+#include "measure/scenes/scene.h"
 #include "tools/sweep/surface.h"
 
 #include <cstdint>

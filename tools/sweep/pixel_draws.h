@@ -1,8 +1,8 @@
 // Variances of pixels where a renderer's numbers are not independent: by drawing samples.
 #pragma once
 
-#include "measure/light_sampler.h"
 #include "measure/random.h"
+#include "measure/samplers/light_sampler.h"
 
 #include <cstddef>
 #include <cstdint>

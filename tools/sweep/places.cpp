@@ -1,6 +1,6 @@
 // The sweep of files of places: on a mesh, with what it hides.
 #include "build/own_terms.h"
-#include "measure/mesh_stage.h"
+#include "measure/scenes/mesh_stage.h"
 #include "tools/cli/built.h"
 #include "tools/commands.h"
 #include "tools/sweep/build.h"

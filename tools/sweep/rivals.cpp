@@ -1,10 +1,10 @@
 #include "tools/sweep/rivals.h"
 
 #include "compress/sum.h"
-#include "measure/light_samplers.h"
-#include "measure/local_rivals.h"
-#include "measure/point_samplers.h"
-#include "measure/tiling.h"
+#include "measure/samplers/light_samplers.h"
+#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/point_samplers.h"
+#include "measure/samplers/tiling.h"
 #include "tools/sweep/surface.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "build/local_accuracy.h"
 #include "compress/target.h"
-#include "measure/light_sampler.h"
+#include "measure/samplers/light_sampler.h"
 #include "tools/sweep/sweep.h"
 
 #include <array>

@@ -1,8 +1,8 @@
 #include "tools/sweep/surface_draws.h"
 
-#include "measure/local_rivals.h"
-#include "measure/probe_grid.h"
 #include "measure/random.h"
+#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/probe_grid.h"
 #include "tools/sweep/pixel_draws.h"
 
 #include <tbb/parallel_for.h>

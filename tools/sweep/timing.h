@@ -1,7 +1,7 @@
 // How long samplers take, side by side.
 #pragma once
 
-#include "measure/light_sampler.h"
+#include "measure/samplers/light_sampler.h"
 #include "tools/sweep/sweep.h"
 
 #include <vector>

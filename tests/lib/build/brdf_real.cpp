@@ -2,8 +2,8 @@
 #include "tests/lib/build/real_brdfs.h"
 
 #include "input/rgl_brdf.h"
-#include "measure/brdf_table.h"
-#include "measure/rgl_sampler.h"
+#include "measure/samplers/brdf_table.h"
+#include "measure/samplers/rgl_sampler.h"
 
 using namespace acdf_test;
 

@@ -5,8 +5,8 @@
 #include "build/local.h"
 #include "build/local_accuracy.h"
 #include "input/probe.h"
-#include "measure/local_rivals.h"
-#include "measure/tiling.h"
+#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/tiling.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include "tests/inputs/synthetic.h"
 
 #include "input/brdf_models.h"
-#include "measure/reference.h"
-#include "measure/scene_points.h"
+#include "measure/scenes/reference.h"
+#include "measure/scenes/scene_points.h"
 #include "measure/surface_frame.h"
 
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include "tests/inputs/synthetic.h"
 #include "tests/tools/render/scenes.h"
 
-#include "measure/point_sums.h"
-#include "measure/surface_points.h"
+#include "measure/scenes/point_sums.h"
+#include "measure/scenes/surface_points.h"
 #include "tools/render/sampler_build.h"
 
 #include <gtest/gtest.h>

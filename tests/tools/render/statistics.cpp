@@ -2,11 +2,11 @@
 #include "tests/inputs/synthetic.h"
 
 #include "input/brdf_models.h"
-#include "measure/estimators.h"
-#include "measure/light_samplers.h"
 #include "measure/ratio.h"
-#include "measure/render.h"
-#include "measure/render_time.h"
+#include "measure/samplers/estimators.h"
+#include "measure/samplers/light_samplers.h"
+#include "measure/scenes/render.h"
+#include "measure/scenes/render_time.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

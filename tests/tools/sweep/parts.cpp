@@ -1,7 +1,7 @@
 // What a sweep recommends and writes, on made-up rows and on a tiny probe.
 #include "build/environment.h"
 #include "build/own_terms.h"
-#include "measure/full_cdf.h"
+#include "measure/samplers/full_cdf.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/advice.h"
 #include "tools/sweep/page.h"

@@ -1,8 +1,8 @@
 // Variances of a diffuse surface: by summation, by drawing, and where light is hidden.
 #include "tests/inputs/synthetic.h"
 
-#include "measure/light_samplers.h"
-#include "measure/local_rivals.h"
+#include "measure/samplers/light_samplers.h"
+#include "measure/samplers/local_rivals.h"
 #include "tools/render/scene_file.h"
 #include "tools/sweep/occluders.h"
 #include "tools/sweep/surface.h"

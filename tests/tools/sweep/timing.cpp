@@ -1,7 +1,7 @@
 // Times of samplers side by side, and their intervals.
 #include "tests/inputs/synthetic.h"
 
-#include "measure/light_samplers.h"
+#include "measure/samplers/light_samplers.h"
 #include "tools/sweep/timing.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,67 @@
+// Every sampler of this library, and of files, as a LightSampler.
+//
+// Targets, files and tables are referred to, not copied, and must outlive what is made of them. Targets are
+// lat-long probes of one channel and nearest lookup (compress::Target); where one is black, or not of that kind,
+// these functions throw std::invalid_argument.
+#pragma once
+
+#include "compress/target.h"
+#include "measure/samplers/alias_table.h"
+#include "measure/samplers/brdf_table.h"
+#include "measure/samplers/light_sampler.h"
+
+#include <acdf/reader.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace acdf::measure {
+
+class ScenePoint;
+using LightSamplerPtr = std::unique_ptr<LightSampler>;
+
+// ---- of the light ----
+
+/// FullCdf. Directions below the horizon are drawn in vain, as where "rejection" rejects them and draws no others.
+LightSamplerPtr full_cdf_sampler(const compress::Target& target);
+/// TilingOnTheFly, of columns x rows tiles.
+LightSamplerPtr tiling_sampler(const compress::Target& target, std::uint32_t columns, std::uint32_t rows);
+
+/// DownsampledCdf, of columns x rows cells.
+LightSamplerPtr downsampled_cdf_sampler(const compress::Target& target, std::uint32_t columns, std::uint32_t rows);
+/// AliasTable.
+LightSamplerPtr alias_sampler(const compress::Target& target, AliasNumbers numbers = AliasNumbers::two);
+/// HierarchicalWarp.
+LightSamplerPtr hierarchical_sampler(const compress::Target& target);
+/// CompensatedCdf: without support where little light is, for MisEstimator with a
+/// sampler of the surface; biased on its own.
+LightSamplerPtr compensated_sampler(const compress::Target& target, double s = 1.0);
+
+/// TilingOnTheFly with the visibility of its tiles at cache points (VisibilityCache), made for `points`; its
+/// making() is not 0.
+LightSamplerPtr visibility_sampler(const compress::Target& target, std::uint32_t columns, std::uint32_t rows,
+                                   const std::vector<ScenePoint>& points);
+
+/// IdealRow: light x cosine on all texels, made anew at each point; with `shares` > 0 filled up for as many samples
+/// of ours for one of the cosine.
+LightSamplerPtr ideal_sampler(const compress::Target& target, double shares = 0.0);
+
+// ---- of the surface ----
+
+/// CosineHemisphere.
+LightSamplerPtr cosine_sampler();
+/// GgxSampler. Views below the surface draw nothing.
+LightSamplerPtr ggx_sampler(double alpha);
+/// TabulatedBrdf. Views below the surface draw nothing.
+LightSamplerPtr tabulated_brdf_sampler(const TabulatedBrdf& table);
+
+// ---- of files ----
+
+/// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is the file's
+/// size. BRDFs are turned to the surface's frame (surface_frame); views below the surface draw nothing.
+LightSamplerPtr file_sampler(const File& file);
+/// A local environment by normals alone, also where it tells places apart.
+LightSamplerPtr normals_alone_sampler(const File& file);
+
+} // namespace acdf::measure
