@@ -10,8 +10,8 @@
 // in hexadecimal floating point (C99 %a), of a local environment with the normal before it (where it has places
 // with position and normal), of a BRDF with wo. None of the files is symmetric, so that a mirrored, turned or
 // transposed frame shows.
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 #include "golden_samples.h"
 #include "write_file.h"
 

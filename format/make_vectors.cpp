@@ -2,7 +2,7 @@
 // of densities (format/vectors/README.md), and table.acdf, which golden files lack.
 //
 //   make_vectors OUTDIR FILE.acdf...
-#include "compress/store.h"
+#include "compress/store/store.h"
 #include "write_file.h"
 
 #include <acdf/reader.h>

@@ -4,8 +4,8 @@
 #include "build/brdf_accuracy.h"
 #include "build/progress.h"
 #include "build/reflectance.h"
-#include "compress/fit_brdf.h"
-#include "compress/store.h"
+#include "compress/brdf/fit.h"
+#include "compress/store/store.h"
 #include "compress/target.h"
 
 #include <cstdint>

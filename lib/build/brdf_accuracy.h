@@ -1,7 +1,7 @@
 // How far the stored densities of a BRDF are from what it reflects, for views between those that are stored.
 #pragma once
 
-#include "compress/brdf_target.h"
+#include "compress/brdf/target.h"
 
 #include <acdf/accuracy.h>
 #include <acdf/reader.h>

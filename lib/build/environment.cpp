@@ -5,7 +5,7 @@
 #include "build/errors.h"
 #include "build/local.h"
 #include "build/option_text.h"
-#include "compress/company_target.h"
+#include "compress/company/target.h"
 
 #include <algorithm>
 #include <cstdio>

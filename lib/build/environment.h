@@ -4,9 +4,9 @@
 #include "build/environment_accuracy.h"
 #include "build/progress.h"
 #include "compress/company.h"
-#include "compress/fit.h"
-#include "compress/normals.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/local/normals.h"
+#include "compress/store/store.h"
 
 #include <acdf/builder.h>
 

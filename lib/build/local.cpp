@@ -5,7 +5,7 @@
 #include "build/errors.h"
 #include "build/option_text.h"
 #include "build/weight_bound.h"
-#include "compress/fit_local.h"
+#include "compress/local/fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 #include "build/environment.h"
 #include "build/local_accuracy.h"
 #include "build/progress.h"
-#include "compress/fit_local_separate.h"
-#include "compress/fit_places.h"
-#include "compress/normals.h"
+#include "compress/local/fit_separate.h"
+#include "compress/local/normals.h"
+#include "compress/places/fit.h"
 
 #include <cstdint>
 #include <optional>

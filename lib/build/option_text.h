@@ -2,7 +2,7 @@
 // of a file tells, so that the same text, source and program mean the same bytes.
 #pragma once
 
-#include "compress/fit.h"
+#include "compress/fit/fit.h"
 #include "compress/target.h"
 
 #include <string>

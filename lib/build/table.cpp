@@ -3,7 +3,7 @@
 #include "build/company_text.h"
 #include "build/errors.h"
 #include "build/table_company.h"
-#include "compress/fit_tree.h"
+#include "compress/fit/tree.h"
 #include "compress/sum.h"
 
 #include <acdf/reader.h>

@@ -5,9 +5,9 @@
 #include "build/progress.h"
 #include "build/table_accuracy.h"
 #include "compress/company.h"
-#include "compress/fit.h"
+#include "compress/fit/fit.h"
 #include "compress/grid.h"
-#include "compress/store.h"
+#include "compress/store/store.h"
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 #include "input/triangles.h"
 
-#include "compress/place_light.h"
+#include "compress/places/light.h"
 #include "input/image.h"
 #include "input/mesh_file.h"
 

@@ -1,6 +1,6 @@
 #include "measure/scanline.h"
 
-#include "compress/fit_tree.h"
+#include "compress/fit/tree.h"
 #include "compress/sum.h"
 
 #include <algorithm>

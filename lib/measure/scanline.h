@@ -3,7 +3,7 @@
 #pragma once
 
 #include "compress/cascade.h"
-#include "compress/fit_curve.h"
+#include "compress/fit/curve.h"
 #include "compress/target.h"
 
 #include <acdf/layout.h>

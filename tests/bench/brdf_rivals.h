@@ -3,7 +3,7 @@
 // that Lawrence et al. 2005 tabulate), azimuths from the view's. Isotropic BRDFs alone.
 #pragma once
 
-#include "compress/brdf_target.h"
+#include "compress/brdf/target.h"
 
 #include <acdf/sample.h>
 

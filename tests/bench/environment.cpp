@@ -8,8 +8,8 @@
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 #include "measure/samplers/alias_table.h"
 #include "measure/samplers/hierarchical_warp.h"
 

@@ -1,6 +1,6 @@
 // layouts FILE.acdf...: what chunk TREE would take in other layouts before deflate, as Markdown on stdout. Every
 // layout here can be undone: sizes of the arrays follow from the headers, in the order of the curves.
-#include "compress/planes.h"
+#include "compress/store/planes.h"
 
 #include <acdf/reader.h>
 #include <acdf/sample.h>

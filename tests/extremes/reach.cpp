@@ -4,8 +4,8 @@
 #include "tests/inputs/sanitized.h"
 
 #include "build/cells.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 #include "compress/sum.h"
 
 #include <acdf/reader.h>

@@ -2,8 +2,8 @@
 #include "tests/extremes/targets.h"
 
 #include "build/environment_accuracy.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 
 #include <acdf/reader.h>
 

@@ -5,8 +5,8 @@
 #include "tests/inputs/places.h"
 #include "tests/inputs/synthetic.h"
 
-#include "compress/fit_local.h"
-#include "compress/fit_local_separate.h"
+#include "compress/local/fit.h"
+#include "compress/local/fit_separate.h"
 #include "compress/sum.h"
 #include "input/probe.h"
 

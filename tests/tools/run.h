@@ -3,7 +3,7 @@
 
 #include "tests/inputs/places.h"
 
-#include "compress/store.h"
+#include "compress/store/store.h"
 
 #include <gtest/gtest.h>
 

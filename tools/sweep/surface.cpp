@@ -1,8 +1,8 @@
 #include "tools/sweep/surface.h"
 
 #include "build/texel_cosines.h"
+#include "compress/fit/tiles.h"
 #include "compress/sum.h"
-#include "compress/tiles.h"
 
 #include <tbb/parallel_for.h>
 

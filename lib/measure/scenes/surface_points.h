@@ -1,7 +1,7 @@
 // Points all over the surfaces of a scene: where a file of places learns what they see.
 #pragma once
 
-#include "compress/place_light.h"
+#include "compress/places/light.h"
 #include "measure/scenes/scene.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 #include "tests/lib/build/random_cascade.h"
 
 #include "build/cells.h"
-#include "compress/store.h"
+#include "compress/store/store.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include "tests/lib/build/random_cascade.h"
 
 #include "build/environment_accuracy.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 
-#include "compress/fit_local_separate.h"
-#include "compress/light.h"
+#include "compress/local/fit_separate.h"
+#include "compress/local/light.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include "build/cube.h"
 #include "build/environment_accuracy.h"
 #include "build/source_lookup.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 #include "compress/threads.h"
 #include "tests/inputs/sanitized.h"
 

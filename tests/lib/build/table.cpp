@@ -2,8 +2,8 @@
 #include "tests/inputs/table_files.h"
 #include "tests/lib/compress/chi_square.h"
 
-#include "compress/fit.h"
-#include "compress/fit_tree.h"
+#include "compress/fit/fit.h"
+#include "compress/fit/tree.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -3,8 +3,8 @@
 #include "tests/inputs/places.h"
 
 #include "build/environment_accuracy.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 #include "input/probe.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 
 #include "build/cells.h"
 #include "build/environment_accuracy.h"
-#include "compress/store.h"
+#include "compress/store/store.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What must hold of every file, whatever fit, order and target made it.
 #pragma once
 
-#include "compress/fit.h"
+#include "compress/fit/fit.h"
 #include "compress/target.h"
 
 #include <cstdint>

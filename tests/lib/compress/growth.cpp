@@ -3,10 +3,10 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 
-#include "compress/fit_tree.h"
-#include "compress/partition.h"
-#include "compress/prune.h"
-#include "compress/tree_size.h"
+#include "compress/fit/partition.h"
+#include "compress/fit/prune.h"
+#include "compress/fit/tree.h"
+#include "compress/fit/tree_size.h"
 
 #include <gtest/gtest.h>
 

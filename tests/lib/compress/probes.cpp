@@ -3,7 +3,7 @@
 #include "tests/lib/compress/checks.h"
 
 #include "build/environment_accuracy.h"
-#include "compress/store.h"
+#include "compress/store/store.h"
 #include "input/probe.h"
 
 #include <gtest/gtest.h>

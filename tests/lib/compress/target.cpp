@@ -1,7 +1,7 @@
 // Targets for channels and filters: against brute force, and what a mismatch with the renderer's lookup costs.
 #include "build/environment_accuracy.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include "tests/lib/compress/cascade_cells.h"
 
 #include "build/environment_accuracy.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 
 #include <gtest/gtest.h>
 

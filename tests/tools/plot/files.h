@@ -5,8 +5,8 @@
 #include "tests/inputs/write_rgb.h"
 
 #include "build/projection.h"
-#include "compress/fit.h"
-#include "compress/store.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 #include "images/image_file.h"
 
 #include <acdf/reader.h>

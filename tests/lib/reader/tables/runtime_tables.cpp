@@ -4,7 +4,7 @@
 #include "tests/lib/compress/checks.h"
 #include "tests/lib/reader/environment_pair.h"
 
-#include "compress/store.h"
+#include "compress/store/store.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include "tests/lib/reader/random.h"
 #include "tests/lib/reader/tables/tables_pair.h"
 
-#include "compress/store.h"
+#include "compress/store/store.h"
 
 #include <acdf/shader_tables.h>
 

@@ -1,0 +1,46 @@
+// What bounds the weights of samples of a BRDF: the least that the rows of its views must give to each cell.
+#pragma once
+
+#include "compress/brdf/views.h"
+#include "compress/fit/shared.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace acdf::compress {
+
+/// A square of half-vectors whose centre reflects below the horizon, and a part of which reflects above it. Cells
+/// of nothing else are where the largest weights are: a fit that looks at centres alone takes them to be dark.
+struct HorizonSquare {
+    std::uint32_t square = 0;
+    float peak = 0.0f;        ///< the density where the square rises first, in 1 / sr of half-vectors
+    float mean_square = 0.0f; ///< of the density over the whole square
+};
+
+/// Those of one view; `albedo` > 0 is what its values are divided by.
+std::vector<HorizonSquare> horizon_squares(const Reflected& reflected, const HalfGrid& grid, const View& view,
+                                           double albedo);
+
+using HorizonSquares = std::vector<std::vector<HorizonSquare>>; ///< one list a view
+
+/// The horizon of all views, whose targets learn what light is there.
+HorizonSquares look_at_horizon(const Reflected& reflected, BrdfViews& views);
+
+/// The least probability of each cell for each view, as large as a bound on weights asks for.
+class WeightBound {
+public:
+    /// `cell` of each square, of `cells`; A view needs what its neighbours need, too, as
+    /// views between them are drawn from the same rows.
+    WeightBound(const BrdfViews& views, const HorizonSquares& horizon, const std::vector<std::uint32_t>& cell,
+                std::size_t cells, double max_weight);
+
+    /// Raises rows in `wanted` by as much as mixtures of `rows` lack. Returns whether any lacks more than a
+    /// hundredth.
+    bool raise(const RowProbabilities& rows, const std::vector<SharedMixture>& mixtures,
+               RowProbabilities& wanted) const;
+
+private:
+    std::vector<std::vector<double>> least_; ///< views x cells
+};
+
+} // namespace acdf::compress

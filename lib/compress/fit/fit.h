@@ -1,0 +1,85 @@
+// Fits of a two-dimensional target: a marginal curve over one axis, conditional curves over the other.
+#pragma once
+
+#include "compress/cascade.h"
+#include "compress/store/store.h"
+#include "compress/target.h"
+
+#include <acdf/layout.h>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+
+namespace acdf::compress {
+
+/// Which axis is split first.
+enum class Order { phi, z };
+
+/// Whether the variance fit may refine a segment along any axis, as deep as it pays, or makes two levels: a
+/// marginal, and a conditional in each of its segments. Trees are more accurate for their size, cascades faster
+/// to sample.
+enum class Shape { tree, cascade };
+
+/// How the rows of a region of the marginal are averaged into one conditional. The paper's eq. 4 gives every
+/// row the same weight; weighting rows by their energy is the region's own conditional, and costs less.
+enum class Conditional { energy, mean };
+
+/// Called from one thread at a time with the finished share in [0, 1].
+using Progress = std::function<void(double)>;
+
+/// Size of the file that a tree would make.
+using FileSize = std::function<std::uint64_t(const EncodedTree&)>;
+
+/// The same of curves that are stored otherwise than they were fitted.
+using CascadeSize = std::function<std::uint64_t(const Cascade&)>;
+
+/// What the tree of the variance fit is to reach.
+struct Goal {
+    enum class Kind { cells, budget, variance };
+
+    Kind kind = Kind::cells;
+    std::uint32_t cells = 4096; ///< cells: at most so many
+    std::uint64_t budget = 0;   ///< budget: the file takes at most so many bytes
+    double variance = 0.0;      ///< variance: the stored density's relative variance is at most this
+};
+
+struct FitOptions {
+    AcdfFit fit = ACDF_FIT_VARIANCE;
+    std::optional<Order> order; ///< empty: as the fit sees fit (a tree), else phi
+    Shape shape = Shape::tree;  ///< variance
+    Goal goal;                  ///< variance; a cascade takes cells alone
+    FileSize file_size;         ///< needed for a budget; by default the bytes of the tree
+    CascadeSize cascade_size;   ///< instead of file_size
+    /// A goal of variance is out of reach where it takes many more bytes; it bounds the memory of the search.
+    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
+    bool size_by_length = false;        ///< file_size depends on nothing but the number of bytes of the tree
+    double max_weight = 0.0;            ///< variance as a tree: the largest f/p over its mean; 0: no bound
+    std::uint32_t column_segments = 64; ///< uniform, cdf, pdf: segments of a curve over columns (phi)
+    std::uint32_t row_segments = 64;    ///< the same over rows (theta)
+    double epsilon = 0.0;               ///< cdf, pdf: see CurveBudget
+    Conditional conditional = Conditional::energy; ///< uniform, cdf, pdf
+    std::uint32_t gradient_knots = 0;              ///< cdf, pdf: extra marginal knots (Lawrence et al. 2005, eq. 5)
+    Progress progress;
+};
+
+/// A fit, and how it is stored.
+struct Fitted {
+    Cascade cascade;
+    EncodedTree tree;
+};
+
+/// Fits `target` (rows are theta, columns phi; integral > 0). Deterministic for any number of threads. Throws
+/// std::invalid_argument where the target has no energy or the goal is 0 cells, and std::runtime_error where the
+/// goal is out of reach: the message says what can be had.
+Fitted fit(const Target& target, const FitOptions& options);
+
+/// Fits uniform, cdf and pdf: marginal over the target's rows, one conditional over columns for each region
+/// between its knots (Lawrence et al. 2005, §5).
+Cascade fit_regional(const Target& target, const FitOptions& options);
+
+/// The minimum-variance cascade of fixed depth: docs/method.md.
+Cascade fit_variance_cascade(const Target& target, const FitOptions& options);
+
+} // namespace acdf::compress

@@ -1,0 +1,233 @@
+// Tiles, then curves within them at one price a byte, then a row of probabilities for each bin: docs/local.md.
+#include "compress/local/fit.h"
+
+#include "compress/fit/shared.h"
+#include "compress/local/company.h"
+#include "compress/local/light.h"
+#include "compress/local/mixed_rows.h"
+#include "compress/local/tile_curves.h"
+#include "compress/local/tile_light.h"
+
+#include <acdf/local.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+/// Of a bound on weights, what cells alone may take; the rest is for the cosines of what lies in a tile.
+constexpr double kWeightOfCells = 0.5;
+constexpr int kRowRaises = 12; // of rows whose bytes do not keep a bound on weights
+
+std::vector<double> worth_of_tiles(const Target& target, const std::vector<Box>& tiles, const Worth& worth) {
+    std::vector<double> out;
+    for (const Box& tile : tiles) {
+        double sum = 0.0;
+        for_each_block(target, tile, 0.05, [&](const Box& block, double share) {
+            sum += share *
+                   worth.mean.at(double(block.begin[1]) / target.columns, double(block.begin[0]) / target.rows);
+        });
+        out.push_back(sum);
+    }
+    return out;
+}
+
+constexpr std::uint32_t kManyLights = 2 * ACDF_MAX_LIGHTS; // the brightest half of them is taken
+
+/// Tiles, and the rule by which they become lights. Where that of most probes finds many more lights than there may
+/// be, as it does in large bright areas and for normals that nearly all light is hidden from, tiles would be spent
+/// on them in vain: lights are larger then, and only the brightest.
+LightRule divide(const Target& target, const Worth& worth, std::uint32_t count, TileTree& tiles) {
+    LightRule rule;
+    tiles = divide_tiles(target, worth, count, rule);
+    if (tiles.lights <= kManyLights) return rule;
+    rule = {rule.alarm, 1.5 * rule.radius, true};
+    for (int step = 0; step < 12; ++step, rule.alarm *= 3.0) {
+        tiles = divide_tiles(target, worth, count, rule);
+        if (tiles.lights <= kManyLights) break;
+    }
+    return rule;
+}
+
+/// Tiles of light so bright that, near the horizon, mixing the rows of bins would draw many samples below it.
+std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, const TileCascade& cascade,
+                                   double total, const Worth& worth, const LightRule& rule) {
+    std::vector<std::pair<double, AcdfLight>> found;
+    for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
+        const Box& box = tiles.tiles[t];
+        const double reach = radius(target, box), share = cascade.tile_cost(t);
+        const double alarm =
+            share * total *
+            worth.alarm.at(double(box.begin[1]) / target.columns, double(box.begin[0]) / target.rows);
+        if (reach > rule.radius || alarm < rule.alarm || !(static_cast<float>(share) > 0.0f)) continue;
+        const Direction middle = centre(target, box);
+        AcdfLight light = {};
+        for (std::size_t k = 0; k < 3; ++k) light.direction[k] = static_cast<float>(middle[k]);
+        light.radius = static_cast<float>(reach + kHorizonMargin);
+        light.share = static_cast<float>(share);
+        light.tile = static_cast<std::uint32_t>(t);
+        light.low[ACDF_AXIS_PHI] = box.begin[1];
+        light.high[ACDF_AXIS_PHI] = box.end[1];
+        light.low[ACDF_AXIS_THETA] = box.begin[0];
+        light.high[ACDF_AXIS_THETA] = box.end[0];
+        found.push_back({alarm, light});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    if (found.size() > ACDF_MAX_LIGHTS) found.resize(ACDF_MAX_LIGHTS);
+    std::vector<AcdfLight> out;
+    for (const auto& light : found) out.push_back(light.second);
+    std::sort(out.begin(), out.end(), [](const AcdfLight& a, const AcdfLight& b) { return a.tile < b.tile; });
+    return out;
+}
+
+/// The row of `cost`, raised where what its bytes stand for is less than `least`.
+std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cost, std::vector<double> least) {
+    double sum = 0.0;
+    for (std::size_t t = 0; t < cost.size(); ++t) sum += cost[t] = std::max(cost[t], least[t]);
+    std::vector<std::uint8_t> row = encode_row(fit.tiles, cost);
+    for (int step = 0; step < kRowRaises; ++step) {
+        const std::vector<double> stored = decode_row(fit.tiles, fit.shared.codebook, row.data());
+        bool any = false;
+        for (std::size_t t = 0; t < cost.size(); ++t)
+            if (stored[t] * sum < 0.99 * least[t]) {
+                cost[t] *= least[t] / (stored[t] * sum);
+                any = true;
+            }
+        if (!any) break;
+        row = encode_row(fit.tiles, cost);
+    }
+    return row;
+}
+
+/// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to, and
+/// `row(bin, costs)` the bytes of that.
+template <class Costs, class Row>
+void fill_rows(const Costs& costs, const Row& row_of, LocalFit& out) {
+    const std::size_t width = out.tiles.splits.size();
+    tbb::parallel_for(std::size_t{0}, out.tree.roots.size(), [&](std::size_t b) {
+        if (out.tree.roots[b] == ACDF_NO_ROOT) return;
+        const std::vector<double> cost = costs(b);
+        double sum = 0.0;
+        for (double c : cost) sum += c;
+        const std::vector<std::uint8_t> row = row_of(b, cost);
+        std::copy(row.begin(), row.end(), out.shared.codes.begin() + std::ptrdiff_t(out.tree.roots[b] * width));
+        out.shares[b] = static_cast<float>(sum);
+    });
+}
+
+} // namespace
+
+LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const LocalSize& size,
+                         const Progress& progress, const Company& company)
+    : target_(target), bins_(bins), max_weight_(size.max_weight), progress_(progress) {
+    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
+    if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
+    const std::vector<LightPoint> points = light_points(target);
+    flux_ = irradiance(points, bins);
+    worth_ = worth(target, bins, flux_);
+    if (company) beside_.emplace(target, points, bins, flux_, company);
+    report(0.1);
+    rule_ =
+        divide(beside_ ? beside_->excess(target) : target, worth_, std::min(size.tiles, ACDF_MAX_TILES), tiles_);
+    report(0.4);
+    if (beside_) filled_ = beside_->filled(target);
+    worth_of_tiles_ = worth_of_tiles(target, tiles_.tiles, worth_);
+}
+
+/// The curves at the lowest price at which they take at most `bytes`.
+LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {
+    const double any = std::numeric_limits<double>::infinity(), most_ratio = max_weight_ < any ? 1.01 : any;
+    const auto at = [&](double price) {
+        Curves out;
+        out.cascade = std::make_unique<TileCascade>(tiles_, *tile_curves_, price);
+        out.tree = encode_tree(out.cascade->cascade, 2.0 * price, most_ratio);
+        return out;
+    };
+    constexpr double cheapest = 1e-14; // of the sum of costs: rounding, no gain
+    double price = 1e-4;
+    Curves best;
+    for (;; price *= 0.25) {
+        tile_curves_->refine(price);
+        best = at(price);
+        if (best.tree.bytes.size() > bytes || price < cheapest) break;
+    }
+    if (best.tree.bytes.size() <= bytes) return best;
+    double low = price, high = 1.0;
+    best = at(high);
+    for (int step = 0; step < 24; ++step) {
+        const double middle = std::sqrt(low * high);
+        Curves candidate = at(middle);
+        if (candidate.tree.bytes.size() > bytes) {
+            low = middle;
+        } else {
+            high = middle;
+            best = std::move(candidate);
+        }
+    }
+    return best;
+}
+
+LocalFit LocalFitter::outlined(std::uint64_t tree_bytes) {
+    tile_curves_.emplace(beside_ ? filled_ : target_, tiles_.tiles, worth_of_tiles_, kWeightOfCells * max_weight_);
+    curves_ = fit_curves(tree_bytes);
+    report(0.8);
+    LocalFit out;
+    out.tiles = tiles_;
+    out.lights = find_lights(target_, tiles_, *curves_.cascade, tile_curves_->total(), worth_, rule_);
+    out.tree = curves_.tree;
+    out.shared.splits = stored_splits(tiles_, [](const TileTree::Split& split) {
+        return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;
+    });
+    out.shared.codebook = row_codebook();
+    for (std::int32_t curve : curves_.cascade->tile_curve)
+        out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);
+    const std::size_t count = bins_.normals.size();
+    out.shares.assign(count, 0.0f);
+    out.tree.roots.assign(count, ACDF_NO_ROOT);
+    for (std::size_t b = 0; b < count; ++b)
+        if (bins_.weight[b] > 0.0) out.tree.roots[b] = out.shared.row_count++;
+    out.shared.codes.resize(out.shared.row_count * tiles_.splits.size());
+    if (beside_) out.records.resize(count, {1.0f, 0.0f});
+    return out;
+}
+
+void LocalFitter::fill(LocalFit& out) const {
+    if (beside_) {
+        const FilledTiles light(target_, tiles_, *tile_curves_, *curves_.cascade, out.lights, *beside_, bins_);
+        const auto shares_of = [&](std::size_t b) {
+            std::vector<double> shares = light.shares(b);
+            for (double& share : shares) share /= tile_curves_->total();
+            out.records[b] = {light.recommended_share(b, shares),
+                              static_cast<float>(flux_[b] / tile_curves_->total())};
+            return shares;
+        };
+        const auto row = [&](std::size_t, const std::vector<double>& shares) { return encode_row(tiles_, shares); };
+        fill_rows(shares_of, row, out);
+    } else {
+        const TileLight light(target_, tiles_, *curves_.cascade, out.lights);
+        const TileParts parts = mixed_rows(light, bins_, out.lights);
+        const auto row = [&](std::size_t b, const std::vector<double>& costs) {
+            if (!std::isfinite(max_weight_)) return encode_row(tiles_, costs);
+            return row_above(out, costs, light.least(bins_.normals[b], costs, max_weight_));
+        };
+        fill_rows([&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); }, row, out);
+    }
+    out.cascade = curves_.cascade->cascade;
+    report(1.0);
+}
+
+LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
+                   const Company& company) {
+    LocalFitter fitter(target, bins, size, progress, company);
+    LocalFit out = fitter.outlined(size.tree_bytes);
+    fitter.fill(out);
+    return out;
+}
+
+} // namespace acdf::compress

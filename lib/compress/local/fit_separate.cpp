@@ -1,0 +1,303 @@
+#include "compress/local/fit_separate.h"
+
+#include "compress/fit/partition.h"
+#include "compress/fit/prune.h"
+#include "compress/local/light.h"
+
+#include <acdf/local.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+constexpr std::uint32_t kSide = 4; // samples of a bin's normals along a side
+
+/// Normals spread evenly over a bin, and how far any normal of the bin may be from the nearest of them (a sine).
+struct BinNormals {
+    std::vector<Direction> normals;
+    double gap = 0.0;
+};
+
+BinNormals of_cell(const NormalBins& bins, std::size_t bin) {
+    BinNormals out;
+    const auto row = static_cast<double>(bin / bins.columns), column = static_cast<double>(bin % bins.columns);
+    for (std::uint32_t i = 0; i < kSide; ++i)
+        for (std::uint32_t k = 0; k < kSide; ++k) {
+            double s, c, radius, z;
+            acdf_sincospi((row + (i + 0.5) / kSide) / bins.rows, &radius, &z);
+            acdf_sincospi(1.0 - 2.0 * (column + (k + 0.5) / kSide) / bins.columns, &s, &c);
+            out.normals.push_back({radius * c, radius * s, z});
+        }
+    out.gap = ACDF_PI / kSide * std::hypot(0.5 / bins.rows, 1.0 / bins.columns);
+    return out;
+}
+
+/// Corners of an octahedron `kSide` times as fine that are nearer to the bin's corner than to another.
+BinNormals of_corner(const NormalBins& bins, std::size_t bin) {
+    static_assert(kSide == 4);
+    const Direction& n = bins.normals[bin];
+    const double sum = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]), step = 1.0 / (bins.subdivisions * kSide);
+    BinNormals out;
+    for (int x = -4; x <= 4; ++x)
+        for (int y = -4; y <= 4; ++y)
+            for (int z = -4; z <= 4; ++z) {
+                // Steps on the lattice of the finer octahedron; those off its surface belong to other layers.
+                const Direction d = {n[0] / sum + x * step, n[1] / sum + y * step, n[2] / sum + z * step};
+                if (std::abs(std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]) - 1.0) > 0.5 * step) continue;
+                const float normal[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
+                                         static_cast<float>(d[2])};
+                AcdfNormalBins found;
+                if (!bins.find(normal, found) || acdf_nearest_bin(&found) != bin) continue;
+                const double length = std::sqrt(dot(d, d));
+                out.normals.push_back({d[0] / length, d[1] / length, d[2] / length});
+            }
+    out.gap = 2.5 * step; // an edge at the middle of a face is the longest: sqrt(6) steps
+    return out;
+}
+
+BinNormals normals_of(const NormalBins& bins, std::size_t bin, BinTarget kind) {
+    if (kind == BinTarget::centre) return {{bins.normals[bin]}, 0.0};
+    return bins.subdivisions > 0 ? of_corner(bins, bin) : of_cell(bins, bin);
+}
+
+/// The mean over normals of (max(0, n . omega) / E_n)^2.
+class MeanSquare {
+public:
+    MeanSquare(const BinNormals& bin, const std::vector<LightPoint>& light, double reach) : bin_(bin) {
+        double best = 0.0;
+        for (const Direction& n : bin.normals) {
+            double irradiance = 0.0;
+            for (const LightPoint& p : light) irradiance += p.amount * std::max(0.0, dot(p.direction, n));
+            inverse_.push_back(irradiance > 0.0 ? 1.0 / irradiance : 0.0);
+            mean_irradiance += irradiance / double(bin.normals.size());
+            best = std::max(best, inverse_.back());
+        }
+        // What lies below all of the samples, but above the horizon of a normal between them: all there is, where
+        // no sample sees any light.
+        edge_ = bin.gap > 0.0 ? bin.gap + reach : 0.0;
+        glimpse_ = best > 0.0 ? 1e-8 * best * best : 1.0;
+    }
+    double mean_irradiance = 0.0;
+
+    double operator()(const Direction& omega) const {
+        double sum = 0.0, highest = -1.0;
+        for (std::size_t i = 0; i < bin_.normals.size(); ++i) {
+            const double cosine = dot(bin_.normals[i], omega);
+            highest = std::max(highest, cosine);
+            const double f = std::max(0.0, cosine) * inverse_[i];
+            sum += f * f;
+        }
+        const double mean = sum / double(bin_.normals.size());
+        return mean < glimpse_ && highest > -edge_ ? glimpse_ : mean;
+    }
+
+private:
+    const BinNormals& bin_;
+    std::vector<double> inverse_;
+    double edge_ = 0.0, glimpse_ = 0.0;
+};
+
+struct OneBin {
+    Target target;
+    double irradiance = 0.0;
+
+    /// Its part of all light: nothing is drawn where that is 0.
+    float share(double total) const {
+        return target.total > 0.0 ? static_cast<float>(std::max(irradiance / total, 1e-12)) : 0.0f;
+    }
+};
+
+OneBin target_of(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
+                 std::size_t bin, BinTarget kind) {
+    const BinNormals normals = normals_of(bins, bin, kind);
+    // Half the diagonal of a texel; on the octahedral square no point is farther from the middle than this.
+    const double texel = is_octahedral(target)
+                             ? 0.5 * ACDF_OCTAHEDRAL_SPEED * (1.0 / target.rows + 1.0 / target.columns)
+                             : ACDF_PI * std::hypot(0.5 / target.rows, 1.0 / target.columns);
+    const MeanSquare square(normals, light, texel);
+    OneBin out{target, square.mean_irradiance};
+    out.target.peaks.clear();
+    tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
+        float* row = out.target.values.data() + std::size_t{r} * target.columns;
+        for (std::uint32_t c = 0; c < target.columns; ++c) {
+            if (row[c] == 0.0f) continue;
+            const double value = row[c] * std::sqrt(square(direction_at(target, r + 0.5, c + 0.5)));
+            row[c] = value > 0.0 ? std::max(static_cast<float>(value), std::numeric_limits<float>::min()) : 0.0f;
+        }
+    });
+    out.target.total = integral(out.target);
+    out.target.mean_square = 0.0;
+    return out;
+}
+
+/// The trees of bins, appended to that of the environment.
+class Trees {
+public:
+    Trees(const Target& target, const FitOptions& options) {
+        FitOptions own = options;
+        own.progress = {};
+        own.file_size = {};
+        if (own.goal.kind != Goal::Kind::cells) own.goal = Goal{}; // what bins share is not the environment's
+        append(fit(target, own).cascade);
+    }
+    void append(const Cascade& tree) {
+        const auto base = static_cast<std::int32_t>(cascade_.curves.size());
+        cascade_.roots.push_back(static_cast<std::uint32_t>(base) + tree.roots.front());
+        for (Curve curve : tree.curves) {
+            for (std::int32_t& child : curve.children)
+                if (child >= 0) child += base;
+            cascade_.curves.push_back(std::move(curve));
+        }
+    }
+    /// Encodes all; `stored` tells which bins have one, in the order in which they were appended.
+    EncodedTree encode(const std::vector<bool>& stored, double price) const {
+        EncodedTree tree = encode_tree(cascade_, price);
+        std::vector<std::uint32_t> roots(stored.size(), ACDF_NO_ROOT);
+        std::size_t next = 1;
+        for (std::size_t b = 0; b < stored.size(); ++b)
+            if (stored[b]) roots[b] = tree.roots[next++];
+        tree.roots = std::move(roots);
+        return tree;
+    }
+
+private:
+    Cascade cascade_;
+};
+
+/// Partitions of all bins, each grown on its own and then forgotten but for its parts: memory does not hold the
+/// targets of all bins at once.
+class Partitions {
+public:
+    Partitions(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins, BinTarget kind,
+               std::size_t cells, std::vector<float>& shares, const Progress& progress)
+        : partitions_(bins.normals.size()), shares_(shares), total_(integral(target)) {
+        std::size_t done = 0;
+        for (std::size_t b = 0; b < bins.normals.size(); ++b) {
+            if (bins.weight[b] > 0.0) grow(target_of(target, light, bins, b, kind), b, cells);
+            if (progress) progress(0.8 * double(++done) / double(bins.normals.size()));
+        }
+    }
+
+    bool stored(std::size_t bin) const { return partitions_[bin].has_value(); }
+    /// The least price for which all partitions were grown far enough.
+    double cheapest() const { return cheapest_; }
+    Flattened at(std::size_t bin, double price) const {
+        Flattened flat;
+        const Partition& partition = *partitions_[bin];
+        if (partition.total() > 0.0) flatten(partition, prune(partition.parts(), price, kNoBound), flat);
+        else flatten_nothing(ACDF_AXIS_PHI, flat);
+        return flat;
+    }
+    std::size_t cells(double price) const {
+        std::size_t sum = 0;
+        for (std::size_t b = 0; b < partitions_.size(); ++b)
+            if (stored(b)) sum += prune(partitions_[b]->parts(), price, kNoBound).cells[0];
+        return sum;
+    }
+
+private:
+    static constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
+    void grow(const OneBin& bin, std::size_t index, std::size_t cells) {
+        shares_[index] = bin.share(total_);
+        if (!(bin.target.total > 0.0)) {
+            Grid dark = grid_of(bin.target);
+            partitions_[index].emplace(dark, 1.0);
+            return;
+        }
+        Partition& partition = partitions_[index].emplace(grid_of(bin.target), bin.target.total);
+        double price = 1e-3;
+        for (; price > 1e-12; price *= 0.25) {
+            partition.refine(price * kLeastBytes, kNoBound);
+            if (prune(partition.parts(), price, kNoBound).cells[0] > cells) break;
+        }
+        cheapest_ = std::min(cheapest_, price); // bins that gain little by now keep their last divisions
+    }
+
+    std::vector<std::optional<Partition>> partitions_;
+    std::vector<float>& shares_;
+    double total_, cheapest_ = 1.0;
+};
+
+SeparateFit fit_at_one_price(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
+                             BinTarget kind, const FitOptions& options) {
+    SeparateFit out;
+    out.shares.assign(bins.normals.size(), 0.0f);
+    const bool budget = options.goal.kind == Goal::Kind::budget;
+    const std::size_t mean = budget ? options.goal.budget / 4 / bins.stored() : options.goal.cells;
+    const Partitions partitions(target, light, bins, kind, 2 * mean + 16, out.shares, options.progress);
+    std::vector<bool> stored(bins.normals.size());
+    for (std::size_t b = 0; b < stored.size(); ++b) stored[b] = partitions.stored(b);
+    const Trees environment(target, options);
+    const auto at = [&](double price) {
+        Trees trees = environment;
+        for (std::size_t b = 0; b < stored.size(); ++b)
+            if (stored[b]) trees.append(partitions.at(b, price).cascade);
+        return trees.encode(stored, 2.0 * price / double(bins.stored()));
+    };
+    const auto beyond = [&](double price, EncodedTree& tree) {
+        if (!budget) return partitions.cells(price) > std::size_t{options.goal.cells} * bins.stored();
+        tree = at(price);
+        return (options.file_size ? options.file_size(tree) : tree.bytes.size()) > options.goal.budget;
+    };
+    double low = partitions.cheapest(), high = 1.0;
+    if (EncodedTree tree; beyond(high, tree)) throw std::runtime_error("so small a size is out of reach");
+    for (int step = 0; step < 24; ++step) {
+        const double middle = std::sqrt(low * high);
+        EncodedTree tree;
+        (beyond(middle, tree) ? low : high) = middle;
+    }
+    out.tree = at(high);
+    return out;
+}
+
+SeparateFit fit_each(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
+                     BinTarget kind, const FitOptions& options) {
+    SeparateFit out;
+    out.shares.assign(bins.normals.size(), 0.0f);
+    FitOptions own = options;
+    own.progress = {};
+    Trees trees(target, own);
+    std::vector<bool> stored(bins.normals.size(), false);
+    const double total = integral(target);
+    for (std::size_t b = 0; b < stored.size(); ++b) {
+        if (!(bins.weight[b] > 0.0)) continue;
+        const OneBin bin = target_of(target, light, bins, b, kind);
+        stored[b] = true;
+        out.shares[b] = bin.share(total);
+        Flattened dark;
+        if (bin.target.total > 0.0) {
+            trees.append(fit(bin.target, own).cascade);
+        } else {
+            flatten_nothing(ACDF_AXIS_PHI, dark);
+            trees.append(dark.cascade);
+        }
+        if (options.progress) options.progress(double(b + 1) / double(stored.size()));
+    }
+    out.tree = trees.encode(stored, 1e-8);
+    return out;
+}
+
+} // namespace
+
+Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin, BinTarget kind) {
+    return target_of(target, light_points(target), bins, bin, kind).target;
+}
+
+SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
+                               const FitOptions& options) {
+    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
+    const std::vector<LightPoint> light = light_points(target);
+    const bool one_price = options.fit == ACDF_FIT_VARIANCE && options.shape == Shape::tree;
+    return one_price ? fit_at_one_price(target, light, bins, kind, options)
+                     : fit_each(target, light, bins, kind, options);
+}
+
+} // namespace acdf::compress

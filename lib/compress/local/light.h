@@ -1,0 +1,71 @@
+// The light of a probe as a few ten thousand points, and what it is worth to the normals that it shines on.
+#pragma once
+
+#include "compress/fit/octahedral_boxes.h"
+#include "compress/fit/tiles.h"
+#include "compress/local/normals.h"
+
+#include <acdf/sample.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace acdf::compress {
+
+using Direction = std::array<double, 3>;
+
+inline double dot(const Direction& a, const Direction& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Light from so small a solid angle that it has one cosine.
+struct LightPoint {
+    Direction direction{};
+    double amount = 0.0;
+    double measure = 0.0; ///< the solid angle that it comes from, where that is known
+};
+
+double solid_angle(const Target& target, const Box& box);
+
+/// Calls `visit(block, share)` for blocks of a box of at most about `step` radians, with their share of its solid
+/// angle.
+template <class Visit>
+void for_each_block(const Target& target, const Box& box, double step, const Visit& visit) {
+    const auto count = [&](std::size_t axis, double radians) {
+        const double blocks = std::ceil(radians / step);
+        return static_cast<std::uint32_t>(std::clamp(blocks, 1.0, double(box.length(axis))));
+    };
+    // The side of the octahedral square is as long as that of one of 4 pi.
+    const bool octahedral = is_octahedral(target);
+    const double side = 2.0 * std::sqrt(ACDF_PI);
+    const std::uint32_t rows = count(0, (octahedral ? side : ACDF_PI) * box.length(0) / target.rows);
+    const double whole = solid_angle(target, box);
+    for (std::uint32_t i = 0; i < rows; ++i) {
+        Box band = box;
+        band.begin[0] = box.begin[0] + std::uint32_t(std::uint64_t{box.length(0)} * i / rows);
+        band.end[0] = box.begin[0] + std::uint32_t(std::uint64_t{box.length(0)} * (i + 1) / rows);
+        const double z = centre(target, band)[2];
+        const double around = octahedral ? side : 2.0 * ACDF_PI * std::sqrt(1.0 - z * z);
+        const std::uint32_t columns = count(1, around * box.length(1) / target.columns);
+        for (std::uint32_t k = 0; k < columns; ++k) {
+            Box block = band;
+            block.begin[1] = box.begin[1] + std::uint32_t(std::uint64_t{box.length(1)} * k / columns);
+            block.end[1] = box.begin[1] + std::uint32_t(std::uint64_t{box.length(1)} * (k + 1) / columns);
+            visit(block, solid_angle(target, block) / whole);
+        }
+    }
+}
+
+/// The direction at a place of the grid, in texels.
+Direction direction_at(const Target& target, double row, double column);
+
+/// The integrals of g over blocks of about a degree.
+std::vector<LightPoint> light_points(const Target& target);
+
+/// For each bin the integral of the light above its horizon times the cosine.
+std::vector<double> irradiance(const std::vector<LightPoint>& points, const NormalBins& bins);
+
+/// On a coarse grid of the target's parameterization.
+Worth worth(const Target& target, const NormalBins& bins, const std::vector<double>& irradiance);
+
+} // namespace acdf::compress

@@ -1,0 +1,86 @@
+#include "compress/local/tile_curves.h"
+
+#include <acdf/sample.h>
+
+#include <tbb/parallel_for.h>
+
+#include <limits>
+
+namespace acdf::compress {
+
+TileCurves::TileCurves(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth,
+                       double heaviest)
+    : worth_(std::move(worth)), heaviest_(heaviest), total_(integral(target)), partitions_(tiles.size()),
+      nodes_(tiles.size()) {
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
+        partitions_[t] =
+            std::make_unique<Partition>(grid_of(target), total_, tiles[t], std::uint8_t{TileTree::most_depth + 1});
+        look_at(t);
+    });
+}
+
+void TileCurves::look_at(std::size_t tile) {
+    nodes_[tile] = prune_nodes(partitions_[tile]->parts(), heaviest_, partitions_[tile]->grid().filling);
+}
+
+void TileCurves::refine(double price) {
+    tbb::parallel_for(std::size_t{0}, partitions_.size(), [&](std::size_t t) {
+        if (!(worth_[t] > 0.0)) return;
+        partitions_[t]->refine(price * kLeastBytes / (worth_[t] * total_), heaviest_);
+        look_at(t);
+    });
+}
+
+Pruned TileCurves::pruned(std::size_t tile, double price) const {
+    const double own = worth_[tile] > 0.0 ? price / (worth_[tile] * total_) : std::numeric_limits<double>::max();
+    return prune(nodes_[tile], own);
+}
+
+TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double price)
+    : tile_curve(tiles.tiles.size(), -1), tiles_(tiles), curves_(curves), pruned_(tiles.tiles.size()),
+      cost_(tiles.tiles.size(), 0.0), split_cost_(tiles.splits.size()) {
+    tbb::parallel_for(std::size_t{0}, tiles.tiles.size(), [&](std::size_t t) {
+        pruned_[t] = curves.pruned(t, price);
+        const Filling* filling = curves.partition(t).grid().filling;
+        for_each_cell(t, [&](const Part& part) { cost_[t] += part.moments.share(filling); });
+    });
+    for (std::size_t s = tiles.splits.size(); s-- > 0;)
+        split_cost_[s] = child_cost(tiles.splits[s].child[0]) + child_cost(tiles.splits[s].child[1]);
+    cascade.roots = {0};
+    add(tiles.splits.empty() ? TileTree::tile : 0);
+}
+
+std::int32_t TileCascade::add(std::uint32_t child) {
+    return child & TileTree::tile ? add_tile(child & ~TileTree::tile) : add_split(child);
+}
+
+std::int32_t TileCascade::add_tile(std::uint32_t tile) {
+    const auto index = static_cast<std::int32_t>(cascade.curves.size());
+    if (!pruned_[tile].divided[0] && index > 0) return -1; // the root needs a curve even so
+    Flattened inside;
+    flatten(curves_.partition(tile), curves_.nodes(tile), pruned_[tile], inside);
+    for (Curve& curve : inside.cascade.curves) {
+        for (std::int32_t& c : curve.children)
+            if (c >= 0) c += index;
+        cascade.curves.push_back(std::move(curve));
+    }
+    return tile_curve[tile] = index;
+}
+
+std::int32_t TileCascade::add_split(std::uint32_t s) {
+    const TileTree::Split& split = tiles_.splits[s];
+    const std::size_t index = cascade.curves.size();
+    cascade.curves.emplace_back();
+    Curve curve;
+    curve.axis = split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI;
+    curve.knots = {split.position};
+    for (std::uint32_t child : split.child) {
+        const double cost = child_cost(child);
+        curve.probability.push_back(split_cost_[s] > 0.0 ? cost / split_cost_[s] : 0.5);
+        curve.children.push_back(cost > 0.0 ? add(child) : -1);
+    }
+    cascade.curves[index] = std::move(curve);
+    return static_cast<std::int32_t>(index);
+}
+
+} // namespace acdf::compress

@@ -1,0 +1,77 @@
+// The curves within the tiles of a probe, and the tree of the whole environment that they are parts of.
+#pragma once
+
+#include "compress/fit/prune.h"
+#include "compress/fit/tiles.h"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace acdf::compress {
+
+/// A partition of each tile, grown once and pruned at any price.
+class TileCurves {
+public:
+    /// `worth`: one a tile, what its light is worth; tiles of none stay whole. Cells whose weight() is above
+    /// `heaviest` are divided at any price.
+    TileCurves(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth,
+               double heaviest = std::numeric_limits<double>::infinity());
+
+    /// The integral of the target, to which all costs are normalised.
+    double total() const { return total_; }
+    const Partition& partition(std::size_t tile) const { return *partitions_[tile]; }
+    const PruneNodes& nodes(std::size_t tile) const { return nodes_[tile]; }
+    /// Grows the partitions until divisions that pay at `price` a byte are in them.
+    void refine(double price);
+    Pruned pruned(std::size_t tile, double price) const;
+
+private:
+    void look_at(std::size_t tile);
+
+    std::vector<double> worth_;
+    double heaviest_, total_ = 0.0;
+    std::vector<std::unique_ptr<Partition>> partitions_;
+    std::vector<PruneNodes> nodes_; ///< of the partitions: they are pruned at many prices
+};
+
+/// The tree of a whole environment: the splits between tiles as curves of two segments, then the curves in tiles.
+class TileCascade {
+public:
+    /// Prunes at `price` a byte. `tiles` and `curves` must outlive it.
+    TileCascade(const TileTree& tiles, const TileCurves& curves, double price);
+
+    Cascade cascade;                      ///< root 0 is the environment
+    std::vector<std::int32_t> tile_curve; ///< one a tile: its first curve; -1: it is a cell
+
+    /// The sum of the shares of the cells of a tile: its part of the environment.
+    double tile_cost(std::size_t tile) const { return cost_[tile]; }
+
+    /// Calls `visit(part)` for each cell of a tile.
+    template <class Visit>
+    void for_each_cell(std::size_t tile, const Visit& visit) const {
+        for_each_cell_below(tile, 0, visit);
+    }
+
+private:
+    template <class Visit>
+    void for_each_cell_below(std::size_t tile, std::size_t i, const Visit& visit) const {
+        const Part& part = curves_.partition(tile).parts()[i];
+        if (!pruned_[tile].divided[i]) return visit(part);
+        for (std::uint32_t k = 0; k < part.children; ++k) for_each_cell_below(tile, part.first_child + k, visit);
+    }
+    double child_cost(std::uint32_t child) const {
+        return child & TileTree::tile ? cost_[child & ~TileTree::tile] : split_cost_[child];
+    }
+    std::int32_t add(std::uint32_t child);
+    std::int32_t add_tile(std::uint32_t tile);
+    std::int32_t add_split(std::uint32_t split);
+
+    const TileTree& tiles_;
+    const TileCurves& curves_;
+    std::vector<Pruned> pruned_;
+    std::vector<double> cost_, split_cost_;
+};
+
+} // namespace acdf::compress

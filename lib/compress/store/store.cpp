@@ -1,0 +1,210 @@
+#include "compress/store/store.h"
+
+#include "compress/store/planes.h"
+
+#include <acdf/sample.h>
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+template <class T>
+void append(Bytes& bytes,
+            const T& value) { // of a little-endian machine, which CMake checks
+    const auto* data = reinterpret_cast<const std::uint8_t*>(&value);
+    bytes.insert(bytes.end(), data, data + sizeof value);
+}
+
+struct Payload {
+    std::uint32_t type;
+    std::uint32_t flags;
+    Bytes raw;
+};
+
+Bytes description_payload(const Description& d) {
+    AcdfDescription out = {};
+    out.parameterization = d.parameterization;
+    out.fit = d.fit;
+    out.filter = d.filter;
+    out.up_axis = ACDF_UP_Z;
+    out.handedness = ACDF_RIGHT_HANDED;
+    out.axis_count = static_cast<std::uint32_t>(d.axes.size());
+    out.bin_count = static_cast<std::uint32_t>(d.shares.size());
+    out.channels = d.channels;
+    std::memcpy(out.channel_weights, d.channel_weights, sizeof out.channel_weights);
+    out.total = d.total;
+    Bytes bytes;
+    append(bytes, out);
+    for (const AxisDescription& axis : d.axes) {
+        AcdfAxis record = {};
+        if (axis.name.size() >= sizeof record.name)
+            throw std::invalid_argument("an axis name of more than 15 bytes");
+        std::memcpy(record.name, axis.name.data(), axis.name.size());
+        record.role = axis.role;
+        record.measure = axis.measure;
+        record.resolution = axis.resolution;
+        record.low = axis.low;
+        record.high = axis.high;
+        append(bytes, record);
+    }
+    return bytes;
+}
+
+Bytes bins_payload(const EncodedTree& tree, const Description& d) {
+    if (tree.roots.size() != d.shares.size()) throw std::invalid_argument("one share a bin is needed");
+    Bytes bytes;
+    for (std::size_t i = 0; i < tree.roots.size(); ++i) append(bytes, AcdfBin{tree.roots[i], d.shares[i]});
+    return bytes;
+}
+
+Bytes metadata_payload(const Metadata& metadata) {
+    Bytes bytes;
+    append(bytes, static_cast<std::uint32_t>(metadata.size()));
+    const auto text = [&](const std::string& s) {
+        append(bytes, static_cast<std::uint32_t>(s.size()));
+        bytes.insert(bytes.end(), s.begin(), s.end());
+    };
+    for (const auto& [key, value] : metadata) text(key), text(value);
+    return bytes;
+}
+
+std::uint32_t crc(const std::uint8_t* data, std::size_t size, std::uint32_t seed = 0) {
+    return static_cast<std::uint32_t>(crc32_z(seed, data, size));
+}
+
+Bytes deflated(const Bytes& raw) {
+    uLongf size = compressBound(static_cast<uLong>(raw.size()));
+    Bytes out(size);
+    if (compress2(out.data(), &size, raw.data(), static_cast<uLong>(raw.size()), Z_BEST_COMPRESSION) != Z_OK)
+        throw std::runtime_error("zlib could not compress a chunk");
+    out.resize(size);
+    return out;
+}
+
+/// Puts deflated bytes in place of the payload, of a tree those of its planes where they are fewer; a chunk that
+/// would grow is stored as it is.
+void compress_payload(Payload& payload, AcdfChunk& chunk) {
+    const Bytes planes = payload.type == ACDF_CHUNK_TREE ? tree_to_planes(payload.raw) : Bytes();
+    Bytes small = deflated(payload.raw), smaller = planes.empty() ? Bytes() : deflated(planes);
+    // Padding, which planes leave out, could make the tree longer than rule 3011 lets it be.
+    const bool take = !planes.empty() && smaller.size() < small.size() && chunk.raw_length / 1032 <= smaller.size();
+    if (take) small = std::move(smaller);
+    if (small.size() >= payload.raw.size()) return;
+    chunk.codec = take ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB;
+    payload.raw = std::move(small);
+}
+
+std::size_t rounded(std::size_t offset) { return (offset + ACDF_ALIGNMENT - 1) / ACDF_ALIGNMENT * ACDF_ALIGNMENT; }
+
+Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
+    std::vector<AcdfChunk> table;
+    std::size_t end = sizeof(AcdfHeader) + payloads.size() * sizeof(AcdfChunk);
+    for (Payload& payload : payloads) {
+        AcdfChunk chunk = {};
+        chunk.type = payload.type;
+        chunk.flags = payload.flags;
+        chunk.raw_length = payload.raw.size();
+        if (codec == ACDF_CODEC_ZLIB && payload.type != ACDF_CHUNK_METADATA) {
+            compress_payload(payload, chunk);
+        }
+        chunk.stored_length = payload.raw.size();
+        chunk.offset = rounded(end);
+        chunk.crc = crc(payload.raw.data(), payload.raw.size());
+        end = chunk.offset + chunk.stored_length;
+        table.push_back(chunk);
+    }
+
+    AcdfHeader header = {};
+    const std::uint8_t magic[] = ACDF_MAGIC_BYTES;
+    std::memcpy(header.magic, magic, sizeof magic);
+    header.version_major = ACDF_VERSION_MAJOR;
+    header.version_minor = ACDF_VERSION_MINOR;
+    header.file_length = rounded(end);
+    header.kind = kind;
+    header.chunk_count = static_cast<std::uint32_t>(table.size());
+    const auto* table_bytes = reinterpret_cast<const std::uint8_t*>(table.data());
+    header.header_crc = crc(reinterpret_cast<const std::uint8_t*>(&header), offsetof(AcdfHeader, header_crc));
+    header.header_crc = crc(table_bytes, table.size() * sizeof(AcdfChunk), header.header_crc);
+
+    Bytes file;
+    file.reserve(header.file_length);
+    append(file, header);
+    for (const AcdfChunk& chunk : table) append(file, chunk);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        file.resize(table[i].offset, 0);
+        file.insert(file.end(), payloads[i].raw.begin(), payloads[i].raw.end());
+    }
+    file.resize(header.file_length, 0);
+    return file;
+}
+
+/// What a reader that does not know it may leave out.
+bool is_ancillary(std::uint32_t type) { return type == ACDF_CHUNK_PLACES || type == ACDF_CHUNK_PORTALS; }
+
+} // namespace
+
+Description environment_description(std::uint32_t columns, std::uint32_t rows,
+                                    AcdfParameterization parameterization) {
+    Description d;
+    d.parameterization = parameterization;
+    if (parameterization == ACDF_PARAM_OCTAHEDRAL) {
+        d.axes = {{"u", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, columns, 0.0, 1.0},
+                  {"v", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, rows, 0.0, 1.0}};
+        return d;
+    }
+    d.axes = {{"phi", ACDF_AXIS_SAMPLED, ACDF_MEASURE_LINEAR, columns, ACDF_PI, -ACDF_PI},
+              {"theta", ACDF_AXIS_SAMPLED, ACDF_MEASURE_COSINE, rows, 0.0, ACDF_PI}};
+    return d;
+}
+
+std::vector<Chunk> shared_chunks(const StoredRows& rows) {
+    AcdfTiles header = {};
+    header.tile_count = static_cast<std::uint32_t>(rows.splits.size() + 1);
+    header.root_count = static_cast<std::uint32_t>(rows.tile_roots.size());
+    header.row_count = rows.row_count;
+    std::copy(rows.codebook.begin(), rows.codebook.end(), header.codebook);
+    Chunk tiles{ACDF_CHUNK_TILES, {}};
+    append(tiles.bytes, header);
+    for (const AcdfSplit& split : rows.splits) append(tiles.bytes, split);
+    for (std::uint32_t root : rows.tile_roots) append(tiles.bytes, root);
+    return {std::move(tiles), {ACDF_CHUNK_ROWS, rows.codes}};
+}
+
+Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights) {
+    Chunk chunk{ACDF_CHUNK_LOCAL, {}};
+    append(chunk.bytes, AcdfLocalHeader{cosine_share, static_cast<std::uint32_t>(lights.size())});
+    for (const AcdfLight& light : lights) append(chunk.bytes, light);
+    return chunk;
+}
+
+Chunk company_chunk(const Company& company, float recommended_share,
+                    const std::vector<AcdfCompanyRecord>& records) {
+    Chunk chunk{ACDF_CHUNK_COMPANY, {}};
+    append(chunk.bytes,
+           AcdfCompany{static_cast<std::uint32_t>(company.kind), static_cast<std::uint32_t>(company.heuristic),
+                       static_cast<float>(company.share()), recommended_share,
+                       static_cast<std::uint32_t>(records.size()), 0});
+    for (const AcdfCompanyRecord& record : records) append(chunk.bytes, record);
+    return chunk;
+}
+
+std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description, AcdfCodec codec) {
+    std::vector<Payload> payloads;
+    payloads.push_back({ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_FLAG_CRITICAL, description_payload(description)});
+    payloads.push_back({ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree, description)});
+    payloads.push_back({ACDF_CHUNK_TREE, ACDF_CHUNK_FLAG_CRITICAL, tree.bytes});
+    for (const Chunk& chunk : description.chunks)
+        payloads.push_back({chunk.type, is_ancillary(chunk.type) ? 0 : ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
+    if (!description.metadata.empty())
+        payloads.push_back({ACDF_CHUNK_METADATA, 0, metadata_payload(description.metadata)});
+    return assemble(description.kind, std::move(payloads), codec);
+}
+
+} // namespace acdf::compress

@@ -1,0 +1,263 @@
+// What fits of local environment maps must do at horizons, for scenes, and for any number of threads.
+#include "tests/inputs/local_maps.h"
+#include "tests/inputs/sanitized.h"
+
+#include "compress/local/light.h"
+
+#include <gtest/gtest.h>
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <cstring>
+
+using namespace acdf_test;
+
+namespace {
+
+using namespace acdf::compress;
+
+LocalFileOptions sized(std::uint32_t tiles, std::uint64_t bytes) {
+    LocalFileOptions options;
+    options.size = {tiles, bytes};
+    return options;
+}
+
+TEST(LocalFit, TheSameBytesForAnyNumberOfThreads) {
+    const Target target = suns_target(128, 64);
+    for (const bool sharing : {true, false}) {
+        LocalFileOptions options = sized(120, 3000);
+        options.sharing = sharing;
+        std::vector<std::uint8_t> first;
+        for (const std::size_t threads : {1u, 2u, 7u}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            const auto bytes = local_bytes(target, octahedral_bins(3), options);
+            if (first.empty()) first = bytes;
+            EXPECT_EQ(bytes, first) << threads;
+        }
+    }
+}
+
+TEST(LocalFit, CompressedFilesDrawTheSame) {
+    LocalFileOptions options = sized(100, 3000);
+    const LocalMap plain(suns_target(128, 64), octahedral_bins(4), options);
+    options.codec = ACDF_CODEC_ZLIB;
+    const LocalMap packed(suns_target(128, 64), octahedral_bins(4), options);
+    EXPECT_LT(packed.bytes.size(), plain.bytes.size());
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 2000; ++i) {
+        const Normal n = random_direction(random);
+        const double u0 = uniform(random), u1 = uniform(random);
+        const auto a = plain.view().sample(n.data(), u0, u1), b = packed.view().sample(n.data(), u0, u1);
+        ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+    }
+}
+
+// One light, alone in the dark: whether it is small enough for a light of its own or not.
+struct Lamp {
+    std::uint32_t columns, rows, column, row;
+};
+
+class OneLamp : public ::testing::TestWithParam<Lamp> {
+protected:
+    LocalMap map() const {
+        const Lamp lamp = GetParam();
+        return LocalMap(texel_target(lamp.columns, lamp.rows,
+                                     [=](std::uint32_t c, std::uint32_t r) {
+                                         return c == lamp.column && r == lamp.row ? 5.0 : 0.0;
+                                     }),
+                        octahedral_bins(6), sized(40, 500));
+    }
+    /// A direction in the lamp's texel, at fractions of it.
+    Normal in_lamp(double s, double t) const {
+        const Lamp lamp = GetParam();
+        Normal d;
+        direction_of(kPi - 2.0 * kPi * (lamp.column + s) / lamp.columns, std::cos(kPi * (lamp.row + t) / lamp.rows),
+                     d.data());
+        return d;
+    }
+};
+
+TEST_P(OneLamp, IsSeenDownToTheHorizonAndNotFromBelow) {
+    const LocalMap lamp = map();
+    const auto view = lamp.view();
+    std::mt19937_64 random(2);
+    const Normal middle = in_lamp(0.5, 0.5);
+    const double reach = kPi * std::hypot(0.5 / GetParam().rows, 1.0 / GetParam().columns);
+    int nothing = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const double height =
+            i % 2 == 0 ? reach * (2.0 * uniform(random) - 1.0) : std::pow(10.0, -9.0 * uniform(random));
+        Normal n = random_direction(random);
+        const double down = dot(n.data(), middle.data());
+        for (std::size_t k = 0; k < 3; ++k)
+            n[k] = static_cast<float>(double{n[k]} - (down - height) * double{middle[k]});
+        const Normal d = in_lamp(0.001 + 0.998 * uniform(random), 0.001 + 0.998 * uniform(random));
+        const auto s = view.sample(n.data(), uniform(random), uniform(random));
+        if (dot(n.data(), d.data()) > 0.0) {
+            ASSERT_GT(view.pdf(n.data(), d.data()), 0.0f) << "height " << height;
+        }
+        if (s.pdf > 0.0f) {
+            ASSERT_GT(lamp.radiance(s.direction), 0.0f);
+        } else {
+            ++nothing;
+        }
+    }
+    EXPECT_LT(nothing, 4000);
+}
+
+TEST_P(OneLamp, GivesNextToNothingToNormalsThatLookAway) {
+    const LocalMap lamp = map();
+    const auto view = lamp.view();
+    std::mt19937_64 random(3);
+    const Normal middle = in_lamp(0.5, 0.5);
+    int away = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Normal n = random_direction(random);
+        if (dot(n.data(), middle.data()) > -0.5) continue; // farther than the corners of its triangle can see
+        ++away;
+        // A tile may reach above the horizon though nothing in it shines there.
+        EXPECT_LE(view.irradiance(n.data()), 2e-3 * lamp.target.total);
+    }
+    EXPECT_GT(away, 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OneLamp,
+                         ::testing::Values(Lamp{64, 32, 37, 9}, Lamp{512, 256, 0, 100}, Lamp{512, 256, 511, 255},
+                                           Lamp{400, 200, 123, 0}, Lamp{16, 8, 5, 0}, Lamp{16, 8, 15, 4}),
+                         [](const auto& info) {
+                             return std::to_string(info.param.columns) + "_" + std::to_string(info.param.column) +
+                                    "_" + std::to_string(info.param.row);
+                         });
+
+/// The cosine to the farthest and to the nearest place of a box, by trying many.
+TEST(Tiles, LargestCosineIsThatOfNoPlaceLess) {
+    const Target target = sphere_target(24, 12, smooth_sky);
+    std::mt19937_64 random(4);
+    for (int i = 0; i < 2000; ++i) {
+        Box box;
+        box.end.fill(1);
+        const auto place = [&](std::uint32_t size, std::size_t axis) {
+            box.begin[axis] = static_cast<std::uint32_t>(random() % size);
+            box.end[axis] = box.begin[axis] + 1 + static_cast<std::uint32_t>(random() % (size - box.begin[axis]));
+        };
+        place(12, 0);
+        place(24, 1);
+        const Normal n = random_direction(random);
+        const Direction m = centre(target, box);
+        const double told = largest_cosine(target, box, {double{n[0]}, double{n[1]}, double{n[2]}});
+        const double reach = radius(target, box);
+        double most = -1.0;
+        for (int y = 0; y <= 20; ++y)
+            for (int x = 0; x <= 20; ++x) {
+                const double theta = kPi * (box.begin[0] + y / 20.0 * box.length(0)) / 12.0;
+                const double phi = kPi - 2.0 * kPi * (box.begin[1] + x / 20.0 * box.length(1)) / 24.0;
+                const Direction d = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                     std::cos(theta)};
+                most = std::max(most, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
+                ASSERT_LE(std::hypot(d[0] - m[0], d[1] - m[1], d[2] - m[2]), reach + 1e-9);
+            }
+        ASSERT_GE(told, most - 1e-7);
+        ASSERT_LE(told, most + 0.1); // it is that of some place
+    }
+}
+
+std::vector<SceneNormal> upper_half(int count) {
+    std::mt19937_64 random(5);
+    std::vector<SceneNormal> scene;
+    while (static_cast<int>(scene.size()) < count) {
+        const Normal n = random_direction(random);
+        if (n[2] > 0.3f) scene.push_back({n, uniform(random) + 0.1});
+    }
+    return scene;
+}
+
+TEST(LocalScene, BinsThatServeNoNormalAreNotStored) {
+    const Target target = suns_target(128, 64);
+    NormalBins bins = octahedral_bins(6);
+    const std::vector<SceneNormal> scene = upper_half(500);
+    weigh(bins, scene);
+    const LocalMap some(target, bins, sized(100, 3000)), all(target, octahedral_bins(6), sized(100, 3000));
+    EXPECT_EQ(some.file.blend().tiles->row_count, bins.stored());
+    EXPECT_LT(some.bytes.size(), all.bytes.size() - 3000);
+    for (const SceneNormal& n : scene) EXPECT_TRUE(some.view().stored(n.normal.data()));
+    const float down[3] = {0.1f, 0.2f, -1.0f};
+    EXPECT_FALSE(some.view().stored(down));
+    std::mt19937_64 random(6);
+    for (int i = 0; i < 500; ++i) { // there the whole environment serves
+        const double u0 = uniform(random), u1 = uniform(random);
+        const auto a = some.view().sample(down, u0, u1), b = some.view().environment().sample(u0, u1);
+        EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+    }
+}
+
+TEST(LocalFit, RefusesWhatIsDarkAndGridsThatShare) {
+    const Target dark = sphere_target(16, 8, [](double, double) { return 0.0; });
+    EXPECT_THROW(fit_local(dark, octahedral_bins(2), {}), std::invalid_argument);
+    EXPECT_THROW(fit_local(suns_target(16, 8), latlong_bins(5, 3), {}), std::invalid_argument);
+    NormalBins none = octahedral_bins(2);
+    EXPECT_THROW(weigh(none, {{{0.0f, 0.0f, 0.0f}, 1.0}}), std::invalid_argument);
+}
+
+TEST(LocalFit, LightsAreSmallAndTold) {
+    const LocalMap map(suns_target(256, 128), octahedral_bins(5), sized(150, 3000));
+    const AcdfLocal local = map.view().data();
+    ASSERT_GT(local.light_count, 0u);
+    double share = 0.0;
+    for (std::uint32_t k = 0; k < local.light_count; ++k) {
+        EXPECT_LE(local.lights[k].radius, static_cast<float>(LightRule{}.radius) + 1e-3f);
+        share += static_cast<double>(local.lights[k].share);
+    }
+    EXPECT_GT(share, 0.5); // most of the flux is that of the suns
+    EXPECT_LT(share, 1.05);
+}
+
+/// A sky that ends at the horizon: normals below see so little of it that all of it would alarm, and tiles are not
+/// spent on more lights than there may be.
+TEST(LocalFit, TilesAreNotSpentOnLightsInVain) {
+    const Target sky = sphere_target(256, 128, [](double, double z) { return z > -0.02 ? 1.0 + z : 0.0; });
+    const NormalBins bins = octahedral_bins(12);
+    const Worth worths = worth(sky, bins, irradiance(light_points(sky), bins));
+    constexpr std::uint32_t count = 1000;
+    ASSERT_GT(divide_tiles(sky, worths, count).lights, 2 * ACDF_MAX_LIGHTS); // by the rule for most probes
+    const LocalFit fit = fit_local(sky, bins, {count, 16384});
+    EXPECT_LE(fit.tiles.lights, 2 * ACDF_MAX_LIGHTS);
+    double largest = 0.0; // of those that hold light
+    for (const Box& tile : fit.tiles.tiles)
+        if (tile.begin[0] < sky.rows / 2 && tile.length(1) < sky.columns)
+            largest =
+                std::max(largest, double(tile.length(1)) * std::sin(ACDF_PI * (tile.begin[0] + 0.5) / sky.rows));
+    EXPECT_LT(largest, sky.columns / 8.0);
+}
+
+/// The mean over ten million samples, spread over a hundred normals.
+TEST(LocalFit, TenMillionSamplesAgree) {
+    const int normals = 100, samples = repeated(100000);
+    LocalFileOptions options = sized(200, 4000);
+    options.cosine_share = 0.1;
+    const LocalMap map(suns_target(128, 64), octahedral_bins(6), options);
+    const std::vector<Normal> all = hard_normals(map.bins, 7, 60);
+    tbb::parallel_for(0, normals, [&](int k) {
+        const Normal& n = all[all.size() - 1 - std::size_t(k)];
+        const auto view = map.view();
+        const AcdfLocalPoint at = view.at(n.data());
+        std::mt19937_64 random(std::uint64_t(100 + k));
+        Sum sum, square;
+        for (int i = 0; i < samples; ++i) {
+            const double u0 = uniform(random), u1 = uniform(random);
+            const acdf::DirectionSample s = view.sample(at, u0, u1);
+            const double cosine = dot(n.data(), s.direction) / length(n.data());
+            if (!(cosine > 0.0)) continue;
+            const double f = static_cast<double>(map.radiance(s.direction)) * cosine / static_cast<double>(s.pdf);
+            sum.add(f);
+            square.add(f * f);
+        }
+        const double mean = sum.value() / samples, exact = map.irradiance(n);
+        const double variance =
+            std::max(square.value() / samples - mean * mean, second_moment(map, n.data()) - exact * exact);
+        EXPECT_LE(std::fabs(mean - exact), 4.0 * std::sqrt(variance / samples))
+            << n[0] << ' ' << n[1] << ' ' << n[2];
+    });
+}
+
+} // namespace
