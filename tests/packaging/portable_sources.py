@@ -37,7 +37,7 @@ def newer(text):
 
 # What only some compilers know, and what asks for it. Vector kernels are compiled by none else (lib/reader/CMakeLists.txt).
 FOREIGN = re.compile(r"\b__builtin_\w+|\b__attribute__|#pragma GCC|\b__int128\b|\b__asm|\btypeof\b|\bssize_t\b|<(unistd|sys/\w+)\.h>")
-ASKED = re.compile(r"__GNUC__|__clang__|ACDF_WAVEFRONT_X86|__SSE2__|ACDF_SQUARES_SSE2|__CUDA|__HIP")
+ASKED = re.compile(r"__GNUC__|__clang__|ACDF_WAVEFRONT_X86|__SSE2__|ACDF_SSE2|__CUDA|__HIP")
 KERNELS = re.compile(r"_avx\w*\.cpp$|_kernel\.h$|_vectors\.h$|_posix\.cpp$")
 
 

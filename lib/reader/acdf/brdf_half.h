@@ -29,11 +29,11 @@ ACDF_INLINE int acdf_brdf_half(const AcdfBrdfView* view, const float wi[3], doub
  * half-vector cannot be guessed. */
 ACDF_INLINE double acdf_brdf_azimuth(double y, double x) {
     const double ax = fabs(x), high = ax > y ? ax : y, low = ax < y ? ax : y;
-    /* 0 or 1 from signs: what is compared, compilers turn into branches. */
-    const double wide = 0.5 - 0.5 * acdf_sign(0.41421356237309503 * high - low);
-    const double steep = 0.5 - 0.5 * acdf_sign(ax - y), left = 0.5 - 0.5 * acdf_sign(x + 0.0);
-    const double w = high > 0.0 ? (low - wide * high) / (high + wide * low) : 0.0;
-    return left + (1.0 - 2.0 * left) * (0.5 * steep + (1.0 - 2.0 * steep) * (0.25 * wide + acdf_narrow_atanpi(w)));
+    const double narrow = 0.41421356237309503 * high, beyond = acdf_if_less(narrow, low, high);
+    const double w = high > 0.0 ? (low - beyond) / (high + acdf_if_less(narrow, low, low)) : 0.0;
+    double turn = acdf_if_less(narrow, low, 0.25) + acdf_narrow_atanpi(w);
+    turn = acdf_if_less(ax, y, 0.5) + acdf_sign(ax - y) * turn;
+    return acdf_if_less(x, 0.0, 1.0) + acdf_sign(x + 0.0) * turn;
 }
 
 /* Where a half-vector of this length lies in the table; `sign` is on which side of the mirror. */
@@ -61,6 +61,12 @@ ACDF_INLINE int acdf_brdf_place(const AcdfBrdf* brdf, const AcdfBrdfView* view, 
 
 ACDF_INLINE uint32_t acdf_brdf_step(double position, uint32_t resolution) {
     return position < (double)resolution ? (uint32_t)position : resolution - 1;
+}
+
+/* The same for runtime tables, before what is behind the point is left out. */
+ACDF_INLINE double acdf_brdf_bounded(double position, uint32_t resolution) {
+    const double last = (double)(int32_t)(resolution - 1);
+    return position < last ? position : last;
 }
 
 /* Reflects wo at the half-vector at x, a part of axis 0, of which cap is 1 - cos(theta_h). Returns how long wo + wi

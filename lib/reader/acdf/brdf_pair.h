@@ -4,7 +4,7 @@
 
 #include <acdf/brdf_half.h>
 
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 #define ACDF_BRDF_GUESSES 1 /* draws take tables; without vectors of two the walk is as fast */
 #endif
 
@@ -21,12 +21,11 @@ ACDF_INLINE double acdf_brdf_pair_share(const AcdfBrdf* brdf, const AcdfBrdfView
 /* Finds where wi lies, and its cell, of tables that have a grid. Returns 0 where none falls. */
 ACDF_INLINE int acdf_brdf_pair_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
                                     AcdfBrdfPlace* place, uint32_t* cell) {
-    uint32_t square[2];
-    double sign;
+    double position[2], sign;
     if (!acdf_brdf_place(brdf, view, wi, place, &sign)) return 0;
-    square[0] = acdf_brdf_step(place->position[0], brdf->columns);
-    square[1] = acdf_brdf_step(place->position[1], brdf->rows);
-    *cell = acdf_brdf_find_cell(brdf->tables, square);
+    position[0] = acdf_brdf_bounded(place->position[0], brdf->columns);
+    position[1] = acdf_brdf_bounded(place->position[1], brdf->rows);
+    *cell = acdf_brdf_find_cell(brdf->tables, position);
     return 1;
 }
 
@@ -69,11 +68,11 @@ typedef struct AcdfPairWay {
 
 #define ACDF_ALL 0xFFFFFFFFFFFFFFFFu
 #define ACDF_ONE 0x3FF0000000000000u
-/* axis << 1 | upper */
+/* By acdf_way_number. */
 static const AcdfPairWay acdf_pair_ways[4] = {
-    {{{0, 0}}, {{0, 0}}, {{0, ACDF_ALL}}, {{ACDF_ONE, 0}}},
-    {{{ACDF_ALL, ACDF_ALL}}, {{ACDF_ALL, 0}}, {{0, ACDF_ALL}}, {{ACDF_ONE, 0}}},
     {{{0, 0}}, {{0, 0}}, {{ACDF_ALL, 0}}, {{0, ACDF_ONE}}},
+    {{{ACDF_ALL, ACDF_ALL}}, {{ACDF_ALL, 0}}, {{0, ACDF_ALL}}, {{ACDF_ONE, 0}}},
+    {{{0, 0}}, {{0, 0}}, {{0, ACDF_ALL}}, {{ACDF_ONE, 0}}},
     {{{ACDF_ALL, ACDF_ALL}}, {{0, ACDF_ALL}}, {{ACDF_ALL, 0}}, {{0, ACDF_ONE}}}};
 #undef ACDF_ALL
 #undef ACDF_ONE
@@ -81,17 +80,11 @@ static const AcdfPairWay acdf_pair_ways[4] = {
 /* Both lanes: their sum. */
 ACDF_INLINE __m128d acdf_pair_sum(__m128d of) { return _mm_add_pd(of, _mm_shuffle_pd(of, of, 1)); }
 
-/* Goes a way at a split where rows have these codes. Returns whether the random numbers lead there, else leaves all
- * as it was; where nothing is left of the weight they may not. */
-ACDF_INLINE int acdf_pair_step(AcdfPairWalk* walk, const double* code0, const double* code1, uint32_t to) {
-    const AcdfPairWay* way = &acdf_pair_ways[to];
-    const size_t part = (size_t)(to & 1u) << 8; /* 256 codes of upper parts follow those of lower ones */
-    const __m128d lower = _mm_mul_pd(walk->weight, _mm_loadh_pd(_mm_load_sd(code0), code1));
-    const __m128d low = acdf_pair_sum(lower);
-    const uint32_t below = (uint32_t)_mm_movemask_pd(_mm_cmplt_pd(walk->x, low));
+/* Goes a way at a split: rows give `lower` to its lower part and `low` in all, and their codes for that way are
+ * `code`. */
+ACDF_INLINE void acdf_pair_go(AcdfPairWalk* walk, uint32_t number, __m128d lower, __m128d low, __m128d code) {
+    const AcdfPairWay* way = &acdf_pair_ways[number];
     __m128d chosen, scale;
-    /* A bit for each `to` and, of both axes, whether x is below the border. */
-    if (!(0x569Au >> (below << 2 | to) & 1u)) return 0;
     /* weight - lower, or lower */
     walk->weight = _mm_and_pd(_mm_sub_pd(_mm_and_pd(walk->weight, way->upper.lanes), lower),
                               _mm_castsi128_pd(_mm_set1_epi64x(0x7FFFFFFFFFFFFFFF)));
@@ -99,8 +92,7 @@ ACDF_INLINE int acdf_pair_step(AcdfPairWalk* walk, const double* code0, const do
     scale = _mm_or_pd(_mm_and_pd(_mm_div_pd(chosen, walk->chosen), way->other.lanes), way->one.lanes);
     walk->x = _mm_mul_pd(_mm_sub_pd(walk->x, _mm_and_pd(low, way->cut.lanes)), scale);
     walk->chosen = chosen;
-    walk->part = _mm_mul_pd(walk->part, _mm_loadh_pd(_mm_load_sd(code0 + part), code1 + part));
-    return 1;
+    walk->part = _mm_mul_pd(walk->part, code);
 }
 
 /* The cell that the random numbers u lead to half-way between two views. */
@@ -122,7 +114,7 @@ ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* r
         const AcdfSplit* split = &brdf->blend.splits[node];
         const double *code0 = codes + row0[node], *code1 = codes + row1[node];
         const uint32_t axis = split->place & 1u;
-        const AcdfPairWay* way = &acdf_pair_ways[axis << 1];
+        const AcdfPairWay* way = &acdf_pair_ways[acdf_way_number(acdf_brdf_way(axis, 0))];
         const __m128d code = _mm_loadh_pd(_mm_load_sd(code0), code1), lower = _mm_mul_pd(at.weight, code);
         const __m128d upper = _mm_sub_pd(at.weight, lower);
         const __m128d sums = _mm_add_pd(_mm_unpacklo_pd(lower, upper), _mm_unpackhi_pd(lower, upper));
@@ -150,8 +142,9 @@ ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* r
 }
 
 /* Draws a cell of a mixture of the two rows around a view, as acdf_blend_sample does: the walk goes where a guess
- * says, so that nothing waits for a comparison, for as long as those agree. Returns the cell's probability; 0 where
- * there is nothing to draw. */
+ * says, so that nothing waits for a comparison. Where one disagrees, the walk goes the other way, and then where
+ * the cell across that side is. Returns the cell's probability; 0 where there is nothing to draw, and where all
+ * that is left of the weight is below the random numbers. */
 ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
                                        __m128d* left, const AcdfBrdfPath** drawn) {
     const AcdfBrdfTables* tables = brdf->tables;
@@ -162,29 +155,37 @@ ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView*
     const __m128d weight = _mm_set_pd(view->pair[1], view->pair[0]);
     const __m128d whole = _mm_add_pd(weight, _mm_shuffle_pd(weight, weight, 1));
     const AcdfBrdfPath* path = &paths[acdf_brdf_guess(tables, view->lower, u)];
+    const double* parts[4]; /* codes by acdf_way_number: those of upper parts stand behind those of lower ones */
     uint64_t ways = path->ways;
     size_t depth = 0;
     AcdfPairWalk walk;
     __m128d share;
+    parts[0] = parts[2] = codes;
+    parts[1] = parts[3] = codes + 256;
     walk.weight = weight;
     walk.part = _mm_set1_pd(1.0);
     walk.chosen = whole;
     walk.x = _mm_mul_pd(_mm_set_pd(u[1], u[0]), whole);
-    while (ways > 1) {
-        const uint32_t split = path->splits[depth], way = (uint32_t)ways & 3u;
-        if (acdf_pair_step(&walk, codes + row0[split], codes + row1[split], way)) {
-            ways >>= 2;
-            ++depth;
-            continue;
+    for (; ways; ways >>= 4, ++depth) {
+        const uint32_t split = path->splits[depth], code0 = row0[split], code1 = row1[split];
+        const __m128d lower = _mm_mul_pd(walk.weight, _mm_loadh_pd(_mm_load_sd(codes + code0), codes + code1));
+        const __m128d low = acdf_pair_sum(lower);
+        uint32_t number = acdf_way_number(ways);
+        const double* part;
+        if (!(ways >> _mm_movemask_pd(_mm_cmplt_pd(walk.x, low)) & 1u)) {
+            const uint32_t other = ~(uint32_t)ways & 15u;
+            do { /* across sides, until one is this split's */
+                path = &paths[path->beyond[number]];
+                ways = path->ways >> 4 * depth;
+            } while (((uint32_t)ways & 15u) != other);
+            number ^= 3u;
         }
-        do { /* across sides, until one is this split's */
-            path = &paths[path->beyond[way]];
-            ways = path->ways >> 2 * depth;
-        } while (((ways ^ way) & 1u) == 0);
+        part = parts[number];
+        acdf_pair_go(&walk, number, lower, low, _mm_loadh_pd(_mm_load_sd(part + code0), part + code1));
     }
     if (depth == ACDF_PATH_SPLITS) {
         AcdfPairWalk rest = walk; /* what is called gets its address: the walk stays in registers */
-        const uint32_t upper = (uint32_t)(path->ways >> (2 * depth - 2)) & 1u;
+        const uint32_t upper = (uint32_t)(path->ways >> (4 * depth - 4)) & 1u;
         path = &paths[acdf_brdf_pair_walk(brdf, row0, row1, splits[path->splits[depth - 1]].child[upper], &rest)];
         walk = rest;
     }

@@ -39,7 +39,7 @@ ACDF_FN int acdf_brdf_mirrored(const AcdfBrdf* brdf) { return (brdf->views->flag
 
 /* The square root, without the branch to what sets errno. */
 ACDF_INLINE double acdf_brdf_root(double x) {
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
     const __m128d of = _mm_set_sd(x);
     return _mm_cvtsd_f64(_mm_sqrt_sd(of, of));
 #else
@@ -47,10 +47,9 @@ ACDF_INLINE double acdf_brdf_root(double x) {
 #endif
 }
 
-/* sqrt(1 - cos(theta)): nearly proportional to the angle at normal incidence, and dense enough at grazing. */
-ACDF_FN double acdf_view_coordinate(double cos_theta) {
-    return cos_theta < 1.0 ? acdf_brdf_root(1.0 - cos_theta) : 0.0;
-}
+/* A view's coordinate is sqrt(1 - cos(theta)): nearly proportional to the angle at normal incidence, and dense
+ * enough at grazing. Its square: */
+ACDF_FN double acdf_view_square(double cos_theta) { return cos_theta < 1.0 ? 1.0 - cos_theta : 0.0; }
 
 /* The last node, but not the very last one, that is at most x; else 0. */
 ACDF_FN uint32_t acdf_view_lower(const float* nodes, uint32_t count, double x) {
@@ -66,11 +65,12 @@ ACDF_FN uint32_t acdf_view_lower(const float* nodes, uint32_t count, double x) {
     return low + more;
 }
 
-/* The nodes on both sides of x and how far x is from the lower to the upper one. */
-ACDF_FN double acdf_view_nodes(const AcdfBrdf* brdf, double x, uint32_t node[2]) {
+/* The nodes on both sides of a coordinate and how far it is from the lower to the upper one. */
+ACDF_FN double acdf_view_nodes(const AcdfBrdf* brdf, double cos_theta, uint32_t node[2]) {
     const uint32_t count = brdf->views->theta_count;
+    const double x2 = acdf_view_square(cos_theta), x = acdf_brdf_root(x2);
     double low, high, t;
-    node[0] = brdf->tables ? acdf_brdf_lower_view(brdf->tables, x) : acdf_view_lower(brdf->nodes, count, x);
+    node[0] = brdf->tables ? acdf_brdf_lower_view(brdf->tables, x, x2) : acdf_view_lower(brdf->nodes, count, x);
     node[1] = count > 1 ? node[0] + 1 : node[0];
     if (node[0] == node[1]) return 0.0;
     low = (double)brdf->nodes[node[0]];
@@ -116,10 +116,11 @@ ACDF_FN void acdf_brdf_add(const AcdfBrdf* brdf, AcdfBrdfView* view, uint32_t in
  * surface. */
 ACDF_INLINE int acdf_brdf_pair_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView* view) {
     const double* node;
-    double x, t;
+    double x, x2, t;
     if (!acdf_brdf_turn(wo, 1, view)) return 0;
-    x = acdf_view_coordinate(view->wo[2]);
-    view->lower = acdf_brdf_lower_view(brdf->tables, x);
+    x2 = acdf_view_square(view->wo[2]);
+    x = acdf_brdf_root(x2);
+    view->lower = acdf_brdf_lower_view(brdf->tables, x, x2);
     node = acdf_brdf_node(brdf->tables, view->lower); /* infinity and 0 stand behind the only one */
     t = (x - node[0]) / (node[2] - node[0]);
     t = t > 0.0 ? (t < 1.0 ? t : 1.0) : 0.0;
@@ -142,7 +143,7 @@ ACDF_FN int acdf_brdf_view(const AcdfBrdf* brdf, const float wo[3], AcdfBrdfView
     view->mix.count = 0;
     view->albedo = 0.0;
     view->root = 0;
-    t = acdf_view_nodes(brdf, acdf_view_coordinate(view->wo[2]), node);
+    t = acdf_view_nodes(brdf, view->wo[2], node);
     if (columns == 1) {
         acdf_brdf_add(brdf, view, node[0], 1.0 - t, &largest);
         acdf_brdf_add(brdf, view, node[1], t, &largest);

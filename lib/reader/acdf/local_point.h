@@ -70,7 +70,7 @@ ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* p
 
 /* The same of two lights. */
 ACDF_INLINE void acdf_light_pair_weights(const AcdfLightPair* pair, const AcdfLocalPoint* point, double weight[2]) {
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
     const __m128d height =
         _mm_add_pd(_mm_add_pd(_mm_mul_pd(_mm_set1_pd(point->normal[0]), _mm_loadu_pd(pair->direction[0])),
                               _mm_mul_pd(_mm_set1_pd(point->normal[1]), _mm_loadu_pd(pair->direction[1]))),

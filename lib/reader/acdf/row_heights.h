@@ -32,7 +32,7 @@ ACDF_INLINE int acdf_sure_step(float place, float border, uint32_t* step) {
     return inside > border && inside < 1.0f - border;
 }
 
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 /* The arc tangents of the roots of q, from 0 to 1, in turns: by the polynomial of acdf_atan_float, which does not
  * wait for the roots. */
 ACDF_INLINE __m128 acdf_eighth_floats(__m128 q) {
@@ -79,7 +79,7 @@ ACDF_INLINE int acdf_row_square(uint32_t columns, uint32_t rows, const float dir
     const float border = 2.0f * ACDF_FLOAT_BORDER * (float)(0.5 / ACDF_PI);
     const float across = (float)columns, along = (float)rows * 2.0f;
     if (!acdf_is_direction(sin2, length2)) return 0;
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
     return acdf_sure_steps(acdf_turn_floats(_mm_setr_ps(y, 0.0f, y, 0.0f), _mm_setr_ps(x, z, x, z),
                                             _mm_setr_ps(y2, sin2, y2, sin2), _mm_setr_ps(x2, z2, x2, z2)),
                            _mm_setr_ps(across, along, across, along), border, square);

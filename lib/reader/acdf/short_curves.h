@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 
 /* A short curve, cumulative values in one or two bytes. The functions below number its segments from 0. */
 typedef struct AcdfShortCurve {

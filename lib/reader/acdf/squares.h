@@ -11,11 +11,6 @@
 #include <acdf/block_grids.h>
 #include <acdf/layout.h>
 
-#if defined(__SSE2__) && !defined(__CUDACC__) && !defined(__HIPCC__) && !defined(__SYCL_DEVICE_ONLY__)
-#define ACDF_SQUARES_SSE2 1
-#include <emmintrin.h>
-#endif
-
 /* What is wanted next, on its way while its place is searched for. */
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define ACDF_PREFETCH(address) __builtin_prefetch(address)
@@ -54,7 +49,7 @@ ACDF_STATIC_ASSERT(offsetof(AcdfSquares, cells) == 4 * ACDF_SQUARES_CELLS);
 
 /* Bit i: whether cell i of a block may hold the point; never of those that it lacks. */
 ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byte0, uint32_t byte1) {
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
     const __m128i* box = (const __m128i*)(const void*)boxes;
     const __m128i at0 = _mm_set1_epi8((char)(byte0 ^ 0x80u)), at1 = _mm_set1_epi8((char)(byte1 ^ 0x80u));
     const __m128i out0 =

@@ -120,7 +120,7 @@ ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTab
 /* A walk of the splits on the way to a tile, as acdf_blend_sample_rows has it, of random numbers that are told as
  * what x they are of all that the mixture gives. No branch depends on what is drawn but where the way ends. Rows
  * are as many as in all three functions. */
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 typedef struct AcdfTileWalk {
     __m128d weight[ACDF_MAX_ROWS_MIXED]; /* and part */
     __m128d x, chosen;

@@ -102,7 +102,7 @@ struct Short {
     bool right;
 };
 
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 // Bits of bytes of `count` values: those that are equal in both.
 bool are_equal(__m128i a, __m128i b, u32 bytes) {
     const u32 equal = static_cast<u32>(_mm_movemask_epi8(_mm_cmpeq_epi8(a, b)));

@@ -185,7 +185,7 @@ AcdfBrdfTables* BrdfTablesMaker::assemble(const AcdfAllocator& allocator, AcdfBl
     for (u32 i = 0; i < cells(); ++i) at<double>(tables, layout.areas)[i] = cells_[i].area();
     if (layout.grid) place_grid(at<std::uint16_t>(tables, layout.grid));
     if (!layout.guesses) return tables;
-    const AcdfBrdfPath whole = {1, {}, {static_cast<i32>(brdf_.columns), static_cast<i32>(brdf_.rows)}, {}, {}};
+    const AcdfBrdfPath whole = {0, {}, {static_cast<i32>(brdf_.columns), static_cast<i32>(brdf_.rows)}, {}, {}};
     place_paths(acdf_blend_root(&brdf_.blend), whole, 0, at<AcdfBrdfPath>(tables, layout.paths));
     guess_brdf_cells(brdf_, layout.guess_bits, at<std::uint16_t>(tables, layout.guesses));
     return tables;
@@ -199,7 +199,7 @@ void BrdfTablesMaker::place_views(double* nodes, std::uint16_t* guide) const {
     nodes[2 * views()] = std::numeric_limits<double>::infinity();
     u32 node = 1;
     for (u32 step = 0; step <= ACDF_VIEW_STEPS; ++step) {
-        while (node + 2 <= views() && static_cast<u32>(nodes[2 * node] * ACDF_VIEW_STEPS) < step) ++node;
+        while (node + 2 <= views() && nodes[2 * node] * nodes[2 * node] * ACDF_VIEW_STEPS < step) ++node; // exactly
         guide[step] = static_cast<std::uint16_t>(std::min(node - 1, 0xFFFFu)); // it may start too low
     }
 }
@@ -244,8 +244,10 @@ void BrdfTablesMaker::place_paths(u32 node, const AcdfBrdfPath& above, u32 depth
     if (node & ACDF_TILE_FLAG) {
         const u32 cell = node & ~ACDF_TILE_FLAG;
         out[cell] = above;
-        for (u32 way = 0; way < 4; ++way)
-            out[cell].beyond[way] = static_cast<std::uint16_t>(cell_beyond(cell, way >> 1, 1 - (way & 1)));
+        for (u32 axis = 0; axis < 2; ++axis)
+            for (u32 upper = 0; upper < 2; ++upper)
+                out[cell].beyond[acdf_way_number(acdf_brdf_way(axis, upper))] =
+                    static_cast<std::uint16_t>(cell_beyond(cell, axis, 1 - upper));
         return;
     }
     const AcdfSplit& split = brdf_.blend.splits[node];
@@ -255,7 +257,7 @@ void BrdfTablesMaker::place_paths(u32 node, const AcdfBrdfPath& above, u32 depth
         (upper ? path.low : path.high)[axis] = static_cast<i32>(split.place >> 3);
         if (depth < ACDF_PATH_SPLITS) {
             path.splits[depth] = static_cast<std::uint16_t>(node);
-            path.ways += std::uint64_t{3 + (axis << 1 | upper)} << 2 * depth; // the 1 there becomes 4
+            path.ways |= std::uint64_t{acdf_brdf_way(axis, upper)} << 4 * depth;
         }
         place_paths(split.child[upper], path, depth + 1, out);
     }

@@ -56,7 +56,7 @@ static inline void fill_lanes(T* out, T x) {
 #endif
 
 // Cumulative values of a byte or two, from which lanes run, and to which those before them do.
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 static inline void set_values(const std::uint8_t* stored, std::uint32_t code, double* from, double* to) {
     const __m128i zero = _mm_setzero_si128(), values = _mm_loadu_si128((const __m128i*)stored);
     const __m128i words = code == 0 ? _mm_unpacklo_epi8(values, zero) : values;
@@ -145,7 +145,7 @@ static inline void set_densities(double columns, const CellLanes& in, const doub
     }
 }
 
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 static inline __m128i four_words(const void* at) { return _mm_loadu_si128(static_cast<const __m128i*>(at)); }
 #endif
 

@@ -99,7 +99,7 @@ static inline void round_lanes(GroupAxisLanes& axis) {
     }
 }
 
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 static inline void set_group_cells(const GroupAxisLanes axes[2], AcdfGroupCell* out) {
     auto* const to = reinterpret_cast<__m128i*>(out);
     for (int i = 0; i < kCellLanes; i += 4) {

@@ -167,7 +167,7 @@ static inline void round_axis(std::uint32_t pieces, PieceAxisLanes& axis) {
 
 // An axis of the pieces from `out` on.
 static inline void put_axis(const PieceAxisLanes& axis, AcdfPieceAxis* out) {
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
     for (int i = 0; i < kCellLanes; i += 4) {
         const __m128i low = four_words(axis.low_number + i), width = four_words(axis.width_bits + i),
                       origin = four_words(axis.origin + i), slope = four_words(axis.slope + i);

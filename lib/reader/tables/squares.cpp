@@ -28,7 +28,7 @@ struct AxisOfBlock {
 
 // Where the first `count` of sixteen boxes lie in a block, in bytes less 128: lower sides, then upper ones. Keys
 // are looked at modulo 256 steps: in small rectangles there are fewer, and those of neighbours follow.
-#ifdef ACDF_SQUARES_SSE2
+#ifdef ACDF_SSE2
 __m128i lesser(__m128i a, __m128i b) {
     const __m128i above = _mm_cmpgt_epi32(a, b);
     return _mm_or_si128(_mm_and_si128(above, b), _mm_andnot_si128(above, a));

@@ -43,8 +43,8 @@ ACDF_LANE View view_of(const WavefrontTable& t, const Directions& wo) {
     const Vector sin2 = wo.x * wo.x + wo.y * wo.y, length2 = sin2 + wo.z * wo.z;
     const Integer valid = of_unit_length(length2) & (wo.z > 0.0);
     const Vector z = select(valid, wo.z, all(1.0));
-    const Vector x = select(z < 1.0, root(1.0 - z), all(0.0));
-    Integer low = gathered<2>(t.guide, truncated(x * (double)ACDF_VIEW_STEPS)) & 0xFFFF;
+    const Vector x2 = select(z < 1.0, 1.0 - z, all(0.0)), x = root(x2);
+    Integer low = gathered<2>(t.guide, truncated(x2 * (double)ACDF_VIEW_STEPS)) & 0xFFFF;
     Vector node[4]; // coordinate and share of the lower view, and of the upper one
     gather_transposed(t.nodes, low, node);
     for (;;) {

@@ -137,9 +137,10 @@ TEST(RuntimeTablesOfBrdfs, NameCellsBeyondSides) {
     const auto* paths = static_cast<const AcdfBrdfPath*>(acdf_brdf_words(pair.tables(), pair.tables()->paths));
     const std::uint32_t steps[2] = {brdf.columns, brdf.rows};
     for (std::uint32_t cell = 0; cell < brdf.blend.tiles->tile_count; ++cell)
-        for (std::uint32_t way = 0; way < 4; ++way) {
-            const std::uint32_t axis = way >> 1, other = 1 - axis;
-            const bool below = way & 1;
+        for (std::uint32_t side_of = 0; side_of < 4; ++side_of) {
+            const std::uint32_t axis = side_of >> 1, other = 1 - axis;
+            const bool below = side_of & 1;
+            const std::uint32_t way = acdf_way_number(acdf_brdf_way(axis, below));
             const AcdfBrdfPath &from = paths[cell], &beyond = paths[from.beyond[way]];
             const std::int32_t side = below ? from.low[axis] : from.high[axis];
             if (side == (below ? 0 : static_cast<std::int32_t>(steps[axis]))) {
