@@ -157,9 +157,10 @@ ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView*
     const AcdfBrdfPath* path = &paths[acdf_brdf_guess(tables, view->lower, u)];
     const double* parts[4]; /* codes by acdf_way_number: those of upper parts stand behind those of lower ones */
     uint64_t ways = path->ways;
-    size_t depth = 0;
+    size_t i, depth = 0;
     AcdfPairWalk walk;
     __m128d share;
+    for (i = 0; i < 4; ++i) ACDF_PREFETCH(&paths[path->beyond[i]]); /* six of ten draws go there */
     parts[0] = parts[2] = codes;
     parts[1] = parts[3] = codes + 256;
     walk.weight = weight;
