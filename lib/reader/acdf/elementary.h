@@ -195,7 +195,7 @@ ACDF_INLINE double acdf_if_less(double a, double b, double x) {
 #ifdef ACDF_SSE2
     return _mm_cvtsd_f64(_mm_and_pd(_mm_cmplt_sd(_mm_set_sd(a), _mm_set_sd(b)), _mm_set_sd(x)));
 #else
-    return (0.5 - 0.5 * acdf_sign(a - b)) * x;
+    return (0.5 - 0.5 * acdf_sign(a - b + 0.0)) * x; /* -0 is not below 0 */
 #endif
 }
 

@@ -236,7 +236,7 @@ ACDF_FN double acdf_window_density(const AcdfPortalTable* table, const AcdfWindo
 }
 
 /* Density per steradian of row and windows together; `row`: that of the row. */
-ACDF_FN float acdf_windows_pdf(const AcdfWindows* windows, const float direction[3], float row) {
+ACDF_OUTLINE_ON_CPU float acdf_windows_pdf(const AcdfWindows* windows, const float direction[3], float row) {
     double d[3], size, sum = 0.0;
     float given[3];
     int i;

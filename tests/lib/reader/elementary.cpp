@@ -40,4 +40,10 @@ TEST(ElementaryFunctions, matchTheLibrary) {
     EXPECT_EQ(acdf_atan2pi(0.0, 0.0), 0.0);
 }
 
+TEST(ElementaryFunctions, chooseOnlyWhatIsBelow) {
+    const double numbers[] = {-1e300, -1.0, -1e-300, -0.0, 0.0, 1e-300, 1.0, 1e300};
+    for (const double a : numbers)
+        for (const double b : numbers) EXPECT_EQ(acdf_if_less(a, b, 3.0), a < b ? 3.0 : 0.0) << a << ' ' << b;
+}
+
 } // namespace
