@@ -178,6 +178,8 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     }
     Status status;
     Parts parts;
+    TreeSurvey survey;
+    if (options.tables) parts.survey = &survey;
     check(static_cast<const u8*>(data), size, options.limits, first_error, &status, parts, options.allocator);
     loaded.owned_[1] = parts.inflated;
     if (!status.ok()) return status;
@@ -198,26 +200,27 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
     loaded.metadata_count_ = parts.metadata_count;
-    if (options.tables) loaded.make_tables();
+    if (options.tables) loaded.make_tables(survey);
     file = std::move(loaded);
     return status;
 }
 
 // They are only for speed: where there is no memory for them, the file is as good without.
-void File::make_tables() noexcept {
+void File::make_tables(const TreeSurvey& survey) noexcept {
     const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
-    if (kind() == ACDF_KIND_ENVIRONMENT) make_environment_tables(most);
+    if (kind() == ACDF_KIND_ENVIRONMENT) make_environment_tables(survey, most);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
 }
 
-void File::make_environment_tables(std::size_t most_bytes) noexcept {
+void File::make_environment_tables(const TreeSurvey& checked, std::size_t most_bytes) noexcept {
     constexpr u32 fewest_cells = 1 << 12; // tables of fewer need less than a large page
     Scratch pages;
     const AcdfEnvironment data = environment().data();
-    const TreeSurvey survey(data, tree_units_);
+    const TreeSurvey walked = checked.done() ? TreeSurvey() : TreeSurvey(data, tree_units_);
+    const TreeSurvey& survey = checked.done() ? checked : walked;
     Scratch* const scratch = survey.done() && survey.cells() >= fewest_cells ? &pages : nullptr;
     cells_ = make_cells(data, survey, most_bytes, allocator_, owned_[2], scratch);
     if (cells_) return;

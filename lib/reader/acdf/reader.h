@@ -71,6 +71,8 @@ struct Text {
     std::size_t size = 0;
 };
 
+class TreeSurvey;
+
 /// A checked file. Movable, not copyable.
 class File {
 public:
@@ -158,8 +160,8 @@ private:
     AcdfAllocator allocator_ = {};
     AcdfBlock owned_[3] = {}; // the file's bytes; inflated chunks; runtime tables
 
-    void make_tables() noexcept;
-    void make_environment_tables(std::size_t most_bytes) noexcept;
+    void make_tables(const TreeSurvey& survey) noexcept;
+    void make_environment_tables(const TreeSurvey& survey, std::size_t most_bytes) noexcept;
     void release() noexcept;
 };
 

@@ -69,7 +69,8 @@ struct Parts {
     AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
-    AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
+    class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing, of an environment
+    AcdfBlock inflated = {};            ///< of the inflated chunks, from take_block; the caller gives it back
 };
 
 /// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.

@@ -1,5 +1,6 @@
 // Trees as they usually lie, in one pass: what tree.cpp finds nothing wrong with.
 #include "check/tree_roots.h"
+#include "tables/tree_survey.h"
 
 #include <acdf/squares.h>
 
@@ -99,6 +100,7 @@ bool tilts_are_right(const AcdfCurve& curve) {
 struct Short {
     u32 axis, knot; ///< the last one, counted from the range's low end
     u32 next;       ///< where the next curve begins
+    u32 segments;
     bool right;
 };
 
@@ -141,7 +143,7 @@ bool check_short(const CheckedTree& tree, u32 at, Short& out) {
     const u8 *const cumulative = tree.data() + u64{at} * 2 + 2, *const positions = cumulative + count * size,
                     *const end = positions + count;
     const u32 odd = count & (size - 1); // with a byte of padding
-    out = {header & ACDF_CURVE_AXIS_MASK, end[-1], at + 1 + (count * (size + 1) + odd) / 2,
+    out = {header & ACDF_CURVE_AXIS_MASK, end[-1], at + 1 + (count * (size + 1) + odd) / 2, segments,
            rise(cumulative, positions, count, size) && (*end & (0u - odd)) == 0};
     return true;
 }
@@ -151,13 +153,17 @@ public:
     explicit Preorder(const CheckedTree& tree) : tree_(tree), roots_(tree), work_(u64{2} * tree.units) {
         for (u32 axis = 0; axis < ACDF_MAX_AXES; ++axis)
             if (tree.sampled(axis)) resolution_[axis] = tree.parts.axes[axis].resolution;
+        if (tree.kind == ACDF_KIND_ENVIRONMENT) survey_ = tree.parts.survey;
     }
 
     bool is_right() {
+        if (survey_ && !survey_->begin(tree_.units)) survey_ = nullptr;
         next_root();
         while (next_ < tree_.units)
             if (!curve()) return false;
-        return open_count_ == 0 && !has_root_ && curves_ <= tree_.units / 2 + 1;
+        const bool right = open_count_ == 0 && !has_root_ && curves_ <= tree_.units / 2 + 1;
+        if (right && survey_) survey_->end(cells_ + 1);
+        return right;
     }
 
 private:
@@ -168,6 +174,7 @@ private:
         u32 children;
         u32 tilted;      ///< axes, above it
         Inherited range; ///< of its axis
+        u32 cells;       ///< cells_ before it
     };
 
     void next_root() { has_root_ = roots_.next(root_); }
@@ -216,7 +223,14 @@ private:
             !tilts_are_right(curve))
             return false;
         next_ = static_cast<u32>(next);
-        if (curve.links && !open(curve, at)) return false;
+        const u32 cells = cells_;
+        cells_ += curve.segments - 1;
+        if (curve.tilts) survey_ = nullptr;
+        if (curve.links) {
+            if (!open(curve, at, cells)) return false;
+        } else if (survey_ && !TreeSurvey::ends(curve.header)) {
+            survey_->add(at, curve.segments);
+        }
         leave();
         return true;
     }
@@ -224,6 +238,7 @@ private:
     bool pass(const Short& curve) {
         const Inherited range = range_[curve.axis];
         next_ = curve.next;
+        cells_ += curve.segments - 1;
         const bool right =
             !(tilted_ >> curve.axis & 1) && resolution_[curve.axis] != 0 && curve.knot < range.high - range.low;
         leave();
@@ -236,11 +251,12 @@ private:
             const Open& last = open_[--open_count_];
             range_[acdf_curve_axis(&last.curve)] = last.range;
             tilted_ = last.tilted;
+            if (survey_) survey_->add(last.at, cells_ - last.cells + 1);
         }
     }
 
     // Segments without probability have no children.
-    bool open(const AcdfCurve& curve, u32 at) {
+    bool open(const AcdfCurve& curve, u32 at, u32 cells) {
         u32 children = 0, low = 0;
         for (u32 i = 0; i < curve.segments; ++i) {
             const u32 high = acdf_curve_cumulative(&curve, i + 1);
@@ -249,7 +265,7 @@ private:
             children += linked;
             low = high;
         }
-        open_[open_count_++] = {curve, at, 0, children, tilted_, range_[acdf_curve_axis(&curve)]};
+        open_[open_count_++] = {curve, at, 0, children, tilted_, range_[acdf_curve_axis(&curve)], cells};
         return true;
     }
 
@@ -275,6 +291,8 @@ private:
 
     const CheckedTree& tree_;
     TreeRoots roots_;
+    TreeSurvey* survey_ = nullptr;       ///< null: none is made
+    u32 cells_ = 0;                      ///< of the curves so far, less the one that there is without any
     u64 work_;                           ///< links that may be looked at in vain
     u32 resolution_[ACDF_MAX_AXES] = {}; ///< 0: not sampled
     Inherited range_[ACDF_MAX_AXES] = {};

@@ -23,6 +23,7 @@ constexpr std::size_t kMostGroups = 65535;
 constexpr u32 kNoCurve = ~0u;
 constexpr u32 kMostSteps = 255;                    // of positions, along a group
 constexpr u32 kFewestCells = 16, kMostCells = 256; // in a group, at most
+static_assert(kMostCells < TreeSurvey::kMany);
 constexpr std::size_t kCellBytes = sizeof(AcdfGroupCell) + sizeof(float);
 // Bytes of a group with one block, usually: itself, its boxes and its part of both grids.
 constexpr std::size_t kGroupBytes = 248;
@@ -61,8 +62,14 @@ private:
 
     bool remember_heights();
     bool gather(u32 most_cells);
-    bool gather(u32 at, const Cell& above, std::size_t& next);
+    bool gather(u32 at, const Cell& above);
     bool add(const Group& group);
+    /// Of a segment of the curve at `at`, or below it.
+    u32 cells_of(u32 at, u32 link) const {
+        return link == 0
+                   ? 1
+                   : survey_.cells(at + link, reinterpret_cast<const std::uint16_t*>(environment_.tree)[at + link]);
+    }
     bool square() const { return environment_.parameterization == ACDF_PARAM_OCTAHEDRAL; }
     /// Of positions, along a group: floats tell a place in half a turn well enough.
     u32 most_steps(u32 axis) const {
@@ -136,7 +143,6 @@ bool GroupsMaker::add(const Group& found) {
 bool GroupsMaker::gather(u32 most_cells) {
     const Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment_.columns, environment_.rows},
                         false, false};
-    std::size_t next = 0;
     const std::size_t about = groups_about(survey_.cells(), most_cells) * 5 / 4;
     most_cells_ = most_cells;
     cells_ = more_ = 0;
@@ -148,11 +154,11 @@ bool GroupsMaker::gather(u32 most_cells) {
     if (!(numbers_.reserve(about) && places_.reserve(about) && curves_.reserve(about / 2) && runs_.reserve(about) &&
           groups_.reserve(about)))
         return false;
-    return gather(environment_.root, whole, next);
+    return gather(environment_.root, whole);
 }
 
-// Groups below the curve that is `next` in the order of the survey, in their order.
-bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
+// Groups below a curve, in their order.
+bool GroupsMaker::gather(u32 at, const Cell& above) {
     const AcdfCurve curve = acdf_curve_at(environment_.tree, at);
     CellParts parts(curve, above);
     const u32 axis = parts.axis(), other = 1 - axis;
@@ -167,9 +173,8 @@ bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
         group.box.high[axis] = parts.high(end);
         return add(group);
     };
-    ++next;
     for (u32 i = 0; i < curve.segments; ++i) {
-        const u32 link = parts.link(), cells = link == 0 ? 1 : survey_[next].cells;
+        const u32 link = parts.link(), cells = cells_of(at, link);
         const CellSegment segment = parts.segment();
         const bool narrow = narrow_across && is_narrow(axis, segment.first, segment.last);
         if (group.cells > 0 && narrow && group.cells + cells <= most_cells_ &&
@@ -188,12 +193,11 @@ bool GroupsMaker::gather(u32 at, const Cell& above, std::size_t& next) {
             group.box.low[axis] = parts.low(segment);
             end = segment;
             if (!narrow || cells > most_cells_) { // it is divided further, or a group by itself
-                if (!(link == 0 ? add_group() : gather(at + link, parts.cell(above, segment), next))) return false;
+                if (!(link == 0 ? add_group() : gather(at + link, parts.cell(above, segment)))) return false;
                 group.cells = 0;
                 continue;
             }
         }
-        if (link != 0) next += survey_[next].curves;
     }
     return group.cells == 0 || add_group();
 }

@@ -4,36 +4,38 @@ namespace acdf {
 
 using u32 = std::uint32_t;
 
-TreeSurvey::TreeSurvey(const AcdfEnvironment& environment, u32 tree_units) noexcept
-    : tree_(environment.tree), most_steps_(2 * std::size_t{tree_units} + 64) {
+TreeSurvey::TreeSurvey(const AcdfEnvironment& environment, u32 tree_units) noexcept : tree_(environment.tree) {
     u32 cells = 0;
-    curves_.reserve(tree_units / 6); // most have as many; where not, it grows
-    done_ = walk(environment.root, cells) && !curves_.failed();
+    if (begin(tree_units) && walk(environment.root, cells)) end(cells);
+}
+
+bool TreeSurvey::begin(u32 tree_units) noexcept {
+    most_steps_ = 2 * std::size_t{tree_units} + 64;
+    return below_.add(tree_units / 2 + 1, 0) != nullptr;
+}
+
+void TreeSurvey::end(u32 cells) noexcept {
+    cells_ = cells;
+    done_ = true;
 }
 
 // A path passes at most 64 curves.
 bool TreeSurvey::walk(u32 at, u32& cells) noexcept {
     const AcdfCurve curve = acdf_curve_at(tree_, at);
-    const std::size_t self = curves_.size();
     steps_ += curve.segments;
-    if (curve.tilts || steps_ > most_steps_ || !curves_.add(1, {})) return false;
     cells = curve.segments;
+    if (curve.tilts || steps_ > most_steps_) return false;
     for (u32 i = 0; curve.links && i < curve.segments; ++i) {
         const u32 link = acdf_curve_link(&curve, i);
         if (link == 0) continue;
         const u32 header = reinterpret_cast<const std::uint16_t*>(tree_)[at + link];
         u32 below = header >> ACDF_CURVE_SEGMENTS_SHIFT;
-        if (below > 0 && ACDF_CURVE_LINK_CODE(header) == 0 &&
-            !(header & ACDF_CURVE_TILTED)) { // as most: cells alone
-            steps_ += below;
-            curves_.add({below, 1});
-        } else if (!walk(at + link, below)) {
-            return false;
-        }
+        if (ends(header)) steps_ += below; // as most
+        else if (!walk(at + link, below)) return false;
         cells += below - 1;
     }
-    curves_[self] = {cells, static_cast<u32>(curves_.size() - self)};
-    return steps_ <= most_steps_ && !curves_.failed();
+    if (!ends(curve.header)) add(at, cells);
+    return steps_ <= most_steps_;
 }
 
 } // namespace acdf

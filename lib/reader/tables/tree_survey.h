@@ -13,10 +13,11 @@ namespace acdf {
 /// Of the tree of an environment.
 class TreeSurvey {
 public:
-    struct Curve {
-        std::uint32_t cells, curves; ///< below it, itself included
-    };
+    /// More cells below a curve than are told apart.
+    static constexpr std::uint32_t kMany = 65535;
 
+    /// Of no tree.
+    TreeSurvey() noexcept = default;
     /// Of a tree that takes `tree_units`. The work is linear in them.
     TreeSurvey(const AcdfEnvironment& environment, std::uint32_t tree_units) noexcept;
 
@@ -25,16 +26,33 @@ public:
     bool done() const noexcept { return done_; }
     /// Twice the units of the tree, and some.
     std::size_t most_steps() const noexcept { return most_steps_; }
-    std::uint32_t cells() const noexcept { return curves_[0].cells; }
-    /// In the order of the walk of all; the first one is the root.
-    const Curve& operator[](std::size_t i) const noexcept { return curves_[i]; }
+    std::uint32_t cells() const noexcept { return cells_; }
+    /// Below the curve at `at`, which has a header; at most kMany.
+    std::uint32_t cells(std::uint32_t at, std::uint32_t header) const noexcept {
+        return ends(header) ? header >> ACDF_CURVE_SEGMENTS_SHIFT : below_[at / 2];
+    }
+
+    // Who passes all curves, anyway, makes the survey so: begin(), add() for each that does not end, and end().
+
+    /// Whether a curve has neither children nor tilts, and as few segments as the header tells.
+    static bool ends(std::uint32_t header) noexcept {
+        return header >> ACDF_CURVE_SEGMENTS_SHIFT != 0 && ACDF_CURVE_LINK_CODE(header) == 0 &&
+               !(header & ACDF_CURVE_TILTED);
+    }
+    /// False where memory fails.
+    bool begin(std::uint32_t tree_units) noexcept;
+    void add(std::uint32_t at, std::uint32_t cells) noexcept {
+        below_[at / 2] = static_cast<std::uint16_t>(cells < kMany ? cells : kMany);
+    }
+    void end(std::uint32_t cells) noexcept;
 
 private:
     bool walk(std::uint32_t at, std::uint32_t& cells) noexcept;
 
-    const std::uint8_t* tree_;
-    std::size_t most_steps_, steps_ = 0; ///< segments of curves
-    Growable<Curve> curves_;
+    const std::uint8_t* tree_ = nullptr;
+    std::size_t most_steps_ = 0, steps_ = 0; ///< segments of curves
+    std::uint32_t cells_ = 0;
+    Growable<std::uint16_t> below_; ///< of each two units: curves that do not end are as long
     bool done_ = false;
 };
 

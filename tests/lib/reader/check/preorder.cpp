@@ -1,4 +1,4 @@
-// Trees that lie in preorder are checked in one pass (lib/reader/check_preorder.cpp), all others in several: both
+// Trees that lie in preorder are checked in one pass (lib/reader/check/preorder.cpp), all others in several: both
 // find the same of the same curves.
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/load.h"
