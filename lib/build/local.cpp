@@ -304,9 +304,10 @@ Local build_separate(const compress::Target& target, const Source& source, const
     fit.progress = [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
     };
+    const bool budgeted = options.goal.kind == Goal::Kind::budget && fit.fit == ACDF_FIT_VARIANCE; // others: knots
     const auto bytes_over = [&] { // shares are known only now, and compress worse than none
         const std::uint64_t bytes = fit.file_size(draft.tree), budget = options.goal.budget;
-        return options.goal.kind == Goal::Kind::budget && bytes > budget ? bytes - budget : 0;
+        return budgeted && bytes > budget ? bytes - budget : 0;
     };
     for (std::uint64_t over = 0;; fit.goal.budget -= std::min(over, fit.goal.budget)) {
         draft.description.shares.assign(bins.normals.size(), 0.0f);

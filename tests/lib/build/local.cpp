@@ -68,6 +68,15 @@ TEST(LocalFiles, BudgetsAreFilledAndKept) {
     EXPECT_LT(before, full_cdf / 50.0);
 }
 
+/// What they take is known by their knots alone: nothing is tried again to come within a budget.
+TEST(LocalFiles, FitsOfKnotsTakeNoBudget) {
+    build::LocalOptions options = separate(ACDF_FIT_CDF);
+    options.fit.column_segments = options.fit.row_segments = 3;
+    const std::vector<std::uint8_t> made = build(options).bytes;
+    options.goal = {Goal::Kind::budget, 0, 64, 0.0};
+    EXPECT_EQ(build(options).bytes, made);
+}
+
 TEST(LocalFiles, BudgetsTooSmallAreRefused) {
     build::LocalOptions options;
     options.goal.budget = 2048;
