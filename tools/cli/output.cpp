@@ -21,12 +21,15 @@ namespace {
 
 // ---- removal of temporary files when a signal ends the program -----------------------------------------
 
-std::atomic<const char*> doomed[256]; // paths to unlink; lock-free, as a signal handler needs
+std::atomic<const char*> doomed[256];        // paths to unlink; lock-free, as a signal handler needs
+std::atomic<const char*> doomed_folders[64]; // to remove where they are empty by then, the deepest first
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 void remove_and_die(int signal) {
     for (const auto& slot : doomed)
         if (const char* path = slot.load()) unlink(path);
+    for (const auto& slot : doomed_folders)
+        if (const char* path = slot.load()) rmdir(path);
     std::signal(signal, SIG_DFL);
     raise(signal);
 }
@@ -47,16 +50,18 @@ void handle_signals() {
     (void)once;
 }
 
-void remove_on_signal(const std::string& path) {
+template <std::size_t N>
+void remove_on_signal(std::atomic<const char*> (&slots)[N], const std::string& path) {
     handle_signals();
-    for (auto& slot : doomed) {
+    for (auto& slot : slots) {
         const char* expected = nullptr;
         if (slot.compare_exchange_strong(expected, path.c_str())) return;
     }
 }
 
-void keep_on_signal(const std::string& path) {
-    for (auto& slot : doomed) {
+template <std::size_t N>
+void keep_on_signal(std::atomic<const char*> (&slots)[N], const std::string& path) {
+    for (auto& slot : slots) {
         const char* expected = path.c_str();
         if (slot.compare_exchange_strong(expected, nullptr)) return;
     }
@@ -177,7 +182,7 @@ Output::Output(std::string path, bool force, const std::vector<std::string>& inp
     sweep(folder);
     const int fd = create_temporary(folder, extension, temporary_);
     if (fd < 0) fail_errno(path_, "cannot create a file in " + folder, errno);
-    remove_on_signal(temporary_);
+    remove_on_signal(doomed, temporary_);
     lock_ = fcntl(fd, F_DUPFD_CLOEXEC, 0); // the lock outlives the stream
     stream_ = fdopen(fd, "wb");
 }
@@ -186,7 +191,7 @@ Output::~Output() {
     if (stream_ && stream_ != stdout) std::fclose(stream_);
     if (temporary_.empty()) return;
     unlink(temporary_.c_str());
-    keep_on_signal(temporary_);
+    keep_on_signal(doomed, temporary_);
     unlock();
 }
 
@@ -231,7 +236,7 @@ void Output::commit(const Verify& verify) {
         if (errno == EEXIST) fail(path_, "appeared while it was being made; use --force to replace it");
         fail_errno(path_, "cannot give the finished file its name", errno);
     }
-    keep_on_signal(temporary_);
+    keep_on_signal(doomed, temporary_);
     temporary_.clear();
     unlock();
     sync_folder(folder_of(target_));
@@ -259,12 +264,22 @@ OutputFolder::OutputFolder(const std::string& path) {
     std::error_code error;
     for (fs::path missing = path; !missing.empty() && !fs::exists(missing, error); missing = missing.parent_path())
         made_.push_back(missing.string());
-    make_folder(path);
+    for (const std::string& folder : made_) remove_on_signal(doomed_folders, folder);
+    try {
+        make_folder(path);
+    } catch (...) {
+        remove();
+        throw;
+    }
 }
 
-OutputFolder::~OutputFolder() {
-    for (const std::string& folder : made_)
-        if (rmdir(folder.c_str()) != 0) return;
+OutputFolder::~OutputFolder() { remove(); }
+
+void OutputFolder::remove() const {
+    for (const std::string& folder : made_) {
+        rmdir(folder.c_str());
+        keep_on_signal(doomed_folders, folder);
+    }
 }
 
 } // namespace acdf::tools

@@ -61,7 +61,7 @@ void write_output(const std::string& path, const std::vector<std::uint8_t>& byte
 void make_folder(const std::string& path);
 
 /// A folder for outputs, made with those above it where they are missing. What was made is removed at the end where
-/// it is empty: a command that fails leaves none.
+/// it is empty: a command that fails, or that a signal ends, leaves none.
 class OutputFolder {
 public:
     /// Throws Failure.
@@ -71,6 +71,8 @@ public:
     OutputFolder& operator=(const OutputFolder&) = delete;
 
 private:
+    void remove() const;
+
     std::vector<std::string> made_; ///< the deepest first
 };
 

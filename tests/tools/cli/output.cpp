@@ -1,4 +1,5 @@
 // Outputs are whole or not there, and never replace anything unasked.
+#include "tests/inputs/float_map.h"
 #include "tests/tools/run.h"
 
 #include "tools/cli/output.h"
@@ -154,6 +155,25 @@ TEST_F(Outputs, InterruptLeavesNothingBehind) {
                                      "/dev/null", "/dev/null");
         ASSERT_GT(pid, 0);
         while (folder.entries() < 2 && waitpid(pid, nullptr, WNOHANG) == 0)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        ASSERT_EQ(kill(pid, signal), 0);
+        EXPECT_EQ(wait_for(pid), 128 + signal);
+        EXPECT_EQ(folder.entries(), 1u);
+    }
+}
+
+/// Folders that commands make for what they write are gone with it, as are those above that were missing.
+TEST_F(Outputs, InterruptLeavesNoFolder) {
+    const std::string sky = folder / "sky.pfm";
+    std::vector<float> rgb;
+    for (int i = 0; i < 512 * 256 * 3; ++i) rgb.push_back(1.0f + static_cast<float>(i % 1009));
+    write_float_map(sky, 512, 256, rgb);
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const pid_t pid =
+            start_acdf({"sweep", sky, "-o", folder / "new/out", "--quiet"}, "/dev/null", "/dev/null", "/dev/null");
+        ASSERT_GT(pid, 0);
+        while (!std::filesystem::exists(folder / "new/out") && waitpid(pid, nullptr, WNOHANG) == 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         ASSERT_EQ(kill(pid, signal), 0);
