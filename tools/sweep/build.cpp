@@ -110,7 +110,7 @@ void build_all(Sweep& sweep, std::vector<Candidate>& candidates, const std::vect
                            candidates.back().row.bytes == made.row.bytes;
         if (!again) candidates.push_back(std::move(made));
     }
-    if (candidates.empty()) throw Failure("none of the sizes can be made: " + last_failure);
+    if (candidates.empty()) throw std::invalid_argument("none of the sizes can be made: " + last_failure);
 }
 
 void finish_rows(Sweep& sweep, std::vector<Candidate> candidates, const std::vector<measure::ShadingPoint>& points,

@@ -107,6 +107,10 @@ TEST(SweepCommand, RefusesWhatIsThereAndWrongOptions) {
     EXPECT_NE(result.err.find("separate"), std::string::npos) << result.err; // what there is
     EXPECT_EQ(run_acdf({"sweep", "ggx:alpha=0.3", "-o", folder / "x", "--budgets", "12 parsecs"}).code, 2);
     EXPECT_EQ(run_acdf({"sweep", folder / "absent.exr", "-o", folder / "x"}).code, 1);
+    result = run_acdf({"sweep", probe, "-o", folder / "x", "--fits", "variance", "--budgets", "100", "--quiet"});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find(probe + ": none of the sizes can be made"), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "x"));
 }
 
 /// What of JSON schema docs/sweep.schema.json uses: type, properties, required, items, enum.

@@ -364,7 +364,7 @@ TEST(SweepRows, WhatIsOutOfReachIsTold) {
     ASSERT_EQ(sweep.notes.size(), 1u);
     EXPECT_NE(sweep.notes[0].find("100 bytes"), std::string::npos) << sweep.notes[0];
     options.budgets = {100};
-    EXPECT_THROW(sweep_environment(builder::target_of(target, {}), {}, options), std::runtime_error);
+    EXPECT_THROW(sweep_environment(builder::target_of(target, {}), {}, options), std::invalid_argument);
 }
 
 } // namespace
