@@ -194,13 +194,21 @@ std::string check_output(const std::string& folder, BatchJob& job) {
     return check_links(folder, job.output);
 }
 
+/// Of two jobs with the same output.
+std::string collision(const BatchJob& first, const BatchJob& job) {
+    const bool same = job.kind == first.kind && job.options == first.options &&
+                      fs::absolute(job.source).lexically_normal() == fs::absolute(first.source).lexically_normal();
+    if (same && job.origin == first.origin) return job.origin + ": is given twice; give it once";
+    if (same) return job.origin + ": is the same job as " + first.origin + "; leave one of them out";
+    return job.origin + ": writes " + job.output + ", as does " + first.origin +
+           "; give one of them another name in a manifest";
+}
+
 void check_duplicates(const std::string& folder, BatchJobs& jobs) {
     std::map<std::string, const BatchJob*> by_output;
     for (const BatchJob& job : jobs.jobs) {
         const auto [first, is_new] = by_output.emplace(job.output, &job);
-        if (!is_new)
-            jobs.errors.push_back(job.origin + ": writes " + job.output + ", as does " + first->second->origin +
-                                  "; give one of them another name in a manifest");
+        if (!is_new) jobs.errors.push_back(collision(*first->second, job));
     }
     std::map<std::string, const BatchJob*> by_source;
     for (const BatchJob& job : jobs.jobs) by_source.emplace(fs::absolute(job.source).lexically_normal(), &job);

@@ -12,8 +12,10 @@ TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
     const std::string good = "{\"source\": \"probes/a.pfm\"}\n", at2 = manifest + ":2: ";
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"colour\": 1}\n", at2 + "has an unknown key 'colour'");
     expect_refused(good + "{\"source\": []}\n", at2 + "'source' is to be a text");
-    expect_refused(good + good, at2 + "writes a.acdf, as does " + manifest + ":1");
-    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"./a.acdf\"}\n", at2 + "writes a.acdf");
+    expect_refused(good + good, at2 + "is the same job as " + manifest + ":1; leave");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"./a.acdf\"}\n", at2 + "is the same job");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"options\": {\"cells\": 5}}\n",
+                   at2 + "writes a.acdf, as does " + manifest + ":1; give");
     expect_refused(good + "{\"source\": \"probes/b.pfm\"}\n", at2 + "there is no file");
     expect_refused(good + "{\"source\": \"probes\"}\n", at2);
     expect_refused(good + "{\"source\": \"\xff\"}\n", at2 + "is not UTF-8");
@@ -36,7 +38,7 @@ TEST_F(BatchCommand, TellsTheOneWrongLineOfHundredThousand) {
     const int lines = acdf_test::kSanitized ? 10000 : 100000, wrong = lines - 1;
     for (int i = 1; i <= lines; ++i)
         text += "{\"source\":\"probes/a.pfm\",\"output\":\"" + std::to_string(i == wrong ? 5 : i) + ".acdf\"}\n";
-    expect_refused(text, manifest + ":" + std::to_string(wrong) + ": writes 5.acdf, as does " + manifest + ":5");
+    expect_refused(text, manifest + ":" + std::to_string(wrong) + ": is the same job as " + manifest + ":5");
 }
 
 TEST_F(BatchCommand, OutputsDoNotFollowLinksOut) {
@@ -72,6 +74,9 @@ TEST_F(BatchCommand, TwoSourcesOfOneOutputAreRefused) {
     const Result result = batch({probes});
     EXPECT_EQ(result.code, 1);
     EXPECT_NE(result.err.find("a.pfm: writes a.acdf, as does"), std::string::npos) << result.err;
+    const Result twice = batch({probes + "/a.pfm", probes + "/a.pfm"});
+    EXPECT_EQ(twice.code, 1);
+    EXPECT_NE(twice.err.find("a.pfm: is given twice"), std::string::npos) << twice.err;
     EXPECT_FALSE(fs::exists(out));
     EXPECT_EQ(batch({probes + "/*.pfm"}).code, 0) << "a glob";
     EXPECT_EQ(batch({probes + "/*.png"}).code, 1);
