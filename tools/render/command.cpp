@@ -35,13 +35,19 @@ struct RenderArguments {
     bool no_reference = false, no_timing = false, json = false, quiet = false, force = false;
 };
 
-SceneFile read_scene(const RenderArguments& options) {
-    const std::vector<std::uint8_t> bytes = read_bytes(options.scene, kMostSceneBytes);
+/// What `make` returns; what it finds wrong with the scene is told with the scene's name.
+template <typename Make>
+auto of_scene(const RenderArguments& options, const Make& make) {
     try {
-        return parse_scene({bytes.begin(), bytes.end()});
+        return make();
     } catch (const SceneError& error) {
         throw Failure(options.scene + ": " + error.what());
     }
+}
+
+SceneFile read_scene(const RenderArguments& options) {
+    const std::vector<std::uint8_t> bytes = read_bytes(options.scene, kMostSceneBytes);
+    return of_scene(options, [&] { return parse_scene({bytes.begin(), bytes.end()}); });
 }
 
 void apply_options(const RenderArguments& options, SceneFile& scene) {
@@ -58,7 +64,7 @@ std::vector<SamplerSpec> specs(const RenderArguments& options, const SceneFile& 
             out.push_back(parse_sampler(text));
         } catch (const SpecError& error) {
             if (!options.samplers.empty()) throw CLI::ValidationError("--sampler", error.what());
-            throw Failure(options.scene + ": samplers: " + error.what());
+            throw SceneError(std::string("samplers: ") + error.what());
         }
     }
     return out;
@@ -216,23 +222,18 @@ void run(const RenderArguments& options) {
     const auto limit = limit_threads(options.threads);
     SceneFile file = read_scene(options);
     apply_options(options, file);
-    std::vector<SamplerSpec> samplers = specs(options, file);
+    std::vector<SamplerSpec> samplers = of_scene(options, [&] { return specs(options, file); });
     const Folder folder(options.output, options.force);
     const OutputFolder made(options.output);
     const std::vector<std::string> stems = file_stems(samplers);
     refuse_outputs(options.output, stems, options.force, inputs(options, file, samplers));
 
     std::unique_ptr<LoadedScene> scene;
-    RenderRun done;
-    try {
+    const RenderRun done = of_scene(options, [&] {
         scene = load_scene(file, options.data);
         remark(options, *scene);
-        done = render_all(options, *scene, std::move(samplers));
-    } catch (const SpecError& error) {
-        throw Failure(options.scene + ": " + error.what());
-    } catch (const SceneError& error) {
-        throw Failure(options.scene + ": " + error.what());
-    }
+        return render_all(options, *scene, std::move(samplers));
+    });
     PictureWriter(folder, *scene, done).all(stems);
     const std::string json = render_json(*scene, done);
     folder.write("render.json", {json.begin(), json.end()});

@@ -1,19 +1,15 @@
 // What is compared, as short texts: "local:1MB", "ris:32", "mis(local:1MB,cosine)".
 #pragma once
 
+#include "tools/render/scene_error.h"
+
 #include <acdf/builder.h>
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace acdf::tools {
-
-/// What is wrong with the text of a sampler: one line.
-struct SpecError : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 enum class SamplerKind {
     full_cdf,   ///< full-cdf: the probe's full-resolution CDF, directions below the horizon drawn in vain

@@ -3,10 +3,10 @@
 
 #include "input/probe.h"
 #include "measure/scenes/scene.h"
+#include "tools/render/scene_error.h"
 
 #include <array>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,11 +14,6 @@ namespace acdf::tools {
 
 /// No scene is longer: it has at most 1,000 objects, and what is much longer takes minutes to parse.
 constexpr std::uint64_t kMostSceneBytes = std::uint64_t{1} << 24;
-
-/// What is wrong with a scene: one line that begins with where, "objects[2].sphere.radius: ...".
-struct SceneError : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 /// A BRDF by the name that input::open_brdf takes, files relative to the data folder.
 struct SceneMaterial {
