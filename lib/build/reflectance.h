@@ -6,6 +6,9 @@
 
 namespace acdf::build {
 
+/// No channel of a BRDF reaches this, in sr^-1: sums of squares of weighted values stay finite.
+constexpr double kMostReflectance = 1e18;
+
 /// A BRDF rho(wo, wi) in sr^-1, three channels (r, g, b). Directions are unit, z along the normal.
 class Brdf {
 public:

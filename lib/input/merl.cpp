@@ -13,8 +13,6 @@ namespace {
 
 constexpr double channel_scale[3] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
-constexpr double kMostValue = 1e18; ///< sr^-1; as acdf::builder::ReflectanceFunction has it
-
 std::uint32_t step(double fraction, std::uint32_t steps) {
     return static_cast<std::uint32_t>(std::clamp(fraction * steps, 0.0, steps - 1.0));
 }
@@ -101,7 +99,7 @@ std::unique_ptr<Brdf> parse_merl(const std::string& name, const std::uint8_t* da
             else {
                 table[3 * i + c] = static_cast<float>(value);
                 positive += table[3 * i + c] > 0.0f;
-                huge += !(value < kMostValue);
+                huge += !(value < build::kMostReflectance);
             }
         }
     if (bad > 0)

@@ -33,7 +33,8 @@ public:
             throw build::CallbackFailed();
         }
         for (int k = 0; k < 3; ++k) {
-            if (!(rgb[k] < 1e18)) throw std::invalid_argument("a value of the BRDF is NaN, infinite or above 1e18");
+            if (!(rgb[k] < build::kMostReflectance))
+                throw std::invalid_argument("a value of the BRDF is NaN, infinite or above 1e18");
             rgb[k] = std::max(rgb[k], 0.0);
         }
     }
