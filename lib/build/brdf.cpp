@@ -67,16 +67,27 @@ std::string option_text(const BrdfFileOptions& options) {
     return fit.epsilon > 0.0 ? text + " --eps " + option_number(fit.epsilon) : text;
 }
 
+namespace {
+
+/// What is darker is black, in sr^-1: fits and sums divide by the light of a view, and square it.
+constexpr double kLeastReflected = 1e-100;
+
+/// Of all channels, by a file's weights.
+double brightness(const double rgb[3], AcdfChannels channels, const compress::ChannelWeights& weights) {
+    if (channels == ACDF_CHANNELS_SEPARATE) return std::sqrt(rgb[0] * rgb[0] + rgb[1] * rgb[1] + rgb[2] * rgb[2]);
+    if (channels == ACDF_CHANNELS_LARGEST) return std::max({rgb[0], rgb[1], rgb[2]});
+    return weights.r * rgb[0] + weights.g * rgb[1] + weights.b * rgb[2];
+}
+
+} // namespace
+
 compress::Reflected reflected_light(const Brdf& brdf, AcdfChannels channels,
                                     const compress::ChannelWeights& weights) {
     return [&brdf, channels, weights](const double wo[3], const double wi[3]) {
         double rgb[3];
         brdf.evaluate(wo, wi, rgb);
-        const double cosine = std::max(0.0, wi[2]);
-        if (channels == ACDF_CHANNELS_SEPARATE)
-            return cosine * std::sqrt(rgb[0] * rgb[0] + rgb[1] * rgb[1] + rgb[2] * rgb[2]);
-        if (channels == ACDF_CHANNELS_LARGEST) return cosine * std::max({rgb[0], rgb[1], rgb[2]});
-        return cosine * std::max(0.0, weights.r * rgb[0] + weights.g * rgb[1] + weights.b * rgb[2]);
+        const double light = brightness(rgb, channels, weights);
+        return light < kLeastReflected ? 0.0 : std::max(0.0, wi[2]) * light;
     };
 }
 

@@ -279,8 +279,9 @@ Status local(const Rows& rows, const LocalOptions& options, Local& result, const
 /// A BRDF rho(wo, wi) in sr^-1 without the cosine. wo (towards the viewer) and wi (towards the light) are unit
 /// vectors above the surface, z its normal. Nothing needs to be known of peaks: the fit looks for them.
 struct Brdf {
-    /// Fills `rgb` with finite numbers below 1e18; negative ones count as 0. Called by several threads at once. All
-    /// that counts is what it returns for given arguments, which must always be the same.
+    /// Fills `rgb` with finite numbers below 1e18; negative ones count as 0, and so does what is below 1e-100 in
+    /// all. Called by several threads at once. All that counts is what it returns for given arguments, which must
+    /// always be the same.
     std::function<void(const double wo[3], const double wi[3], double rgb[3])> evaluate;
     bool isotropic = true; ///< rho depends on the difference of azimuths alone: views are stored for theta_o only
     bool mirrored = true;  ///< and not on its sign: half of each density. Neither is checked; false is always right

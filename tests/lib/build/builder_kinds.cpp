@@ -212,6 +212,7 @@ TEST(BuilderBrdf, Misuse) {
     };
     EXPECT_EQ(answers(0.0), ErrorCode::no_energy);
     EXPECT_EQ(answers(-1.0), ErrorCode::no_energy);
+    for (const double dark : {1e-101, 1e-160, 1e-310}) EXPECT_EQ(answers(dark), ErrorCode::no_energy) << dark;
     for (const double bad : {kNan, 1e19, std::numeric_limits<double>::infinity()})
         EXPECT_EQ(answers(bad), ErrorCode::bad_source) << bad;
     options.channels.weights = {1e6, 1e6, 1e6};
@@ -220,6 +221,18 @@ TEST(BuilderBrdf, Misuse) {
     options.channels = {};
     EXPECT_EQ(answers(0.3), ErrorCode::none);
     EXPECT_NEAR(made.accuracy.relative_variance, variance, 1e-4);
+    EXPECT_EQ(answers(1e-99), ErrorCode::none);
+    EXPECT_NEAR(made.accuracy.relative_variance, variance, 1e-4);
+    given.evaluate = [](const double* wo, const double* wi, double rgb[3]) { // one view in two is next to black
+        rgb[0] = rgb[1] = rgb[2] = (wo[2] > 0.5 ? 1.0 : 1e-200) * (wi[0] * wi[0] < 0.1 ? 1.0 : 0.2);
+    };
+    EXPECT_EQ(brdf(given, options, made).code, ErrorCode::none);
+    const double half_black = made.accuracy.relative_variance;
+    given.evaluate = [](const double* wo, const double* wi, double rgb[3]) {
+        rgb[0] = rgb[1] = rgb[2] = wo[2] > 0.5 ? wi[0] * wi[0] < 0.1 ? 1.0 : 0.2 : 0.0;
+    };
+    EXPECT_EQ(brdf(given, options, made).code, ErrorCode::none);
+    EXPECT_EQ(made.accuracy.relative_variance, half_black);
     EXPECT_FALSE(asked_below); // nothing is reflected below the surface
     const auto refused = [&](const std::function<void(BrdfOptions&)>& change) {
         BrdfOptions changed = options;
