@@ -15,27 +15,27 @@
 extern "C" {
 #endif
 
-enum { ACDF_CUT_MAX_PARTS = 96, ACDF_CUT_MAX_LIGHTS = 64 };
+enum { ACDF_CUT_MAX_PARTS = 96, ACDF_CUT_BLOCKS = ACDF_CUT_MAX_PARTS / ACDF_BLOCK_CELLS, ACDF_CUT_MAX_LIGHTS = 64 };
 
-/* A box: what lies below a split or in a tile. */
+/* A box: what lies below a split or in a tile. What draws and densities read stands first. */
 typedef struct AcdfCutPart {
-    uint16_t node;                   /* the split, or the tile with its flag */
-    uint16_t entry;                  /* the same in runtime tables */
-    uint32_t tile;                   /* the first tile in it; they are numbered in the order of the walk */
-    uint16_t first_light, end_light; /* which lights lie in it */
-    uint16_t owner;                  /* 2 * split of the cut + side; of the whole: not used */
-    uint16_t depth;                  /* how many splits lie above it */
-    uint32_t low[2], high[2];
+    double numbers[2][2];               /* random numbers that draw it: from low to high of axis 0, of axis 1 */
     double weight[ACDF_MAX_ROWS_MIXED]; /* what each row gives to it */
     double lights;                      /* weights of the lights in it */
     double sum;                         /* of all weights */
     double probability;                 /* of the cut, for its maker to set */
+    uint16_t node;                      /* the split, or the tile with its flag */
+    uint16_t entry;                     /* the same in runtime tables */
+    uint16_t first_light, end_light;    /* which lights lie in it */
+    uint32_t low[2], high[2];
+    uint32_t tile;  /* the first tile in it; they are numbered in the order of the walk */
+    uint16_t owner; /* 2 * split of the cut + side; of the whole: not used */
+    uint16_t depth; /* how many splits lie above it */
 } AcdfCutPart;
 
 typedef struct AcdfCutSplit {
     uint32_t place;   /* axis and position, as in AcdfSplit */
     int16_t child[2]; /* another split; or the complement of a part's number */
-    double border;    /* numbers of its axis from here on draw the upper child */
 } AcdfCutSplit;
 
 typedef struct AcdfCut {
@@ -43,7 +43,8 @@ typedef struct AcdfCut {
     int nearest; /* which of the rows weighs most */
     AcdfCutPart part[ACDF_CUT_MAX_PARTS];
     AcdfCutSplit split[ACDF_CUT_MAX_PARTS - 1];
-    double light[ACDF_CUT_MAX_LIGHTS]; /* weight of each */
+    uint32_t boxes[ACDF_CUT_BLOCKS][16]; /* `numbers` of 16 parts each, as AcdfSquares has boxes */
+    double light[ACDF_CUT_MAX_LIGHTS];   /* weight of each */
 } AcdfCut;
 
 ACDF_FN double acdf_cut_lights(const AcdfCut* cut, uint32_t first, uint32_t end) {

@@ -8,24 +8,56 @@
 extern "C" {
 #endif
 
-/* Tells each split which random numbers its children share; share[~i] is that of part i, share[i] of split i. */
+/* A side of a box of random numbers, in bytes: rounded to 1/256. */
+ACDF_INLINE uint32_t acdf_cut_side(double number) {
+    const int32_t scaled = (int32_t)(256.0 * number);
+    return (uint32_t)(scaled < 0xFF ? scaled : 0xFF) ^ 0x80u;
+}
+
+/* Tells each part which random numbers draw it: those of a split are shared by its children; share[~i] is that of
+ * part i, share[i] of split i. */
 ACDF_FN void acdf_cut_borders(AcdfCut* cut, const double* share) {
     /* Of splits and parts, as shares are: low and high on axis 0, on axis 1. Each in an array of its own: what is
      * stored in pieces and loaded as a whole would be waited for. */
     double numbers[4][2 * ACDF_CUT_MAX_PARTS];
+    uint32_t sides[2 * ACDF_CUT_MAX_PARTS]; /* the same in bytes */
+    const int whole = ACDF_CUT_MAX_PARTS - (cut->count == 1);
     int i, k;
-    for (k = 0; k < 4; ++k) numbers[k][ACDF_CUT_MAX_PARTS] = (double)(k & 1);
+    for (k = 0; k < 4; ++k) numbers[k][whole] = (double)(k & 1);
+    sides[whole] = 0x7F807F80u;
     for (i = 0; i < cut->count - 1; ++i) {
-        AcdfCutSplit* split = &cut->split[i];
-        const uint32_t axis = split->place & 1u;
+        const AcdfCutSplit* split = &cut->split[i];
+        const uint32_t axis = split->place & 1u, shift = 16 * axis;
         const int at = ACDF_CUT_MAX_PARTS + i;
         const int child[2] = {ACDF_CUT_MAX_PARTS + split->child[0], ACDF_CUT_MAX_PARTS + split->child[1]};
         const double low = numbers[2 * axis][at], high = numbers[2 * axis + 1][at];
         const double lower = share[split->child[0]], upper = share[split->child[1]];
-        const double border = low + (high - low) * (lower / (lower + upper));
-        split->border = upper > 0.0 && border < high ? border : high; /* numbers are below 1 */
+        const double told = low + (high - low) * (lower / (lower + upper));
+        const double border = upper > 0.0 && told < high ? told : high; /* numbers are below 1 */
+        const uint32_t side = acdf_cut_side(border) * 0x01010101u;
         for (k = 0; k < 4; ++k) numbers[k][child[0]] = numbers[k][child[1]] = numbers[k][at];
-        numbers[2 * axis + 1][child[0]] = numbers[2 * axis][child[1]] = split->border;
+        numbers[2 * axis + 1][child[0]] = numbers[2 * axis][child[1]] = border;
+        sides[child[0]] = sides[at] ^ ((sides[at] ^ side) & 0xFF00u << shift);
+        sides[child[1]] = sides[at] ^ ((sides[at] ^ side) & 0xFFu << shift);
+    }
+    for (i = 0; i < cut->count; ++i) {
+        AcdfCutPart* part = &cut->part[i];
+        const int at = ACDF_CUT_MAX_PARTS + ~i;
+        part->numbers[0][0] = numbers[0][at];
+        part->numbers[0][1] = numbers[1][at];
+        part->numbers[1][0] = numbers[2][at];
+        part->numbers[1][1] = numbers[3][at];
+    }
+    for (i = 0; i < cut->count; i += ACDF_BLOCK_CELLS) {
+        uint8_t* byte = (uint8_t*)cut->boxes[(uint32_t)i / ACDF_BLOCK_CELLS];
+        const uint32_t* side = sides + ACDF_CUT_MAX_PARTS + ~i;
+        for (k = 0; k < ACDF_BLOCK_CELLS; ++k, ++byte) {
+            const uint32_t box = i + k < cut->count ? side[-k] : 0x807F807Fu; /* which holds nothing */
+            byte[0] = (uint8_t)box;
+            byte[ACDF_BLOCK_CELLS] = (uint8_t)(box >> 8);
+            byte[2 * ACDF_BLOCK_CELLS] = (uint8_t)(box >> 16);
+            byte[3 * ACDF_BLOCK_CELLS] = (uint8_t)(box >> 24);
+        }
     }
 }
 
@@ -114,57 +146,75 @@ ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint
     return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }
 
-/* The random numbers that draw a part, or one of those below a split: from low to high of axis 0, of axis 1. */
-typedef struct AcdfCutNumbers {
-    double bound[2][2];
-} AcdfCutNumbers;
-
-ACDF_INLINE AcdfCutNumbers acdf_cut_all_numbers(void) {
-    const AcdfCutNumbers all = {{{0.0, 1.0}, {0.0, 1.0}}};
-    return all;
-}
-
-/* One step towards the part that numbers draw; returns the child. No branch depends on the numbers. */
-ACDF_INLINE int acdf_cut_step(const AcdfCut* cut, int child, const double u[2], AcdfCutNumbers* numbers) {
-    const AcdfCutSplit* split = &cut->split[child];
-    const uint32_t axis = split->place & 1u, upper = (uint32_t)(u[axis] >= split->border);
-    numbers->bound[axis][upper ^ 1u] = split->border;
-    return split->child[upper];
-}
-
 /* A number in [0, 1) of what is given. */
 ACDF_INLINE double acdf_cut_number(double u) {
     const double most = 1.0 - 0x1p-53, x = acdf_unit_interval(u);
     return x < most ? x : most;
 }
 
-/* What numbers are of those that draw the same part. */
-ACDF_INLINE void acdf_cut_numbers_left(const AcdfCutNumbers* numbers, double u[2]) {
-    int i;
-    for (i = 0; i < 2; ++i) {
-        const double width = numbers->bound[i][1] - numbers->bound[i][0], x = u[i] - numbers->bound[i][0];
-        u[i] = x < width ? x / width : 1.0;
-    }
+/* Whether numbers in [0, 1) draw a part. */
+ACDF_INLINE int acdf_cut_draws(const AcdfCutPart* part, const double u[2]) {
+    return (part->numbers[0][0] <= u[0]) & (u[0] < part->numbers[0][1]) & (part->numbers[1][0] <= u[1]) &
+           (u[1] < part->numbers[1][1]);
 }
 
-/* Draws a part by numbers in [0, 1): u becomes what is left of the random numbers. Which half comes next is left to
- * a branch here: where it is guessed, the next split is not waited for. */
-ACDF_FN const AcdfCutPart* acdf_cut_draw(const AcdfCut* cut, double u[2]) {
-    AcdfCutNumbers numbers = acdf_cut_all_numbers();
-    int child = cut->count > 1 ? 0 : ~0;
-    while (child >= 0) {
-        const AcdfCutSplit* split = &cut->split[child];
-        const uint32_t axis = split->place & 1u;
-        if (u[axis] < split->border) {
-            numbers.bound[axis][1] = split->border;
-            child = split->child[0];
-        } else {
-            numbers.bound[axis][0] = split->border;
-            child = split->child[1];
+/* The parts of a block that numbers in steps of 1/256 may draw. */
+ACDF_INLINE uint32_t acdf_cut_candidates(const AcdfCut* cut, int block, const uint32_t step[2]) {
+#ifdef ACDF_SSE2
+    const __m128i* box = (const __m128i*)(const void*)cut->boxes[block];
+    return acdf_boxes_by_vectors(_mm_loadu_si128(box), _mm_loadu_si128(box + 1), _mm_loadu_si128(box + 2),
+                                 _mm_loadu_si128(box + 3), step[0], step[1]);
+#else
+    return acdf_boxes_around(cut->boxes[block], 0, step[0], step[1]);
+#endif
+}
+
+/* The first part from a number on that numbers in [0, 1) may draw, the last part if there is no other. No branch
+ * depends on which. */
+ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) {
+    const uint32_t step[2] = {(uint32_t)(int32_t)(u[0] * 256.0), (uint32_t)(int32_t)(u[1] * 256.0)};
+    int first;
+    for (first = from & ~63; first < cut->count; first += 64) {
+        uint32_t mask[2] = {0, 0};
+        int k;
+        for (k = 0; k < 4 && first + k * ACDF_BLOCK_CELLS < cut->count; ++k)
+            mask[k >> 1] |= acdf_cut_candidates(cut, first / ACDF_BLOCK_CELLS + k, step)
+                            << (k & 1) * ACDF_BLOCK_CELLS;
+        for (k = 0; k < 2; ++k) {
+            const int passed = from - (first + 32 * k);
+            if (passed > 0) mask[k] &= passed < 32 ? ~0u << passed : 0u;
         }
+        if (mask[0] | mask[1])
+            return first + (mask[0] ? 0 : 32) + (int)acdf_lowest_bit(mask[0] ? mask[0] : mask[1]);
     }
-    acdf_cut_numbers_left(&numbers, u);
-    return &cut->part[~child];
+    return cut->count - 1;
+}
+
+/* Draws a part by numbers in [0, 1), where all before number `guess` are known not to be drawn: u becomes what is
+ * left of the random numbers. */
+ACDF_INLINE const AcdfCutPart* acdf_cut_draw_guessed(const AcdfCut* cut, int guess, double u[2]) {
+    const AcdfCutPart* part = &cut->part[guess];
+    int i;
+    while (!acdf_cut_draws(part, u) && guess + 1 < cut->count)
+        part = &cut->part[guess = acdf_cut_guess(cut, u, guess + 1)];
+    for (i = 0; i < 2; ++i) {
+        const double width = part->numbers[i][1] - part->numbers[i][0], x = u[i] - part->numbers[i][0];
+        u[i] = x < width ? x / width : 1.0;
+    }
+    return part;
+}
+
+/* Asks for what draws from a part read of it, and of rows where they begin in it. */
+ACDF_INLINE void acdf_cut_part_ahead(const AcdfCut* cut, int number) {
+    ACDF_PREFETCH(&cut->part[number].numbers[0][0]);
+    ACDF_PREFETCH(&cut->part[number].depth);
+}
+
+/* Draws a part. */
+ACDF_FN const AcdfCutPart* acdf_cut_draw(const AcdfCut* cut, double u[2]) {
+    const int number = acdf_cut_guess(cut, u, 0);
+    acdf_cut_part_ahead(cut, number);
+    return acdf_cut_draw_guessed(cut, number, u);
 }
 
 /* Whether u0 in [0, 1] draws a light of a part, not from its mixture. */

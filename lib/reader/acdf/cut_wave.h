@@ -44,36 +44,17 @@ typedef struct AcdfCutLanes {
     uint32_t lane[ACDF_CUT_WAVE];
 } AcdfCutLanes;
 
-/* Draws parts: one step of each lane in turn. */
+/* Draws parts. */
 ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], uint32_t count, AcdfCutLane* lane) {
-    AcdfCutNumbers numbers[ACDF_CUT_WAVE];
-    int32_t child[ACDF_CUT_WAVE];
-    AcdfCutLanes on_way;
-    uint32_t i, k, split;
-    for (i = 0; i + 1 < (uint32_t)cut->count; i += 4) ACDF_PREFETCH(&cut->split[i]);
+    int guess[ACDF_CUT_WAVE];
+    uint32_t i;
     for (i = 0; i < count; ++i) {
         lane[i].u[0] = acdf_cut_number(u[i][0]);
         lane[i].u[1] = acdf_cut_number(u[i][1]);
-        numbers[i] = acdf_cut_all_numbers();
-        child[i] = cut->count > 1 ? 0 : ~0;
-        on_way.lane[i] = i;
+        guess[i] = acdf_cut_guess(cut, lane[i].u, 0);
+        acdf_cut_part_ahead(cut, guess[i]);
     }
-    on_way.count = cut->count > 1 ? count : 0;
-    while ((split = on_way.count) > 0) {
-        on_way.count = 0;
-        for (k = 0; k < split; ++k) {
-            const uint32_t number = on_way.lane[k];
-            child[number] = acdf_cut_step(cut, child[number], lane[number].u, &numbers[number]);
-            on_way.lane[on_way.count] = number;
-            on_way.count += (uint32_t)(child[number] >= 0);
-        }
-    }
-    for (i = 0; i < count; ++i) {
-        acdf_cut_numbers_left(&numbers[i], lane[i].u);
-        lane[i].part = &cut->part[~child[i]];
-        ACDF_PREFETCH(&lane[i].part->low[0]);
-        ACDF_PREFETCH(&lane[i].part->probability);
-    }
+    for (i = 0; i < count; ++i) lane[i].part = acdf_cut_draw_guessed(cut, guess[i], lane[i].u);
 }
 
 /* Draws lights, and tells which lanes draw from the mixture of their part. */
@@ -259,8 +240,7 @@ ACDF_FN void acdf_cut_pdf_wave(const AcdfLocal* local, const AcdfLocalPoint* poi
             one->tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square[i]);
             ACDF_PREFETCH(acdf_local_tile(local->tables, one->tile));
             one->part = acdf_cut_find(cut, square[i]);
-            ACDF_PREFETCH(&one->part->low[0]);
-            ACDF_PREFETCH(&one->part->probability);
+            acdf_cut_part_ahead(cut, (int)(one->part - cut->part));
         }
         for (i = 0; i < some; ++i) {
             AcdfCutLane* one = &lane[i];

@@ -47,16 +47,23 @@ enum { ACDF_BLOCK_CELLS = 16 };
 ACDF_STATIC_ASSERT(offsetof(AcdfSquares, bits0) == 4 * ACDF_SQUARES_BITS0);
 ACDF_STATIC_ASSERT(offsetof(AcdfSquares, cells) == 4 * ACDF_SQUARES_CELLS);
 
+#ifdef ACDF_SSE2
+/* Bit i: whether the i-th of sixteen boxes, in bytes less 128, holds the bytes of a place. */
+ACDF_INLINE uint32_t acdf_boxes_by_vectors(__m128i low0, __m128i high0, __m128i low1, __m128i high1, uint32_t byte0,
+                                           uint32_t byte1) {
+    const __m128i at0 = _mm_set1_epi8((char)(byte0 ^ 0x80u)), at1 = _mm_set1_epi8((char)(byte1 ^ 0x80u));
+    const __m128i out0 = _mm_or_si128(_mm_cmpgt_epi8(low0, at0), _mm_cmpgt_epi8(at0, high0));
+    const __m128i out1 = _mm_or_si128(_mm_cmpgt_epi8(low1, at1), _mm_cmpgt_epi8(at1, high1));
+    return (uint32_t)_mm_movemask_epi8(_mm_or_si128(out0, out1)) ^ 0xFFFFu;
+}
+#endif
+
 /* Bit i: whether cell i of a block may hold the point; never of those that it lacks. */
 ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byte0, uint32_t byte1) {
 #ifdef ACDF_SSE2
     const __m128i* box = (const __m128i*)(const void*)boxes;
-    const __m128i at0 = _mm_set1_epi8((char)(byte0 ^ 0x80u)), at1 = _mm_set1_epi8((char)(byte1 ^ 0x80u));
-    const __m128i out0 =
-        _mm_or_si128(_mm_cmpgt_epi8(_mm_load_si128(box), at0), _mm_cmpgt_epi8(at0, _mm_load_si128(box + 1)));
-    const __m128i out1 =
-        _mm_or_si128(_mm_cmpgt_epi8(_mm_load_si128(box + 2), at1), _mm_cmpgt_epi8(at1, _mm_load_si128(box + 3)));
-    return (uint32_t)_mm_movemask_epi8(_mm_or_si128(out0, out1)) ^ 0xFFFFu;
+    return acdf_boxes_by_vectors(_mm_load_si128(box), _mm_load_si128(box + 1), _mm_load_si128(box + 2),
+                                 _mm_load_si128(box + 3), byte0, byte1);
 #elif defined(ACDF_ON_GPU)
     const AcdfFourWords* box = (const AcdfFourWords*)(const void*)boxes;
     const AcdfFourWords low0 = box[0], high0 = box[1], low1 = box[2], high1 = box[3];

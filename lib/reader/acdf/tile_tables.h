@@ -123,8 +123,8 @@ ACDF_INLINE double acdf_tile_share_rows(const uint32_t* words, const AcdfTileTab
 #ifdef ACDF_SSE2
 typedef struct AcdfTileWalk {
     __m128d weight[ACDF_MAX_ROWS_MIXED]; /* and part */
+    __m128d code[ACDF_MAX_ROWS_MIXED];   /* what each row gives to the halves of the split */
     __m128d x, chosen;
-    size_t byte[ACDF_MAX_ROWS_MIXED];
     uint64_t split;
     uint32_t node;
 } AcdfTileWalk;
@@ -132,9 +132,13 @@ typedef struct AcdfTileWalk {
 ACDF_INLINE __m128d acdf_either(__m128d mask, __m128d no, __m128d yes) {
     return _mm_or_pd(_mm_and_pd(mask, yes), _mm_andnot_pd(mask, no));
 }
+ACDF_INLINE __m128d acdf_tile_code(const double* codes, const uint8_t* row, uint32_t split) {
+    return _mm_load_pd(codes + 2 * (size_t)row[split]);
+}
 ACDF_INLINE void acdf_tile_walk_begin(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
                                       const uint8_t* const* row, const int rows, uint32_t node, const double* from,
                                       AcdfTileWalk* walk) {
+    const double* codes = acdf_tile_codes(words, tables);
     int i;
     walk->chosen = _mm_set1_pd(acdf_mixture_sum(mix));
     walk->x = _mm_set_pd(from[1], from[0]);
@@ -142,47 +146,50 @@ ACDF_INLINE void acdf_tile_walk_begin(const uint32_t* words, const AcdfTileTable
     walk->node = node;
     for (i = 0; i < rows; ++i) {
         walk->weight[i] = _mm_set_pd(1.0, mix->weight[i]);
-        walk->byte[i] = row[i][node];
+        walk->code[i] = acdf_tile_code(codes, row[i], node);
     }
 }
-/* Splits and bytes of both halves are loaded before it is known which one is taken: else all wait for each other.
- */
+/* All of both halves is loaded and computed before it is known which one is taken: else all wait for each other,
+ * from a byte of a row to the place of the next one. What waits for the decision is chosen by its mask. */
 ACDF_INLINE void acdf_tile_walk_step(const uint32_t* words, const AcdfTileTables* tables, const uint8_t* const* row,
                                      const int rows, AcdfTileWalk* walk) {
     const double* codes = acdf_tile_codes(words, tables);
     const uint64_t* splits = (const uint64_t*)(const void*)acdf_tile_splits(words, tables);
     const uint64_t split = walk->split;
-    const __m128d one = _mm_set1_pd(1.0), zero = _mm_setzero_pd();
     const int64_t axis = (int64_t)(split & 1u);
     const __m128d along = _mm_castsi128_pd(_mm_set_epi64x(-axis, axis - 1));
     /* Of a tile any other split's, which is not used. */
     const uint32_t next0 = (uint32_t)(split >> 32) & 0x7FFFu, next1 = (uint32_t)(split >> 48) & 0x7FFFu;
     const uint64_t split0 = splits[next0], split1 = splits[next1];
-    __m128d half =
-        _mm_mul_pd(_mm_unpacklo_pd(walk->weight[0], walk->weight[0]), _mm_load_pd(codes + 2 * walk->byte[0]));
-    __m128d lower, taken, in_upper;
+    __m128d low[ACDF_MAX_ROWS_MIXED], high[ACDF_MAX_ROWS_MIXED], lower, upper, part, in_upper;
     uint64_t mask;
-    size_t upper;
     int i;
-    for (i = 1; i < rows; ++i)
-        half = _mm_add_pd(half, _mm_mul_pd(_mm_unpacklo_pd(walk->weight[i], walk->weight[i]),
-                                           _mm_load_pd(codes + 2 * walk->byte[i])));
-    lower = _mm_unpacklo_pd(half, half);
-    taken = _mm_unpackhi_pd(half, half);
-    in_upper = _mm_and_pd(_mm_and_pd(_mm_cmpnlt_pd(walk->x, lower), _mm_cmplt_pd(zero, taken)), along);
-    in_upper = _mm_or_pd(in_upper, _mm_shuffle_pd(in_upper, in_upper, 1));
-    upper = (size_t)_mm_movemask_pd(in_upper) & 1u;
-    mask = 0 - (uint64_t)upper;
-    taken = acdf_either(in_upper, lower, taken);
     for (i = 0; i < rows; ++i) {
-        const size_t byte0 = row[i][next0], byte1 = row[i][next1];
-        walk->weight[i] = _mm_mul_pd(walk->weight[i], _mm_set1_pd(codes[2 * walk->byte[i] + upper]));
-        walk->byte[i] = byte0 ^ ((byte0 ^ byte1) & (size_t)mask);
+        low[i] = _mm_mul_pd(walk->weight[i], _mm_unpacklo_pd(walk->code[i], walk->code[i]));
+        high[i] = _mm_mul_pd(walk->weight[i], _mm_unpackhi_pd(walk->code[i], walk->code[i]));
     }
+    lower = low[0];
+    upper = high[0];
+    for (i = 1; i < rows; ++i) {
+        lower = _mm_add_pd(lower, low[i]);
+        upper = _mm_add_pd(upper, high[i]);
+    }
+    part = _mm_div_pd(_mm_unpacklo_pd(lower, upper), walk->chosen);
+    lower = _mm_unpacklo_pd(lower, lower);
+    upper = _mm_unpacklo_pd(upper, upper);
+    in_upper = _mm_and_pd(_mm_and_pd(_mm_cmpnlt_pd(walk->x, lower), _mm_cmplt_pd(_mm_setzero_pd(), upper)), along);
+    in_upper = _mm_or_pd(in_upper, _mm_shuffle_pd(in_upper, in_upper, 1));
+    for (i = 0; i < rows; ++i) {
+        walk->weight[i] = acdf_either(in_upper, low[i], high[i]);
+        walk->code[i] =
+            acdf_either(in_upper, acdf_tile_code(codes, row[i], next0), acdf_tile_code(codes, row[i], next1));
+    }
+    part = acdf_either(in_upper, _mm_unpacklo_pd(part, part), _mm_unpackhi_pd(part, part));
     walk->x = _mm_sub_pd(walk->x, _mm_and_pd(_mm_and_pd(in_upper, along), lower));
-    walk->x = _mm_mul_pd(walk->x, acdf_either(along, _mm_div_pd(taken, walk->chosen), one));
-    walk->chosen = taken;
-    walk->node = (uint32_t)(split >> (32 + 16 * upper)) & 0xFFFFu;
+    walk->x = _mm_mul_pd(walk->x, acdf_either(along, part, _mm_set1_pd(1.0)));
+    walk->chosen = acdf_either(in_upper, lower, upper);
+    mask = 0 - (uint64_t)((uint32_t)_mm_movemask_pd(in_upper) & 1u);
+    walk->node = (uint32_t)(split >> (32 + (16 & mask))) & 0xFFFFu;
     walk->split = split0 ^ ((split0 ^ split1) & mask);
 }
 /* u becomes what is left of the random numbers, *given what the mixture gives to the tile. Returns its number. */

@@ -9,7 +9,7 @@ namespace {
 
 /* acdf_cut_find of the squares of a vector: numbers of parts. */
 ACDF_LANE void find_cut_parts(const AcdfCut& cut, const Cells& cells, std::size_t at, long long* part) {
-    static_assert(sizeof(AcdfCutSplit) == 16 && offsetof(AcdfCutSplit, child) == 4);
+    static_assert(sizeof(AcdfCutSplit) == 8 && offsetof(AcdfCutSplit, child) == 4);
     const Integer square[2] = {loaded(&cells.square[0][at]), loaded(&cells.square[1][at])};
     const Integer key[2] = {square[0] << 3 | 7, square[1] << 3 | 7}; /* as in acdf_tile_at */
     const Integer splits = Integer{} + (long long)(std::uintptr_t)cut.split;
@@ -17,7 +17,7 @@ ACDF_LANE void find_cut_parts(const AcdfCut& cut, const Cells& cells, std::size_
     for (;;) {
         const Mask ended = has(node, 0x8000);
         if (lanes(ended) + 1 == 1u << ACDF_WIDTH) break;
-        const Integer split = loaded_at(splits + choose(ended, Integer{}, node) * 16), place = split & 0xFFFFFFFF;
+        const Integer split = loaded_at(splits + choose(ended, Integer{}, node) * 8), place = split & 0xFFFFFFFF;
         const Mask below = negative(choose(has(split, 1), key[1], key[0]) - place);
         node = choose(ended, node, choose(below, split, split >> 16) >> 32 & 0xFFFF);
     }
@@ -48,10 +48,7 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
     cells.count = count;
     std::uint64_t lost = find_all_squares(local, directions, count, &cells);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) find_cut_parts(cut, cells, at, &part[at]);
-    for (std::size_t i = 0; i < count; ++i) {
-        ACDF_PREFETCH(&cut.part[part[i]].low[0]);
-        ACDF_PREFETCH(&cut.part[part[i]].probability);
-    }
+    for (std::size_t i = 0; i < count; ++i) acdf_cut_part_ahead(&cut, (int)part[i]);
     ask_for_curves(local, cells);
     weigh_cut_tiles(local, point, cut, part, &cells);
     find_cells<true>(local, cells, &done);
