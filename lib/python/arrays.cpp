@@ -24,6 +24,11 @@ py::array numbers(const py::handle& given, const char* name, const char* kinds) 
     return array;
 }
 
+void no_memory(const char* name) {
+    PyErr_Format(PyExc_MemoryError, "%s: no memory for a copy in the layout that is worked on", name);
+    throw py::error_already_set();
+}
+
 std::vector<py::ssize_t> leading_shape(const py::array& array, py::ssize_t width, const char* name) {
     std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim());
     if (shape.empty() || shape.back() != width)

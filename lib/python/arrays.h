@@ -29,6 +29,9 @@ std::string shape_text(const std::vector<py::ssize_t>& shape);
 /// that will do: "f" floating point, "i" and "u" integers. Raises TypeError.
 py::array numbers(const py::handle& given, const char* name, const char* kinds);
 
+/// Raises MemoryError: an argument could not be copied.
+[[noreturn]] void no_memory(const char* name);
+
 /// Raises ValueError unless the last axis is of that width.
 std::vector<py::ssize_t> leading_shape(const py::array& array, py::ssize_t width, const char* name);
 
@@ -40,7 +43,7 @@ Rows<T> rows(const py::handle& given, py::ssize_t width, const char* name, const
     for (const py::ssize_t n : out.leading) out.count *= static_cast<std::size_t>(n);
     constexpr int flags = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
     out.array = py::array_t<T, py::array::c_style>::ensure(py::array_t<T, flags>::ensure(array));
-    if (!out.array) throw py::error_already_set();
+    if (!out.array) no_memory(name); // numbers of these kinds convert
     return out;
 }
 

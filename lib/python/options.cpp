@@ -71,6 +71,7 @@ std::vector<SceneNormal> normals_of(const Options& options) {
     if (!options.has("normal_weights")) return out;
     const py::array given = numbers(options.get("normal_weights"), "normal_weights", "fiu");
     const auto weights = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+    if (!weights) no_memory("normal_weights");
     if (static_cast<std::size_t>(weights.size()) != out.size())
         throw py::value_error("normal_weights: " + std::to_string(weights.size()) + " of them for " +
                               std::to_string(out.size()) + " normals");
@@ -87,7 +88,7 @@ Numbers number_array(const py::object& given, const char* name) {
     if (is("float16")) out.number = Number::float16;
     else if (is("float32")) out.number = Number::float32;
     else if (!is("float64")) out.array = py::array_t<double, py::array::forcecast>::ensure(out.array);
-    if (!out.array) throw py::error_already_set();
+    if (!out.array) no_memory(name);
     for (py::ssize_t i = 0; i < out.array.ndim(); ++i) // what is broadcast overlaps, which the builder refuses
         if (out.array.strides(i) == 0 && out.array.shape(i) > 1) {
             out.array = py::array(py::module_::import("numpy").attr("ascontiguousarray")(out.array));

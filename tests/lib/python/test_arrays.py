@@ -107,6 +107,15 @@ class Environments(unittest.TestCase):
         w, p = self.sky.sample([[np.nan, np.inf], [-1, 2]])  # clamped
         self.assertTrue((p > 0).all())
 
+    def test_copies_beyond_all_memory_are_told(self):
+        vast = 1 << 58  # of a single number, but a copy takes an exbibyte or more
+        with self.assertRaisesRegex(MemoryError, "u: "):
+            self.sky.sample(np.broadcast_to(0.5, (vast, 2)))
+        with self.assertRaisesRegex(MemoryError, "array: "):
+            acdf.build_table(np.broadcast_to(np.int8(1), (vast,)))
+        with self.assertRaisesRegex(MemoryError, "normal_weights: "):
+            acdf.build_local(np.ones((4, 8)), normals=[[0, 0, 1]], normal_weights=np.broadcast_to(1, (vast,)))
+
     def test_threads_draw_at_once(self):
         u = numbers(2000000, 2)
         spans, ticks, done = [], [], threading.Event()
