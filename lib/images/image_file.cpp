@@ -1,31 +1,19 @@
 #include "images/image_file.h"
 
 #include "images/float_map.h"
+#include "images/openexr_header.h"
 #include "images/radiance.h"
 
-#include <array>
 #include <filesystem>
-#include <fstream>
 
 namespace acdf::images {
-namespace {
-
-/// Whether a file begins as one of OpenEXR does that has one part in rows, and no deep pixels.
-bool begins_as_openexr(const std::string& path) {
-    std::array<unsigned char, 8> begin{}; // its number, the version, flags
-    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(begin.data()), begin.size());
-    constexpr unsigned kTilesDeepOrParts = 0x1A;
-    return begin[0] == 0x76 && begin[1] == 0x2F && begin[2] == 0x31 && begin[3] == 0x01 && begin[4] == 2 &&
-           (begin[5] & kTilesDeepOrParts) == 0;
-}
-
-} // namespace
-
 ImageFile::ImageFile(const std::string& path, int threads) : path_(path), threads_(threads) {
     std::error_code error; // a pipe is not looked into
     const bool regular = std::filesystem::is_regular_file(path, error);
     if (regular && (open(float_map_reader()) || open(radiance_reader()))) return;
-    if (regular && begins_as_openexr(path) && open(openexr_module().reader)) return;
+    if (regular) error_ = openexr_claims_too_much(path);
+    if (!error_.empty()) return;
+    if (regular && is_usual_openexr(path) && open(openexr_module().reader)) return;
     open(module().reader);
 }
 
