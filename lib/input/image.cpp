@@ -104,11 +104,9 @@ bool overlap(const Window& a, const Window& b) {
 
 class Reader {
 public:
-    Reader(const std::string& path, int threads) : path_(path), file_(path, threads) {
-        if (file_.is_open()) return;
-        const std::string kind = kind_of_no_image(path);
-        fail(kind.empty() ? "no image that can be read (" + file_.error() + "); give an .exr, .hdr, .tif or .tx"
-                          : kind);
+    Reader(const std::string& path, int threads) : path_(path), file_(path_of_image(), threads) {
+        if (!file_.is_open())
+            fail("no image that can be read (" + file_.error() + "); give an .exr, .hdr, .tif or .tx");
     }
 
     Image read(const std::function<TakeRows(const Image& image)>& stream) {
@@ -134,6 +132,12 @@ public:
     }
 
 private:
+    /// OpenImageIO reads large files of other kinds to the end before it finds that they are none of its own.
+    const std::string& path_of_image() const {
+        if (const std::string kind = kind_of_no_image(path_); !kind.empty()) fail(kind);
+        return path_;
+    }
+
     const images::Header& header() const { return file_.header(); }
 
     [[noreturn]] void fail(const std::string& what) const { throw input_error(path_, what); }

@@ -1,7 +1,5 @@
 #include "input/other_kind.h"
 
-#include "input/merl.h"
-
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +19,7 @@ constexpr Beginning of_no_image[] = {
     {acdf_magic, 5, "it is an .acdf file; give the image that it was made from"},
     {"tensor_file", 11, "it is a BRDF of the RGL database, which acdf brdf takes"},
     {"\x93NUMPY", 6, "it is a NumPy array, which acdf table takes"},
+    {"\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12, "it is a MERL BRDF, which acdf brdf takes"}, // 90, 90, 180 bins
 };
 
 constexpr Beginning of_no_brdf[] = {
@@ -31,6 +30,8 @@ constexpr Beginning of_no_brdf[] = {
 
 template <std::size_t N>
 std::string told_by_beginning(const std::string& path, const Beginning (&known)[N]) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return {}; // what is read of a pipe is gone
     char first[12] = {};
     std::ifstream(path, std::ios::binary).read(first, sizeof first);
     for (const Beginning& beginning : known)
@@ -42,12 +43,6 @@ std::string told_by_beginning(const std::string& path, const Beginning (&known)[
 
 std::string kind_of_no_brdf(const std::string& path) { return told_by_beginning(path, of_no_brdf); }
 
-std::string kind_of_no_image(const std::string& path) {
-    if (std::string kind = told_by_beginning(path, of_no_image); !kind.empty()) return kind;
-    std::error_code error;
-    if (std::filesystem::file_size(path, error) == MerlLayout::bytes && !error)
-        return "it is a MERL BRDF, which acdf brdf takes";
-    return {};
-}
+std::string kind_of_no_image(const std::string& path) { return told_by_beginning(path, of_no_image); }
 
 } // namespace acdf::input

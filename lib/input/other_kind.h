@@ -5,7 +5,7 @@
 
 namespace acdf::input {
 
-/// Of a file that holds no image: what it is and which command takes it, or empty where its first bytes tell
+/// What a file is that holds no image, by its first bytes, and which command takes it; empty where they tell
 /// nothing.
 std::string kind_of_no_image(const std::string& path);
 

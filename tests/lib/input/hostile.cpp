@@ -12,6 +12,7 @@ namespace {
 
 using namespace acdf::input;
 using namespace acdf::test;
+using namespace std::string_literals;
 
 TEST(InputHostile, NoFileFolderEmptyText) {
     const Folder folder;
@@ -33,7 +34,7 @@ TEST(InputHostile, FilesOfOtherKindsAreCalledByTheirNames) {
     EXPECT_CONTAINS(refusal(folder.file("a")), "acdf brdf takes");
     write_bytes(folder.file("a"), "\x93NUMPY" + std::string(100, '\0'));
     EXPECT_CONTAINS(refusal(folder.file("a")), "acdf table takes");
-    write_bytes(folder.file("a"), "");
+    write_bytes(folder.file("a"), "\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0"s);
     std::filesystem::resize_file(folder.file("a"), MerlLayout::bytes);
     EXPECT_CONTAINS(refusal(folder.file("a")), "MERL BRDF");
 }
