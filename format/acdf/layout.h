@@ -84,6 +84,8 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_METADATA ACDF_FOURCC('M', 'E', 'T', 'A')
 #define ACDF_CHUNK_TILES ACDF_FOURCC('T', 'I', 'L', 'E')
 #define ACDF_CHUNK_ROWS ACDF_FOURCC('R', 'O', 'W', 'S')
+#define ACDF_CHUNK_SUMS ACDF_FOURCC('S', 'U', 'M', 'S')
+#define ACDF_CHUNK_GRID ACDF_FOURCC('G', 'R', 'I', 'D')
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
 #define ACDF_CHUNK_COMPANY ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
@@ -183,7 +185,7 @@ typedef struct AcdfPlanes {
 typedef struct AcdfTiles {
     uint32_t tile_count;    /* 1 to ACDF_MAX_TILES */
     uint32_t root_count;    /* 0: every tile is a cell */
-    uint32_t row_count;     /* rows of chunk ROWS */
+    uint32_t row_count;     /* rows of chunk ROWS, or of SUMS */
     uint32_t reserved;      /* 0 */
     uint16_t codebook[256]; /* strictly increasing from 0 to 65535 */
 } AcdfTiles;
@@ -195,7 +197,16 @@ typedef struct AcdfSplit {
 } AcdfSplit;
 
 /* Chunk ROWS: row_count rows of tile_count - 1 bytes: codebook[code] / 65535 is the probability of a split's lower
- * part. */
+ * part.
+ *
+ * Chunks SUMS and GRID, of the fast shape of local environments, instead (SPEC.md §5.11): `roots` are then offsets
+ * in GRID, in bytes. SUMS: row_count rows of cumulative uint16 over groups of tiles, as many as these rounded up to
+ * 16, and cumulative uint8 over the tiles of each group. GRID: for each tile two shifts, and the cumulative uint8
+ * of its cells; ACDF_FAST_GROUP bytes more, so that vectors may read on. */
+#define ACDF_FAST_GROUP 32u    /* tiles in a group; cells on a side of a grid, at most */
+#define ACDF_FAST_WHOLE 32767u /* the last cumulative value of groups */
+#define ACDF_FAST_MOST_SHIFT 30u
+
 /* Chunk LOCL, of local environments: this, then its lights. */
 typedef struct AcdfLocalHeader {
     float cosine_share; /* in [0, 1): of samples drawn around the normal with density cos / pi */

@@ -133,6 +133,7 @@ File& File::operator=(File&& other) noexcept {
     tree_ = std::exchange(other.tree_, nullptr);
     tree_units_ = std::exchange(other.tree_units_, 0);
     blend_ = std::exchange(other.blend_, AcdfBlend{});
+    fast_ = std::exchange(other.fast_, AcdfFast{});
     local_ = std::exchange(other.local_, nullptr);
     lights_ = std::exchange(other.lights_, nullptr);
     company_ = std::exchange(other.company_, nullptr);
@@ -191,6 +192,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.tree_ = parts.tree;
     loaded.tree_units_ = parts.tree_units;
     loaded.blend_ = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
+    loaded.fast_ = parts.fast;
     loaded.local_ = parts.local;
     loaded.lights_ = parts.lights;
     loaded.company_ = parts.company;
@@ -283,6 +285,7 @@ LocalEnvironmentView File::local() const noexcept {
     local.tables = local_tables_;
     local.places = places_;
     local.portals = portals_;
+    local.fast = fast_;
 #if ACDF_WAVEFRONT_X86
     local.vectors = local_vectors();
 #endif

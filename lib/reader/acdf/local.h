@@ -8,7 +8,7 @@
 #ifndef ACDF_LOCAL_H
 #define ACDF_LOCAL_H
 
-#include <acdf/local_point.h>
+#include <acdf/local_fast.h>
 #include <acdf/row_heights.h>
 
 #ifdef __cplusplus
@@ -107,14 +107,11 @@ ACDF_INLINE double acdf_local_draw_inside(const AcdfLocal* local, uint32_t tile,
 ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                        AcdfRange* range) {
     double probability;
-    uint32_t tile, axis;
+    uint32_t tile;
     const int tabled = acdf_local_tabled(local, point) && acdf_local_draws_mixture(point, u[0]);
     const AcdfLight* light = tabled ? 0 : acdf_local_draw_light(local, point, u, &probability);
     if (light) {
-        for (axis = 0; axis < 2; ++axis) {
-            range[axis].low = light->low[axis];
-            range[axis].high = light->high[axis];
-        }
+        acdf_light_range(light, range);
         probability = acdf_positive(probability / point->sum);
         tile = light->tile;
     } else {
@@ -123,30 +120,6 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
     return acdf_local_draw_inside(local, tile, probability, u, range);
-}
-
-/* The light of a tile: its number and 1; 0 where it has none. */
-ACDF_FN uint32_t acdf_local_light_of(const AcdfLocal* local, uint32_t tile) {
-    uint32_t low = 0, high = local->light_count;
-    if (local->tables) return acdf_local_tile(local->tables, tile)->light;
-    while (low < high) {
-        const uint32_t middle = (low + high) / 2;
-        if (local->lights[middle].tile < tile) low = middle + 1;
-        else high = middle;
-    }
-    return low < local->light_count && local->lights[low].tile == tile ? low + 1 : 0;
-}
-
-/* The probability of a tile to which the mixture gives that part of itself; 0 where no sample can fall. */
-ACDF_FN double acdf_local_tile_probability(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
-                                           double of_mixture) {
-    uint32_t light;
-    double probability;
-    if (of_mixture > 0.0) return acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * of_mixture);
-    light = acdf_local_light_of(local, tile); /* no row gives a light any probability */
-    if (light == 0) return 0.0;
-    probability = acdf_local_light_weight(local, point, light - 1) / point->sum;
-    return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }
 
 /* Finds the cell of a square in a tile of a probability; returns that of the cell. */
@@ -214,7 +187,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const A
                                                  const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
                                                  double p) {
     AcdfDirectionSample out;
-    if (point->what == ACDF_LOCAL_BLEND && local->tables &&
+    if (point->what >= ACDF_LOCAL_BLEND && local->tables &&
         (local->tables->octahedral
              ? acdf_fold_place(grid, range, u, p, &out)
              : acdf_row_place(acdf_local_heights(local->tables), grid->columns, range, u, p, &out)))
@@ -234,7 +207,8 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
         return told;
     if (point->what == ACDF_LOCAL_NOTHING || !acdf_local_square(&grid, direction, square)) return 0.0f;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    p = point->what == ACDF_LOCAL_BLEND
+    p = point->what == ACDF_LOCAL_FAST ? acdf_local_fast_find(local, point, square, range)
+        : point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_find(local, point, square, range)
             : acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->root, square, range);
     return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
@@ -294,7 +268,8 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     AcdfRange range[2];
     double p;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    p = point->what == ACDF_LOCAL_BLEND
+    p = point->what == ACDF_LOCAL_FAST ? acdf_local_fast_sample(local, point, u, range)
+        : point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
             : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
     return acdf_local_place(local, point, &grid, range, u, p);
@@ -350,7 +325,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     AcdfNormalBins bins;
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
-    if (point.what == ACDF_LOCAL_BLEND && acdf_company_records(local->company) &&
+    if (point.what >= ACDF_LOCAL_BLEND && acdf_company_records(local->company) &&
         acdf_local_bins(local, normal, &bins)) { /* shares tell what is left to the file */
         const AcdfCompanyRecord* records = acdf_company_records(local->company);
         double sum = 0.0;
@@ -358,7 +333,7 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
         for (i = 0; i < bins.count; ++i) sum += bins.weight[i] * (double)records[bins.bin[i]].flux;
         return acdf_clamp(local->environment.total * sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     }
-    if (point.what == ACDF_LOCAL_BLEND)
+    if (point.what >= ACDF_LOCAL_BLEND)
         return acdf_clamp(local->environment.total * point.sum / point.length, 0.0, 0x1.fffffffffffffp1023);
     if (point.what == ACDF_LOCAL_NOTHING || !acdf_local_bins(local, normal, &bins)) return 0.0;
     if (point.root == local->environment.root) return local->environment.total;
@@ -383,7 +358,7 @@ ACDF_FN float acdf_local_recommended_share(const AcdfLocal* local, const float n
 ACDF_FN int acdf_local_stored(const AcdfLocal* local, const float normal[3]) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
-    return point.what == ACDF_LOCAL_BLEND ||
+    return point.what >= ACDF_LOCAL_BLEND ||
            (point.what == ACDF_LOCAL_TREE && point.root != local->environment.root);
 }
 

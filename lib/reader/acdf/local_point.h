@@ -2,6 +2,7 @@
 #ifndef ACDF_LOCAL_POINT_H
 #define ACDF_LOCAL_POINT_H
 
+#include <acdf/fast.h>
 #include <acdf/local_tables.h>
 #include <acdf/normals.h>
 #include <acdf/portals.h>
@@ -27,6 +28,7 @@ typedef struct AcdfLocal {
     AcdfPlaceTable places;                  /* its header is null where places are not told apart */
     AcdfPortalTable portals;                /* its header is null where there are none */
     const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
+    AcdfFast fast;                          /* the fast shape: the blend has no rows then, and roots are of grids */
 } AcdfLocal;
 
 ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
@@ -34,9 +36,9 @@ ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfN
     return acdf_latlong_bins(local->columns, local->rows, normal, out);
 }
 
-/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share. Made once
- * for a shading point, it serves all samples there. */
-enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND };
+/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share, in either
+ * shape. Made once for a shading point, it serves all samples there. */
+enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST };
 
 typedef struct AcdfLocalPoint {
     int what;
@@ -51,6 +53,7 @@ typedef struct AcdfLocalPoint {
     double sum;                                /* of all weights */
     AcdfPlaceMixture place;                    /* empty: the position is not known, or does not matter */
     AcdfWindows windows;                       /* as the place sees them; its count is 0 where there are none */
+    AcdfFastMixture fast;                      /* of the fast shape; `mix` has the weights, too */
 } AcdfLocalPoint;
 
 /* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
@@ -123,14 +126,15 @@ ACDF_INLINE void acdf_local_tabled_row(const AcdfLocal* local, uint32_t row, Acd
     if (tables->parts) out->parts[out->mix.count] = acdf_local_parts(tables, row, local->blend.tiles->tile_count);
 }
 
-/* Finds the rows of a normal within one of the triangles of the octahedron, by tables: the weights are those of
- * acdf_octahedral_bins. Returns 0 on the edges of triangles, and where a corner is not stored or has no light. */
-ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+/* The corners of the triangle of the octahedron that holds a normal, by tables, and the weights of their rows:
+ * those of acdf_octahedral_bins. Returns 0 on the edges of triangles, and where a corner is not stored or has no
+ * light. */
+ACDF_INLINE int acdf_local_table_corners(const AcdfLocal* local, const float normal[3],
+                                         const AcdfCornerRecord* corner[3], double weight[3]) {
     const double ax = fabs((double)normal[0]), ay = fabs((double)normal[1]), az = fabs((double)normal[2]);
     const double sum = ax + ay + az;
     const int32_t n = (int32_t)local->subdivisions, side = 2 * n + 1;
-    const AcdfCornerRecord* corner[3];
-    double a[3], weight[3];
+    double a[3];
     int32_t base[3], over = n, down, x, y, i;
     if (!acdf_are_finite(normal) || !(sum > 0.0)) return 0;
     a[0] = ax / sum * n;
@@ -150,7 +154,15 @@ ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal
     corner[1] = corner[2] + y * (1 - 2 * down);
     for (i = 0; i < 3; ++i)
         weight[i] = fabs((double)down - (a[i] - base[i])) * corner[i]->length * (double)corner[i]->share;
-    if (!(weight[0] > 0.0) || !(weight[1] > 0.0) || !(weight[2] > 0.0)) return 0;
+    return weight[0] > 0.0 && weight[1] > 0.0 && weight[2] > 0.0;
+}
+
+/* Finds the rows of a normal within a triangle. Returns 0 where tables do not tell. */
+ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    const AcdfCornerRecord* corner[3];
+    double weight[3];
+    int i;
+    if (!acdf_local_table_corners(local, normal, corner, weight)) return 0;
     for (i = 0; i < 3; ++i) {
         acdf_local_tabled_row(local, corner[i]->row, out);
         acdf_mixture_add(&out->mix, &local->blend, corner[i]->row, weight[i]);
@@ -170,10 +182,8 @@ ACDF_INLINE void acdf_local_nowhere(AcdfPlaceMixture* place) {
     }
 }
 
-/* Finds what serves a normal, without the weights of lights and the place. Returns 0 where lights and mixture do
- * not. */
-ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    AcdfNormalBins bins;
+/* Begins a point: nothing serves it. */
+ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) {
     int i;
     out->what = ACDF_LOCAL_NOTHING;
     out->root = 0;
@@ -186,6 +196,21 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
         out->codes[i] = 0;
         out->parts[i] = 0;
     }
+}
+
+/* The environment's tree serves a normal: one of its bins is not stored. */
+ACDF_INLINE int acdf_local_whole(const AcdfLocal* local, AcdfLocalPoint* out) {
+    out->what = ACDF_LOCAL_TREE;
+    out->root = local->environment.root;
+    return 0;
+}
+
+/* Finds what serves a normal, without the weights of lights and the place. Returns 0 where lights and mixture do
+ * not. */
+ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    AcdfNormalBins bins;
+    int i;
+    acdf_local_nothing(normal, out);
     if (local->tables && local->tables->corners && acdf_local_table_rows(local, out->surface, out)) {
         acdf_local_normal(local, out->surface, out);
         return 1;
@@ -199,15 +224,43 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     }
     for (i = 0; i < bins.count; ++i) {
         const AcdfBin* bin = &local->bins[bins.bin[i]];
-        if (bin->root == ACDF_NO_ROOT) {
-            out->what = ACDF_LOCAL_TREE;
-            out->root = local->environment.root;
-            return 0;
-        }
+        if (bin->root == ACDF_NO_ROOT) return acdf_local_whole(local, out);
         if (local->tables) acdf_local_tabled_row(local, bin->root, out);
         acdf_mixture_add(&out->mix, &local->blend, bin->root, bins.weight[i] * (double)bin->share);
     }
     acdf_local_normal(local, out->surface, out);
+    return 1;
+}
+
+/* A row of the fast shape, and what of the mixture it weighs. */
+ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, double weight, AcdfLocalPoint* out) {
+    if (!(weight > 0.0)) return;
+    out->mix.weight[out->mix.count] = weight;
+    out->fast.row[out->mix.count] = local->fast.sums + (size_t)row * local->fast.stride;
+    ACDF_PREFETCH(out->fast.row[out->mix.count]);
+    ++out->mix.count;
+}
+
+/* acdf_local_begin of files of the fast shape. */
+ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    const AcdfCornerRecord* corner[3];
+    AcdfNormalBins bins;
+    double weight[3];
+    int i;
+    acdf_local_nothing(normal, out);
+    for (i = 0; i < ACDF_FAST_ROWS; ++i) out->fast.row[i] = local->fast.sums;
+    if (local->tables && local->tables->corners && acdf_local_table_corners(local, out->surface, corner, weight)) {
+        for (i = 0; i < 3; ++i) acdf_local_fast_row(local, corner[i]->row, weight[i], out);
+    } else {
+        if (!acdf_local_bins(local, out->surface, &bins)) return 0;
+        for (i = 0; i < bins.count; ++i) {
+            const AcdfBin* bin = &local->bins[bins.bin[i]];
+            if (bin->root == ACDF_NO_ROOT) return acdf_local_whole(local, out);
+            acdf_local_fast_row(local, bin->root, bins.weight[i] * (double)bin->share, out);
+        }
+    }
+    acdf_local_normal(local, out->surface, out);
+    acdf_fast_mix(out->mix.weight, out->mix.count, &out->fast);
     return 1;
 }
 
@@ -228,14 +281,15 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
             out->lights += visible ? weight[0] * visible[k] : weight[0];
         }
     out->sum = out->lights + acdf_mixture_sum(&out->mix);
-    if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
+    if (out->sum > 0.0) out->what = local->fast.grid ? ACDF_LOCAL_FAST : ACDF_LOCAL_BLEND;
 }
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     acdf_local_nowhere(&out->place);
     out->windows.count = 0;
-    if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
+    if (local->fast.grid ? acdf_local_begin_fast(local, normal, out) : acdf_local_begin(local, normal, out))
+        acdf_local_sum(local, 0, out);
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, whatever comes through windows. */
@@ -247,6 +301,10 @@ ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3]
     out->windows.count = 0;
     acdf_as_given(normal, out->surface);
     /* First of all: rows of places are far away, and come while the normal's are found. */
+    if (local->fast.grid) { /* which knows no places */
+        acdf_local_at(local, normal, out);
+        return;
+    }
     if (local->blend.tiles)
         acdf_place_at(&local->places, local->blend.tiles->tile_count, position, out->surface, &out->place);
     if (!acdf_local_begin(local, normal, out)) {
@@ -301,6 +359,39 @@ ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const Acd
     u[0] = acdf_unit_interval(x / *weight);
     return light;
 }
+/* The box of a tile that has a light. */
+ACDF_INLINE void acdf_light_range(const AcdfLight* light, AcdfRange* range) {
+    int axis;
+    for (axis = 0; axis < 2; ++axis) {
+        range[axis].low = light->low[axis];
+        range[axis].high = light->high[axis];
+    }
+}
+
+/* The light of a tile: its number and 1; 0 where it has none. */
+ACDF_FN uint32_t acdf_local_light_of(const AcdfLocal* local, uint32_t tile) {
+    uint32_t low = 0, high = local->light_count;
+    if (local->tables) return acdf_local_tile(local->tables, tile)->light;
+    while (low < high) {
+        const uint32_t middle = (low + high) / 2;
+        if (local->lights[middle].tile < tile) low = middle + 1;
+        else high = middle;
+    }
+    return low < local->light_count && local->lights[low].tile == tile ? low + 1 : 0;
+}
+
+/* The probability of a tile to which the mixture gives that part of itself; 0 where no sample can fall. */
+ACDF_FN double acdf_local_tile_probability(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
+                                           double of_mixture) {
+    uint32_t light;
+    double probability;
+    if (of_mixture > 0.0) return acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * of_mixture);
+    light = acdf_local_light_of(local, tile); /* no row gives a light any probability */
+    if (light == 0) return 0.0;
+    probability = acdf_local_light_weight(local, point, light - 1) / point->sum;
+    return probability > 0.0 ? acdf_positive(probability) : 0.0;
+}
+
 #ifdef __cplusplus
 }
 #endif

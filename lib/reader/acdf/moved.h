@@ -75,6 +75,8 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfPortalMap, local->portals.maps);
     ACDF_MOVE(uint32_t, local->portals.sums);
     ACDF_MOVE(uint8_t, local->portals.rows);
+    ACDF_MOVE(uint8_t, local->fast.grid);
+    ACDF_MOVE(uint8_t, local->fast.sums);
     local->vectors = 0; /* of this process */
 }
 

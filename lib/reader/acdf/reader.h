@@ -103,6 +103,8 @@ public:
     const std::uint8_t* tree() const noexcept { return tree_; }
     /// What bins share; `tiles` is null where each has a tree of its own.
     const AcdfBlend& blend() const noexcept { return blend_; }
+    /// Of the fast shape of local environments; its pointers are null where a file has another one.
+    const AcdfFast& fast() const noexcept { return fast_; }
     std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
     /// What the file is to be combined with; null: it is to be used alone.
@@ -144,6 +146,7 @@ private:
     const std::uint8_t* tree_ = nullptr;
     std::uint32_t tree_units_ = 0;
     AcdfBlend blend_ = {};
+    AcdfFast fast_ = {};
     const AcdfLocalHeader* local_ = nullptr;
     const AcdfLight* lights_ = nullptr;
     const AcdfCompany* company_ = nullptr;

@@ -144,7 +144,9 @@ constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_
 
 // Whether a known chunk has a place in files of a kind.
 bool belongs(int known, u32 kind) {
-    if (known == chunk_local || known == chunk_places || known == chunk_portals) return kind == ACDF_KIND_LOCAL;
+    if (known == chunk_local || known == chunk_places || known == chunk_portals || known == chunk_sums ||
+        known == chunk_grid)
+        return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
     if (known == chunk_company) return kind != ACDF_KIND_BRDF;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
@@ -289,8 +291,11 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
     TileBoxes boxes;
+    const bool fast =
+        header.kind == ACDF_KIND_LOCAL && (payloads.of[chunk_sums].data || payloads.of[chunk_grid].data);
     if (belongs(chunk_tiles, header.kind)) // else rule 3013
-        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], report, parts, boxes);
+        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], fast, report, parts, boxes);
+    if (fast && !report.stopped()) check_fast(payloads, boxes, report, parts);
     const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
     if (tiles_ok && !report.stopped())
         check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);

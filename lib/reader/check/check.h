@@ -62,6 +62,7 @@ struct Parts {
     const AcdfSplit* splits = nullptr;         ///< tiles->tile_count - 1
     const std::uint32_t* tile_roots = nullptr; ///< tiles->tile_count, or null: all tiles are cells
     const std::uint8_t* rows = nullptr;        ///< tiles->row_count rows of tiles->tile_count - 1 codes
+    AcdfFast fast = {};                        ///< of the fast shape, which has no rows; else null
     const AcdfLocalHeader* local = nullptr;    ///< of local environments
     const AcdfLight* lights = nullptr;         ///< local->light_count
     const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone

@@ -51,6 +51,8 @@ enum KnownChunk {
     chunk_company,
     chunk_places,
     chunk_portals,
+    chunk_sums,
+    chunk_grid,
     known_chunks
 };
 
@@ -63,6 +65,7 @@ struct TileBox {
 struct TileBoxes {
     TileBox* of = nullptr;
     bool given = false; ///< there is a TILE, right or wrong
+    bool fast = false;  ///< of the fast shape: roots are no places in TREE
     Payload roots;      ///< the part of TILE that tells the roots of tiles
 
     TileBoxes() = default;
@@ -82,8 +85,11 @@ void check_description(const Payload& payload, std::uint32_t kind, Report& repor
 /// META. Sets parts.metadata if it is well-formed.
 void check_metadata(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// TILE and ROWS; needs parts.description. Sets parts.tiles and what belongs to it, and `boxes`, if they are right.
-void check_tiles(const Payload& tiles, const Payload& rows, Report& report, Parts& parts,
+/// `fast`: there are no ROWS, and roots are no places in TREE (check_fast).
+void check_tiles(const Payload& tiles, const Payload& rows, bool fast, Report& report, Parts& parts,
                  TileBoxes& boxes) noexcept;
+/// SUMS and GRID, which come beside TILE; needs what check_tiles sets. Sets parts.fast if they are right.
+void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report, Parts& parts) noexcept;
 /// BINS and TREE; needs parts.description and, where there are tiles, those. Sets parts.bins, parts.tree.
 void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, const TileBoxes& boxes,
                 Report& report, Parts& parts) noexcept;

@@ -100,18 +100,47 @@ u32 path_to(const AcdfLight& light, const Parts& parts, Step path[ACDF_MAX_SPLIT
     return count;
 }
 
+// Whether a row gives nothing to a light, by the splits on its path.
+struct DarkBySplits {
+    const Parts& parts;
+    Step path[ACDF_MAX_SPLITS_DEEP];
+    u32 steps;
+
+    DarkBySplits(const Parts& of, const AcdfLight& light) : parts(of), steps(path_to(light, of, path)) {}
+    bool in(u32 row) const {
+        const u8* codes = parts.rows + u64{row} * (parts.tiles->tile_count - 1);
+        for (u32 s = 0; s < steps; ++s)
+            if (codes[path[s].split] == (path[s].upper ? 255 : 0)) return true;
+        return false;
+    }
+};
+
+// The same by the sums of the fast shape.
+struct DarkBySums {
+    const Parts& parts;
+    u32 tile;
+
+    DarkBySums(const Parts& of, const AcdfLight& light) : parts(of), tile(light.tile) {}
+    bool in(u32 row) const {
+        const u8* sums = parts.fast.sums + u64{row} * parts.fast.stride;
+        u32 end;
+        if (const u32 before = acdf_fast_group_before(sums, tile / ACDF_FAST_GROUP, &end); before == end)
+            return true;
+        const u8* list = sums + 2 * parts.fast.ends + (tile & ~(ACDF_FAST_GROUP - 1));
+        const u32 before = acdf_fast_before(list, tile % ACDF_FAST_GROUP, &end);
+        return before == end;
+    }
+};
+
 // Light is drawn as a light or in the mixture, but not both.
+template <class Dark>
 void check_light_rows(const Payload& payload, Report& report, const Parts& parts) {
-    const u32 width = parts.tiles->tile_count - 1, bins = parts.bins ? parts.description->bin_count : 0;
+    const u32 bins = parts.bins ? parts.description->bin_count : 0;
     for (u32 i = 0; i < parts.local->light_count && !report.stopped(); ++i) {
-        Step path[ACDF_MAX_SPLITS_DEEP];
-        const u32 steps = path_to(parts.lights[i], parts, path);
+        const Dark dark(parts, parts.lights[i]);
         for (u32 b = 0; b < bins; ++b) {
             if (parts.bins[b].root >= parts.tiles->row_count || !(parts.bins[b].share > 0.0f)) continue;
-            const u8* row = parts.rows + u64{parts.bins[b].root} * width;
-            bool dark = false;
-            for (u32 s = 0; s < steps && !dark; ++s) dark = row[path[s].split] == (path[s].upper ? 255 : 0);
-            if (dark) continue;
+            if (dark.in(parts.bins[b].root)) continue;
             report.add(7007, payload.at(sizeof(AcdfLocalHeader) + i * sizeof(AcdfLight)), "light %u in bin %u", i,
                        b);
             break;
@@ -140,7 +169,9 @@ void check_local_kind(const Payload& description, const Payload& payload, const 
     parts.local = header;
     parts.lights = reinterpret_cast<const AcdfLight*>(payload.data + sizeof *header);
     if (parts.tiles || !boxes.given) check_lights(payload, boxes, report, parts); // else told of TILE
-    if (parts.rows && report.verdict().errors == errors) check_light_rows(payload, report, parts);
+    if (report.verdict().errors != errors) return;
+    if (parts.rows) check_light_rows<DarkBySplits>(payload, report, parts);
+    if (parts.fast.sums) check_light_rows<DarkBySums>(payload, report, parts);
 }
 
 } // namespace acdf

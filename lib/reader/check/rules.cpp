@@ -124,7 +124,18 @@ const Rule rules[] = {
      "A split is on axis 0 or 1, its position strictly inside the box that it divides."},
     {6024, error, malformed, "tile-root", "The root of a tile is the start of a curve, or FFFFFFFF."},
     {6025, error, malformed, "rows", "ROWS comes with TILE, and holds `row_count` rows of a byte a split."},
-    {6026, error, malformed, "bin-row", "The row of a bin is one of ROWS, or FFFFFFFF."},
+    {6026, error, malformed, "bin-row",
+     "The row of a bin is one of ROWS, of SUMS where there is that, or FFFFFFFF."},
+    {6027, error, malformed, "fast-shape",
+     "SUMS and GRID come together, with TILE and roots of its tiles, and without ROWS, PLAC and PORT."},
+    {6028, error, malformed, "sums",
+     "SUMS has `row_count` rows. Ends of groups never decrease up to 32767, those of the tiles of a group up to "
+     "255, and "
+     "nothing behind the last group and tile has a share."},
+    {6029, error, malformed, "grid",
+     "GRID has the grids of all tiles without gaps, each at its root, with shifts of at most 30 and 1 to 32 cells "
+     "an "
+     "axis, and behind them 32 zero bytes. The ends of a list never decrease up to 255."},
 
     {7001, error, malformed, "environment-axes",
      "An environment, local or not, has the two axes of §6.1 first, with parameterization 4 those of §6.9, with "

@@ -197,7 +197,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     std::size_t words = at + tiles.words() + heights + corners + lights + middles;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
-    const bool small = pieces.make();
+    const bool small = !local.fast.grid && pieces.make();
     if (small) words += pieces.words();
     std::size_t hearts = tiles.heart_words();
     if (hearts > 0 && (4 * (words + hearts) > most_bytes || !tiles.prepare_hearts())) hearts = 0;

@@ -131,7 +131,7 @@ std::size_t TileTablesMaker::stride() const noexcept { return (used_ + kLine - 1
 
 // With a line more: instead of a split below a tile a walk looks at any other.
 std::size_t TileTablesMaker::row_words() const noexcept {
-    return used_ > 0 ? (blend_.tiles->row_count * stride() + kLine) / 4 : 0;
+    return used_ > 0 && blend_.rows ? (blend_.tiles->row_count * stride() + kLine) / 4 : 0;
 }
 
 std::size_t TileTablesMaker::split_words() const noexcept { return 2 * (stride() + kLine); }
@@ -159,7 +159,7 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
     at = whole_lines(at + 2 * stride());
     out.rows = static_cast<u32>(at);
     const std::size_t rows =
-        splits > 0 ? blend_.tiles->row_count : 0;         // without splits any number of them takes no byte
+        splits > 0 && blend_.rows ? blend_.tiles->row_count : 0; // without splits any number of them takes no byte
     const std::uint16_t* const numbers = numbers_.data(); // which stored bytes might be, for all a compiler knows
     for (std::size_t row = 0; row < rows; ++row) {
         const std::uint8_t* const from = blend_.rows + row * splits;
@@ -179,7 +179,7 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
 }
 
 std::size_t TileTablesMaker::heart_words() const noexcept {
-    return used_ > 0 && 2 * std::size_t{blend_.tiles->tile_count} < 65536
+    return used_ > 0 && blend_.rows && 2 * std::size_t{blend_.tiles->tile_count} < 65536
                ? whole_lines(blend_.tiles->row_count * stride() / 2)
                : 0;
 }

@@ -73,7 +73,8 @@ void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count)
 
 // Whether vectors serve a file, and a point of such.
 bool serves_waves(const AcdfLocal& local) {
-    return local.tables && local.tables->corners && local.cosine_share == 0.0 && local.blend.tiles->tile_count > 1;
+    return local.tables && local.tables->corners && local.cosine_share == 0.0 &&
+           local.blend.tiles->tile_count > 1 && !local.fast.grid;
 }
 bool serves_waves(const AcdfLocalPoint& point) {
     return point.what == ACDF_LOCAL_BLEND && point.mix.count == kRows && point.place.count == 0 &&
