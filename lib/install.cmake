@@ -29,11 +29,13 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_c.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_words.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/groups.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/lobe.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h

@@ -1,0 +1,231 @@
+// acdf/local_fast.h against a decoder written from the specification, on files of which no fit would think; with
+// runtime tables and without, by many at once, by products, moved and as C.
+#include "tests/lib/reader/local_fast_random.h"
+#include "tests/lib/reader/local_loaded.h"
+#include "tests/lib/reader/local_reference.h"
+
+#include <acdf/wavefront.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+using namespace acdf_test;
+
+extern "C" void acdf_c_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1,
+                                    AcdfDirectionSample* out);
+
+namespace {
+
+using acdf_reference::Local;
+
+constexpr std::uint32_t file_count = 160;
+
+LocalSpec random_fast(std::uint32_t seed) {
+    RandomOptions options;
+    options.columns = seed % 3 == 0 ? 1 + seed : seed % 3 == 1 ? 64 : 5000;
+    options.rows = seed % 4 == 0 ? 33 : 1 + 7 * seed;
+    options.long_curves = false;
+    options.tilts = false; // of the tree beside the tiles
+    options.octahedral = seed % 2 == 1;
+    LocalSpec spec = RandomFast(seed, options).make();
+    spec.zlib = seed % 5 == 0;
+    return spec;
+}
+
+double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
+
+std::array<float, 3> random_direction(std::mt19937_64& rng) {
+    const double z = 2 * unit(rng) - 1, phi = 2 * pi * unit(rng), sine = std::sqrt(1 - z * z);
+    return {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)),
+            static_cast<float>(z)};
+}
+
+std::array<float, 3> random_normal(std::mt19937_64& rng) {
+    if (rng() % 4 == 0) {
+        const std::array<float, 3> n = edge_normal(rng);
+        return n[0] == 0.0f && n[1] == 0.0f && n[2] == 0.0f ? std::array<float, 3>{0.0f, 0.0f, 1.0f} : n;
+    }
+    std::array<float, 3> n = random_direction(rng);
+    for (float& x : n) x *= static_cast<float>(std::exp(3.0 * double(rng() % 5) - 6.0));
+    return n;
+}
+
+struct FastFile {
+    Bytes bytes;
+    acdf::File file;
+
+    FastFile(LocalSpec spec, bool tables) : bytes(spec.encode()) {
+        acdf::LoadOptions options;
+        options.tables = tables;
+        const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file, options);
+        EXPECT_TRUE(status.ok()) << status.message;
+    }
+};
+
+TEST(FastShape, AgreesWithTheSlowDecoder) {
+    int drawn = 0, groups = 0;
+    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+        const FastFile loaded(random_fast(seed), seed % 3 != 0);
+        const Local reference(loaded.bytes);
+        const acdf::LocalEnvironmentView view = loaded.file.local();
+        ASSERT_NE(view.data().fast.grid, nullptr);
+        groups += view.data().blend.tiles->tile_count > 32;
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 200; ++i) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
+            const std::array<float, 3> normal = random_normal(rng);
+            const Local::Vector n = {double{normal[0]}, double{normal[1]}, double{normal[2]}};
+            const double u0 = unit(rng), u1 = unit(rng), sigma = reference.sigma;
+            const Local::Source source = reference.source(n);
+            const acdf::DirectionSample s = view.sample(normal.data(), u0, u1);
+            ASSERT_EQ(s.pdf > 0.0f, source.what != Local::Source::nothing);
+            const double d[3] = {s.direction[0], s.direction[1], s.direction[2]};
+            if (s.pdf > 0.0f && u0 >= sigma) {
+                const auto expected =
+                    reference.sample_light(source, sigma > 0 ? (u0 - sigma) / (1 - sigma) : u0, u1);
+                for (int k = 0; k < 3; ++k) ASSERT_NEAR(d[k], expected.direction[k], 4e-7);
+                const double cosine = (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]) / std::hypot(n[0], n[1], n[2]);
+                const double pdf = (1 - sigma) * expected.pdf + sigma * std::max(0.0, cosine) / pi;
+                ASSERT_NEAR(s.pdf / pdf, 1.0, 1e-5);
+                ++drawn;
+            }
+            const std::array<float, 3> any = random_direction(rng);
+            float f[3];
+            acdf_as_given(any.data(), f);
+            const double expected = reference.pdf(n, {double{f[0]}, double{f[1]}, double{f[2]}});
+            ASSERT_NEAR(view.pdf(normal.data(), f), expected, 1e-5 * expected);
+        }
+    }
+    EXPECT_GT(drawn, 10000);
+    EXPECT_GT(groups, 30);
+}
+
+// To the bit, for random numbers of every kind; and nothing with energy is out of reach.
+TEST(FastShape, PdfOfASampleIsExact) {
+    const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000};
+    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+        const FastFile with(random_fast(seed), true), without(random_fast(seed), false);
+        const acdf::LocalEnvironmentView view = with.file.local(), plain = without.file.local();
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 600; ++i) {
+            const std::array<float, 3> n = random_normal(rng);
+            const double u0 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
+            const double u1 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
+            const acdf::DirectionSample s = view.sample(n.data(), u0, u1), t = plain.sample(n.data(), u0, u1);
+            ASSERT_TRUE(std::isfinite(s.pdf));
+            ASSERT_EQ(s.pdf > 0.0f, t.pdf > 0.0f);
+            if (s.pdf == 0.0f) continue;
+            ASSERT_EQ(view.pdf(n.data(), s.direction), s.pdf) << "seed " << seed << ", sample " << i;
+            ASSERT_EQ(plain.pdf(n.data(), t.direction), t.pdf) << "seed " << seed << ", sample " << i;
+            ASSERT_EQ(plain.pdf(n.data(), s.direction), s.pdf) << "seed " << seed << ", sample " << i;
+            ASSERT_NEAR(std::hypot(s.direction[0], s.direction[1], s.direction[2]), 1.0, 1e-6);
+        }
+    }
+}
+
+// Of each square of the grid: its density and its solid angle.
+TEST(FastShape, IntegratesToOne) {
+    for (const bool octahedral : {false, true})
+        for (std::uint32_t seed = 0; seed < 24; ++seed) {
+            RandomOptions options;
+            options.columns = octahedral ? 40 : 44;
+            options.rows = octahedral ? 40 : 23;
+            options.octahedral = octahedral;
+            options.long_curves = false;
+            LocalSpec spec = RandomFast(seed, options).make();
+            spec.cosine_share = 0.0f;
+            const FastFile loaded(spec, true);
+            const acdf::LocalEnvironmentView view = loaded.file.local();
+            const AcdfGrid grid = acdf_environment_grid(&view.data().environment);
+            std::mt19937_64 rng(seed);
+            for (int i = 0; i < 6; ++i) {
+                const std::array<float, 3> normal = random_normal(rng);
+                const AcdfLocalPoint point = view.at(normal.data());
+                if (point.what != ACDF_LOCAL_FAST) continue;
+                double sum = 0.0;
+                for (std::uint32_t row = 0; row < options.rows; ++row)
+                    for (std::uint32_t column = 0; column < options.columns; ++column) {
+                        AcdfRange range[2] = {{column, column + 1, 0.0}, {row, row + 1, 0.0}};
+                        const double middle[2] = {0.5, 0.5};
+                        const acdf::DirectionSample s = acdf_grid_place(&grid, range, middle, 1.0);
+                        sum += acdf_grid_solid_angle(&grid, range) * double{view.pdf(point, s.direction)};
+                    }
+                EXPECT_NEAR(sum, 1.0, 1e-6) << seed;
+            }
+        }
+}
+
+// By hand: at +x row 1 alone, 200 of 255 in tile 0; there 110 of 255 in line 2, the second cell of which has 80.
+TEST(FastShape, HandMadeDensities) {
+    const FastFile loaded(fast_local(), true);
+    const acdf::LocalEnvironmentView view = loaded.file.local();
+    const float x[3] = {7.0f, 0.0f, 0.0f};
+    const auto at = [&](double column, double row) { // positions
+        const double phi = pi - 2 * pi * column / 8, theta = pi * row / 8;
+        const float d[3] = {static_cast<float>(std::sin(theta) * std::cos(phi)),
+                            static_cast<float>(std::sin(theta) * std::sin(phi)),
+                            static_cast<float>(std::cos(theta))};
+        return static_cast<double>(view.pdf(x, d));
+    };
+    const double bright = 200.0 / 255.0 * (110.0 / 255.0) * (80.0 / 255.0) /
+                          (2 * pi / 8 * (std::cos(4 * pi / 8) - std::cos(6 * pi / 8)));
+    EXPECT_NEAR(at(1.5, 5.5) / bright, 1.0, 1e-6);
+    EXPECT_EQ(at(1.5, 3.0), 0.0); // line 1
+    EXPECT_EQ(at(1.5, 1.0), 0.0); // the second cell of line 0
+    EXPECT_EQ(at(5.0, 1.0), 0.0); // tile 1
+    const double cut = 55.0 / 255.0 * (60.0 / 255.0) * (165.0 / 255.0) /
+                       (2 * pi / 8 * (std::cos(2 * pi / 8) - std::cos(6 * pi / 8)));
+    EXPECT_NEAR(at(7.5, 3.0) / cut, 1.0, 1e-6); // the last cell of the line has one column
+    EXPECT_NEAR(view.irradiance(x), 3.0 * 0.25, 1e-6);
+    EXPECT_TRUE(view.stored(x));
+    const float back[3] = {-1, 0, 0}; // is not stored
+    EXPECT_FALSE(view.stored(back));
+    EXPECT_GT(view.sample(back, 0.3, 0.6).pdf, 0.0f);
+}
+
+TEST(FastShape, StrataStayStrata) {
+    const FastFile loaded(random_fast(7), true);
+    const acdf::LocalEnvironmentView view = loaded.file.local();
+    const float n[3] = {0.3f, -0.5f, 0.8f};
+    const AcdfLocalPoint point = view.at(n);
+    ASSERT_EQ(point.what, ACDF_LOCAL_FAST);
+    double before = -1.0;
+    for (int i = 0; i <= 100000; ++i) { // tiles are drawn in their order within a group, groups in theirs
+        double u[2] = {i / 100000.0, 0.5}, part;
+        const std::uint32_t tile = acdf_fast_draw_tile(&view.data().fast, &point.fast, u, &part);
+        ASSERT_GE(double(tile / ACDF_FAST_GROUP), before);
+        ASSERT_GE(u[0], 0.0);
+        ASSERT_LE(u[0], 1.0);
+        before = tile / ACDF_FAST_GROUP;
+    }
+}
+
+TEST(FastShape, ManyAtOnceAndAsC) {
+    for (std::uint32_t seed = 0; seed < 12; ++seed) {
+        const FastFile loaded(random_fast(seed), true);
+        const acdf::LocalEnvironmentView view = loaded.file.local();
+        const acdf::LocalWavefront wavefront(view);
+        std::mt19937_64 rng(seed);
+        constexpr std::size_t count = 100;
+        float normals[count][3];
+        double u[count][2];
+        acdf::DirectionSample out[count];
+        for (std::size_t i = 0; i < count; ++i) {
+            std::memcpy(normals[i], random_normal(rng).data(), sizeof normals[i]);
+            u[i][0] = unit(rng);
+            u[i][1] = unit(rng);
+        }
+        wavefront.sample(normals, u, count, out);
+        for (std::size_t i = 0; i < count; ++i) {
+            const acdf::DirectionSample one = view.sample(normals[i], u[i][0], u[i][1]);
+            EXPECT_EQ(std::memcmp(&one, &out[i], sizeof one), 0);
+            AcdfDirectionSample c;
+            acdf_c_local_sample(&view.data(), normals[i], u[i][0], u[i][1], &c);
+            EXPECT_EQ(std::memcmp(&one, &c, sizeof c), 0);
+        }
+    }
+}
+
+} // namespace

@@ -1,0 +1,147 @@
+// Random local environments of the fast shape: any splits, sums and grids, dark lines, cells, tiles and groups,
+// lights, bins that are dark or not stored, all forms of bins.
+#pragma once
+
+#include "tests/lib/reader/local_random.h"
+
+namespace acdf_test {
+
+class RandomFast {
+public:
+    RandomFast(std::uint32_t seed, const RandomOptions& options) : rng_(seed), options_(options) {}
+
+    LocalSpec make() {
+        LocalSpec spec;
+        spec.columns = options_.columns;
+        spec.rows = options_.rows;
+        spec.octahedral = options_.octahedral;
+        spec.subdivisions = below(3) == 0 ? 0 : 1 + below(6);
+        spec.bin_columns = 1 + below(9);
+        spec.bin_rows = 1 + below(5);
+        spec.cosine_share = below(2) == 0 ? 0.0f : static_cast<float>(uniform());
+        spec.total = std::exp(20.0 * uniform() - 10.0);
+        spec.codebook = even_codebook();
+        RandomTree trees(static_cast<std::uint32_t>(rng_()), options_);
+        spec.tree = trees.make_within({0, 0}, {options_.columns, options_.rows});
+        spec.fast.emplace();
+        divide(spec, {{0, 0}, {options_.columns, options_.rows}}, static_cast<int>(below(9)));
+        spec.tiles = static_cast<std::uint32_t>(boxes_.size());
+        for (std::uint32_t t = 0; t < spec.tiles; ++t)
+            if (spec.tiles > 1 && below(spec.tiles) < 3) add_light(spec, t);
+        const std::uint32_t rows = 1 + below(12);
+        for (std::uint32_t r = 0; r < rows; ++r) spec.fast->rows.push_back(row(spec));
+        const std::size_t bins = spec.subdivisions > 0 ? 4 * spec.subdivisions * spec.subdivisions + 2
+                                                       : std::size_t{spec.bin_columns} * spec.bin_rows;
+        for (std::size_t b = 0; b < bins; ++b)
+            spec.bins.push_back({below(20) == 0 ? no_root : below(rows), share()});
+        while (RandomTree::widen_links(spec.tree)) {
+        }
+        return spec;
+    }
+
+private:
+    struct Box {
+        std::array<std::uint32_t, 2> low, high;
+    };
+
+    double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(rng_); }
+    std::uint32_t below(std::uint32_t n) { return std::uniform_int_distribution<std::uint32_t>(0, n - 1)(rng_); }
+    float share() { return below(8) == 0 ? 0.0f : static_cast<float>(std::exp(6.0 * uniform() - 4.0)); }
+
+    // Returns what stands for the box in its parent.
+    std::uint32_t divide(LocalSpec& spec, const Box& box, int depth) {
+        const std::uint32_t axis = box.high[0] - box.low[0] < 2 || (below(2) == 0 && box.high[1] - box.low[1] > 1);
+        if (depth == 0 || below(12) == 0 || box.high[axis] - box.low[axis] < 2) {
+            boxes_.push_back(box);
+            spec.fast->grids.push_back(grid(box));
+            return tile_flag | static_cast<std::uint32_t>(boxes_.size() - 1);
+        }
+        const std::size_t index = spec.splits.size();
+        const std::uint32_t position = box.low[axis] + 1 + below(box.high[axis] - box.low[axis] - 1);
+        spec.splits.push_back({axis, position, {}});
+        Box lower = box, upper = box;
+        lower.high[axis] = upper.low[axis] = position;
+        const std::uint32_t first = divide(spec, lower, depth - 1), second = divide(spec, upper, depth - 1);
+        spec.splits[index].child[0] = first;
+        spec.splits[index].child[1] = second;
+        return static_cast<std::uint32_t>(index);
+    }
+
+    // Ends of `count` parts of some whole, some of which are 0; of those that must be 0 none else.
+    std::vector<std::uint32_t> ends(std::size_t count, std::uint32_t whole, const std::vector<bool>& dark = {}) {
+        std::vector<std::uint32_t> out(count), at;
+        for (std::size_t i = 0; i < count; ++i)
+            if (i >= dark.size() || !dark[i]) at.push_back(static_cast<std::uint32_t>(i));
+        if (at.empty()) { // nothing may have any: whoever asks gives nothing to the whole
+            at.push_back(static_cast<std::uint32_t>(count - 1));
+        }
+        std::vector<std::uint32_t> steps(count, 0);
+        for (std::uint32_t left = whole, n = 0; left > 0; ++n) {
+            const std::uint32_t some = n > 60 ? left : 1 + below(left);
+            steps[at[below(static_cast<std::uint32_t>(at.size()))]] += some;
+            left -= some;
+        }
+        std::uint32_t sum = 0;
+        for (std::size_t i = 0; i < count; ++i) out[i] = sum += steps[i];
+        return out;
+    }
+    Bytes byte_ends(std::size_t count, const std::vector<bool>& dark = {}) {
+        const std::vector<std::uint32_t> list = ends(count, 255, dark);
+        return Bytes(list.begin(), list.end());
+    }
+
+    FastGrid grid(const Box& box) {
+        FastGrid out;
+        std::uint32_t count[2];
+        for (std::size_t a = 0; a < 2; ++a) {
+            const std::uint32_t length = box.high[a] - box.low[a];
+            std::uint8_t shift = static_cast<std::uint8_t>(below(4));
+            const auto cells = [&] { return (length + (1u << shift) - 1) >> shift; };
+            while (cells() > 32) ++shift;
+            if (below(9) == 0) shift = 30;
+            out.shift[a] = shift;
+            count[a] = cells();
+        }
+        out.lines = byte_ends(count[1]);
+        for (std::uint32_t i = 0; i < count[1]; ++i) out.cells.push_back(byte_ends(count[0]));
+        return out;
+    }
+
+    FastRow row(const LocalSpec& spec) {
+        const std::size_t groups = (spec.tiles + 31) / 32;
+        std::vector<bool> dark(spec.tiles, false), dark_group(groups, true);
+        for (const LightSpec& light : spec.lights) dark[light.tile] = true;
+        for (std::size_t t = 0; t < dark.size(); ++t) dark_group[t / 32] = dark_group[t / 32] && dark[t];
+        FastRow out;
+        const std::vector<std::uint32_t> list = ends(groups, 32767, dark_group);
+        out.groups.assign(list.begin(), list.end());
+        for (std::size_t g = 0; g < groups; ++g) {
+            const std::size_t end = std::min<std::size_t>(dark.size(), 32 * g + 32);
+            const Bytes tiles = byte_ends(
+                end - 32 * g, {dark.begin() + std::ptrdiff_t(32 * g), dark.begin() + std::ptrdiff_t(end)});
+            out.tiles.insert(out.tiles.end(), tiles.begin(), tiles.end());
+        }
+        return out;
+    }
+
+    void add_light(LocalSpec& spec, std::uint32_t tile) {
+        if (spec.lights.size() + 1 >= spec.tiles) return; // one tile at least is none
+        LightSpec light;
+        const double z = 2.0 * uniform() - 1.0, phi = 2.0 * pi * uniform(), sine = std::sqrt(1.0 - z * z);
+        light.direction[0] = static_cast<float>(sine * std::cos(phi));
+        light.direction[1] = static_cast<float>(sine * std::sin(phi));
+        light.direction[2] = static_cast<float>(z);
+        light.radius = static_cast<float>(std::exp(-6.0 * uniform()));
+        light.share = static_cast<float>(std::exp(4.0 * uniform() - 2.0));
+        light.tile = tile;
+        light.low = boxes_[tile].low;
+        light.high = boxes_[tile].high;
+        spec.lights.push_back(light);
+    }
+
+    std::mt19937 rng_;
+    RandomOptions options_;
+    std::vector<Box> boxes_;
+};
+
+} // namespace acdf_test
