@@ -17,44 +17,51 @@ extern "C" {
 
 enum { ACDF_FAST_ROWS = 3 }; /* of a mixture, at most */
 
-/* What a file of this shape has instead of ROWS and curves in tiles; null where it has another one. */
+/* What a file of this shape has instead of ROWS and curves in tiles; `grid` is null where it has another one. */
 typedef struct AcdfFast {
-    const uint8_t* grid; /* chunk GRID */
-    const uint8_t* sums; /* chunk SUMS */
-    uint32_t stride;     /* bytes of a row of SUMS */
-    uint32_t ends;       /* u16 before its bytes: one a group, rounded up */
+    const uint8_t* grid;    /* chunk GRID */
+    const uint16_t* groups; /* chunk SUMS: of each row `ends` cumulative values of groups */
+    const uint8_t* tiles;   /* behind these: of each row `stride` cumulative values of tiles in their groups */
+    uint32_t ends, stride;
 } AcdfFast;
 
-ACDF_FN uint32_t acdf_fast_groups(uint32_t tile_count) {
+ACDF_FN uint32_t acdf_fast_group_count(uint32_t tile_count) {
     return (tile_count + ACDF_FAST_GROUP - 1) / ACDF_FAST_GROUP;
 }
-ACDF_FN uint32_t acdf_fast_ends(uint32_t tile_count) { return (acdf_fast_groups(tile_count) + 15u) & ~15u; }
+ACDF_FN uint32_t acdf_fast_ends(uint32_t tile_count) { return (acdf_fast_group_count(tile_count) + 15u) & ~15u; }
 ACDF_FN uint32_t acdf_fast_stride(uint32_t tile_count) {
-    return 2 * acdf_fast_ends(tile_count) + ACDF_FAST_GROUP * acdf_fast_groups(tile_count);
+    return ACDF_FAST_GROUP * acdf_fast_group_count(tile_count);
 }
 
 /* Rows as a point mixes them. */
 typedef struct AcdfFastMixture {
-    const uint8_t* row[ACDF_FAST_ROWS]; /* any one where the weight is 0 */
-    int32_t weight[ACDF_FAST_ROWS];     /* a[k] of SPEC.md: below 2^15 */
-    int32_t whole;                      /* their sum */
+    const uint16_t* group[ACDF_FAST_ROWS]; /* of the rows; those of any one where the weight is 0 */
+    const uint8_t* tile[ACDF_FAST_ROWS];
+    int32_t weight[ACDF_FAST_ROWS]; /* a[k] of SPEC.md: below 2^15 */
+    int32_t whole;                  /* their sum */
 } AcdfFastMixture;
 
 /* Rows within a group. */
 typedef struct AcdfFastGroup {
-    int32_t weight[ACDF_FAST_ROWS]; /* b[k] */
+    int32_t weight[ACDF_FAST_ROWS]; /* b[k]: at most 2^14 */
     int32_t whole;                  /* their sum; 0: no row gives anything to the group */
-    int32_t mass;                   /* s: of 32767 times the whole of the mixture */
+    int32_t mass;                   /* s: of 32767 times the whole of the mixture, below 2^30 */
 } AcdfFastGroup;
 
-/* A number from 0 to 2^15 as the nearest integer, the even one of two; at least 1 if `some`. */
-ACDF_INLINE int32_t acdf_fast_weight(float x, int some) {
+/* A number from 0 to 2^15 as the nearest integer, the even one of two, but at least 1. */
+ACDF_INLINE int32_t acdf_fast_weight(float x) {
 #ifdef ACDF_SSE2
     const int32_t whole = _mm_cvtss_si32(_mm_set_ss(x));
 #else
     const int32_t whole = (int32_t)rintf(x);
 #endif
-    return whole + (int32_t)((whole == 0) & (some != 0));
+    return whole + (int32_t)(whole == 0);
+}
+
+/* Row i of a mixture. */
+ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, int i, uint32_t row) {
+    mix->group[i] = fast->groups + (size_t)row * fast->ends;
+    mix->tile[i] = fast->tiles + (size_t)row * fast->stride;
 }
 
 /* Sets the weights of a mixture whose rows are set: up to three, positive and finite. */
@@ -65,7 +72,7 @@ ACDF_FN void acdf_fast_mix(const double* weight, int rows, AcdfFastMixture* out)
     scale = 32767.0 / sum;
     out->whole = 0;
     for (i = 0; i < ACDF_FAST_ROWS; ++i) {
-        out->weight[i] = i < rows ? acdf_fast_weight((float)(weight[i] * scale), 1) : 0;
+        out->weight[i] = i < rows ? acdf_fast_weight((float)(weight[i] * scale)) : 0;
         out->whole += out->weight[i];
     }
 }
@@ -76,46 +83,58 @@ ACDF_INLINE uint32_t acdf_fast_before(const uint8_t* ends, uint32_t i, uint32_t*
     *end = ends[i];
     return ends[(int32_t)(i + inner)] & inner;
 }
-ACDF_INLINE uint32_t acdf_fast_group_before(const uint8_t* row, uint32_t i, uint32_t* end) {
-    const uint16_t* ends = (const uint16_t*)(const void*)row;
+ACDF_INLINE uint32_t acdf_fast_group_before(const uint16_t* ends, uint32_t i, uint32_t* end) {
     const uint32_t inner = 0u - (uint32_t)(i > 0);
     *end = ends[i];
     return ends[(int32_t)(i + inner)] & inner;
+}
+
+/* How many lower bits of a mass, below 2^30, weights of 14 bits leave out. */
+ACDF_INLINE uint32_t acdf_fast_shift(uint32_t mass) {
+#if defined(ACDF_ON_GPU) && defined(__NVCC__)
+    const uint32_t length = 32u - (uint32_t)__clz((int)(mass | 0x3FFFu));
+#elif defined(__GNUC__)
+    const uint32_t length = 32u - (uint32_t)__builtin_clz(mass | 0x3FFFu);
+#else
+    uint32_t length = 14;
+    while (mass >> length) ++length;
+#endif
+    return length - 14;
 }
 
 /* What the rows of a mixture give to a group; *below becomes what they give to those before it. */
 ACDF_INLINE void acdf_fast_find_group(const AcdfFastMixture* mix, uint32_t group, AcdfFastGroup* out,
                                       int32_t* below) {
     int32_t part[ACDF_FAST_ROWS];
-    float scale;
+    uint32_t shift;
     int i;
     out->mass = 0;
     *below = 0;
     for (i = 0; i < ACDF_FAST_ROWS; ++i) {
         uint32_t end;
-        const uint32_t before = acdf_fast_group_before(mix->row[i], group, &end);
+        const uint32_t before = acdf_fast_group_before(mix->group[i], group, &end);
         *below += mix->weight[i] * (int32_t)before;
         part[i] = mix->weight[i] * (int32_t)(end - before);
         out->mass += part[i];
     }
+    shift = acdf_fast_shift((uint32_t)out->mass);
     out->whole = 0;
-    scale = 32767.0f / (float)(out->mass + (int32_t)(out->mass == 0));
     for (i = 0; i < ACDF_FAST_ROWS; ++i) {
-        out->weight[i] = acdf_fast_weight((float)part[i] * scale, part[i] > 0);
+        out->weight[i] = (part[i] + (int32_t)((1u << shift) - 1u)) >> shift;
         out->whole += out->weight[i];
     }
 }
 
 /* t of a tile of the group; *below becomes that of those before it. */
-ACDF_INLINE int32_t acdf_fast_find_tile(const AcdfFast* fast, const AcdfFastMixture* mix,
-                                        const AcdfFastGroup* group, uint32_t tile, int32_t* below) {
-    const uint32_t first = 2 * fast->ends + (tile & ~(ACDF_FAST_GROUP - 1u)), i = tile & (ACDF_FAST_GROUP - 1u);
+ACDF_INLINE int32_t acdf_fast_find_tile(const AcdfFastMixture* mix, const AcdfFastGroup* group, uint32_t tile,
+                                        int32_t* below) {
+    const uint32_t first = tile & ~(ACDF_FAST_GROUP - 1u), i = tile & (ACDF_FAST_GROUP - 1u);
     int32_t mass = 0;
     int k;
     *below = 0;
     for (k = 0; k < ACDF_FAST_ROWS; ++k) {
         uint32_t end;
-        const uint32_t before = acdf_fast_before(mix->row[k] + first, i, &end);
+        const uint32_t before = acdf_fast_before(mix->tile[k] + first, i, &end);
         *below += group->weight[k] * (int32_t)before;
         mass += group->weight[k] * (int32_t)(end - before);
     }
@@ -128,11 +147,11 @@ ACDF_INLINE double acdf_fast_part(const AcdfFastMixture* mix, const AcdfFastGrou
 }
 
 /* The part of the mixture that a tile has. */
-ACDF_FN double acdf_fast_share(const AcdfFast* fast, const AcdfFastMixture* mix, uint32_t tile) {
+ACDF_FN double acdf_fast_share(const AcdfFastMixture* mix, uint32_t tile) {
     AcdfFastGroup group;
     int32_t below, mass;
     acdf_fast_find_group(mix, tile / ACDF_FAST_GROUP, &group, &below);
-    mass = acdf_fast_find_tile(fast, mix, &group, tile, &below);
+    mass = acdf_fast_find_tile(mix, &group, tile, &below);
     return group.mass > 0 ? acdf_fast_part(mix, &group, mass) : 0.0;
 }
 
@@ -173,44 +192,45 @@ ACDF_INLINE uint32_t acdf_fast_group_of(const AcdfFast* fast, const AcdfFastMixt
     __m128i above = _mm_setzero_si128(), pair01, pair2;
     uint32_t i;
     acdf_fast_pairs(mix->weight, &pair01, &pair2);
-    for (i = 0; i < 2 * fast->ends; i += 16) {
+    for (i = 0; i < fast->ends; i += 8) {
         __m128i end[3];
         int k;
-        for (k = 0; k < 3; ++k) end[k] = _mm_loadu_si128((const __m128i*)(const void*)(mix->row[k] + i));
+        for (k = 0; k < 3; ++k) end[k] = _mm_loadu_si128((const __m128i*)(const void*)(mix->group[k] + i));
         above = _mm_add_epi16(above, acdf_fast_above(end, pair01, pair2, at));
     }
     return fast->ends + (uint32_t)acdf_fast_total(above);
 }
 
-/* The tile in its group of which `first` are the rows' own bytes. */
+/* The tile in the group whose tiles begin at `first`. */
 ACDF_INLINE uint32_t acdf_fast_tile_of(const AcdfFastMixture* mix, const AcdfFastGroup* group, uint32_t first,
                                        int32_t y) {
     const __m128i at = _mm_set1_epi32(y), zero = _mm_setzero_si128();
-    __m128i above = zero, pair01, pair2;
-    uint32_t i;
+    __m128i low[3], high[3], pair01, pair2;
+    int k;
     acdf_fast_pairs(group->weight, &pair01, &pair2);
-    for (i = 0; i < ACDF_FAST_GROUP; i += 16) {
-        __m128i low[3], high[3];
-        int k;
-        for (k = 0; k < 3; ++k) {
-            const __m128i bytes = _mm_loadu_si128((const __m128i*)(const void*)(mix->row[k] + first + i));
-            low[k] = _mm_unpacklo_epi8(bytes, zero);
-            high[k] = _mm_unpackhi_epi8(bytes, zero);
-        }
-        above = _mm_add_epi16(above, _mm_add_epi16(acdf_fast_above(low, pair01, pair2, at),
-                                                   acdf_fast_above(high, pair01, pair2, at)));
+    for (k = 0; k < 3; ++k) {
+        const __m128i bytes = _mm_loadu_si128((const __m128i*)(const void*)(mix->tile[k] + first));
+        low[k] = _mm_unpacklo_epi8(bytes, zero);
+        high[k] = _mm_unpackhi_epi8(bytes, zero);
     }
-    return ACDF_FAST_GROUP + (uint32_t)acdf_fast_total(above);
+    return ACDF_FAST_GROUP + (uint32_t)acdf_fast_total(_mm_add_epi16(acdf_fast_above(low, pair01, pair2, at),
+                                                                     acdf_fast_above(high, pair01, pair2, at)));
 }
 
-/* The first of a list of ends that is above z, at most 254. 32 bytes from its start may be read. */
+/* Bit i: whether byte i of 32 is at least `least`. */
+ACDF_INLINE uint32_t acdf_fast_at_least(const uint8_t* bytes, __m128i least) {
+    const __m128i low = _mm_loadu_si128((const __m128i*)(const void*)bytes);
+    const __m128i high = _mm_loadu_si128((const __m128i*)(const void*)(bytes + 16));
+    return (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_max_epu8(low, least), low)) |
+           (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_max_epu8(high, least), high)) << 16;
+}
+
+/* The first of a list of ends that is above z, at most 254. 64 bytes from its start may be read. */
 ACDF_INLINE uint32_t acdf_fast_end_of(const uint8_t* ends, uint32_t z) {
     const __m128i least = _mm_set1_epi8((int8_t)(uint8_t)(z + 1));
-    const __m128i low = _mm_loadu_si128((const __m128i*)(const void*)ends);
-    const __m128i high = _mm_loadu_si128((const __m128i*)(const void*)(ends + 16));
-    const uint32_t mask = (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_max_epu8(low, least), low)) |
-                          (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_max_epu8(high, least), high)) << 16;
-    return acdf_lowest_bit(mask);
+    const uint32_t mask = acdf_fast_at_least(ends, least);
+    if (mask) return acdf_lowest_bit(mask);
+    return 32u + acdf_lowest_bit(acdf_fast_at_least(ends + 32, least));
 }
 #else
 ACDF_INLINE uint32_t acdf_fast_group_of(const AcdfFast* fast, const AcdfFastMixture* mix, int32_t x) {
@@ -219,8 +239,7 @@ ACDF_INLINE uint32_t acdf_fast_group_of(const AcdfFast* fast, const AcdfFastMixt
         const uint32_t middle = (low + high) / 2;
         int32_t sum = 0;
         int k;
-        for (k = 0; k < ACDF_FAST_ROWS; ++k)
-            sum += mix->weight[k] * (int32_t)((const uint16_t*)(const void*)mix->row[k])[middle];
+        for (k = 0; k < ACDF_FAST_ROWS; ++k) sum += mix->weight[k] * (int32_t)mix->group[k][middle];
         if (sum > x) high = middle;
         else low = middle + 1;
     }
@@ -233,7 +252,7 @@ ACDF_INLINE uint32_t acdf_fast_tile_of(const AcdfFastMixture* mix, const AcdfFas
         const uint32_t middle = (low + high) / 2;
         int32_t sum = 0;
         int k;
-        for (k = 0; k < ACDF_FAST_ROWS; ++k) sum += group->weight[k] * (int32_t)mix->row[k][first + middle];
+        for (k = 0; k < ACDF_FAST_ROWS; ++k) sum += group->weight[k] * (int32_t)mix->tile[k][first + middle];
         if (sum > y) high = middle;
         else low = middle + 1;
     }
@@ -258,8 +277,8 @@ ACDF_INLINE uint32_t acdf_fast_draw_tile(const AcdfFast* fast, const AcdfFastMix
     acdf_fast_find_group(mix, g, &group, &below);
     u[0] = (x - (double)below) / (double)group.mass;
     y = acdf_fast_scaled(u[1], 255.0 * (double)group.whole);
-    tile = ACDF_FAST_GROUP * g + acdf_fast_tile_of(mix, &group, 2 * fast->ends + ACDF_FAST_GROUP * g, (int32_t)y);
-    mass = acdf_fast_find_tile(fast, mix, &group, tile, &below);
+    tile = ACDF_FAST_GROUP * g + acdf_fast_tile_of(mix, &group, ACDF_FAST_GROUP * g, (int32_t)y);
+    mass = acdf_fast_find_tile(mix, &group, tile, &below);
     u[1] = (y - (double)below) / (double)mass;
     *part = acdf_fast_part(mix, &group, mass);
     return tile;

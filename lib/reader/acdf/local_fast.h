@@ -67,8 +67,7 @@ ACDF_FN double acdf_local_fast_sample(const AcdfLocal* local, const AcdfLocalPoi
 ACDF_FN double acdf_local_fast_find(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
                                     AcdfRange* range) {
     const uint32_t tile = acdf_local_fast_tile(local, square, range);
-    const double probability =
-        acdf_local_tile_probability(local, point, tile, acdf_fast_share(&local->fast, &point->fast, tile));
+    const double probability = acdf_local_tile_probability(local, point, tile, acdf_fast_share(&point->fast, tile));
     const double inside = acdf_fast_find_cell(&local->fast, local->blend.roots[tile], square, range);
     return probability > 0.0 && inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
 }

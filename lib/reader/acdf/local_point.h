@@ -236,8 +236,8 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
 ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, double weight, AcdfLocalPoint* out) {
     if (!(weight > 0.0)) return;
     out->mix.weight[out->mix.count] = weight;
-    out->fast.row[out->mix.count] = local->fast.sums + (size_t)row * local->fast.stride;
-    ACDF_PREFETCH(out->fast.row[out->mix.count]);
+    acdf_fast_set_row(&local->fast, &out->fast, out->mix.count, row);
+    ACDF_PREFETCH(out->fast.group[out->mix.count]);
     ++out->mix.count;
 }
 
@@ -248,7 +248,7 @@ ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3],
     double weight[3];
     int i;
     acdf_local_nothing(normal, out);
-    for (i = 0; i < ACDF_FAST_ROWS; ++i) out->fast.row[i] = local->fast.sums;
+    for (i = 0; i < ACDF_FAST_ROWS; ++i) acdf_fast_set_row(&local->fast, &out->fast, i, 0);
     if (local->tables && local->tables->corners && acdf_local_table_corners(local, out->surface, corner, weight)) {
         for (i = 0; i < 3; ++i) acdf_local_fast_row(local, corner[i]->row, weight[i], out);
     } else {

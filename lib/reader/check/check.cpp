@@ -301,9 +301,9 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
     if (header.kind == ACDF_KIND_LOCAL && !report.stopped())
         check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_places].data && !report.stopped())
+    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_places].data && !fast && !report.stopped())
         check_places(payloads.of[chunk_places], report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_portals].data && !report.stopped())
+    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_portals].data && !fast && !report.stopped())
         check_portals(payloads.of[chunk_portals], report, parts);
     if (header.kind == ACDF_KIND_BRDF && !report.stopped())
         check_brdf_kind(description, payloads.of[chunk_views], report, parts);

@@ -25,16 +25,17 @@ bool are_ends(const Integer* end, u32 count, u32 whole) {
 }
 
 bool check_sums(const Payload& payload, const AcdfTiles& tiles, Report& report) {
-    const u32 groups = acdf_fast_groups(tiles.tile_count), ends = acdf_fast_ends(tiles.tile_count),
+    const u32 groups = acdf_fast_group_count(tiles.tile_count), ends = acdf_fast_ends(tiles.tile_count),
               stride = acdf_fast_stride(tiles.tile_count);
-    if (payload.size != u64{tiles.row_count} * stride) {
+    const u64 tiles_at = u64{2} * tiles.row_count * ends, size = tiles_at + u64{tiles.row_count} * stride;
+    if (payload.size != size) {
         report.add(6028, payload.at(0), "SUMS has %llu bytes instead of %llu", static_cast<ull>(payload.size),
-                   static_cast<ull>(u64{tiles.row_count} * stride));
+                   static_cast<ull>(size));
         return false;
     }
     for (u32 row = 0; row < tiles.row_count; ++row) {
-        const u64 at = u64{row} * stride;
-        const u8* const tile = payload.data + at + 2 * ends;
+        const u64 at = u64{2} * row * ends;
+        const u8* const tile = payload.data + tiles_at + u64{row} * stride;
         const auto* const group = reinterpret_cast<const u16*>(payload.data + at);
         bool right = are_ends(group, ends, ACDF_FAST_WHOLE) && group[groups - 1] == ACDF_FAST_WHOLE;
         for (u32 g = 0; right && g < groups; ++g) {
@@ -57,7 +58,7 @@ const char* grid_fault(const Payload& payload, const TileBox& box, u64& at) {
         const u32 shift = payload.data[at + axis];
         if (shift > ACDF_FAST_MOST_SHIFT) return "has too large a shift";
         count[axis] = acdf_fast_cells(box.high[axis] - box.low[axis], shift);
-        if (count[axis] > ACDF_FAST_GROUP) return "has too many cells";
+        if (count[axis] > ACDF_FAST_CELLS) return "has too many cells";
     }
     at += 2;
     if (payload.size - at < count[1] + u64{count[0]} * count[1]) return "ends behind the end";
@@ -83,7 +84,7 @@ bool check_grid(const Payload& payload, const TileBoxes& boxes, const Parts& par
             return false;
         }
     }
-    bool padded = payload.size - at == ACDF_FAST_GROUP;
+    bool padded = payload.size - at == ACDF_FAST_CELLS;
     for (u64 i = at; padded && i < payload.size; ++i) padded = payload.data[i] == 0;
     if (!padded)
         report.add(6029, payload.at(0), "%llu bytes stand behind the last grid",
@@ -111,8 +112,9 @@ void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report
     }
     const bool sums_right = check_sums(sums, *parts.tiles, report);
     if (report.stopped() || !check_grid(grid, boxes, parts, report) || !sums_right) return;
-    parts.fast = {grid.data, sums.data, acdf_fast_stride(parts.tiles->tile_count),
-                  acdf_fast_ends(parts.tiles->tile_count)};
+    const u32 count = parts.tiles->tile_count, ends = acdf_fast_ends(count);
+    parts.fast = {grid.data, reinterpret_cast<const u16*>(sums.data),
+                  sums.data + u64{2} * parts.tiles->row_count * ends, ends, acdf_fast_stride(count)};
 }
 
 } // namespace acdf

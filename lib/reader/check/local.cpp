@@ -122,12 +122,12 @@ struct DarkBySums {
 
     DarkBySums(const Parts& of, const AcdfLight& light) : parts(of), tile(light.tile) {}
     bool in(u32 row) const {
-        const u8* sums = parts.fast.sums + u64{row} * parts.fast.stride;
+        const AcdfFast& fast = parts.fast;
         u32 end;
-        if (const u32 before = acdf_fast_group_before(sums, tile / ACDF_FAST_GROUP, &end); before == end)
-            return true;
-        const u8* list = sums + 2 * parts.fast.ends + (tile & ~(ACDF_FAST_GROUP - 1));
-        const u32 before = acdf_fast_before(list, tile % ACDF_FAST_GROUP, &end);
+        u32 before = acdf_fast_group_before(fast.groups + u64{row} * fast.ends, tile / ACDF_FAST_GROUP, &end);
+        if (before == end) return true;
+        const u8* list = fast.tiles + u64{row} * fast.stride + (tile & ~(ACDF_FAST_GROUP - 1));
+        before = acdf_fast_before(list, tile % ACDF_FAST_GROUP, &end);
         return before == end;
     }
 };
@@ -171,7 +171,7 @@ void check_local_kind(const Payload& description, const Payload& payload, const 
     if (parts.tiles || !boxes.given) check_lights(payload, boxes, report, parts); // else told of TILE
     if (report.verdict().errors != errors) return;
     if (parts.rows) check_light_rows<DarkBySplits>(payload, report, parts);
-    if (parts.fast.sums) check_light_rows<DarkBySums>(payload, report, parts);
+    if (parts.fast.grid) check_light_rows<DarkBySums>(payload, report, parts);
 }
 
 } // namespace acdf

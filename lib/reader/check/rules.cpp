@@ -135,7 +135,7 @@ const Rule rules[] = {
     {6029, error, malformed, "grid",
      "GRID has the grids of all tiles without gaps, each at its root, with shifts of at most 30 and 1 to 32 cells "
      "an "
-     "axis, and behind them 32 zero bytes. The ends of a list never decrease up to 255."},
+     "axis, and behind them 64 zero bytes. The ends of a list never decrease up to 255."},
 
     {7001, error, malformed, "environment-axes",
      "An environment, local or not, has the two axes of §6.1 first, with parameterization 4 those of §6.9, with "

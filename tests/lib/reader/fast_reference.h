@@ -34,16 +34,17 @@ private:
         const std::size_t at = 528 + 8 * i, place = number(tiles, at, 4);
         return {place & 7, double(place >> 3), {number(tiles, at + 4, 2), number(tiles, at + 6, 2)}};
     }
-    std::size_t groups() const { return (tile_count + 31) / 32; }
+    std::size_t groups() const { return (tile_count + 15) / 16; }
     std::size_t group_ends() const { return (groups() + 15) / 16 * 16; }
+    std::size_t row_count() const { return number(tiles, 8, 4); }
     /// 32767 times the probability of a group, 255 times that of a tile in its group.
     double group_steps(std::size_t row, std::size_t g) const {
-        const std::size_t at = row * (2 * group_ends() + 32 * groups());
-        return double(number(sums, at + 2 * g, 2)) - (g > 0 ? double(number(sums, at + 2 * g - 2, 2)) : 0.0);
+        const std::size_t at = 2 * (row * group_ends() + g);
+        return double(number(sums, at, 2)) - (g > 0 ? double(number(sums, at - 2, 2)) : 0.0);
     }
     double tile_steps(std::size_t row, std::size_t tile) const {
-        const std::size_t at = row * (2 * group_ends() + 32 * groups()) + 2 * group_ends() + tile;
-        return double(number(sums, at, 1)) - (tile % 32 > 0 ? double(number(sums, at - 1, 1)) : 0.0);
+        const std::size_t at = 2 * row_count() * group_ends() + row * 16 * groups() + tile;
+        return double(number(sums, at, 1)) - (tile % 16 > 0 ? double(number(sums, at - 1, 1)) : 0.0);
     }
 
     static double even(double x) { // the nearest integer, of two the even one
@@ -68,8 +69,9 @@ private:
         for (std::size_t k = 0; k < mix.a.size(); ++k) s.push_back(mix.a[k] * group_steps(row[k], g));
         const double sum = total_of(s);
         mix.b.clear();
-        for (const double x : s)
-            mix.b.push_back(x > 0.0 ? std::max(1.0, even(double(float(x) * (32767.0f / float(sum))))) : 0.0);
+        double unit = 1.0;
+        while (sum >= 16384 * unit) unit *= 2;
+        for (const double x : s) mix.b.push_back(std::ceil(x / unit));
         return sum;
     }
     double tile_sum(const Rows& row, const Mixed& mix, std::size_t tile) const {
@@ -126,10 +128,10 @@ public:
         });
         const double s = enter(row, mix, g);
         const std::size_t i =
-            drawn(u[1], 255.0 * total_of(mix.b), 32, [&](std::size_t t) { return tile_sum(row, mix, 32 * g + t); });
-        cell = tile_box(32 * g + i);
-        cell.p = s * tile_sum(row, mix, 32 * g + i) / (32767.0 * 255.0 * mix.whole * total_of(mix.b));
-        return 32 * g + i;
+            drawn(u[1], 255.0 * total_of(mix.b), 16, [&](std::size_t t) { return tile_sum(row, mix, 16 * g + t); });
+        cell = tile_box(16 * g + i);
+        cell.p = s * tile_sum(row, mix, 16 * g + i) / (32767.0 * 255.0 * mix.whole * total_of(mix.b));
+        return 16 * g + i;
     }
 
     /// The part of the mixture that the cell of a square has.
@@ -142,7 +144,7 @@ public:
                 found = found && square[a] >= cell.low[a] && square[a] < cell.high[a];
         }
         Mixed mix = mixed(w);
-        const double s = w.empty() ? 0.0 : enter(row, mix, tile / 32), t = s > 0.0 ? tile_sum(row, mix, tile) : 0.0;
+        const double s = w.empty() ? 0.0 : enter(row, mix, tile / 16), t = s > 0.0 ? tile_sum(row, mix, tile) : 0.0;
         const double inside = find_in_grid(tile, square, cell);
         return t > 0.0 ? s * t / (32767.0 * 255.0 * mix.whole * total_of(mix.b)) * inside : 0.0;
     }

@@ -46,16 +46,17 @@ struct FastSpec {
             const Bytes bytes = grid.encode();
             out.insert(out.end(), bytes.begin(), bytes.end());
         }
-        out.resize(out.size() + 32, 0);
+        out.resize(out.size() + 64, 0);
         return out;
     }
     Bytes sum_chunk() const {
         Bytes out;
-        for (const FastRow& row : rows) {
-            const std::size_t groups = row.groups.size(), padded = (groups + 15) / 16 * 16;
-            for (std::size_t g = 0; g < padded; ++g) put16(out, g < groups ? row.groups[g] : 32767);
-            for (std::size_t i = 0; i < 32 * groups; ++i) out.push_back(i < row.tiles.size() ? row.tiles[i] : 255);
-        }
+        for (const FastRow& row : rows)
+            for (std::size_t g = 0; g < (row.groups.size() + 15) / 16 * 16; ++g)
+                put16(out, g < row.groups.size() ? row.groups[g] : 32767);
+        for (const FastRow& row : rows)
+            for (std::size_t i = 0; i < 16 * row.groups.size(); ++i)
+                out.push_back(i < row.tiles.size() ? row.tiles[i] : 255);
         return out;
     }
 };

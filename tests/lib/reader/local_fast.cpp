@@ -71,7 +71,7 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
         const Local reference(loaded.bytes);
         const acdf::LocalEnvironmentView view = loaded.file.local();
         ASSERT_NE(view.data().fast.grid, nullptr);
-        groups += view.data().blend.tiles->tile_count > 32;
+        groups += view.data().blend.tiles->tile_count > 16;
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 200; ++i) {
             SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));

@@ -97,7 +97,7 @@ private:
             const std::uint32_t length = box.high[a] - box.low[a];
             std::uint8_t shift = static_cast<std::uint8_t>(below(4));
             const auto cells = [&] { return (length + (1u << shift) - 1) >> shift; };
-            while (cells() > 32) ++shift;
+            while (cells() > 64) ++shift;
             if (below(9) == 0) shift = 30;
             out.shift[a] = shift;
             count[a] = cells();
@@ -108,17 +108,17 @@ private:
     }
 
     FastRow row(const LocalSpec& spec) {
-        const std::size_t groups = (spec.tiles + 31) / 32;
+        const std::size_t groups = (spec.tiles + 15) / 16;
         std::vector<bool> dark(spec.tiles, false), dark_group(groups, true);
         for (const LightSpec& light : spec.lights) dark[light.tile] = true;
-        for (std::size_t t = 0; t < dark.size(); ++t) dark_group[t / 32] = dark_group[t / 32] && dark[t];
+        for (std::size_t t = 0; t < dark.size(); ++t) dark_group[t / 16] = dark_group[t / 16] && dark[t];
         FastRow out;
         const std::vector<std::uint32_t> list = ends(groups, 32767, dark_group);
         out.groups.assign(list.begin(), list.end());
         for (std::size_t g = 0; g < groups; ++g) {
-            const std::size_t end = std::min<std::size_t>(dark.size(), 32 * g + 32);
+            const std::size_t end = std::min<std::size_t>(dark.size(), 16 * g + 16);
             const Bytes tiles = byte_ends(
-                end - 32 * g, {dark.begin() + std::ptrdiff_t(32 * g), dark.begin() + std::ptrdiff_t(end)});
+                end - 16 * g, {dark.begin() + std::ptrdiff_t(16 * g), dark.begin() + std::ptrdiff_t(end)});
             out.tiles.insert(out.tiles.end(), tiles.begin(), tiles.end());
         }
         return out;
