@@ -33,7 +33,8 @@ std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map
         double position[2];
         acdf_sphere_ranges(env.columns, env.rows, range);
         if (!acdf_grid_square(&grid, direction, square, position)) return;
-        if (point.what == ACDF_LOCAL_BLEND) acdf_local_blend_find(&local, &point, square, range);
+        if (point.what == ACDF_LOCAL_FAST) acdf_local_fast_find(&local, &point, square, range);
+        else if (point.what == ACDF_LOCAL_BLEND) acdf_local_blend_find(&local, &point, square, range);
         else if (point.what == ACDF_LOCAL_TREE) acdf_tree_find(env.tree, point.root, square, range, nullptr);
     };
     return knot_opacity(find, grid, map, progress);

@@ -182,7 +182,8 @@ void divide(DividedPlaces& out, const PlaceParts& parts, const PlaceScene& scene
 std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& scene,
                               const PlacesFrame& frame, const PlacesSize& size,
                               const std::function<void(double)>& progress) {
-    if (!local.blend.tiles) throw std::invalid_argument("bins that do not share tiles have no places");
+    if (!local.blend.tiles || local.fast.grid)
+        throw std::invalid_argument("bins that do not share tiles, and the fast shape, have no places");
     const auto report = [&](double share) {
         if (progress) progress(share);
     };

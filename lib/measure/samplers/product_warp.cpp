@@ -69,6 +69,8 @@ public:
         else throw std::invalid_argument("the light of a product is an environment or a local environment");
         if (local_.cosine_share > 0.0 || file.company())
             throw std::invalid_argument("a file for a company has no support alone");
+        if (local_.fast.grid)
+            throw std::invalid_argument("a file of the fast shape tells no random numbers of a direction");
     }
     bool has_cosine() const { return is_local_; }
     void move_to(const float normal[3]) {

@@ -64,6 +64,12 @@ ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, i
     mix->tile[i] = fast->tiles + (size_t)row * fast->stride;
 }
 
+/* Asks for what a draw looks at first of a row, while something else is done. */
+ACDF_INLINE void acdf_fast_ahead(const AcdfFast* fast, const uint16_t* group) {
+    uint32_t i;
+    for (i = 0; i < fast->ends && i < 128; i += 32) ACDF_PREFETCH(group + i);
+}
+
 /* Sets the weights of a mixture whose rows are set: up to three, positive and finite. */
 ACDF_FN void acdf_fast_mix(const double* weight, int rows, AcdfFastMixture* out) {
     double sum = 0.0, scale;
@@ -288,7 +294,25 @@ ACDF_INLINE uint32_t acdf_fast_draw_tile(const AcdfFast* fast, const AcdfFastMix
 
 /* How many cells a side of so many steps has. */
 ACDF_FN uint32_t acdf_fast_cells(uint32_t length, uint32_t shift) {
-    return (uint32_t)(((uint64_t)length + ((uint64_t)1 << shift) - 1) >> shift);
+    return (length + (1u << shift) - 1) >> shift; /* lengths are at most 65536 */
+}
+
+/* The grid of a tile: where its ends begin, and its sides. */
+typedef struct AcdfFastGrid {
+    const uint8_t* ends;
+    uint32_t shift[2], count[2];
+} AcdfFastGrid;
+
+/* The grid at `root` of a tile whose box is `range`. */
+ACDF_FN AcdfFastGrid acdf_fast_grid(const AcdfFast* fast, uint32_t root, const AcdfRange* range) {
+    AcdfFastGrid out;
+    int axis;
+    out.ends = fast->grid + root + 2;
+    for (axis = 0; axis < 2; ++axis) {
+        out.shift[axis] = fast->grid[root + (uint32_t)axis];
+        out.count[axis] = acdf_fast_cells(range[axis].high - range[axis].low, out.shift[axis]);
+    }
+    return out;
 }
 
 /* Cell i of a side: narrows its range. */
@@ -309,35 +333,27 @@ ACDF_INLINE uint32_t acdf_fast_draw_end(const uint8_t* ends, double* u, uint32_t
     return i;
 }
 
-/* Draws a cell in the tile whose grid begins at `root` and whose box is `range`. Returns its probability there. */
-ACDF_INLINE double acdf_fast_draw_cell(const AcdfFast* fast, uint32_t root, double* u, AcdfRange* range) {
-    const uint8_t* grid = fast->grid + root;
-    const uint32_t shift0 = grid[0], shift1 = grid[1];
-    const uint32_t count0 = acdf_fast_cells(range[0].high - range[0].low, shift0);
-    const uint32_t count1 = acdf_fast_cells(range[1].high - range[1].low, shift1);
+/* Draws a cell in a tile whose box is `range`, which becomes its own. Returns its probability there. */
+ACDF_INLINE double acdf_fast_draw_cell(const AcdfFastGrid* grid, double* u, AcdfRange* range) {
     uint32_t of_line, in_line;
-    const uint32_t line = acdf_fast_draw_end(grid + 2, &u[1], &of_line);
-    const uint32_t cell = acdf_fast_draw_end(grid + 2 + count1 + line * count0, &u[0], &in_line);
-    acdf_fast_narrow(&range[0], cell, shift0);
-    acdf_fast_narrow(&range[1], line, shift1);
+    const uint32_t line = acdf_fast_draw_end(grid->ends, &u[1], &of_line);
+    const uint32_t cell = acdf_fast_draw_end(grid->ends + grid->count[1] + line * grid->count[0], &u[0], &in_line);
+    acdf_fast_narrow(&range[0], cell, grid->shift[0]);
+    acdf_fast_narrow(&range[1], line, grid->shift[1]);
     return (double)(int32_t)(of_line * in_line) * (1.0 / 65025.0);
 }
 
 /* The same of the cell that holds a square; 0 where no sample falls. */
-ACDF_INLINE double acdf_fast_find_cell(const AcdfFast* fast, uint32_t root, const uint32_t* square,
-                                       AcdfRange* range) {
-    const uint8_t* grid = fast->grid + root;
-    const uint32_t shift0 = grid[0], shift1 = grid[1];
-    const uint32_t count0 = acdf_fast_cells(range[0].high - range[0].low, shift0);
-    const uint32_t count1 = acdf_fast_cells(range[1].high - range[1].low, shift1);
-    const uint32_t cell = (square[0] - range[0].low) >> shift0, line = (square[1] - range[1].low) >> shift1;
+ACDF_INLINE double acdf_fast_find_cell(const AcdfFastGrid* grid, const uint32_t* square, AcdfRange* range) {
+    const uint32_t cell = (square[0] - range[0].low) >> grid->shift[0];
+    const uint32_t line = (square[1] - range[1].low) >> grid->shift[1];
     uint32_t end, of_line, in_line;
-    of_line = acdf_fast_before(grid + 2, line, &end);
+    of_line = acdf_fast_before(grid->ends, line, &end);
     of_line = end - of_line;
-    in_line = acdf_fast_before(grid + 2 + count1 + line * count0, cell, &end);
+    in_line = acdf_fast_before(grid->ends + grid->count[1] + line * grid->count[0], cell, &end);
     in_line = end - in_line;
-    acdf_fast_narrow(&range[0], cell, shift0);
-    acdf_fast_narrow(&range[1], line, shift1);
+    acdf_fast_narrow(&range[0], cell, grid->shift[0]);
+    acdf_fast_narrow(&range[1], line, grid->shift[1]);
     return (double)(int32_t)(of_line * in_line) * (1.0 / 65025.0);
 }
 

@@ -237,7 +237,7 @@ ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, doubl
     if (!(weight > 0.0)) return;
     out->mix.weight[out->mix.count] = weight;
     acdf_fast_set_row(&local->fast, &out->fast, out->mix.count, row);
-    ACDF_PREFETCH(out->fast.group[out->mix.count]);
+    acdf_fast_ahead(&local->fast, out->fast.group[out->mix.count]);
     ++out->mix.count;
 }
 

@@ -24,7 +24,8 @@ typedef struct AcdfTileRecord {
     uint16_t depth;                 /* how many steps lead to it */
     uint16_t light;                 /* the number of its light and 1; 0: it has none */
     uint16_t step[ACDF_TILE_STEPS]; /* 2 * split, and 1 where it leads to the upper half; where there are more of
-                                       them, the number of the first one in `paths`, lower half first */
+                                       them, the number of the first one in `paths`, lower half first;
+                                       of the fast shape: shifts and counts of its grid */
 } AcdfTileRecord;
 ACDF_STATIC_ASSERT(sizeof(AcdfTileRecord) == 64);
 

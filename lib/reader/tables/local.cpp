@@ -172,6 +172,20 @@ void place_lights(const AcdfLocal& local, AcdfLightPair* out) {
     }
 }
 
+// Of the fast shape, in place of the way to a tile: the shifts and counts of its grid.
+void place_grids(const AcdfLocal& local, const AcdfLocalTables& tables) {
+    for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile) {
+        auto& record = const_cast<AcdfTileRecord&>(*acdf_local_tile(&tables, tile));
+        AcdfRange range[2];
+        acdf_tile_range(&record, range);
+        const AcdfFastGrid grid = acdf_fast_grid(&local.fast, record.root, range);
+        for (u32 axis = 0; axis < 2; ++axis) {
+            record.step[axis] = static_cast<std::uint16_t>(grid.shift[axis]);
+            record.step[2 + axis] = static_cast<std::uint16_t>(grid.count[axis]);
+        }
+    }
+}
+
 // Of each tile the direction of its middle.
 void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float* out) {
     for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 4) {
@@ -209,6 +223,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     tables->words = static_cast<u32>(words);
     tables->octahedral = !latlong;
     at = tiles.place(out, at, tables->tiles);
+    if (local.fast.grid) place_grids(local, *tables);
     for (u32 i = 0; i < local.light_count; ++i)
         reinterpret_cast<AcdfTileRecord*>(out + tables->tiles.tiles)[local.lights[i].tile].light =
             static_cast<std::uint16_t>(i + 1);

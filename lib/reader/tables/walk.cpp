@@ -195,7 +195,6 @@ bool WalkMaker::views() {
 }
 
 bool WalkMaker::make() {
-    if (local_.fast.grid) return false; // shaders walk splits and curves
     parts_.add(WalkLeaf{0, 0.0f, {}});  // what is dark
     if (!cells_.remember(most_leaves_)) return false;
     if (local_.light_count > 0 && !light_links_.add(local_.light_count, ACDF_WALK_LEAF)) return false;
