@@ -37,7 +37,7 @@ ACDF_FN uint32_t acdf_fast_stride(uint32_t tile_count) {
 typedef struct AcdfFastMixture {
     const uint16_t* group[ACDF_FAST_ROWS]; /* of the rows; those of any one where the weight is 0 */
     const uint8_t* tile[ACDF_FAST_ROWS];
-    int32_t weight[ACDF_FAST_ROWS]; /* a[k] of SPEC.md: below 2^15 */
+    int32_t weight[ACDF_FAST_ROWS]; /* a[k] of SPEC.md: at most 2^14 */
     int32_t whole;                  /* their sum */
 } AcdfFastMixture;
 
@@ -47,16 +47,6 @@ typedef struct AcdfFastGroup {
     int32_t whole;                  /* their sum; 0: no row gives anything to the group */
     int32_t mass;                   /* s: of 32767 times the whole of the mixture, below 2^30 */
 } AcdfFastGroup;
-
-/* A number from 0 to 2^15 as the nearest integer, the even one of two, but at least 1. */
-ACDF_INLINE int32_t acdf_fast_weight(float x) {
-#ifdef ACDF_SSE2
-    const int32_t whole = _mm_cvtss_si32(_mm_set_ss(x));
-#else
-    const int32_t whole = (int32_t)rintf(x);
-#endif
-    return whole + (int32_t)(whole == 0);
-}
 
 /* Row i of a mixture. */
 ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, int i, uint32_t row) {
@@ -70,15 +60,25 @@ ACDF_INLINE void acdf_fast_ahead(const AcdfFast* fast, const uint16_t* group) {
     for (i = 0; i < fast->ends && i < 128; i += 32) ACDF_PREFETCH(group + i);
 }
 
-/* Sets the weights of a mixture whose rows are set: up to three, positive and finite. */
+/* The power of two that takes a positive number, of at least 1e-300 and at most 1e300, to between 2^13 and 2^14. */
+ACDF_INLINE double acdf_fast_scale(double x) {
+    uint64_t bits;
+    double out;
+    memcpy(&bits, &x, sizeof bits);
+    bits = (uint64_t)(2 * 1023 + 13 - (bits >> 52)) << 52;
+    memcpy(&out, &bits, sizeof out);
+    return out;
+}
+
+/* Sets the weights of a mixture whose rows are set: up to three, positive. */
 ACDF_FN void acdf_fast_mix(const double* weight, int rows, AcdfFastMixture* out) {
     double sum = 0.0, scale;
     int i;
     for (i = 0; i < rows; ++i) sum += weight[i];
-    scale = 32767.0 / sum;
+    scale = acdf_fast_scale(sum);
     out->whole = 0;
     for (i = 0; i < ACDF_FAST_ROWS; ++i) {
-        out->weight[i] = i < rows ? acdf_fast_weight((float)(weight[i] * scale)) : 0;
+        out->weight[i] = i < rows ? (int32_t)(weight[i] * scale) + 1 : 0;
         out->whole += out->weight[i];
     }
 }

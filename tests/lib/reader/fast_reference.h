@@ -47,19 +47,14 @@ private:
         return double(number(sums, at, 1)) - (tile % 16 > 0 ? double(number(sums, at - 1, 1)) : 0.0);
     }
 
-    static double even(double x) { // the nearest integer, of two the even one
-        const double down = std::floor(x), rest = x - down;
-        return rest < 0.5 ? down : rest > 0.5 ? down + 1 : std::fmod(down, 2.0) == 0.0 ? down : down + 1;
-    }
-
     struct Mixed {
         std::vector<double> a, b;
         double whole = 0.0; // A
     };
     static Mixed mixed(const Weights& weights) {
         Mixed out;
-        for (const double w : weights)
-            out.a.push_back(std::max(1.0, even(double(float(w * (32767.0 / total_of(weights)))))));
+        const double scale = std::ldexp(1.0, 13 - std::ilogb(total_of(weights)));
+        for (const double w : weights) out.a.push_back(std::floor(w * scale) + 1);
         out.whole = total_of(out.a);
         return out;
     }
