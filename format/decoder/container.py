@@ -11,7 +11,8 @@ INFLATED_LIMIT = 1 << 30
 # Of each known chunk: its flags, and the kinds in whose files it may be.
 KNOWN = {b"DESC": (1, (1, 2, 3, 4)), b"BINS": (1, (1, 2, 3, 4)), b"TREE": (1, (1, 2, 3, 4)),
          b"META": (0, (1, 2, 3, 4)), b"TILE": (1, (2, 3)), b"ROWS": (1, (2, 3)), b"VIEW": (1, (3,)),
-         b"LOCL": (1, (2,)), b"COMP": (1, (1, 2, 4)), b"PLAC": (0, (2,)), b"PORT": (0, (2,))}
+         b"LOCL": (1, (2,)), b"COMP": (1, (1, 2, 4)), b"PLAC": (0, (2,)), b"PORT": (0, (2,)),
+         b"SUMS": (1, (2,)), b"GRID": (1, (2,))}
 
 __all__ = ["Refused", "Container", "read_container"]
 

@@ -3,12 +3,13 @@ from .brdf import Brdf
 from .company import Company
 from .container import BRDF, ENVIRONMENT, LOCAL
 from .description import NOT_STORED
+from .fast import FastTiles
 from .local import Local
 from .refused import require
 from .sphere import Environment
 from .square import grid_of
 from .table import Table
-from .tiles import NO_ROOT, Tiles
+from .tiles import Tiles
 from .tree import Tree, check_tree
 
 
@@ -22,7 +23,12 @@ def view_of(container, d):
 def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
     tiles = None
-    if b"TILE" in chunks:
+    if b"SUMS" in chunks or b"GRID" in chunks:
+        require(all(name in chunks for name in (b"SUMS", b"GRID", b"TILE")), 6027)
+        require(not any(name in chunks for name in (b"ROWS", b"PLAC", b"PORT")), 6027)
+        require(len(d.axes) >= 2, 7003)
+        tiles = FastTiles(chunks[b"TILE"], chunks[b"SUMS"], chunks[b"GRID"], d.axes)
+    elif b"TILE" in chunks:
         require(len(d.axes) >= 2, 7003 if kind == LOCAL else 8001)
         tiles = Tiles(chunks[b"TILE"], chunks.get(b"ROWS"), d.axes)
     else:
@@ -54,8 +60,7 @@ def roots_of(kind, d, tiles, tree):
         return roots
     for root, _ in d.bins:
         require(root < tiles.row_count or root == NOT_STORED, 6026)
-    for tile, root in enumerate(tiles.roots or []):
-        if root != NO_ROOT:
-            require(root in tree.curves, 6024)
-            roots.append((root, [*tiles.boxes[tile], *whole[2:]]))
+    for root, box in tiles.trees():
+        require(root in tree.curves, 6024)
+        roots.append((root, [*box, *whole[2:]]))
     return roots

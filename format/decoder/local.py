@@ -34,8 +34,7 @@ def read_local_chunk(data, tiles, bins):
         require(0 < light.share < math.inf and light.box == tiles.boxes[light.tile], 7006)
         for root, share in bins:
             if root != NOT_STORED and share > 0:
-                require(any(tiles.rows[root, node] == (255 if upper else 0)
-                            for node, upper in tiles.path(light.tile)), 7007)
+                require(tiles.is_dark(root, light.tile), 7007)
     return sigma, lights
 
 

@@ -15,10 +15,10 @@ class Split:
         self.axis, self.position, self.child = place & 7, place >> 3, (lower, upper)
 
 
-class Tiles:
+class Splits:
     """`roots` is None where all tiles are cells; `boxes` are the inherited ranges of the tiles on axes 0 and 1."""
 
-    def __init__(self, tile, rows, axes):
+    def __init__(self, tile, axes):
         require(len(tile) >= 528, 6020)
         self.count, root_count, self.row_count, reserved = struct.unpack_from("<4I", tile)
         require(1 <= self.count <= 32768 and root_count in (0, self.count) and reserved == 0, 6020)
@@ -28,8 +28,6 @@ class Tiles:
         self.codebook = [float(value) for value in book]
         self.splits = [Split(*fields) for fields in struct.iter_unpack("<IHH", tile[528:520 + 8 * self.count])]
         self.roots = list(struct.unpack_from(f"<{root_count}I", tile, 520 + 8 * self.count)) if root_count else None
-        require(rows is not None and len(rows) == self.row_count * (self.count - 1), 6025)
-        self.rows = np.frombuffer(rows, np.uint8).reshape(self.row_count, self.count - 1)
         self.whole = [[0, axes[0].resolution], [0, axes[1].resolution]]
         self.boxes = self.walk()
 
@@ -69,6 +67,23 @@ class Tiles:
             steps.append((node, upper))
             node = split.child[upper]
         return steps
+
+
+class Tiles(Splits):
+    """With rows of a byte a split, and trees in tiles."""
+
+    def __init__(self, tile, rows, axes):
+        super().__init__(tile, axes)
+        require(rows is not None and len(rows) == self.row_count * (self.count - 1), 6025)
+        self.rows = np.frombuffer(rows, np.uint8).reshape(self.row_count, self.count - 1)
+
+    def is_dark(self, row, tile):
+        """Whether a row gives a tile nothing."""
+        return any(self.rows[row, node] == (255 if upper else 0) for node, upper in self.path(tile))
+
+    def trees(self):
+        """The root of each tile that has one, and its box."""
+        return [(root, self.boxes[tile]) for tile, root in enumerate(self.roots or []) if root != NO_ROOT]
 
     def draw(self, mixture, u):
         """Steps 1 to 3. `mixture`: pairs of a row and its weight. Changes u; returns the tile and its p."""

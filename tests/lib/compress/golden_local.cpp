@@ -46,7 +46,9 @@ TEST_P(GoldenLocal, HasThatDensityThere) {
     EXPECT_GT(drawn, 60);
 }
 
-INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal, ::testing::Values("local", "local_grid", "octahedral_local"),
+INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal,
+                         ::testing::Values("local", "local_grid", "octahedral_local", "local_fast",
+                                           "octahedral_local_fast"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {

@@ -102,6 +102,8 @@ TEST_P(InlinedLocal, RoundsAsItsCallerDid) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Golden, InlinedLocal, testing::Values("local", "local_grid", "octahedral_local"));
+INSTANTIATE_TEST_SUITE_P(Golden, InlinedLocal,
+                         testing::Values("local", "local_grid", "octahedral_local", "local_fast",
+                                         "octahedral_local_fast"));
 
 } // namespace
