@@ -12,6 +12,7 @@
 // transposed frame shows.
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
+#include "golden_fast.h"
 #include "golden_samples.h"
 #include "write_file.h"
 
@@ -247,50 +248,17 @@ Golden local(const char* name, AcdfParameterization parameterization, const std:
     return {name, store(tree, d)};
 }
 
-/// The fast shape: a tile for each column above row 3 and one below, so that there are two groups; cells of 1 x 1,
-/// 1 x 2 and 1 x 4 texels, a dark line and dark tiles, one of them a light; bin 7 is not stored.
+/// The fast shape; bin 7 is not stored.
 Golden local_fast(const char* name, AcdfParameterization parameterization) {
-    constexpr std::uint32_t columns = 12, tiles = 24, light = 9, row_count = 5;
-    StoredRows rows;
-    for (std::uint32_t i = 0; i < columns; ++i) { // in preorder: a column is cut off, and divided
-        const auto tile = static_cast<std::uint16_t>(ACDF_TILE_FLAG | (2 * i)),
-                   next = static_cast<std::uint16_t>(2 * i);
-        if (i + 1 < columns)
-            rows.splits.push_back({kPhi | (i + 1) << 3,
-                                   {static_cast<std::uint16_t>(next + 1), static_cast<std::uint16_t>(next + 2)}});
-        rows.splits.push_back({kTheta | 3u << 3, {tile, static_cast<std::uint16_t>(tile + 1)}});
-    }
-    for (std::uint32_t i = 0; i < 256; ++i) rows.codebook.push_back(static_cast<std::uint16_t>(257 * i));
-    for (std::uint32_t tile = 0; tile < tiles; ++tile) {
-        rows.tile_roots.push_back(static_cast<std::uint32_t>(rows.grid.size()));
-        const std::uint32_t length = tile % 2 == 0 ? 3 : 5, shift = tile % 3,
-                            lines = (length + (1u << shift) - 1) >> shift;
-        rows.grid.insert(rows.grid.end(), {0, static_cast<std::uint8_t>(shift)});
-        for (std::uint32_t i = 0; i < lines; ++i) // the second one of three and more is dark
-            rows.grid.push_back(
-                static_cast<std::uint8_t>(i + 1 == lines ? 255 : 40 + 30 * (i == 1 && lines > 2 ? 0 : i)));
-        rows.grid.insert(rows.grid.end(), lines, 255);
-    }
-    rows.grid.insert(rows.grid.end(), ACDF_FAST_CELLS, 0);
-    rows.row_count = row_count;
-    for (std::uint32_t r = 0; r < row_count; ++r)
-        for (std::uint32_t g = 0; g < 16; ++g) {
-            const std::uint32_t end = g == 0 ? 5000 * (r + 1) : 32767;
-            rows.sums.insert(rows.sums.end(),
-                             {static_cast<std::uint8_t>(end), static_cast<std::uint8_t>(end >> 8)});
-        }
-    for (std::uint32_t r = 0; r < row_count; ++r)
-        for (std::uint32_t tile = 0; tile < 32; ++tile) {
-            const std::uint32_t i = tile == light ? tile % 16 - 1 : tile % 16, last = tile < 16 ? 15 : 7;
-            rows.sums.push_back(static_cast<std::uint8_t>(i >= last ? 255 : (7 + 2 * r) * (i + 1)));
-        }
+    const StoredRows rows = golden_fast_rows();
     EncodedTree tree = encode_tree({{{kPhi, {5}, {0.375, 0.625}, {}, {}}}, {0}});
     tree.roots.clear();
-    for (std::uint32_t bin = 0; bin < 18; ++bin) tree.roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % row_count);
-    Description d = local_axes(environment_description(columns, 8, parameterization),
+    for (std::uint32_t bin = 0; bin < 18; ++bin)
+        tree.roots.push_back(bin == 7 ? ACDF_NO_ROOT : bin % rows.row_count);
+    Description d = local_axes(environment_description(12, 8, parameterization),
                                {{"normal", ACDF_AXIS_INDEXED, ACDF_MEASURE_LINEAR, 18, 0.0, 18.0}}, 18);
     d.chunks = shared_chunks(rows);
-    d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, light, {4, 3}, {5, 8}}}));
+    d.chunks.push_back(local_chunk(0.25f, {{{0.6f, 0.0f, 0.8f}, 0.125f, 0.5f, kGoldenFastLight, {4, 3}, {5, 8}}}));
     return {name, store(tree, d)};
 }
 

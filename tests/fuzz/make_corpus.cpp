@@ -1,7 +1,7 @@
 // Writes the seeds of fuzz_reader, small valid files that use everything, to FOLDER/fuzz_reader: make_corpus FOLDER
 // (Those of the other fuzzers are in seeds/.)
 #include "tests/lib/reader/brdf_builder.h"
-#include "tests/lib/reader/local_random.h"
+#include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/planes.h"
 
 #include <cstdio>
@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     write(folder / "smallest", EnvironmentSpec().encode());
     write(folder / "complete", complete.encode());
     write(folder / "local", lit_local().encode());
+    write(folder / "fast", fast_lit_local().encode());
     write(folder / "separate", separate_local().encode());
     write(folder / "places", regional_local().encode());
     write(folder / "portals", windowed_local().encode());
@@ -53,7 +54,9 @@ int main(int argc, char** argv) {
         write(folder / ("octahedral_tree" + std::to_string(seed)), RandomTree(seed, options).make().encode());
         options.depth = 3;
         write(folder / ("octahedral_local" + std::to_string(seed)), RandomLocal(seed, options).make().encode());
+        write(folder / ("octahedral_fast" + std::to_string(seed)), RandomFast(seed, options).make().encode());
         options.octahedral = false;
+        write(folder / ("fast" + std::to_string(seed)), RandomFast(seed, options).make().encode());
         LocalSpec local = RandomLocal(seed, options).make();
         local.zlib = seed % 4 == 0;
         write(folder / ("local" + std::to_string(seed)), local.encode());
