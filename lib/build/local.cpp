@@ -3,6 +3,7 @@
 #include "build/company_text.h"
 #include "build/compressed_budget.h"
 #include "build/errors.h"
+#include "build/local_size.h"
 #include "build/option_text.h"
 #include "build/weight_bound.h"
 #include "compress/local/fit.h"
@@ -21,6 +22,7 @@ using compress::Goal;
 using compress::NormalBins;
 
 constexpr std::uint32_t kTestNormals = 256;
+constexpr int kMostGrowths = 3; // of the number of tiles
 
 compress::Description description_of(const compress::Target& target, const Source& source, const LocalOptions& o,
                                      const NormalBins& bins, const LocalAccuracy& accuracy) {
@@ -49,32 +51,6 @@ compress::Description description_of(const compress::Target& target, const Sourc
                   {"accuracy.relative_variance_full_cdf", accuracy_text(accuracy.relative_variance_full_cdf)},
                   {"accuracy.share_above_horizon", accuracy_text(accuracy.share_above_horizon)}};
     return d;
-}
-
-/// Subdivisions that suit a size: the denser the bins, the fewer tiles there are bytes for (docs/local.md).
-std::uint32_t subdivisions_for(double bytes) {
-    return static_cast<std::uint32_t>(std::clamp(std::lround(8.0 * std::pow(bytes / 262144.0, 0.3)), 3l, 64l));
-}
-
-NormalBins bins_of(const LocalOptions& o, std::uint32_t subdivisions) {
-    NormalBins bins =
-        o.columns > 0 ? compress::latlong_bins(o.columns, o.rows) : compress::octahedral_bins(subdivisions);
-    if (!o.scene.empty()) compress::weigh(bins, o.scene);
-    return bins;
-}
-
-/// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.
-NormalBins bins_for(const LocalOptions& o, double bytes) {
-    const std::uint32_t all = subdivisions_for(bytes);
-    NormalBins bins = bins_of(o, o.subdivisions > 0 ? o.subdivisions : all);
-    if (o.subdivisions > 0 || o.columns > 0 || o.scene.empty()) return bins;
-    const std::size_t rows = 4 * std::size_t{all} * all + 2;
-    for (std::uint32_t finer = all + 1; finer <= 2 * all; ++finer) {
-        NormalBins next = bins_of(o, finer);
-        if (next.stored() > rows) break;
-        bins = std::move(next);
-    }
-    return bins;
 }
 
 Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, const LocalOptions& options) {
@@ -129,19 +105,6 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
         draft.description.chunks.push_back(
             compress::company_chunk(options.company, mean_share(fit.records, bins), fit.records));
     return draft;
-}
-
-/// Tiles and curves that fill a budget. Curves take three tenths: more of them, or fewer, and the variance rises.
-compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes) {
-    constexpr double fixed = 2600.0;
-    const double each = double(bins.stored()) + sizeof(AcdfSplit) + sizeof(std::uint32_t);
-    const std::size_t of_bin = sizeof(AcdfBin) + (o.company ? sizeof(AcdfCompanyRecord) : 0);
-    const double room = bytes - fixed - double(bins.normals.size() * of_bin);
-    compress::LocalSize size;
-    const double tiles = o.tiles > 0 ? o.tiles : 0.7 * room / each;
-    size.tiles = static_cast<std::uint32_t>(std::clamp(tiles, 1.0, double(ACDF_MAX_TILES)));
-    size.tree_bytes = static_cast<std::uint64_t>(std::max(room - size.tiles * each, 256.0));
-    return size;
 }
 
 /// Of a file with places: one part in so many is for all that is there without them.
@@ -202,6 +165,20 @@ void add_places(LocalDraft& draft, const compress::Target& target, const LocalOp
     if (made > budget) throw OutOfReach(budget, made); // a single cell, or a map of portals, is more than is left
 }
 
+/// More tiles, where grids are as fine as they can be and leave bytes: false where there are none to be had.
+bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compress::LocalFit& fit,
+                std::uint64_t budget, std::uint64_t bytes, compress::LocalSize& size) {
+    const bool ran_out = bytes + budget / 50 < budget && options.shape == compress::LocalShape::fast;
+    if (!ran_out || options.tiles > 0 || fit.tiles.tiles.size() < size.tiles || size.tiles >= ACDF_MAX_TILES)
+        return false;
+    // Grids of more tiles take more bytes, too.
+    const double used = double(fit.shared.grid.size()) / double(budget) * double(budget) / double(bytes);
+    const compress::LocalSize next = size_for(options, bins, double(budget), used);
+    if (next.tiles <= size.tiles) return false;
+    size = next;
+    return true;
+}
+
 /// At most `whole_budget` bytes before compression, and nearly as many.
 Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
                   std::uint64_t whole_budget, double max_weight, const Progress& progress) {
@@ -212,13 +189,19 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
     compress::LocalSize size = size_for(options, bins, double(budget));
     if (max_weight > 0.0) size.max_weight = max_weight;
     std::optional<compress::LocalFitter> fitter; // of so many tiles
-    for (int tries = 0;; ++tries) {
+    for (int tries = 0, growths = 0;; ++tries) {
         if (!fitter) fitter.emplace(target, bins, size, fitting(progress), options.company);
-        compress::LocalFit fit = fitter->outlined(size.tree_bytes);
+        compress::LocalFit fit = fitter->outlined(size.inside_bytes);
         LocalDraft draft = shared_draft(fit, target, source, options, bins);
         const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
+        if (fits && growths < kMostGrowths && more_tiles(options, bins, fit, budget, bytes, size)) {
+            fitter.reset();
+            ++growths;
+            tries = -1;
+            continue;
+        }
         if (fits && (full || tries > 0)) {
             fitter->fill(fit);
             draft = shared_draft(fit, target, source, options, bins);
@@ -226,16 +209,16 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
             return finish(std::move(draft), target, source, options, bins);
         }
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
-        const std::int64_t next = static_cast<std::int64_t>(size.tree_bytes) + miss - 192;
+        const std::int64_t next = static_cast<std::int64_t>(size.inside_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
             if (size.tiles <= 2) throw OutOfReach(whole_budget, whole_of(options, bytes));
             size.tiles = size.tiles * 3 / 4;
             fitter.reset();
-            size.tree_bytes = size_for(options, bins, double(budget)).tree_bytes;
+            size.inside_bytes = size_for(options, bins, double(budget)).inside_bytes;
             tries = 0;
             continue;
         }
-        size.tree_bytes = static_cast<std::uint64_t>(next);
+        size.inside_bytes = static_cast<std::uint64_t>(next);
     }
 }
 
@@ -330,6 +313,7 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.places.scene && o.scene_text.find("--places") == std::string::npos) text += "--places ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {
+        if (o.shape == compress::LocalShape::fast) text += "--shape fast ";
         if (o.max_weight > 0.0) text += "--max-weight " + option_number(o.max_weight) + " ";
         if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";
         return text + goal_text(o.goal);
@@ -366,10 +350,11 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
     case Goal::Kind::variance:
         return build_to_variance(target, source, options, progress);
     default: {
-        const double bytes = 4.2 * options.goal.cells; // of the shared curves, three tenths of the file
-        const NormalBins bins = bins_for(options, bytes / 0.3);
-        compress::LocalSize size = size_for(options, bins, bytes / 0.3);
-        size.tree_bytes = static_cast<std::uint64_t>(bytes);
+        const double bytes = bytes_of_cell(options.shape) * options.goal.cells,
+                     file = bytes / inside_share(options.shape);
+        const NormalBins bins = bins_for(options, file);
+        compress::LocalSize size = size_for(options, bins, file);
+        size.inside_bytes = static_cast<std::uint64_t>(bytes);
         return within_weight(options.max_weight, [&](double max_weight) {
             if (max_weight > 0.0) size.max_weight = max_weight;
             const compress::LocalFit fit =

@@ -4,6 +4,7 @@
 #include "build/environment.h"
 #include "build/local_accuracy.h"
 #include "build/progress.h"
+#include "compress/local/fit.h"
 #include "compress/local/fit_separate.h"
 #include "compress/local/normals.h"
 #include "compress/places/fit.h"
@@ -27,13 +28,15 @@ struct ScenePlaces {
 struct LocalOptions {
     compress::TargetOptions target;
     compress::Goal goal{compress::Goal::Kind::budget, 0, std::uint64_t{1} << 20,
-                        0.0};                 ///< cells: of the shared curves
+                        0.0};                 ///< cells: of the shared curves or grids
     std::uint32_t subdivisions = 0;           ///< octahedral bins; 0: as suits the size
     std::uint32_t columns = 0, rows = 0;      ///< lat-long bins, if not 0
     std::uint32_t tiles = 0;                  ///< 0: as suits the size
     double max_weight = 0.0;                  ///< with sharing: of the measured weights; 0: no bound
     std::vector<compress::SceneNormal> scene; ///< empty: all normals
     bool sharing = true;
+    compress::LocalShape shape =
+        compress::LocalShape::small; ///< with sharing; see LocalFitter for what goes with fast
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;

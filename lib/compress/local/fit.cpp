@@ -5,7 +5,9 @@
 #include "compress/local/company.h"
 #include "compress/local/light.h"
 #include "compress/local/mixed_rows.h"
+#include "compress/local/sums.h"
 #include "compress/local/tile_curves.h"
+#include "compress/local/tile_grids.h"
 #include "compress/local/tile_light.h"
 
 #include <acdf/local.h>
@@ -56,12 +58,12 @@ LightRule divide(const Target& target, const Worth& worth, std::uint32_t count, 
 }
 
 /// Tiles of light so bright that, near the horizon, mixing the rows of bins would draw many samples below it.
-std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, const TileCascade& cascade,
+std::vector<AcdfLight> find_lights(const Target& target, const TileTree& tiles, const TileInsides& insides,
                                    double total, const Worth& worth, const LightRule& rule) {
     std::vector<std::pair<double, AcdfLight>> found;
     for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
         const Box& box = tiles.tiles[t];
-        const double reach = radius(target, box), share = cascade.tile_cost(t);
+        const double reach = radius(target, box), share = insides.tile_cost(t);
         const double alarm =
             share * total *
             worth.alarm.at(double(box.begin[1]) / target.columns, double(box.begin[0]) / target.rows);
@@ -108,15 +110,15 @@ std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cos
 /// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to, and
 /// `row(bin, costs)` the bytes of that.
 template <class Costs, class Row>
-void fill_rows(const Costs& costs, const Row& row_of, LocalFit& out) {
-    const std::size_t width = out.tiles.splits.size();
+void fill_rows(const Costs& costs, const Row& row_of, std::vector<std::uint8_t>& rows, LocalFit& out) {
+    const std::size_t width = rows.size() / std::max(out.shared.row_count, 1u);
     tbb::parallel_for(std::size_t{0}, out.tree.roots.size(), [&](std::size_t b) {
         if (out.tree.roots[b] == ACDF_NO_ROOT) return;
         const std::vector<double> cost = costs(b);
         double sum = 0.0;
         for (double c : cost) sum += c;
         const std::vector<std::uint8_t> row = row_of(b, cost);
-        std::copy(row.begin(), row.end(), out.shared.codes.begin() + std::ptrdiff_t(out.tree.roots[b] * width));
+        std::copy(row.begin(), row.end(), rows.begin() + std::ptrdiff_t(out.tree.roots[b] * width));
         out.shares[b] = static_cast<float>(sum);
     });
 }
@@ -125,9 +127,11 @@ void fill_rows(const Costs& costs, const Row& row_of, LocalFit& out) {
 
 LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const LocalSize& size,
                          const Progress& progress, const Company& company)
-    : target_(target), bins_(bins), max_weight_(size.max_weight), progress_(progress) {
+    : target_(target), bins_(bins), size_(size), total_(integral(target)), progress_(progress) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
+    if (fast() && (company || std::isfinite(size.max_weight)))
+        throw std::invalid_argument("the fast shape has no company, and no bound on weights");
     const std::vector<LightPoint> points = light_points(target);
     flux_ = irradiance(points, bins);
     worth_ = worth(target, bins, flux_);
@@ -138,11 +142,14 @@ LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const Loc
     report(0.4);
     if (beside_) filled_ = beside_->filled(target);
     worth_of_tiles_ = worth_of_tiles(target, tiles_.tiles, worth_);
+    if (!fast()) return;
+    grids_.emplace(target, tiles_.tiles, worth_of_tiles_);
+    whole_ = fit_whole();
 }
 
 /// The curves at the lowest price at which they take at most `bytes`.
 LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {
-    const double any = std::numeric_limits<double>::infinity(), most_ratio = max_weight_ < any ? 1.01 : any;
+    const double any = std::numeric_limits<double>::infinity(), most_ratio = size_.max_weight < any ? 1.01 : any;
     const auto at = [&](double price) {
         Curves out;
         out.cascade = std::make_unique<TileCascade>(tiles_, *tile_curves_, price);
@@ -173,59 +180,97 @@ LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {
     return best;
 }
 
-LocalFit LocalFitter::outlined(std::uint64_t tree_bytes) {
-    tile_curves_.emplace(beside_ ? filled_ : target_, tiles_.tiles, worth_of_tiles_, kWeightOfCells * max_weight_);
-    curves_ = fit_curves(tree_bytes);
-    report(0.8);
+/// What serves normals whose bins are not stored: none, and one cell will do.
+Fitted LocalFitter::fit_whole() const {
+    Fitted out;
+    if (bins_.stored() == bins_.normals.size()) {
+        Flattened nothing;
+        flatten_nothing(ACDF_AXIS_PHI, nothing);
+        out.cascade = std::move(nothing.cascade);
+        out.tree = encode_tree(out.cascade);
+        return out;
+    }
+    FitOptions options;
+    options.goal = {Goal::Kind::budget, 0, size_.whole_bytes, 0.0};
+    return compress::fit(target_, options);
+}
+
+void LocalFitter::outline_curves(std::uint64_t bytes, LocalFit& out) {
+    tile_curves_.emplace(beside_ ? filled_ : target_, tiles_.tiles, worth_of_tiles_,
+                         kWeightOfCells * size_.max_weight);
+    curves_ = fit_curves(bytes);
+    out.tree = curves_.tree;
+    for (std::int32_t curve : curves_.cascade->tile_curve)
+        out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);
+}
+
+void LocalFitter::outline_grids(std::uint64_t bytes, LocalFit& out) {
+    grids_->choose(bytes);
+    out.tree = whole_.tree;
+    out.shared.grid = grids_->stored(out.shared.tile_roots);
+}
+
+LocalFit LocalFitter::outlined(std::uint64_t inside_bytes) {
     LocalFit out;
     out.tiles = tiles_;
-    out.lights = find_lights(target_, tiles_, *curves_.cascade, tile_curves_->total(), worth_, rule_);
-    out.tree = curves_.tree;
+    if (fast()) outline_grids(inside_bytes, out);
+    else outline_curves(inside_bytes, out);
+    report(0.8);
+    out.lights = find_lights(target_, tiles_, insides(), fast() ? total_ : tile_curves_->total(), worth_, rule_);
     out.shared.splits = stored_splits(tiles_, [](const TileTree::Split& split) {
         return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;
     });
     out.shared.codebook = row_codebook();
-    for (std::int32_t curve : curves_.cascade->tile_curve)
-        out.shared.tile_roots.push_back(curve < 0 ? ACDF_NO_ROOT : out.tree.offsets[std::size_t(curve)]);
     const std::size_t count = bins_.normals.size();
     out.shares.assign(count, 0.0f);
     out.tree.roots.assign(count, ACDF_NO_ROOT);
     for (std::size_t b = 0; b < count; ++b)
         if (bins_.weight[b] > 0.0) out.tree.roots[b] = out.shared.row_count++;
-    out.shared.codes.resize(out.shared.row_count * tiles_.splits.size());
+    if (fast()) out.shared.sums.resize(out.shared.row_count * sums_stride(tiles_.tiles.size()));
+    else out.shared.codes.resize(out.shared.row_count * tiles_.splits.size());
     if (beside_) out.records.resize(count, {1.0f, 0.0f});
     return out;
 }
 
-void LocalFitter::fill(LocalFit& out) const {
-    if (beside_) {
-        const FilledTiles light(target_, tiles_, *tile_curves_, *curves_.cascade, out.lights, *beside_, bins_);
-        const auto shares_of = [&](std::size_t b) {
-            std::vector<double> shares = light.shares(b);
-            for (double& share : shares) share /= tile_curves_->total();
-            out.records[b] = {light.recommended_share(b, shares),
-                              static_cast<float>(flux_[b] / tile_curves_->total())};
-            return shares;
-        };
-        const auto row = [&](std::size_t, const std::vector<double>& shares) { return encode_row(tiles_, shares); };
-        fill_rows(shares_of, row, out);
-    } else {
-        const TileLight light(target_, tiles_, *curves_.cascade, out.lights);
-        const TileParts parts = mixed_rows(light, bins_, out.lights);
-        const auto row = [&](std::size_t b, const std::vector<double>& costs) {
-            if (!std::isfinite(max_weight_)) return encode_row(tiles_, costs);
-            return row_above(out, costs, light.least(bins_.normals[b], costs, max_weight_));
-        };
-        fill_rows([&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); }, row, out);
+void LocalFitter::fill_beside(LocalFit& out) const {
+    const FilledTiles light(target_, tiles_, *tile_curves_, *curves_.cascade, out.lights, *beside_, bins_);
+    const double total = tile_curves_->total();
+    const auto shares_of = [&](std::size_t b) {
+        std::vector<double> shares = light.shares(b);
+        for (double& share : shares) share /= total;
+        out.records[b] = {light.recommended_share(b, shares), static_cast<float>(flux_[b] / total)};
+        return shares;
+    };
+    const auto row = [&](std::size_t, const std::vector<double>& shares) { return encode_row(tiles_, shares); };
+    fill_rows(shares_of, row, out.shared.codes, out);
+}
+
+void LocalFitter::fill_mixed(LocalFit& out) const {
+    const TileLight light(target_, tiles_, insides(), out.lights);
+    const TileParts parts = mixed_rows(light, bins_, out.lights);
+    const auto costs = [&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); };
+    if (fast()) {
+        const auto row = [](std::size_t, const std::vector<double>& c) { return encode_sums(c); };
+        return fill_rows(costs, row, out.shared.sums, out);
     }
-    out.cascade = curves_.cascade->cascade;
+    const auto row = [&](std::size_t b, const std::vector<double>& c) {
+        if (!std::isfinite(size_.max_weight)) return encode_row(tiles_, c);
+        return row_above(out, c, light.least(bins_.normals[b], c, size_.max_weight));
+    };
+    fill_rows(costs, row, out.shared.codes, out);
+}
+
+void LocalFitter::fill(LocalFit& out) const {
+    if (beside_) fill_beside(out);
+    else fill_mixed(out);
+    out.cascade = fast() ? whole_.cascade : curves_.cascade->cascade;
     report(1.0);
 }
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
                    const Company& company) {
     LocalFitter fitter(target, bins, size, progress, company);
-    LocalFit out = fitter.outlined(size.tree_bytes);
+    LocalFit out = fitter.outlined(size.inside_bytes);
     fitter.fill(out);
     return out;
 }

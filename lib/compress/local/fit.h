@@ -8,6 +8,7 @@
 #include "compress/local/light.h"
 #include "compress/local/normals.h"
 #include "compress/local/tile_curves.h"
+#include "compress/local/tile_grids.h"
 
 #include <acdf/layout.h>
 
@@ -19,10 +20,17 @@
 
 namespace acdf::compress {
 
+/// How bins that share tiles are stored: curves in tiles and a byte a split in rows, which take the fewest bytes,
+/// or grids in tiles and sums in rows, which are searched fastest (format/SPEC.md, section 5.11).
+enum class LocalShape { small, fast };
+
 /// How large a local environment map becomes.
 struct LocalSize {
-    std::uint32_t tiles = 900;         ///< at most so many
-    std::uint64_t tree_bytes = 131072; ///< of the curves within tiles, at most (but for the least there must be)
+    std::uint32_t tiles = 900;           ///< at most so many
+    std::uint64_t inside_bytes = 131072; ///< of curves or grids in tiles, at most (but for the least there must be)
+    LocalShape shape = LocalShape::small; ///< fast: without a company or a bound on weights
+    /// Of the fast shape: of the tree of the environment as a whole, where there are bins that are not stored.
+    std::uint64_t whole_bytes = 16384;
     /// What weights are held to, over their mean, as far as bins tell; not beside a company.
     double max_weight = std::numeric_limits<double>::infinity();
 };
@@ -30,7 +38,7 @@ struct LocalSize {
 /// A local environment map, ready to be stored.
 struct LocalFit {
     TileTree tiles;
-    Cascade cascade;   ///< root 0: the environment as a whole
+    Cascade cascade;   ///< root 0: the environment as a whole; of the fast shape one cell where it serves no bin
     EncodedTree tree;  ///< roots: one a bin, its row or ACDF_NO_ROOT where it is not stored
     StoredRows shared; ///< tiles, and a row for each bin
     std::vector<AcdfLight> lights;
@@ -38,22 +46,22 @@ struct LocalFit {
     std::vector<AcdfCompanyRecord> records; ///< beside a company: one a bin
 };
 
-/// Fits tiles, the curves in them, lights, and the rows of all bins that occur. Deterministic for any number of
+/// Fits tiles, what is in them, lights, and the rows of all bins that occur. Deterministic for any number of
 /// threads.
 ///
 /// Beside a company a share is the flux that is left to the file, rows are 0 where the company covers a tile, and
 /// records tell the irradiance.
 class LocalFitter {
 public:
-    /// Divides into tiles; `size.tree_bytes` is of no meaning. Target and bins must outlive it. Throws
+    /// Divides into tiles; `size.inside_bytes` is of no meaning. Target and bins must outlive it. Throws
     /// std::invalid_argument where the target has no energy, or the bins are cells of a grid: rows are made for
     /// corners, whose mixture covers what a normal between them sees.
     LocalFitter(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
                 const Company& company);
 
-    /// A fit whose curves take at most `tree_bytes` (but for the least there must be): all of it, but shares are 0,
-    /// and so is what rows and records hold. It is stored in as many bytes as it will be.
-    LocalFit outlined(std::uint64_t tree_bytes);
+    /// A fit whose curves or grids take at most `inside_bytes` (but for the least there must be): all of it, but
+    /// shares are 0, and so is what rows and records hold. It is stored in as many bytes as it will be.
+    LocalFit outlined(std::uint64_t inside_bytes);
     /// Shares, rows and records of the fit that was outlined last.
     void fill(LocalFit& fit) const;
 
@@ -64,13 +72,24 @@ private:
     };
 
     Curves fit_curves(std::uint64_t bytes);
+    Fitted fit_whole() const;
+    void outline_curves(std::uint64_t bytes, LocalFit& out);
+    void outline_grids(std::uint64_t bytes, LocalFit& out);
+    void fill_beside(LocalFit& out) const;
+    void fill_mixed(LocalFit& out) const;
+    bool fast() const { return size_.shape == LocalShape::fast; }
+    const TileInsides& insides() const {
+        if (fast()) return *grids_;
+        return *curves_.cascade;
+    }
     void report(double share) const {
         if (progress_) progress_(share);
     }
 
     const Target& target_;
     const NormalBins& bins_;
-    const double max_weight_;
+    const LocalSize size_;
+    const double total_; ///< the integral of the target
     const Progress progress_;
     std::vector<double> flux_; ///< the irradiance of each bin
     Worth worth_;
@@ -79,8 +98,12 @@ private:
     TileTree tiles_;
     LightRule rule_;
     std::vector<double> worth_of_tiles_;
-    std::optional<TileCurves> tile_curves_; ///< of the fit that was outlined last
+    // Of the fit that was outlined last:
+    std::optional<TileCurves> tile_curves_;
     Curves curves_;
+    // Of the fast shape:
+    std::optional<TileGrids> grids_;
+    Fitted whole_; ///< the environment
 };
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size,

@@ -40,14 +40,22 @@ double solid_angle(const Target& target, const Box& box) {
            (acdf_row_z(box.begin[0], target.rows) - acdf_row_z(box.end[0], target.rows));
 }
 
+std::array<double, 2> texel_radians(const Target& target, const Box& box) {
+    if (is_octahedral(target)) {
+        const double side = 2.0 * std::sqrt(ACDF_PI);
+        return {side / target.rows, side / target.columns};
+    }
+    const double z = centre(target, box)[2];
+    return {ACDF_PI / target.rows, 2.0 * ACDF_PI / target.columns * std::sqrt(std::max(0.0, 1.0 - z * z))};
+}
+
 std::vector<LightPoint> light_points(const Target& target) {
-    constexpr double step = 0.02;
     Box all;
     all.end = {};
     all.end[0] = target.rows;
     all.end[1] = target.columns;
     std::vector<Box> blocks;
-    for_each_block(target, all, step, [&](const Box& block, double) { blocks.push_back(block); });
+    for_each_block(target, all, kPointStep, [&](const Box& block, double) { blocks.push_back(block); });
     std::vector<LightPoint> points(blocks.size());
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
         Sum sum;

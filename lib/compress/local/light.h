@@ -25,7 +25,12 @@ struct LightPoint {
     double measure = 0.0; ///< the solid angle that it comes from, where that is known
 };
 
+/// Radians across which light is taken to have one cosine.
+constexpr double kPointStep = 0.02;
+
 double solid_angle(const Target& target, const Box& box);
+/// The height and width of a texel in the middle of a box.
+std::array<double, 2> texel_radians(const Target& target, const Box& box);
 
 /// Calls `visit(block, share)` for blocks of a box of at most about `step` radians, with their share of its solid
 /// angle.

@@ -50,6 +50,17 @@ TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double
     add(tiles.splits.empty() ? TileTree::tile : 0);
 }
 
+std::vector<LitCell> TileCascade::lit_cells(std::size_t tile) const {
+    std::vector<LitCell> out;
+    for_each_cell(tile, [&](const Part& part) {
+        // A cell of measure mu and probability P within the tile, P = cost of cell / cost of tile, adds mu / P
+        // times the integral of g^2 cos^2: cost of tile . cost of cell . cos^2.
+        const double amount = cost_[tile] * part.moments.cost();
+        if (amount > 0.0) out.push_back({part.box, amount, part.moments.weight()});
+    });
+    return out;
+}
+
 std::int32_t TileCascade::add(std::uint32_t child) {
     return child & TileTree::tile ? add_tile(child & ~TileTree::tile) : add_split(child);
 }

@@ -3,6 +3,7 @@
 
 #include "compress/fit/prune.h"
 #include "compress/fit/tiles.h"
+#include "compress/local/tile_insides.h"
 
 #include <cstdint>
 #include <limits>
@@ -37,7 +38,7 @@ private:
 };
 
 /// The tree of a whole environment: the splits between tiles as curves of two segments, then the curves in tiles.
-class TileCascade {
+class TileCascade : public TileInsides {
 public:
     /// Prunes at `price` a byte. `tiles` and `curves` must outlive it.
     TileCascade(const TileTree& tiles, const TileCurves& curves, double price);
@@ -46,7 +47,9 @@ public:
     std::vector<std::int32_t> tile_curve; ///< one a tile: its first curve; -1: it is a cell
 
     /// The sum of the shares of the cells of a tile: its part of the environment.
-    double tile_cost(std::size_t tile) const { return cost_[tile]; }
+    double tile_cost(std::size_t tile) const override { return cost_[tile]; }
+    /// Without a company.
+    std::vector<LitCell> lit_cells(std::size_t tile) const override;
 
     /// Calls `visit(part)` for each cell of a tile.
     template <class Visit>

@@ -11,8 +11,6 @@ namespace {
 
 /// Of a tile that may be seen though none of its points are: its cost, of that of all it holds.
 constexpr double kGlimpse = 1e-3;
-/// Radians across which light in a cell is taken to have one cosine.
-constexpr double kPointStep = 0.02;
 
 constexpr std::size_t kViewLanes = TileLight::views_at_once;
 
@@ -49,32 +47,28 @@ ACDF_BY_LANES void add_points(const LightPoint* points, std::size_t count, const
 
 } // namespace
 
-TileLight::TileLight(const Target& target, const TileTree& tiles, const TileCascade& cascade,
+TileLight::TileLight(const Target& target, const TileTree& tiles, const TileInsides& insides,
                      const std::vector<AcdfLight>& lights)
     : target_(target), tiles_(tiles), tile_(tiles.tiles.size()) {
     std::vector<bool> is_light(tile_.size(), false);
     for (const AcdfLight& light : lights) is_light[light.tile] = true;
     tbb::parallel_for(std::size_t{0}, tile_.size(), [&](std::size_t t) {
-        if (!is_light[t] && cascade.tile_cost(t) > 0.0) fill(cascade, t);
+        if (!is_light[t] && insides.tile_cost(t) > 0.0) fill(insides, t);
     });
 }
 
-void TileLight::fill(const TileCascade& cascade, std::size_t tile) {
+void TileLight::fill(const TileInsides& insides, std::size_t tile) {
     Tile& out = tile_[tile];
-    out.cost = cascade.tile_cost(tile);
+    out.cost = insides.tile_cost(tile);
     out.centre = centre(target_, tiles_.tiles[tile]);
     out.reach = radius(target_, tiles_.tiles[tile]);
-    cascade.for_each_cell(tile, [&](const Part& part) {
-        // A cell of measure mu and probability P within the tile, P = cost of cell / cost of tile, adds mu / P
-        // times the integral of g^2 cos^2: cost of tile . cost of cell . cos^2.
-        const double amount = out.cost * part.moments.cost();
-        if (!(amount > 0.0)) return;
-        out.lit.push_back({part.box, part.moments.weight()});
-        out.heaviest = std::max(out.heaviest, part.moments.weight());
-        for_each_block(target_, part.box, kPointStep, [&](const Box& block, double share) {
-            out.points.push_back({centre(target_, block), amount * share, 0.0});
+    out.lit = insides.lit_cells(tile);
+    for (const LitCell& cell : out.lit) {
+        out.heaviest = std::max(out.heaviest, cell.weight);
+        for_each_block(target_, cell.box, kPointStep, [&](const Box& block, double share) {
+            out.points.push_back({centre(target_, block), cell.amount * share, 0.0});
         });
-    });
+    }
     for (const LightPoint& p : out.points) {
         const auto [x, y, z] = p.direction;
         const std::array<double, 6> squares = {x * x, y * y, z * z, 2.0 * x * y, 2.0 * y * z, 2.0 * z * x};

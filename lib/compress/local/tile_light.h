@@ -3,7 +3,7 @@
 
 #include "compress/fit/tiles.h"
 #include "compress/local/light.h"
-#include "compress/local/tile_curves.h"
+#include "compress/local/tile_insides.h"
 
 #include <acdf/layout.h>
 
@@ -26,7 +26,7 @@ struct TileView {
 /// the cost of the tile for a normal. `target` and `tiles` must outlive it.
 class TileLight {
 public:
-    TileLight(const Target& target, const TileTree& tiles, const TileCascade& cascade,
+    TileLight(const Target& target, const TileTree& tiles, const TileInsides& insides,
               const std::vector<AcdfLight>& lights);
 
     std::size_t size() const { return tile_.size(); }
@@ -43,10 +43,6 @@ public:
     std::vector<double> least(const Direction& normal, const std::vector<double>& parts, double max_weight) const;
 
 private:
-    struct LitCell {
-        Box box;
-        double weight; ///< see Moments
-    };
     struct Tile {
         Direction centre{};
         double reach = 0.0;             ///< of any direction in it, from its centre
@@ -58,7 +54,7 @@ private:
         double heaviest = 0.0;    ///< of their weights
     };
 
-    void fill(const TileCascade& cascade, std::size_t tile);
+    void fill(const TileInsides& insides, std::size_t tile);
     /// Of tiles that the horizon cuts, for each normal the square of the cost, and what of the light is hidden.
     struct AcrossHorizon {
         double square[views_at_once] = {}, hidden[views_at_once] = {};

@@ -174,7 +174,8 @@ std::vector<Chunk> shared_chunks(const StoredRows& rows) {
     append(tiles.bytes, header);
     for (const AcdfSplit& split : rows.splits) append(tiles.bytes, split);
     for (std::uint32_t root : rows.tile_roots) append(tiles.bytes, root);
-    return {std::move(tiles), {ACDF_CHUNK_ROWS, rows.codes}};
+    if (rows.grid.empty()) return {std::move(tiles), {ACDF_CHUNK_ROWS, rows.codes}};
+    return {std::move(tiles), {ACDF_CHUNK_SUMS, rows.sums}, {ACDF_CHUNK_GRID, rows.grid}};
 }
 
 Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights) {

@@ -62,16 +62,18 @@ struct EncodedTree {
 EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8,
                         double most_ratio = std::numeric_limits<double>::infinity());
 
-/// What the bins of local environments and BRDFs share, and a row for each.
+/// What the bins of local environments and BRDFs share, and a row for each; of the fast shape of local environments
+/// where it has `grid`.
 struct StoredRows {
     std::vector<AcdfSplit> splits;         ///< in preorder
-    std::vector<std::uint32_t> tile_roots; ///< one a tile, or empty: all tiles are cells
+    std::vector<std::uint32_t> tile_roots; ///< one a tile, in `grid` if it has one; or empty: all tiles are cells
     std::vector<std::uint16_t> codebook;   ///< 256
     std::uint32_t row_count = 0;
-    std::vector<std::uint8_t> codes; ///< row_count x splits
+    std::vector<std::uint8_t> codes;      ///< row_count x splits
+    std::vector<std::uint8_t> sums, grid; ///< the chunks, instead of `codes`
 };
 
-/// Chunks TILE and ROWS.
+/// Chunks TILE and ROWS, or TILE, SUMS and GRID.
 std::vector<Chunk> shared_chunks(const StoredRows& rows);
 
 /// Chunk LOCL.
