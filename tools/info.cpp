@@ -1,4 +1,5 @@
 // acdf info: what is inside a file, in a form for people or as JSON.
+#include "build/cells.h"
 #include "build/company_text.h"
 #include "build/format_names.h"
 #include "tools/cli/file_input.h"
@@ -35,8 +36,20 @@ struct TreeCounts {
     std::uint64_t cells = 0; // segments that end; one of a shared curve counts once
 };
 
+/// Cells of grids, which are in no tree.
+std::uint64_t count_grids(const File& file) {
+    std::uint64_t cells = 0;
+    const auto boxes = build::tile_boxes(file);
+    for (std::uint32_t t = 0; t < boxes.size(); ++t)
+        build::for_each_tile_cell(file, t, boxes[t].data(), [&](const build::Cell&) { ++cells; });
+    return cells;
+}
+
+bool is_fast(const File& file) { return file.kind() == ACDF_KIND_LOCAL && file.local().data().fast.grid; }
+
 TreeCounts count_tree(const File& file) {
     TreeCounts counts;
+    if (is_fast(file)) counts.cells = count_grids(file);
     if (const AcdfTiles* tiles = file.blend().tiles; tiles && tiles->root_count == 0) {
         counts.cells = tiles->tile_count; // shared by all bins, and no curve divides them
         counts.curves = 0;
@@ -130,6 +143,7 @@ Json local_json(const File& file) {
                                                : std::to_string(local.columns) + "x" + std::to_string(local.rows);
     report["bins_stored"] = stored;
     report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
+    if (local.blend.tiles) report["shape"] = is_fast(file) ? "fast" : "small";
     report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
     report["lights"] = local.light_count;
     report["cosine_share"] = local.cosine_share;
@@ -225,10 +239,10 @@ std::string target_text(const Json& report) {
 std::string local_text(const Json& local) {
     const std::string bins =
         "--normals " + text_of(local["normals"]) + ", " + text_of(local["bins_stored"]) + " stored; ";
-    const std::string shared = local["tiles"] == 0
-                                   ? "a tree each"
-                                   : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
-                                         " rows, " + text_of(local["lights"]) + " lights";
+    const std::string shared =
+        local["tiles"] == 0 ? "a tree each"
+                            : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) + " rows, " +
+                                  text_of(local["lights"]) + " lights; shape " + text_of(local["shape"]);
     const std::string places = local.contains("places")
                                    ? "; " + text_of(local["places"]["cells"]) + " places from " +
                                          text_of(local["places"]["low"]) + " to " + text_of(local["places"]["high"])

@@ -54,6 +54,7 @@ private:
     builder::LocalOptions read_scene(const Note& note) const;
     void add_bins(CLI::App& command);
     void add_size(CLI::App& command);
+    void add_shape(CLI::App& command);
     void add_separate(CLI::App& command);
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Local& result) const;
     std::string scene_text() const;
@@ -131,6 +132,9 @@ void LocalConversion::check() {
         if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
     if (portals_.given() && !places_) throw CLI::ValidationError("--portal", "is for --places");
     if (volume_ && !places_) throw CLI::ValidationError("--volume", "is for --places");
+    if (local_.shape == builder::LocalShape::fast)
+        for (const char* option : {"--no-sharing", "--places", "--max-weight", "--with"})
+            if (given(option)) throw CLI::ValidationError("--shape", std::string("fast goes without ") + option);
     if (!places_) return;
     if (!scene_.given()) throw CLI::ValidationError("--places", "needs --scene MESH");
     for (const char* option : {"--no-sharing", "--cells", "--target-variance", "--max-weight"})
@@ -293,8 +297,8 @@ void LocalConversion::add_bins(CLI::App& command) {
 void LocalConversion::add_size(CLI::App& command) {
     builder::LocalOptions& local = local_;
     add_goal(command, local.goal.cells, budget_, local.goal.variance,
-             {"Cells of the curves that bins share, about; with --no-sharing: of a bin, in the mean", "N",
-              "SIZE [1MiB]", ", in the mean over normals", 16});
+             {"Cells of what bins share, about; with --no-sharing: of a bin, in the mean", "N", "SIZE [1MiB]",
+              ", in the mean over normals", 16});
     add_max_weight(command, local.max_weight, ". It is measured over the normals whose variance is printed");
     command
         .add_option(
@@ -303,6 +307,19 @@ void LocalConversion::add_size(CLI::App& command) {
             "closely, at the price of cells within them")
         ->check(CLI::Range(1u, ACDF_MAX_TILES))
         ->option_text("N [as suits the size]")
+        ->group("Size and accuracy");
+}
+
+void LocalConversion::add_shape(CLI::App& command) {
+    const std::map<std::string, builder::LocalShape> shapes{{"small", builder::LocalShape::small},
+                                                            {"fast", builder::LocalShape::fast}};
+    command
+        .add_option(
+            "--shape", local_.shape,
+            "small: the least noise for its bytes; fast: tables that are searched by vectors, for renderers "
+            "whose time goes into drawing and evaluating light: several times as fast, at about the same noise")
+        ->transform(one_of(shapes))
+        ->option_text("small|fast [small]")
         ->group("Size and accuracy");
 }
 
@@ -355,6 +372,7 @@ void LocalConversion::add_options(CLI::App& command) {
     add_repairs(command, input_);
     add_bins(command);
     add_size(command);
+    add_shape(command);
     add_company(command, local_.company, false);
     add_separate(command);
     add_target_options(command, local_.target);

@@ -3,7 +3,10 @@
 
 #include <acdf/reader.h>
 
+#include <array>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace acdf::build {
 
@@ -23,6 +26,13 @@ void for_each_cell(const File& file, std::uint32_t root, const std::function<voi
 /// The same for a tree within a box: range[2], without tilts.
 void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* range,
                       const std::function<void(const Cell&)>& visit);
+
+/// The boxes of the tiles of a local environment, in their order; none where it has no tiles.
+std::vector<std::array<AcdfRange, 2>> tile_boxes(const File& file);
+
+/// The same for what is in a tile of a local environment, whatever its shape; `range` is the tile's box.
+void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* range,
+                        const std::function<void(const Cell&)>& visit);
 
 /// The same for a tree of any number of axes; on indexed axes, and on those that the file lacks, the range is
 /// of no meaning.

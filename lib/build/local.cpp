@@ -172,7 +172,7 @@ bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compr
     if (!ran_out || options.tiles > 0 || fit.tiles.tiles.size() < size.tiles || size.tiles >= ACDF_MAX_TILES)
         return false;
     // Grids of more tiles take more bytes, too.
-    const double used = double(fit.shared.grid.size()) / double(budget) * double(budget) / double(bytes);
+    const double used = double(fit.shared.grid.size()) / double(bytes);
     const compress::LocalSize next = size_for(options, bins, double(budget), used);
     if (next.tiles <= size.tiles) return false;
     size = next;
@@ -350,11 +350,9 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
     case Goal::Kind::variance:
         return build_to_variance(target, source, options, progress);
     default: {
-        const double bytes = bytes_of_cell(options.shape) * options.goal.cells,
-                     file = bytes / inside_share(options.shape);
-        const NormalBins bins = bins_for(options, file);
-        compress::LocalSize size = size_for(options, bins, file);
-        size.inside_bytes = static_cast<std::uint64_t>(bytes);
+        const double bytes = bytes_of_cell(options.shape) * options.goal.cells;
+        const NormalBins bins = bins_for(options, bytes_around(bytes));
+        compress::LocalSize size = size_around(options, bins, bytes);
         return within_weight(options.max_weight, [&](double max_weight) {
             if (max_weight > 0.0) size.max_weight = max_weight;
             const compress::LocalFit fit =

@@ -37,13 +37,13 @@ struct TilePicture {
 class LocalMeasure {
 public:
     LocalMeasure(const File& file, const Target& target)
-        : file_(file), target_(target), local_(file.local().data()), cosines_(target) {
+        : file_(file), target_(target), local_(file.local().data()), cosines_(target), boxes_(tile_boxes(file)) {
         const std::size_t texels = std::size_t{target.columns} * target.rows;
         if (local_.blend.tiles) {
-            find_boxes(local_.blend.tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG, whole());
             shared_ = {std::vector<std::uint32_t>(texels), std::vector<double>(texels), {}, 0};
             for (std::uint32_t t = 0; t < boxes_.size(); ++t)
-                paint(boxes_[t], local_.blend.roots ? local_.blend.roots[t] : ACDF_NO_ROOT, t, shared_);
+                for_each_tile_cell(file_, t, boxes_[t].data(),
+                                   [&](const Cell& cell) { fill(cell.range, cell.probability, t, shared_); });
         }
         Sum total;
         for (std::uint32_t r = 0; r < target.rows; ++r)
@@ -57,31 +57,15 @@ public:
         const double length = std::hypot(double{normal[0]}, double{normal[1]}, double{normal[2]});
         const float unit[3] = {static_cast<float>(normal[0] / length), static_cast<float>(normal[1] / length),
                                static_cast<float>(normal[2] / length)};
-        if (source.what == ACDF_LOCAL_BLEND) return sum(unit, shared_, tile_probabilities(source));
+        if (source.what >= ACDF_LOCAL_BLEND) return sum(unit, shared_, tile_probabilities(source));
         if (source.what == ACDF_LOCAL_NOTHING) return sum(unit, shared_, {});
         if (own.density.empty() || own.root != source.root) paint_tree(source.root, own);
         return sum(unit, own, {1.0});
     }
 
 private:
-    using Ranges = std::array<AcdfRange, 2>;
-
-    Ranges whole() const { return {{{0, target_.columns, 0.0}, {0, target_.rows, 0.0}}}; }
     double solid_angle(std::uint32_t r, std::uint32_t c) const {
         return target_.row_measure[r] * target_.column_measure[c];
-    }
-
-    void find_boxes(std::uint32_t node, const Ranges& box) {
-        if (node & ACDF_TILE_FLAG) {
-            boxes_.push_back(box); // tiles are numbered in this order
-            return;
-        }
-        const AcdfSplit& split = local_.blend.splits[node];
-        for (int upper = 0; upper < 2; ++upper) {
-            Ranges part = box;
-            acdf_range_cut(&part[split.place & 7u], split.place >> 3, upper);
-            find_boxes(split.child[upper], part);
-        }
     }
 
     void fill(const AcdfRange* range, double probability, std::uint32_t tile, TilePicture& out) const {
@@ -113,17 +97,12 @@ private:
             }
     }
 
-    void paint(const Ranges& box, std::uint32_t root, std::uint32_t tile, TilePicture& out) const {
-        if (root == ACDF_NO_ROOT) return fill(box.data(), 1.0, tile, out);
-        for_each_cell_in(file_, root, box.data(),
-                         [&](const Cell& cell) { fill(cell.range, cell.probability, tile, out); });
-    }
     void paint_tree(std::uint32_t root, TilePicture& out) const {
         out.tile.resize(std::size_t{target_.columns} * target_.rows);
         out.density.resize(out.tile.size());
         out.slope.clear();
         out.root = root;
-        paint(whole(), root, 0, out);
+        for_each_cell(file_, root, [&](const Cell& cell) { fill(cell.range, cell.probability, 0, out); });
     }
 
     void spread(std::uint32_t node, const AcdfMixture& mix, double whole, std::vector<double>& out) const {
@@ -138,9 +117,15 @@ private:
             spread(local_.blend.splits[node].child[upper], part[upper], whole, out);
     }
 
+    void spread_sums(const AcdfLocalPoint& source, std::vector<double>& out) const {
+        const double mixture = acdf_mixture_sum(&source.mix) / source.sum;
+        for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = mixture * acdf_fast_share(&source.fast, t);
+    }
+
     std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
         std::vector<double> out(boxes_.size());
-        spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
+        if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
+        else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
         for (std::uint32_t k = 0; k < local_.light_count; ++k)
             out[local_.lights[k].tile] = acdf_light_weight(&local_.lights[k], &source) / source.sum;
         return out;
@@ -225,7 +210,7 @@ private:
     const Target& target_;
     const AcdfLocal local_;
     TexelCosines cosines_;
-    std::vector<Ranges> boxes_;
+    const std::vector<std::array<AcdfRange, 2>> boxes_;
     TilePicture shared_;
     double total_ = 0.0;
 };

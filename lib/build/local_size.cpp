@@ -13,8 +13,9 @@ using compress::NormalBins;
 namespace {
 
 /// Subdivisions that suit a size: the denser the bins, the fewer tiles there are bytes for (docs/local.md).
-std::uint32_t subdivisions_for(double bytes) {
-    return static_cast<std::uint32_t>(std::clamp(std::lround(8.0 * std::pow(bytes / 262144.0, 0.3)), 3l, 64l));
+std::uint32_t subdivisions_for(LocalShape shape, double bytes) {
+    const double at_256k = shape == LocalShape::fast ? 6.7 : 8.0;
+    return static_cast<std::uint32_t>(std::clamp(std::lround(at_256k * std::pow(bytes / 262144.0, 0.3)), 3l, 64l));
 }
 
 } // namespace
@@ -27,7 +28,7 @@ NormalBins bins_of(const LocalOptions& o, std::uint32_t subdivisions) {
 }
 
 NormalBins bins_for(const LocalOptions& o, double bytes) {
-    const std::uint32_t all = subdivisions_for(bytes);
+    const std::uint32_t all = subdivisions_for(o.shape, bytes);
     NormalBins bins = bins_of(o, o.subdivisions > 0 ? o.subdivisions : all);
     if (o.subdivisions > 0 || o.columns > 0 || o.scene.empty()) return bins;
     const std::size_t rows = 4 * std::size_t{all} * all + 2;
@@ -44,8 +45,8 @@ namespace {
 /// Bytes of tiles and the rows of all bins that are stored.
 double bytes_of_tiles(LocalShape shape, std::size_t rows, std::uint32_t tiles) {
     const double each = sizeof(AcdfSplit) + sizeof(std::uint32_t);
-    const double row = shape == LocalShape::fast ? double(compress::sums_stride(tiles)) : double(tiles);
-    return tiles * each + double(rows) * row;
+    const bool fast = shape == LocalShape::fast;
+    return tiles * each + (fast ? double(compress::Sums{rows, tiles}.bytes()) : double(rows) * tiles);
 }
 
 std::uint32_t tiles_in(LocalShape shape, std::size_t rows, double bytes) {
@@ -57,12 +58,15 @@ std::uint32_t tiles_in(LocalShape shape, std::size_t rows, double bytes) {
     return low;
 }
 
+/// What of a file is inside tiles: more of it, or less, and the variance rises. Grids come to an end.
+double inside_share(LocalShape shape, double bytes) {
+    if (shape == LocalShape::small) return 0.3;
+    return std::clamp(0.25 * std::pow(1048576.0 / bytes, 0.16), 0.15, 0.45);
+}
+
+constexpr double kInsideOfCells = 0.3; // of files that are asked for by their cells
+
 } // namespace
-
-// More of it, or less, and the variance rises.
-double inside_share(LocalShape shape) { return shape == LocalShape::fast ? 0.3 : 0.3; }
-
-double bytes_of_cell(LocalShape shape) { return shape == LocalShape::fast ? 1.1 : 4.2; }
 
 compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes, double inside) {
     constexpr double fixed = 2600.0;
@@ -80,7 +84,17 @@ compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, doub
 }
 
 compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes) {
-    return size_for(o, bins, bytes, inside_share(o.shape));
+    return size_for(o, bins, bytes, inside_share(o.shape, bytes));
+}
+
+double bytes_of_cell(LocalShape shape) { return shape == LocalShape::fast ? 1.1 : 4.2; }
+
+double bytes_around(double inside_bytes) { return inside_bytes / kInsideOfCells; }
+
+compress::LocalSize size_around(const LocalOptions& o, const NormalBins& bins, double inside_bytes) {
+    compress::LocalSize size = size_for(o, bins, bytes_around(inside_bytes), kInsideOfCells);
+    size.inside_bytes = static_cast<std::uint64_t>(inside_bytes);
+    return size;
 }
 
 } // namespace acdf::build

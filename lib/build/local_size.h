@@ -14,15 +14,16 @@ compress::NormalBins bins_of(const LocalOptions& options, std::uint32_t subdivis
 /// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.
 compress::NormalBins bins_for(const LocalOptions& options, double bytes);
 
-/// What of a file should be inside tiles.
-double inside_share(compress::LocalShape shape);
-/// Bytes of a cell there, about.
-double bytes_of_cell(compress::LocalShape shape);
-
-/// Tiles, and curves or grids in them, that fill a budget; tiles take all but `inside` of the bytes that there are
-/// for both.
+/// Tiles, and curves or grids in them, that fill a budget.
+compress::LocalSize size_for(const LocalOptions& options, const compress::NormalBins& bins, double bytes);
+/// The same where of the bytes for both so much is inside tiles.
 compress::LocalSize size_for(const LocalOptions& options, const compress::NormalBins& bins, double bytes,
                              double inside);
-compress::LocalSize size_for(const LocalOptions& options, const compress::NormalBins& bins, double bytes);
+/// Tiles for what is inside them, and so many bytes of that.
+compress::LocalSize size_around(const LocalOptions& options, const compress::NormalBins& bins, double inside_bytes);
+/// The bytes of a file that has so many inside tiles, about.
+double bytes_around(double inside_bytes);
+/// Bytes of a cell inside tiles, about.
+double bytes_of_cell(compress::LocalShape shape);
 
 } // namespace acdf::build

@@ -144,6 +144,17 @@ TEST_F(LocalCommand, SaysWhereTheNormalGainsNothing) {
     EXPECT_NE(messages.find("`acdf env` would do about as well"), std::string::npos) << messages;
 }
 
+TEST_F(LocalCommand, TheFastShape) {
+    const json report = made({"--shape", "fast", "--budget", "40kB"});
+    EXPECT_LE(report["bytes"], 40000);
+    EXPECT_EQ(report["support_violations"], 0);
+    const json info = json::parse(run_acdf({"info", output, "--json"}).out);
+    EXPECT_EQ(info["local"]["shape"], "fast");
+    EXPECT_EQ(info["options"], "--shape fast --budget 40000");
+    const Result measured = run_acdf({"measure", output, "--against", probe, "--json"});
+    EXPECT_EQ(json::parse(measured.out)["relative_variance"], report["relative_variance"]);
+}
+
 TEST_F(LocalCommand, TreesOfTheirOwn) {
     const json report = made({"--no-sharing", "--normals", "8x4", "--fit", "cdf", "--eps", "0.01"});
     EXPECT_EQ(report["bins"], 32);
@@ -161,6 +172,11 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--no-sharing", "--fit", "cdf", "--cells", "100"}, "--fit variance");
     expect_usage({"--no-sharing", "--target-variance", "0.1"}, "--target-variance");
     expect_usage({"--cosine-share", "1"}, "--cosine-share");
+    expect_usage({"--shape", "round"}, "--shape");
+    for (const char* other : {"--no-sharing", "--places"}) expect_usage({"--shape", "fast", other}, other);
+    expect_usage({"--shape", "fast", "--max-weight", "20"}, "--max-weight");
+    expect_usage({"--shape", "fast", "--with", "cosine"}, "--with");
+    expect_usage({"--shape", "fast", "--normals", "8x4"}, "--no-sharing");
 }
 
 TEST_F(LocalCommand, GoalsOutOfReachAreToldAndLeaveNothing) {

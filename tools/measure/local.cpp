@@ -60,16 +60,11 @@ std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<b
 
 std::uint64_t count_cells(const File& file) {
     std::uint64_t cells = 0;
-    const auto count = [&](std::uint32_t root) {
-        if (root == ACDF_NO_ROOT) ++cells;
-        else build::for_each_cell(file, root, [&](const build::Cell&) { ++cells; });
-    };
-    const AcdfBlend& blend = file.blend();
-    if (blend.tiles)
-        for (std::uint32_t t = 0; t < blend.tiles->tile_count; ++t)
-            count(blend.roots ? blend.roots[t] : ACDF_NO_ROOT);
-    for (std::uint32_t b = 0; !blend.tiles && b < file.description().bin_count; ++b)
-        if (file.bin(b).root != ACDF_NO_ROOT) count(file.bin(b).root);
+    const auto count = [&](const build::Cell&) { ++cells; };
+    const std::vector<std::array<AcdfRange, 2>> boxes = build::tile_boxes(file);
+    for (std::uint32_t t = 0; t < boxes.size(); ++t) build::for_each_tile_cell(file, t, boxes[t].data(), count);
+    for (std::uint32_t b = 0; boxes.empty() && b < file.description().bin_count; ++b)
+        if (file.bin(b).root != ACDF_NO_ROOT) build::for_each_cell(file, file.bin(b).root, count);
     return cells;
 }
 

@@ -210,6 +210,13 @@ enum class BinTarget {
     centre ///< the middle one, as in ibid., §7.1: biased for others, which may see what it does not
 };
 
+/// How bins that share tiles are stored.
+enum class LocalShape {
+    small, ///< least noise for its bytes
+    fast   ///< grids in tiles and sums in rows, which are searched by vectors: drawn and evaluated several times as
+           ///< fast
+};
+
 /// A point of a scene where light is gathered: on a surface, or in the air.
 struct PlacePoint {
     float position[3] = {}, normal[3] = {0.0f, 0.0f, 1.0f};
@@ -242,7 +249,7 @@ struct Places {
 /// How a local environment is fitted and stored.
 struct LocalOptions {
     TargetOptions target;                 ///< of pixels and rows; a Target has its own
-    Goal goal = Goal::of_budget(1 << 20); ///< cells: of the curves that bins share, or without sharing of a bin
+    Goal goal = Goal::of_budget(1 << 20); ///< cells: of what bins share, or without sharing of a bin
     std::uint32_t subdivisions = 0;       ///< octahedral bins, 4 n^2 + 2 of them, n up to 256; 0: as suits the size
     std::uint32_t columns = 0, rows = 0;  ///< instead lat-long bins, up to 1024 each, without sharing
     std::uint32_t tiles = 0;              ///< up to ACDF_MAX_TILES; 0: as suits the size
@@ -250,6 +257,7 @@ struct LocalOptions {
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
+    LocalShape shape = LocalShape::small; ///< fast: with sharing, without max_weight, a company and places
     BinTarget bin_target = BinTarget::mean; ///< without sharing
     FitOptions fit;                         ///< of a bin's tree, without sharing
     Company company;                        ///< of bins that share tiles, without a cosine_share

@@ -154,6 +154,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.scene = internal(options.normals);
     out.company = internal(options.company);
     out.sharing = options.sharing;
+    out.shape = options.shape == LocalShape::fast ? compress::LocalShape::fast : compress::LocalShape::small;
     out.bin_target =
         options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;
     out.fit = internal(options.fit);

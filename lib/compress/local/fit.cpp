@@ -108,20 +108,24 @@ std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cos
 }
 
 /// Rows and shares of all bins that occur; `costs(bin)` are what tiles are drawn in proportion to, and
-/// `row(bin, costs)` the bytes of that.
-template <class Costs, class Row>
-void fill_rows(const Costs& costs, const Row& row_of, std::vector<std::uint8_t>& rows, LocalFit& out) {
-    const std::size_t width = rows.size() / std::max(out.shared.row_count, 1u);
+/// `put(bin, costs)` stores that.
+template <class Costs, class Put>
+void fill_rows(const Costs& costs, const Put& put, LocalFit& out) {
     tbb::parallel_for(std::size_t{0}, out.tree.roots.size(), [&](std::size_t b) {
         if (out.tree.roots[b] == ACDF_NO_ROOT) return;
         const std::vector<double> cost = costs(b);
         double sum = 0.0;
         for (double c : cost) sum += c;
-        const std::vector<std::uint8_t> row = row_of(b, cost);
-        std::copy(row.begin(), row.end(), rows.begin() + std::ptrdiff_t(out.tree.roots[b] * width));
+        put(b, cost);
         out.shares[b] = static_cast<float>(sum);
     });
 }
+
+void put_row(const std::vector<std::uint8_t>& row, std::uint32_t number, StoredRows& out) {
+    std::copy(row.begin(), row.end(), out.codes.begin() + std::ptrdiff_t(number * row.size()));
+}
+
+Sums sums_of(const LocalFit& fit) { return {fit.shared.row_count, fit.tiles.tiles.size()}; }
 
 } // namespace
 
@@ -226,7 +230,7 @@ LocalFit LocalFitter::outlined(std::uint64_t inside_bytes) {
     out.tree.roots.assign(count, ACDF_NO_ROOT);
     for (std::size_t b = 0; b < count; ++b)
         if (bins_.weight[b] > 0.0) out.tree.roots[b] = out.shared.row_count++;
-    if (fast()) out.shared.sums.resize(out.shared.row_count * sums_stride(tiles_.tiles.size()));
+    if (fast()) out.shared.sums.resize(sums_of(out).bytes());
     else out.shared.codes.resize(out.shared.row_count * tiles_.splits.size());
     if (beside_) out.records.resize(count, {1.0f, 0.0f});
     return out;
@@ -241,23 +245,23 @@ void LocalFitter::fill_beside(LocalFit& out) const {
         out.records[b] = {light.recommended_share(b, shares), static_cast<float>(flux_[b] / total)};
         return shares;
     };
-    const auto row = [&](std::size_t, const std::vector<double>& shares) { return encode_row(tiles_, shares); };
-    fill_rows(shares_of, row, out.shared.codes, out);
+    const auto put = [&](std::size_t b, const std::vector<double>& shares) {
+        put_row(encode_row(tiles_, shares), out.tree.roots[b], out.shared);
+    };
+    fill_rows(shares_of, put, out);
 }
 
 void LocalFitter::fill_mixed(LocalFit& out) const {
     const TileLight light(target_, tiles_, insides(), out.lights);
     const TileParts parts = mixed_rows(light, bins_, out.lights);
     const auto costs = [&](std::size_t b) { return std::vector<double>(parts[b].begin(), parts[b].end()); };
-    if (fast()) {
-        const auto row = [](std::size_t, const std::vector<double>& c) { return encode_sums(c); };
-        return fill_rows(costs, row, out.shared.sums, out);
-    }
-    const auto row = [&](std::size_t b, const std::vector<double>& c) {
-        if (!std::isfinite(size_.max_weight)) return encode_row(tiles_, c);
-        return row_above(out, c, light.least(bins_.normals[b], c, size_.max_weight));
+    const auto put = [&](std::size_t b, const std::vector<double>& c) {
+        const std::uint32_t row = out.tree.roots[b];
+        if (fast()) encode_sums(sums_of(out), row, c, out.shared.sums.data());
+        else if (!std::isfinite(size_.max_weight)) put_row(encode_row(tiles_, c), row, out.shared);
+        else put_row(row_above(out, c, light.least(bins_.normals[b], c, size_.max_weight)), row, out.shared);
     };
-    fill_rows(costs, row, out.shared.codes, out);
+    fill_rows(costs, put, out);
 }
 
 void LocalFitter::fill(LocalFit& out) const {

@@ -8,14 +8,6 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::size_t kGroupsTogether = 16;
-
-std::size_t groups_of(std::size_t tiles) { return (tiles + kSumTiles - 1) / kSumTiles; }
-/// Groups of a row, and those that only fill it.
-std::size_t ends_of(std::size_t tiles) {
-    return (groups_of(tiles) + kGroupsTogether - 1) / kGroupsTogether * kGroupsTogether;
-}
-
 /// What a group adds to the root of the second moment: more than the sum of its parts, as its tiles are rounded.
 double cost_of(const std::vector<double>& parts, const std::vector<std::uint64_t>& steps) {
     const double largest = *std::max_element(parts.begin(), parts.end());
@@ -27,51 +19,45 @@ double cost_of(const std::vector<double>& parts, const std::vector<std::uint64_t
 
 } // namespace
 
-std::size_t sums_stride(std::size_t tiles) { return 2 * ends_of(tiles) + kSumTiles * groups_of(tiles); }
-
-std::vector<std::uint8_t> encode_sums(const std::vector<double>& parts) {
-    const std::size_t groups = groups_of(parts.size()), ends = ends_of(parts.size());
-    std::vector<std::uint8_t> row(sums_stride(parts.size()), 255);
-    std::vector<double> costs(groups, 0.0);
-    for (std::size_t g = 0; g < groups; ++g) {
-        const auto begin = parts.begin() + std::ptrdiff_t(g * kSumTiles);
-        const std::vector<double> in(begin,
-                                     parts.begin() + std::ptrdiff_t(std::min((g + 1) * kSumTiles, parts.size())));
+void encode_sums(const Sums& sums, std::size_t row, const std::vector<double>& parts, std::uint8_t* chunk) {
+    std::uint8_t* tile = chunk + sums.tiles_at(row);
+    std::fill(tile, tile + kSumTiles * sums.groups(), std::uint8_t{255});
+    std::vector<double> costs(sums.groups(), 0.0);
+    for (std::size_t g = 0; g < costs.size(); ++g, tile += kSumTiles) {
+        const std::size_t end_of_group = std::min((g + 1) * kSumTiles, parts.size());
+        const std::vector<double> in(parts.begin() + std::ptrdiff_t(g * kSumTiles),
+                                     parts.begin() + std::ptrdiff_t(end_of_group));
         if (!(*std::max_element(in.begin(), in.end()) > 0.0)) continue; // its bytes stay 255: never drawn from
         const std::vector<std::uint64_t> steps = apportion(in, kTileSteps, 1);
         costs[g] = cost_of(in, steps);
         std::uint64_t end = 0;
-        for (std::size_t i = 0; i < steps.size(); ++i)
-            row[2 * ends + g * kSumTiles + i] = static_cast<std::uint8_t>(end += steps[i]);
+        for (std::size_t i = 0; i < steps.size(); ++i) tile[i] = static_cast<std::uint8_t>(end += steps[i]);
     }
-    std::vector<std::uint64_t> steps(ends, 0);
-    if (*std::max_element(costs.begin(), costs.end()) > 0.0) {
-        const std::vector<std::uint64_t> lit = apportion(costs, kGroupSteps, 1);
-        std::copy(lit.begin(), lit.end(), steps.begin());
-    } else {
-        steps.front() = kGroupSteps; // of a bin that sees nothing
-    }
+    std::vector<std::uint64_t> steps(sums.groups(), 0);
+    steps.front() = kGroupSteps; // of a bin that sees nothing
+    if (*std::max_element(costs.begin(), costs.end()) > 0.0) steps = apportion(costs, kGroupSteps, 1);
+    steps.resize(sums.ends(), 0);
+    std::uint8_t* group = chunk + sums.groups_at(row);
     std::uint64_t end = 0;
-    for (std::size_t g = 0; g < ends; ++g) {
+    for (std::size_t g = 0; g < steps.size(); ++g) {
         end += steps[g];
-        row[2 * g] = static_cast<std::uint8_t>(end & 0xFF);
-        row[2 * g + 1] = static_cast<std::uint8_t>(end >> 8);
+        group[2 * g] = static_cast<std::uint8_t>(end & 0xFF);
+        group[2 * g + 1] = static_cast<std::uint8_t>(end >> 8);
     }
-    return row;
 }
 
-std::vector<double> decode_sums(std::size_t tiles, const std::uint8_t* row) {
-    std::vector<double> out(tiles);
-    const std::uint8_t* in = row + 2 * ends_of(tiles);
+std::vector<double> decode_sums(const Sums& sums, std::size_t row, const std::uint8_t* chunk) {
+    std::vector<double> out(sums.tiles);
+    const std::uint8_t *group = chunk + sums.groups_at(row), *tile = chunk + sums.tiles_at(row);
     std::uint32_t before = 0;
-    for (std::size_t g = 0; g < groups_of(tiles); ++g) {
-        const std::uint32_t end = row[2 * g] + (std::uint32_t{row[2 * g + 1]} << 8);
-        const double group = double(end - before) / double(kGroupSteps);
+    for (std::size_t g = 0; g < sums.groups(); ++g) {
+        const std::uint32_t end = group[2 * g] + (std::uint32_t{group[2 * g + 1]} << 8);
+        const double part = double(end - before) / double(kGroupSteps);
         before = end;
         std::uint32_t below = 0;
-        for (std::size_t t = g * kSumTiles; t < std::min((g + 1) * kSumTiles, tiles); ++t) {
-            out[t] = group * (double(in[t] - below) / double(kTileSteps));
-            below = in[t];
+        for (std::size_t t = g * kSumTiles; t < std::min((g + 1) * kSumTiles, sums.tiles); ++t) {
+            out[t] = part * (double(tile[t] - below) / double(kTileSteps));
+            below = tile[t];
         }
     }
     return out;

@@ -226,6 +226,7 @@ std::vector<std::uint8_t> TileGrids::stored(std::vector<std::uint32_t>& offsets)
         for (std::size_t y = 0; y < grid.count[1]; ++y)
             append_ends(&grid.cells[y * grid.count[0]], grid.count[0], out);
     }
+    out.resize(out.size() + ACDF_FAST_CELLS, 0); // vectors read on
     return out;
 }
 

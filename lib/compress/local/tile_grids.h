@@ -10,8 +10,8 @@
 
 namespace acdf::compress {
 
-constexpr std::uint32_t kMostGridCells = 32; ///< along an axis
-constexpr std::uint64_t kGridSteps = 255;    ///< that make up a probability of 1
+constexpr std::uint32_t kMostGridCells = ACDF_FAST_CELLS; ///< along an axis
+constexpr std::uint64_t kGridSteps = 255;                 ///< that make up a probability of 1
 
 /// The grid of a tile. Axis 0 are columns, axis 1 the lines.
 struct TileGrid {

@@ -69,6 +69,30 @@ TEST(LocalFiles, BudgetsAreFilledAndKept) {
 }
 
 /// What they take is known by their knots alone: nothing is tried again to come within a budget.
+TEST(LocalFiles, FastOnesFillAndKeepTheirBudget) {
+    double before = INFINITY;
+    for (std::uint64_t budget : {12288u, 32768u, 131072u}) {
+        build::LocalOptions options;
+        options.shape = compress::LocalShape::fast;
+        options.goal.budget = budget;
+        const build::Local local = build(options);
+        EXPECT_LE(local.bytes.size(), budget);
+        EXPECT_GE(double(local.bytes.size()), 0.9 * double(budget));
+        EXPECT_EQ(local.accuracy.support_violations, 0u);
+        EXPECT_LT(local.accuracy.relative_variance, before);
+        before = local.accuracy.relative_variance;
+        options.codec = ACDF_CODEC_ZLIB;
+        EXPECT_LE(build(options).bytes.size(), budget);
+    }
+    build::LocalOptions options;
+    options.shape = compress::LocalShape::fast;
+    options.goal = {Goal::Kind::variance, 0, 0, 4.0 * before};
+    EXPECT_LE(build(options).accuracy.relative_variance, 4.0 * before);
+    EXPECT_EQ(build::option_text("", options).rfind("--shape fast ", 0), 0u);
+    options.goal = {Goal::Kind::cells, 4000, 0, 0.0};
+    EXPECT_GT(load(build(options)).local().data().blend.tiles->tile_count, 10u);
+}
+
 TEST(LocalFiles, FitsOfKnotsTakeNoBudget) {
     build::LocalOptions options = separate(ACDF_FIT_CDF);
     options.fit.column_segments = options.fit.row_segments = 3;

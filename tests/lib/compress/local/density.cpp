@@ -32,6 +32,12 @@ LocalFileOptions with(std::uint32_t tiles, std::uint64_t bytes, double cosine_sh
     return options;
 }
 
+LocalFileOptions fast(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0) {
+    LocalFileOptions options = with(tiles, bytes, cosine_share);
+    options.size.shape = LocalShape::fast;
+    return options;
+}
+
 std::function<std::optional<Target>()> synthetic(const std::string& name) {
     return [name]() -> std::optional<Target> {
         for (NamedTarget& t : synthetic_targets())
@@ -111,6 +117,17 @@ std::vector<MapCase> map_cases() {
          with(100, 2000)},
         {"octahedral_separate", squared("peaky_sun"), corners(3), with(0, 0, 0.0, false)},
         {"octahedral_separate_grid", squared("black_lower_hemisphere"), grid(9, 5), with(0, 0, 0.125, false)},
+        {"fast_sky", synthetic("smooth_sky"), corners(4), fast(60, 3000)},
+        {"fast_sun", synthetic("peaky_sun"), corners(5), fast(120, 6000)},
+        {"fast_texel", synthetic("one_lit_texel"), corners(4), fast(30, 600)},
+        {"fast_checkerboard", synthetic("checkerboard"), corners(2), fast(200, 9000)},
+        {"fast_denormals", synthetic("denormals"), corners(3), fast(50, 1000, 0.5)},
+        {"fast_range_of_1e12", synthetic("range_of_1e12"), corners(3), fast(150, 4000)},
+        {"fast_one_tile", synthetic("odd_noise"), corners(2), fast(1, 1000)},
+        {"fast_suns", [] { return std::optional(suns_target(256, 128)); }, corners(5), fast(600, 9000, 0.2)},
+        {"fast_scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, fast(100, 2000)},
+        {"fast_octahedral", [] { return std::optional(octahedral(suns_target(96, 96))); }, scene_bins,
+         fast(150, 5000)},
         {"city", probe("city.exr", 8), corners(6), with(200, 6000)},
         {"noon_grass", probe("noon_grass_1k.hdr", 8), corners(6), with(200, 6000)},
         {"grace", probe("grace_probe.hdr", 8), corners(6), with(200, 6000)},
