@@ -1,6 +1,5 @@
 // acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
 #include "build/format_names.h"
-#include "input/image.h"
 #include "input/image_header.h"
 #include "input/instances.h"
 #include "input/mesh_surface.h"

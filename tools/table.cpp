@@ -1,8 +1,8 @@
 // acdf table: an array of numbers of any number of axes to an .acdf file.
 #include "build/builder/sources.h"
 #include "input/file_name.h"
-#include "input/image.h"
 #include "input/npy.h"
+#include "input/sha256.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/company_options.h"

@@ -2,11 +2,12 @@
 
 #include "input/brdf_models.h"
 #include "input/brdf_npy.h"
+#include "input/error.h"
 #include "input/file_name.h"
-#include "input/image.h"
 #include "input/merl.h"
 #include "input/other_kind.h"
 #include "input/rgl_brdf.h"
+#include "input/sha256.h"
 
 #include <cerrno>
 #include <cstdio>

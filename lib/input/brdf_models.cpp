@@ -1,7 +1,7 @@
 #include "input/brdf_models.h"
 
 #include "compress/trigonometry.h"
-#include "input/image.h"
+#include "input/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "input/brdf_npy.h"
 
 #include "build/brdf_table.h"
-#include "input/image.h"
+#include "input/error.h"
 
 #include <stdexcept>
 

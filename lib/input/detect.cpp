@@ -1,6 +1,7 @@
 #include "input/detect.h"
 
 #include "build/cube.h"
+#include "input/error.h"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 
 #include "build/projection.h"
 #include "input/image.h"
+#include "input/probe.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "input/file_name.h"
 
-#include "input/image.h"
+#include "input/error.h"
 #include "reader/utf8.h"
 
 #include <cstdint>

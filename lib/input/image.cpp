@@ -1,6 +1,7 @@
 #include "input/image.h"
 
 #include "images/image_file.h"
+#include "input/error.h"
 #include "input/file_name.h"
 #include "input/other_kind.h"
 #include "input/transfer.h"
@@ -294,13 +295,6 @@ private:
 };
 
 } // namespace
-
-Error input_error(const std::string& path, const std::string& what) {
-    std::string text = path + ": " + what;
-    for (char& c : text)
-        if (c == '\n' || c == '\r' || c == '\t') c = ' ';
-    return Error(text);
-}
 
 Image read_image(const std::string& path, int threads, const std::function<TakeRows(const Image& image)>& stream) {
     try {

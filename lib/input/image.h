@@ -1,9 +1,6 @@
 // The pixels of an image file, before anything is known of its projection.
 #pragma once
 
-#include "input/probe.h"
-#include "input/sha256.h"
-
 #include <functional>
 #include <string>
 #include <vector>
@@ -31,8 +28,5 @@ using TakeRows = std::function<void(int first, int count, float* rgb)>;
 /// bands, and the image stays without them. Memory is then that of a band.
 Image read_image(const std::string& path, int threads,
                  const std::function<TakeRows(const Image& image)>& stream = {});
-
-/// "path: what", newlines flattened.
-Error input_error(const std::string& path, const std::string& what);
 
 } // namespace acdf::input

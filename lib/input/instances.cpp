@@ -1,7 +1,7 @@
 #include "input/instances.h"
 
+#include "input/error.h"
 #include "input/file_name.h"
-#include "input/image.h"
 #include "input/sha256.h"
 #include "input/text_lines.h"
 

@@ -1,7 +1,7 @@
 #include "input/merl.h"
 
 #include "compress/trigonometry.h"
-#include "input/image.h"
+#include "input/error.h"
 
 #include <algorithm>
 #include <cmath>

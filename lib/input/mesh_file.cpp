@@ -1,7 +1,7 @@
 #include "input/mesh_file.h"
 
+#include "input/error.h"
 #include "input/file_name.h"
-#include "input/image.h"
 #include "input/instances.h"
 #include "input/ply_counts.h"
 

@@ -1,4 +1,4 @@
-#include "input/image.h"
+#include "input/error.h"
 #include "input/scene_sources.h"
 #include "input/text_lines.h"
 

@@ -1,6 +1,6 @@
 #include "images/image_file.h"
+#include "input/error.h"
 #include "input/file_name.h"
-#include "input/image.h"
 #include "input/scene_sources.h"
 
 #include <algorithm>

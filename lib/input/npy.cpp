@@ -1,7 +1,7 @@
 #include "input/npy.h"
 
+#include "input/error.h"
 #include "input/file_name.h"
-#include "input/image.h"
 
 #include <algorithm>
 #include <cerrno>

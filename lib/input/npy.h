@@ -3,7 +3,7 @@
 #pragma once
 
 #include "build/array.h"
-#include "input/probe.h"
+#include "input/error.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "input/npy.h"
 
-#include "input/image.h"
+#include "input/error.h"
 
 #include <algorithm>
 #include <cstring>

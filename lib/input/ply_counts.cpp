@@ -1,6 +1,6 @@
 #include "input/ply_counts.h"
 
-#include "input/image.h"
+#include "input/error.h"
 
 #include <cstdint>
 #include <cstdlib>

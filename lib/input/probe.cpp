@@ -3,8 +3,10 @@
 #include "build/builder/pixels.h"
 #include "build/probe_rows.h"
 #include "input/detect.h"
+#include "input/error.h"
 #include "input/file_name.h"
 #include "input/image.h"
+#include "input/sha256.h"
 
 #include <algorithm>
 #include <new>

@@ -2,19 +2,14 @@
 #pragma once
 
 #include "build/probe_rows.h"
+#include "input/error.h"
 
 #include <array>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace acdf::input {
-
-/// Anything wrong with an input: one line that names the file, what is wrong and what would help.
-struct Error : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 enum class Projection { automatic, latlong, angular, mirrorball, cube_cross, octahedral };
 

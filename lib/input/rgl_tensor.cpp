@@ -1,6 +1,6 @@
 #include "input/rgl_tensor.h"
 
-#include "input/image.h"
+#include "input/error.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,7 +1,8 @@
 // The normals that occur in a scene, and how often: what a local environment map has to serve.
 #pragma once
 
-#include "input/probe.h"
+#include "input/error.h"
+#include "input/up_axis.h"
 
 #include <cstdint>
 #include <string>
@@ -19,10 +20,6 @@ struct SceneNormals {
     std::string kind;                    ///< "mesh", "normal pass", "list"
     std::uint64_t skipped = 0;           ///< normals that are zero or NaN, polygons without area
 };
-
-/// Which axis of the scene points up. `y` turns (x, y, z) into (z, x, y), as docs/conventions.md maps the frames of
-/// programs with y up (OpenEXR, USD, Mitsuba).
-enum class UpAxis { z, y };
 
 struct SceneOptions {
     UpAxis up = UpAxis::z;

@@ -1,6 +1,6 @@
 #include "input/text_lines.h"
 
-#include "input/image.h"
+#include "input/error.h"
 
 #include <charconv>
 #include <cstring>

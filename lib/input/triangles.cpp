@@ -1,7 +1,7 @@
 #include "input/triangles.h"
 
 #include "compress/places/light.h"
-#include "input/image.h"
+#include "input/error.h"
 #include "input/mesh_file.h"
 
 #include <assimp/mesh.h>

@@ -1,7 +1,7 @@
 // The surfaces of a scene as triangles, and what lies on a ray among them.
 #pragma once
 
-#include "input/scene_normals.h"
+#include "input/up_axis.h"
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "build/format_names.h"
 #include "input/file_name.h"
-#include "input/image.h"
+#include "input/sha256.h"
 #include "reader/check/check.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/messages.h"

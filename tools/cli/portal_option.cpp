@@ -1,6 +1,7 @@
 #include "tools/cli/portal_option.h"
 
-#include "input/image.h"
+#include "input/error.h"
+#include "input/sha256.h"
 #include "input/text_lines.h"
 #include "tools/cli/file_input.h"
 #include "tools/render/portals.h"

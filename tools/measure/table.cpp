@@ -5,8 +5,8 @@
 
 #include "build/table.h"
 #include "build/table_company.h"
-#include "input/image.h"
 #include "input/npy.h"
+#include "input/sha256.h"
 #include "tools/cli/noise.h"
 #include "tools/commands.h"
 

@@ -2,7 +2,7 @@
 #include "tests/lib/build/builder.h"
 #include "tests/inputs/write_rgb.h"
 
-#include "input/image.h"
+#include "input/sha256.h"
 
 #include <algorithm>
 #include <memory>

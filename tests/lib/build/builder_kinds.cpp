@@ -4,7 +4,7 @@
 #include "tests/lib/build/builder.h"
 
 #include "input/brdf_models.h"
-#include "input/image.h"
+#include "input/sha256.h"
 
 #include <algorithm>
 #include <atomic>

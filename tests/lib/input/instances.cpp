@@ -2,6 +2,7 @@
 #include "tests/lib/input/folder.h"
 
 #include "input/instances.h"
+#include "input/scene_normals.h"
 #include "input/triangles.h"
 
 #include <gtest/gtest.h>
