@@ -1,7 +1,7 @@
 // acdf brdf: a BRDF to an .acdf file.
 #include "build/format_names.h"
 #include "build/own_terms.h"
-#include "input/brdf_models.h"
+#include "input/brdf/models.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/conversion.h"

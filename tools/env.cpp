@@ -1,7 +1,7 @@
 // acdf env: an environment map to an .acdf file.
 #include "build/environment.h"
 #include "build/format_names.h"
-#include "input/image_header.h"
+#include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/company_options.h"

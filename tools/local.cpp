@@ -1,8 +1,8 @@
 // acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
 #include "build/format_names.h"
-#include "input/image_header.h"
-#include "input/instances.h"
-#include "input/mesh_surface.h"
+#include "input/mesh/instances.h"
+#include "input/mesh/surface.h"
+#include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/company_options.h"

@@ -9,7 +9,7 @@
 #include "tests/bench/turns.h"
 
 #include "build/brdf.h"
-#include "input/rgl_brdf.h"
+#include "input/brdf/rgl.h"
 #include "measure/samplers/brdf_samplers.h"
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/rgl_sampler.h"

@@ -3,7 +3,7 @@
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/synthetic.h"
 
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What every BRDF that is read from a file must hold, whatever its bytes were.
 #pragma once
 
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 #include "tests/fuzz/require.h"
 
 #include <cmath>

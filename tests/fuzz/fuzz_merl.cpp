@@ -1,7 +1,7 @@
 // Any bytes: reading them as a MERL file gives a BRDF that is finite and not negative, or one line of text. A file
 // has a fixed size, so some inputs are repeated behind a good header until they have it.
+#include "input/brdf/merl.h"
 #include "input/error.h"
-#include "input/merl.h"
 #include "tests/fuzz/brdf_values.h"
 
 #include <cstring>

@@ -1,9 +1,9 @@
 // Any bytes: reading them as an RGL tensor file gives a BRDF that is finite and not negative, or one line of text.
 // The mutator starts from whole files, isotropic and not, RGB and spectral.
+#include "input/brdf/rgl.h"
 #include "input/error.h"
-#include "input/rgl_brdf.h"
 #include "tests/fuzz/brdf_values.h"
-#include "tests/lib/input/brdf.h"
+#include "tests/lib/input/brdf/brdf.h"
 
 #include <cstring>
 

@@ -8,7 +8,7 @@
 #include "compress/local/fit.h"
 #include "compress/local/fit_separate.h"
 #include "compress/sum.h"
-#include "input/probe.h"
+#include "input/probe/probe.h"
 
 #include <acdf/reader.h>
 

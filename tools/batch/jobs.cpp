@@ -1,6 +1,6 @@
 #include "tools/batch/jobs.h"
 
-#include "input/brdf_models.h"
+#include "input/brdf/models.h"
 #include "input/file_name.h"
 #include "tools/cli/file_input.h"
 #include "tools/commands.h"

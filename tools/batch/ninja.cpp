@@ -1,7 +1,7 @@
 #include "tools/batch/ninja.h"
 
-#include "input/brdf_models.h"
-#include "input/instances.h"
+#include "input/brdf/models.h"
+#include "input/mesh/instances.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,8 +1,8 @@
 // Places on the surfaces of a mesh, for files that tell places apart.
 #pragma once
 
-#include "input/mesh_surface.h"
-#include "input/scene_normals.h"
+#include "input/mesh/surface.h"
+#include "input/normals/scene.h"
 #include "tools/cli/scene_option.h"
 
 #include <acdf/builder.h>

@@ -1,7 +1,7 @@
 // Options of every subcommand that reads a probe.
 #pragma once
 
-#include "input/probe.h"
+#include "input/probe/probe.h"
 
 #include "tools/cli/choice.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "build/builder/sources.h"
-#include "input/probe.h"
+#include "input/probe/probe.h"
 
 #include <acdf/reader.h>
 

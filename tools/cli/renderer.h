@@ -1,7 +1,7 @@
 // What a renderer does with its map, all at once: --for.
 #pragma once
 
-#include "input/probe.h"
+#include "input/probe/probe.h"
 
 #include <string>
 

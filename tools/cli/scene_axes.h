@@ -1,7 +1,7 @@
 // The axes that a scene is told in: --scene-axes.
 #pragma once
 
-#include "input/triangles.h"
+#include "input/mesh/triangles.h"
 
 #include <acdf/builder.h>
 

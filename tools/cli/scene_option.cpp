@@ -3,7 +3,7 @@
 #include "tools/cli/choice.h"
 #include "tools/cli/renderer.h"
 
-#include "input/instances.h"
+#include "input/mesh/instances.h"
 
 #include <CLI/CLI.hpp>
 

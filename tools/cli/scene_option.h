@@ -1,7 +1,7 @@
 // The normals of a scene, as options of every subcommand that can be made for them.
 #pragma once
 
-#include "input/scene_normals.h"
+#include "input/normals/scene.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/scene_axes.h"
 

@@ -6,7 +6,7 @@
 
 #include "build/brdf.h"
 #include "build/brdf_accuracy.h"
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 #include "measure/samplers/brdf_samplers.h"
 #include "measure/samplers/brdf_table.h"
 #include "tools/cli/noise.h"

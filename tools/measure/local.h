@@ -1,8 +1,8 @@
 // `acdf measure` for local environment maps.
 #pragma once
 
-#include "input/probe.h"
-#include "input/scene_normals.h"
+#include "input/normals/scene.h"
+#include "input/probe/probe.h"
 
 #include <acdf/reader.h>
 

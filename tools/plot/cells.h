@@ -2,7 +2,7 @@
 #pragma once
 
 #include "images/picture.h"
-#include "input/scene_normals.h"
+#include "input/normals/scene.h"
 
 #include <acdf/reader.h>
 

@@ -1,7 +1,7 @@
 // What `acdf plot` shows: a stored density, or that of a probe, and the words of its title.
 #pragma once
 
-#include "input/scene_normals.h"
+#include "input/normals/scene.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/probe_options.h"
 #include "tools/plot/brdf.h"

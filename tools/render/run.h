@@ -1,8 +1,8 @@
 // Renders a scene with several samplers, and compares them.
 #pragma once
 
-#include "input/brdf.h"
-#include "input/probe.h"
+#include "input/brdf/brdf.h"
+#include "input/probe/probe.h"
 #include "measure/ratio.h"
 #include "measure/scenes/render.h"
 #include "measure/scenes/render_time.h"

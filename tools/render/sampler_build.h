@@ -2,7 +2,7 @@
 #pragma once
 
 #include "build/own_terms.h"
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 #include "measure/samplers/estimator.h"
 #include "measure/scenes/scene_points.h"
 #include "tools/render/sampler_spec.h"

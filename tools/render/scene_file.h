@@ -1,7 +1,7 @@
 // Scenes as small JSON files: docs/scene.schema.json.
 #pragma once
 
-#include "input/probe.h"
+#include "input/probe/probe.h"
 #include "measure/scenes/scene.h"
 #include "tools/render/scene_error.h"
 

@@ -1,7 +1,7 @@
 // The sweep of BRDF files.
 #include "build/brdf.h"
 #include "build/own_terms.h"
-#include "input/rgl_brdf.h"
+#include "input/brdf/rgl.h"
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/light_samplers.h"
 #include "measure/samplers/point_samplers.h"

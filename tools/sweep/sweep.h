@@ -2,8 +2,8 @@
 // renderers use without acdf.
 #pragma once
 
-#include "input/brdf.h"
-#include "input/mesh_surface.h"
+#include "input/brdf/brdf.h"
+#include "input/mesh/surface.h"
 #include "measure/random.h"
 #include "tools/cli/progress.h"
 #include "tools/plot/range.h"

@@ -36,7 +36,7 @@ bool says(const Imf::Attribute& attribute, const char* type, const Value& usual)
            static_cast<const Imf::TypedAttribute<Value>&>(attribute).value() == usual;
 }
 
-/// Whether an attribute says nothing that would change how pixels are taken (lib/input/image.cpp).
+/// Whether an attribute says nothing that would change how pixels are taken (lib/input/probe/image.cpp).
 bool is_usual(const std::string& name, const Imf::Attribute& attribute) {
     const std::string n = lower_case(name);
     if (n == "orientation") return says(attribute, "int", 1);

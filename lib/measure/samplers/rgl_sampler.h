@@ -1,7 +1,7 @@
 // The sampler that the authors of the RGL material database publish for its files: a baseline.
 #pragma once
 
-#include "input/rgl_brdf.h"
+#include "input/brdf/rgl.h"
 #include "measure/samplers/brdf_samplers.h"
 
 namespace acdf::measure {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compress/target.h"
-#include "input/mesh_surface.h"
+#include "input/mesh/surface.h"
 #include "measure/scenes/scene_points.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Scenes as simple as set-ups of publications are, of analytic shapes and meshes: what samplers are compared on.
 #pragma once
 
-#include "input/mesh_surface.h"
+#include "input/mesh/surface.h"
 
 #include <array>
 #include <cmath>

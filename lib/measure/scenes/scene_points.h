@@ -1,7 +1,7 @@
 // What a camera sees of a scene: the points at which light is gathered, and what is integrated there.
 #pragma once
 
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 #include "measure/samplers/estimator.h"
 #include "measure/scenes/scene.h"
 

@@ -1,7 +1,7 @@
 // Accuracy on real BRDFs: what the documentation tells must hold.
 #include "tests/lib/build/real_brdfs.h"
 
-#include "input/rgl_brdf.h"
+#include "input/brdf/rgl.h"
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/rgl_sampler.h"
 

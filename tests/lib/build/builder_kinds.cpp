@@ -3,7 +3,7 @@
 #include "tests/inputs/write_rgb.h"
 #include "tests/lib/build/builder.h"
 
-#include "input/brdf_models.h"
+#include "input/brdf/models.h"
 #include "input/sha256.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/build/company.h"
 
-#include "input/probe.h"
+#include "input/probe/probe.h"
 
 #include <filesystem>
 

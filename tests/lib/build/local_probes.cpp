@@ -4,7 +4,7 @@
 
 #include "build/local.h"
 #include "build/local_accuracy.h"
-#include "input/probe.h"
+#include "input/probe/probe.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/tiling.h"
 

@@ -4,7 +4,7 @@
 #include "tests/inputs/brdf_files.h"
 #include "tests/inputs/places.h"
 
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 
 #include <filesystem>
 #include <map>

@@ -5,7 +5,7 @@
 #include "build/environment_accuracy.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
-#include "input/probe.h"
+#include "input/probe/probe.h"
 
 #include <gtest/gtest.h>
 

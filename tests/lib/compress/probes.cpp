@@ -4,7 +4,7 @@
 
 #include "build/environment_accuracy.h"
 #include "compress/store/store.h"
-#include "input/probe.h"
+#include "input/probe/probe.h"
 
 #include <gtest/gtest.h>
 

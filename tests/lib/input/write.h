@@ -1,7 +1,7 @@
 // Image files for the tests, written by OpenImageIO.
 #pragma once
 
-#include "input/probe.h"
+#include "input/probe/probe.h"
 #include "tests/lib/build/projection_reference.h"
 #include "tests/lib/input/folder.h"
 

@@ -1,7 +1,7 @@
 // Rays, shadows and the exact sum over texels.
 #include "tests/inputs/synthetic.h"
 
-#include "input/brdf_models.h"
+#include "input/brdf/models.h"
 #include "measure/scenes/reference.h"
 #include "measure/scenes/scene_points.h"
 #include "measure/surface_frame.h"

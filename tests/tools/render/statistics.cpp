@@ -1,7 +1,7 @@
 // Variances, ratios and their noise, against what is known of them; the same pictures for any number of threads.
 #include "tests/inputs/synthetic.h"
 
-#include "input/brdf_models.h"
+#include "input/brdf/models.h"
 #include "measure/ratio.h"
 #include "measure/samplers/estimators.h"
 #include "measure/samplers/light_samplers.h"

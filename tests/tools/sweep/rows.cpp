@@ -1,6 +1,6 @@
 // Rows of sweeps of local and BRDF files.
 #include "build/own_terms.h"
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/sweep.h"
 

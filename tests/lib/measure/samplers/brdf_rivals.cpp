@@ -1,9 +1,9 @@
 // The samplers that BRDF files are compared with.
-#include "input/brdf_models.h"
+#include "input/brdf/models.h"
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/rgl_sampler.h"
 #include "tests/inputs/places.h"
-#include "tests/lib/input/brdf.h"
+#include "tests/lib/input/brdf/brdf.h"
 #include "tests/lib/measure/samplers/brdf_checks.h"
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 #include "tests/inputs/places.h"
 #include "tests/lib/measure/samplers/rivals.h"
 
-#include "input/probe.h"
+#include "input/probe/probe.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/tiling.h"
 

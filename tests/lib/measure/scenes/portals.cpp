@@ -3,7 +3,7 @@
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
 #include "tests/lib/measure/samplers/rivals.h"
 
-#include "input/brdf.h"
+#include "input/brdf/brdf.h"
 #include "measure/scenes/portals.h"
 #include "measure/scenes/visibility_cache.h"
 

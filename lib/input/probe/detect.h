@@ -1,0 +1,27 @@
+// Which layout an image has: what the user says, what the file says, or what its shape and texels prove.
+#pragma once
+
+#include "build/projection.h"
+#include "input/probe/image.h"
+#include "input/probe/probe.h"
+
+#include <string>
+
+namespace acdf::input {
+
+struct Detected {
+    build::Layout layout = build::Layout::latlong;
+    std::string reason; ///< for a person
+};
+
+/// Decides, or throws Error (naming `path`, the shape and the options) where the image is not what `projection`
+/// needs, or, for Projection::automatic, where nothing proves one layout. Never guesses from the file's name.
+Detected detect_layout(const std::string& path, const Image& image, Projection projection);
+
+/// Whether detect_layout will say lat-long, whatever the pixels are: it needs none then.
+bool is_latlong(const Image& image, Projection projection);
+
+/// The projection a layout belongs to.
+Projection projection_of(build::Layout layout);
+
+} // namespace acdf::input
