@@ -1,6 +1,6 @@
 // acdf brdf: a BRDF to an .acdf file.
-#include "build/format_names.h"
 #include "build/own_terms.h"
+#include "build/text/format_names.h"
 #include "input/brdf/models.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"

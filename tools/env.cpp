@@ -1,6 +1,6 @@
 // acdf env: an environment map to an .acdf file.
 #include "build/environment.h"
-#include "build/format_names.h"
+#include "build/text/format_names.h"
 #include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"

@@ -1,7 +1,7 @@
 // acdf info: what is inside a file, in a form for people or as JSON.
-#include "build/cells.h"
-#include "build/company_text.h"
-#include "build/format_names.h"
+#include "build/accuracy/cells.h"
+#include "build/text/company.h"
+#include "build/text/format_names.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"

@@ -1,5 +1,5 @@
 // acdf local: an environment map to an .acdf file that knows the surface: for every normal what shines on it.
-#include "build/format_names.h"
+#include "build/text/format_names.h"
 #include "input/mesh/instances.h"
 #include "input/mesh/surface.h"
 #include "input/probe/image_header.h"

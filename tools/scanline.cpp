@@ -1,6 +1,6 @@
 // acdf scanline: how many knots one row of a probe needs.
 #include "measure/scanline.h"
-#include "build/format_names.h"
+#include "build/text/format_names.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"

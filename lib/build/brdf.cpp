@@ -1,7 +1,7 @@
 #include "build/brdf.h"
 
 #include "build/compressed_budget.h"
-#include "build/option_text.h"
+#include "build/text/options.h"
 #include "build/weight_bound.h"
 
 #include <acdf/reader.h>

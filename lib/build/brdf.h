@@ -1,7 +1,7 @@
 // From a BRDF to the bytes of an .acdf file, and its exact accuracy.
 #pragma once
 
-#include "build/brdf_accuracy.h"
+#include "build/accuracy/brdf.h"
 #include "build/progress.h"
 #include "build/reflectance.h"
 #include "compress/brdf/fit.h"

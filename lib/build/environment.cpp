@@ -1,10 +1,10 @@
 #include "build/environment.h"
 
-#include "build/company_accuracy.h"
-#include "build/company_text.h"
+#include "build/accuracy/company.h"
 #include "build/errors.h"
 #include "build/local.h"
-#include "build/option_text.h"
+#include "build/text/company.h"
+#include "build/text/options.h"
 #include "compress/company/target.h"
 
 #include <algorithm>

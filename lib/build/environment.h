@@ -1,7 +1,7 @@
 // From a probe to the bytes of an environment file: target, fit, cascade, file, and its exact accuracy.
 #pragma once
 
-#include "build/environment_accuracy.h"
+#include "build/accuracy/environment.h"
 #include "build/progress.h"
 #include "compress/company.h"
 #include "compress/fit/fit.h"

@@ -1,10 +1,10 @@
 #include "build/local.h"
 
-#include "build/company_text.h"
 #include "build/compressed_budget.h"
 #include "build/errors.h"
 #include "build/local_size.h"
-#include "build/option_text.h"
+#include "build/text/company.h"
+#include "build/text/options.h"
 #include "build/weight_bound.h"
 #include "compress/local/fit.h"
 

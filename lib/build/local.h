@@ -1,8 +1,8 @@
 // From a probe to the bytes of a local environment file, and its exact accuracy.
 #pragma once
 
+#include "build/accuracy/local.h"
 #include "build/environment.h"
-#include "build/local_accuracy.h"
 #include "build/progress.h"
 #include "compress/local/fit.h"
 #include "compress/local/fit_separate.h"

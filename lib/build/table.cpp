@@ -1,8 +1,8 @@
 #include "build/table.h"
 
-#include "build/company_text.h"
 #include "build/errors.h"
 #include "build/table_company.h"
+#include "build/text/company.h"
 #include "compress/fit/tree.h"
 #include "compress/sum.h"
 

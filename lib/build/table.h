@@ -1,9 +1,9 @@
 // From an array of numbers to the bytes of a table file: bins, fit, trees, file, and its exact accuracy.
 #pragma once
 
+#include "build/accuracy/table.h"
 #include "build/array.h"
 #include "build/progress.h"
-#include "build/table_accuracy.h"
 #include "compress/company.h"
 #include "compress/fit/fit.h"
 #include "compress/grid.h"

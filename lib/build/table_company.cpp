@@ -1,7 +1,7 @@
 #include "build/table_company.h"
 
-#include "build/cells.h"
-#include "build/combination.h"
+#include "build/accuracy/cells.h"
+#include "build/accuracy/combination.h"
 #include "compress/sum.h"
 
 #include <tbb/parallel_for.h>

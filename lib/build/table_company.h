@@ -1,7 +1,7 @@
 // A table that is made to be combined with another one by multiple importance sampling.
 #pragma once
 
-#include "build/table_accuracy.h"
+#include "build/accuracy/table.h"
 #include "compress/company.h"
 #include "compress/grid.h"
 

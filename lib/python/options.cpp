@@ -1,6 +1,6 @@
 #include "python/options.h"
 
-#include "build/option_text.h"
+#include "build/text/options.h"
 
 #include <pybind11/stl.h>
 

@@ -3,7 +3,7 @@
 #include "tests/extremes/targets.h"
 #include "tests/inputs/sanitized.h"
 
-#include "build/cells.h"
+#include "build/accuracy/cells.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 #include "compress/sum.h"

@@ -1,7 +1,7 @@
 // No result depends on the order in which texels are added up.
 #include "tests/extremes/targets.h"
 
-#include "build/environment_accuracy.h"
+#include "build/accuracy/environment.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 

@@ -4,7 +4,7 @@
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
 
-#include "build/projection.h"
+#include "build/probe/projection.h"
 #include "tools/cli/renderer.h"
 
 #include <acdf/reader.h>

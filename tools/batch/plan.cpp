@@ -1,6 +1,6 @@
 #include "tools/batch/plan.h"
 
-#include "build/format_names.h"
+#include "build/text/format_names.h"
 #include "input/file_name.h"
 #include "input/sha256.h"
 #include "reader/check/check.h"

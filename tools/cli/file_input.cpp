@@ -1,6 +1,6 @@
 #include "tools/cli/file_input.h"
 
-#include "build/format_names.h"
+#include "build/text/format_names.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
 

@@ -14,7 +14,7 @@ namespace acdf::tools {
 /// What was made of a probe, for the metadata.
 builder::Source source_of(const input::Probe& probe, const input::ProbeOptions& options);
 
-/// Options of reading in one spelling (option_text.h): "--projection angular --domain latlong ", or empty.
+/// Options of reading in one spelling (build/text/options.h): "--projection angular --domain latlong ", or empty.
 std::string reading_text(const input::ProbeOptions& options);
 
 /// The target of a probe. Throws Failure, naming `path`, where it has no energy.

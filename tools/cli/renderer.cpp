@@ -1,6 +1,6 @@
 #include "tools/cli/renderer.h"
 
-#include "build/option_text.h"
+#include "build/text/options.h"
 
 #include <CLI/CLI.hpp>
 

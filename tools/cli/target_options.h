@@ -1,7 +1,7 @@
 // Options of every subcommand that fits a probe: whose noise counts, and how the renderer looks the probe up.
 #pragma once
 
-#include "build/option_text.h"
+#include "build/text/options.h"
 
 #include "tools/cli/choice.h"
 

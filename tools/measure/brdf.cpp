@@ -4,8 +4,8 @@
 #include "tools/cli/messages.h"
 #include "tools/cli/source_check.h"
 
+#include "build/accuracy/brdf.h"
 #include "build/brdf.h"
-#include "build/brdf_accuracy.h"
 #include "input/brdf/brdf.h"
 #include "measure/samplers/brdf_samplers.h"
 #include "measure/samplers/brdf_table.h"

@@ -1,6 +1,6 @@
 // acdf measure: how accurate a file is, by summation over its source.
+#include "build/accuracy/environment.h"
 #include "build/brdf.h"
-#include "build/environment_accuracy.h"
 #include "measure/samplers/full_cdf.h"
 #include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"

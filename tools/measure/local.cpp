@@ -4,8 +4,8 @@
 #include "tools/cli/messages.h"
 #include "tools/cli/source_check.h"
 
-#include "build/cells.h"
-#include "build/local_accuracy.h"
+#include "build/accuracy/cells.h"
+#include "build/accuracy/local.h"
 #include "measure/samplers/light_samplers.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/tiling.h"

@@ -1,7 +1,7 @@
 // Densities over the sphere as images: what `acdf plot` turns into colours.
 #pragma once
 
-#include "build/projection.h"
+#include "build/probe/projection.h"
 #include "compress/target.h"
 #include "tools/cli/progress.h"
 

@@ -1,7 +1,7 @@
 // The borders of cells, drawn over a plot.
 #pragma once
 
-#include "build/projection.h"
+#include "build/probe/projection.h"
 #include "images/picture.h"
 #include "tools/cli/progress.h"
 #include "tools/plot/density.h"

@@ -1,6 +1,6 @@
 #include "tools/plot/source.h"
 
-#include "build/format_names.h"
+#include "build/text/format_names.h"
 #include "input/file_name.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/normal_option.h"

@@ -1,6 +1,6 @@
 #include "tools/sweep/build.h"
 
-#include "build/local_accuracy.h"
+#include "build/accuracy/local.h"
 #include "measure/samplers/light_samplers.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"

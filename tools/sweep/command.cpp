@@ -1,5 +1,5 @@
 // acdf sweep: size against noise and time, on a user's own probe or BRDF: a table and a page.
-#include "build/format_names.h"
+#include "build/text/format_names.h"
 #include "input/brdf/brdf.h"
 #include "input/file_name.h"
 #include "tools/cli/choice.h"

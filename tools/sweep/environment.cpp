@@ -1,5 +1,5 @@
 // The sweep of environment files.
-#include "build/local_accuracy.h"
+#include "build/accuracy/local.h"
 #include "build/own_terms.h"
 #include "measure/samplers/full_cdf.h"
 #include "tools/cli/built.h"

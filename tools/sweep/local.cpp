@@ -1,7 +1,7 @@
 // The sweep of local environment files.
 #include "tools/plot/local.h"
+#include "build/accuracy/texel_cosines.h"
 #include "build/own_terms.h"
-#include "build/texel_cosines.h"
 #include "compress/sum.h"
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"

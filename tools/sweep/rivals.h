@@ -1,7 +1,7 @@
 // What renderers use without acdf, as rows of a sweep. The first is the baseline of times.
 #pragma once
 
-#include "build/local_accuracy.h"
+#include "build/accuracy/local.h"
 #include "tools/sweep/build.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #include "tools/sweep/surface.h"
 
-#include "build/texel_cosines.h"
+#include "build/accuracy/texel_cosines.h"
 #include "compress/fit/tiles.h"
 #include "compress/sum.h"
 

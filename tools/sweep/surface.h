@@ -2,7 +2,7 @@
 // company of the surface's own samples, in the open and where something is in the way.
 #pragma once
 
-#include "build/local_accuracy.h"
+#include "build/accuracy/local.h"
 #include "compress/target.h"
 #include "measure/samplers/light_sampler.h"
 #include "tools/sweep/sweep.h"

@@ -1,8 +1,8 @@
 #include "build/builder/options.h"
 
 #include "build/errors.h"
-#include "build/option_text.h"
 #include "build/own_terms.h"
+#include "build/text/options.h"
 
 #include <algorithm>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "build/builder/guard.h"
 #include "build/builder/strides.h"
-#include "build/projection.h"
+#include "build/probe/projection.h"
 
 #include <tbb/parallel_for.h>
 

@@ -3,9 +3,9 @@
 
 #include "build/array.h"
 #include "build/own_terms.h"
-#include "build/probe_rows.h"
+#include "build/probe/rows.h"
+#include "build/probe/source_target.h"
 #include "build/progress.h"
-#include "build/source_target.h"
 
 #include <optional>
 #include <string>

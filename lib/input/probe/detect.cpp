@@ -1,6 +1,6 @@
 #include "input/probe/detect.h"
 
-#include "build/cube.h"
+#include "build/probe/cube.h"
 #include "input/error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Which layout an image has: what the user says, what the file says, or what its shape and texels prove.
 #pragma once
 
-#include "build/projection.h"
+#include "build/probe/projection.h"
 #include "input/probe/image.h"
 #include "input/probe/probe.h"
 

@@ -1,7 +1,7 @@
 #include "input/probe/probe.h"
 
 #include "build/builder/pixels.h"
-#include "build/probe_rows.h"
+#include "build/probe/rows.h"
 #include "input/error.h"
 #include "input/file_name.h"
 #include "input/probe/detect.h"

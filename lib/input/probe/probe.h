@@ -1,7 +1,7 @@
 // Reads environment maps of any common projection into one form: lat-long radiance.
 #pragma once
 
-#include "build/probe_rows.h"
+#include "build/probe/rows.h"
 #include "input/error.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 // What renderers commonly draw reflected directions with: baselines.
 #pragma once
 
-#include "build/brdf_accuracy.h"
+#include "build/accuracy/brdf.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -7,7 +7,7 @@
 // where E(n) is.
 #pragma once
 
-#include "build/texel_cosines.h"
+#include "build/accuracy/texel_cosines.h"
 #include "compress/target.h"
 #include "measure/samplers/full_cdf.h"
 #include "measure/samplers/probe_grid.h"

@@ -1,7 +1,7 @@
 // The strongest known rival of a local environment map: tiles of the probe, weighted anew at each shading point.
 #pragma once
 
-#include "build/texel_cosines.h"
+#include "build/accuracy/texel_cosines.h"
 #include "compress/target.h"
 #include "measure/samplers/full_cdf.h"
 #include "measure/samplers/probe_grid.h"

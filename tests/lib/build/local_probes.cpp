@@ -2,8 +2,8 @@
 // use instead. All by exact summation, over random normals that are no bin's own.
 #include "tests/inputs/places.h"
 
+#include "build/accuracy/local.h"
 #include "build/local.h"
-#include "build/local_accuracy.h"
 #include "input/probe/probe.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/tiling.h"

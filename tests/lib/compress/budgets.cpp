@@ -2,7 +2,7 @@
 // uncompressed, metadata of the usual length included; variances by exact summation over the stored density.
 #include "tests/inputs/places.h"
 
-#include "build/environment_accuracy.h"
+#include "build/accuracy/environment.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 #include "input/probe/probe.h"

@@ -4,8 +4,8 @@
 #include "tests/inputs/synthetic.h"
 #include "tests/lib/compress/chi_square.h"
 
-#include "build/cells.h"
-#include "build/environment_accuracy.h"
+#include "build/accuracy/cells.h"
+#include "build/accuracy/environment.h"
 #include "compress/store/store.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "tests/inputs/places.h"
 #include "tests/lib/compress/checks.h"
 
-#include "build/environment_accuracy.h"
+#include "build/accuracy/environment.h"
 #include "compress/store/store.h"
 #include "input/probe/probe.h"
 

@@ -1,5 +1,5 @@
 // Targets for channels and filters: against brute force, and what a mismatch with the renderer's lookup costs.
-#include "build/environment_accuracy.h"
+#include "build/accuracy/environment.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 

@@ -5,7 +5,7 @@
 #include "tests/inputs/synthetic.h"
 #include "tests/lib/compress/cascade_cells.h"
 
-#include "build/environment_accuracy.h"
+#include "build/accuracy/environment.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "input/probe/probe.h"
-#include "tests/lib/build/projection_reference.h"
+#include "tests/lib/build/probe/projection_reference.h"
 #include "tests/lib/input/folder.h"
 
 #include <OpenImageIO/imageio.h>

@@ -4,7 +4,7 @@
 #include "tests/inputs/synthetic.h"
 #include "tests/inputs/write_rgb.h"
 
-#include "build/projection.h"
+#include "build/probe/projection.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 #include "images/image_file.h"

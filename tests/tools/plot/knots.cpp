@@ -4,7 +4,7 @@
 #include "tests/tools/plot/files.h"
 #include "tools/plot/density.h"
 
-#include "build/cells.h"
+#include "build/accuracy/cells.h"
 
 #include <algorithm>
 #include <set>

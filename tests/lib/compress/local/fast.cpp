@@ -1,5 +1,5 @@
 // The fast shape of local environment maps: what fits of it must do. Its density is tested with that of other maps.
-#include "build/local_accuracy.h"
+#include "build/accuracy/local.h"
 #include "tests/inputs/local_maps.h"
 
 #include <gtest/gtest.h>

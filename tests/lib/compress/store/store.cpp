@@ -2,7 +2,7 @@
 #include "tests/inputs/synthetic.h"
 #include "tests/lib/compress/cascade_cells.h"
 
-#include "build/cells.h"
+#include "build/accuracy/cells.h"
 #include "compress/store/store.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The table of docs/conventions.md, read from the page itself and checked against each program's own formula
 // for where a direction lies in its lat-long image; and OpenImageIO's reading of angular maps.
-#include "build/projection.h"
+#include "build/probe/projection.h"
 #include "tests/lib/input/write.h"
 
 #include <OpenEXR/ImfEnvmap.h>

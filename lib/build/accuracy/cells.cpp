@@ -1,0 +1,103 @@
+#include "build/accuracy/cells.h"
+
+#include <algorithm>
+
+namespace acdf::build {
+namespace {
+
+template <class AnyCell, class Visit>
+void descend(const std::uint8_t* tree, std::uint32_t at, const AnyCell& cell, const Visit& visit) {
+    const AcdfCurve curve = acdf_curve_at(tree, at);
+    const std::uint32_t axis = acdf_curve_axis(&curve);
+    const double maximum = acdf_curve_maximum(&curve);
+    for (std::uint32_t i = 0; i < curve.segments; ++i) {
+        const std::uint32_t width = acdf_curve_cumulative(&curve, i + 1) - acdf_curve_cumulative(&curve, i);
+        AnyCell part = cell;
+        part.probability *= width / maximum;
+        acdf_curve_narrow(&curve, i, &part.range[axis]);
+        const std::uint32_t link = acdf_curve_link(&curve, i);
+        if (link == 0 || width == 0) visit(part);
+        else descend(tree, at + link, part, visit);
+    }
+}
+
+template <std::size_t Axes>
+CellOf<Axes> whole(const File& file) {
+    CellOf<Axes> cell = {};
+    for (std::uint32_t axis = 0; axis < std::min<std::size_t>(Axes, file.description().axis_count); ++axis)
+        cell.range[axis] = {0, file.axis(axis).resolution, 0.0};
+    cell.probability = 1.0;
+    return cell;
+}
+
+using TileBox = std::array<AcdfRange, 2>;
+
+void add_boxes(const AcdfBlend& blend, std::uint32_t node, const TileBox& box, std::vector<TileBox>& out) {
+    if (node & ACDF_TILE_FLAG) return out.push_back(box); // tiles are numbered in this order
+    const AcdfSplit& split = blend.splits[node];
+    for (int upper = 0; upper < 2; ++upper) {
+        TileBox part = box;
+        acdf_range_cut(&part[split.place & 7u], split.place >> 3, upper);
+        add_boxes(blend, split.child[upper], part, out);
+    }
+}
+
+/// `visit(i, steps)` for each of a list of ends: what it has of 255.
+template <class Visit>
+void for_each_end(const std::uint8_t* ends, std::uint32_t count, const Visit& visit) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        std::uint32_t end;
+        const std::uint32_t before = acdf_fast_before(ends, i, &end);
+        visit(i, end - before);
+    }
+}
+
+void for_each_grid_cell(const std::uint8_t* grid, const AcdfRange* range,
+                        const std::function<void(const Cell&)>& visit) {
+    std::uint32_t count[2];
+    for (int a = 0; a < 2; ++a) count[a] = acdf_fast_cells(range[a].high - range[a].low, grid[a]);
+    for_each_end(grid + 2, count[1], [&](std::uint32_t line, std::uint32_t of_line) {
+        for_each_end(grid + 2 + count[1] + line * count[0], count[0], [&](std::uint32_t i, std::uint32_t in_line) {
+            Cell cell = {{range[0], range[1]}, double(of_line * in_line) * (1.0 / 65025.0)};
+            acdf_fast_narrow(&cell.range[0], i, grid[0]);
+            acdf_fast_narrow(&cell.range[1], line, grid[1]);
+            visit(cell);
+        });
+    });
+}
+
+} // namespace
+
+void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit) {
+    descend(file.tree(), root, whole<2>(file), visit);
+}
+
+void for_each_cell_in(const File& file, std::uint32_t root, const AcdfRange* range,
+                      const std::function<void(const Cell&)>& visit) {
+    Cell cell = {{range[0], range[1]}, 1.0};
+    descend(file.tree(), root, cell, visit);
+}
+
+std::vector<TileBox> tile_boxes(const File& file) {
+    std::vector<TileBox> out;
+    const AcdfBlend& blend = file.blend();
+    if (!blend.tiles) return out;
+    const TileBox whole = {{{0, file.axis(0).resolution, 0.0}, {0, file.axis(1).resolution, 0.0}}};
+    add_boxes(blend, acdf_blend_root(&blend), whole, out);
+    return out;
+}
+
+void for_each_tile_cell(const File& file, std::uint32_t tile, const AcdfRange* range,
+                        const std::function<void(const Cell&)>& visit) {
+    const AcdfLocal local = file.local().data();
+    const std::uint32_t root = local.blend.roots ? local.blend.roots[tile] : ACDF_NO_ROOT;
+    if (root == ACDF_NO_ROOT) return visit({{range[0], range[1]}, 1.0});
+    if (local.fast.grid) return for_each_grid_cell(local.fast.grid + root, range, visit);
+    for_each_cell_in(file, root, range, visit);
+}
+
+void for_each_table_cell(const File& file, std::uint32_t root, const std::function<void(const TableCell&)>& visit) {
+    descend(file.tree(), root, whole<ACDF_MAX_AXES>(file), visit);
+}
+
+} // namespace acdf::build

@@ -1,0 +1,276 @@
+#include "build/accuracy/local.h"
+
+#include "build/accuracy/cells.h"
+#include "build/accuracy/combination.h"
+#include "build/accuracy/step_means.h"
+#include "build/accuracy/texel_cosines.h"
+#include "compress/sum.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+namespace acdf::build {
+namespace {
+
+using compress::Sum;
+using compress::Target;
+
+/// What a tilt makes of the density of a texel, over its mean: the harmonic mean and the smallest.
+struct Slope {
+    float harmonic = 1.0f, smallest = 1.0f;
+};
+
+/// What does not depend on the normal: for each texel its tile and its mean density within the tile, sr^-1.
+struct TilePicture {
+    std::vector<std::uint32_t> tile;
+    std::vector<double> density;
+    std::vector<Slope> slope; ///< empty where no curve is tilted
+    std::uint32_t root = 0; ///< of the tree that is one tile of everything; of no meaning for tiles that are shared
+};
+
+class LocalMeasure {
+public:
+    LocalMeasure(const File& file, const Target& target)
+        : file_(file), target_(target), local_(file.local().data()), cosines_(target), boxes_(tile_boxes(file)) {
+        const std::size_t texels = std::size_t{target.columns} * target.rows;
+        if (local_.blend.tiles) {
+            shared_ = {std::vector<std::uint32_t>(texels), std::vector<double>(texels), {}, 0};
+            for (std::uint32_t t = 0; t < boxes_.size(); ++t)
+                for_each_tile_cell(file_, t, boxes_[t].data(),
+                                   [&](const Cell& cell) { fill(cell.range, cell.probability, t, shared_); });
+        }
+        Sum total;
+        for (std::uint32_t r = 0; r < target.rows; ++r)
+            for (std::uint32_t c = 0; c < target.columns; ++c) total.add(target.row(r)[c] * solid_angle(r, c));
+        total_ = total.value();
+    }
+
+    NormalAccuracy measure(const Normal& normal, TilePicture& own) const {
+        AcdfLocalPoint source;
+        acdf_local_at(&local_, normal.data(), &source);
+        const double length = std::hypot(double{normal[0]}, double{normal[1]}, double{normal[2]});
+        const float unit[3] = {static_cast<float>(normal[0] / length), static_cast<float>(normal[1] / length),
+                               static_cast<float>(normal[2] / length)};
+        if (source.what >= ACDF_LOCAL_BLEND) return sum(unit, shared_, tile_probabilities(source));
+        if (source.what == ACDF_LOCAL_NOTHING) return sum(unit, shared_, {});
+        if (own.density.empty() || own.root != source.root) paint_tree(source.root, own);
+        return sum(unit, own, {1.0});
+    }
+
+private:
+    double solid_angle(std::uint32_t r, std::uint32_t c) const {
+        return target_.row_measure[r] * target_.column_measure[c];
+    }
+
+    void fill(const AcdfRange* range, double probability, std::uint32_t tile, TilePicture& out) const {
+        const AcdfGrid grid = acdf_environment_grid(&local_.environment);
+        const double omega = acdf_grid_solid_angle(&grid, range);
+        for (std::uint32_t r = range[1].low; r < range[1].high; ++r) {
+            const std::size_t row = std::size_t{r} * target_.columns;
+            std::fill(out.density.begin() + std::ptrdiff_t(row + range[0].low),
+                      out.density.begin() + std::ptrdiff_t(row + range[0].high), probability / omega);
+            std::fill(out.tile.begin() + std::ptrdiff_t(row + range[0].low),
+                      out.tile.begin() + std::ptrdiff_t(row + range[0].high), tile);
+        }
+        if (range[0].tilt != 0.0 || range[1].tilt != 0.0) tilt(range, out);
+    }
+
+    void tilt(const AcdfRange* range, TilePicture& out) const {
+        out.slope.resize(out.density.size());
+        std::vector<StepMeans> columns, rows;
+        range_means(range[0], target_.column_measure, columns);
+        range_means(range[1], target_.row_measure, rows);
+        for (std::uint32_t r = range[1].low; r < range[1].high; ++r)
+            for (std::uint32_t c = range[0].low; c < range[0].high; ++c) {
+                const StepMeans &x = columns[c - range[0].low], &y = rows[r - range[1].low];
+                const std::size_t i = std::size_t{r} * target_.columns + c;
+                const double mean = x.g * y.g;
+                out.density[i] *= mean;
+                out.slope[i] = {static_cast<float>(1.0 / (mean * x.reciprocal * y.reciprocal)),
+                                static_cast<float>(x.smallest * y.smallest / mean)};
+            }
+    }
+
+    void paint_tree(std::uint32_t root, TilePicture& out) const {
+        out.tile.resize(std::size_t{target_.columns} * target_.rows);
+        out.density.resize(out.tile.size());
+        out.slope.clear();
+        out.root = root;
+        for_each_cell(file_, root, [&](const Cell& cell) { fill(cell.range, cell.probability, 0, out); });
+    }
+
+    void spread(std::uint32_t node, const AcdfMixture& mix, double whole, std::vector<double>& out) const {
+        if (node & ACDF_TILE_FLAG) {
+            out[node & ~ACDF_TILE_FLAG] = acdf_mixture_sum(&mix) / whole;
+            return;
+        }
+        AcdfMixture part[2] = {mix, mix};
+        double sum[2];
+        acdf_mixture_split(&mix, &local_.blend, node, part, sum);
+        for (int upper = 0; upper < 2; ++upper)
+            spread(local_.blend.splits[node].child[upper], part[upper], whole, out);
+    }
+
+    void spread_sums(const AcdfLocalPoint& source, std::vector<double>& out) const {
+        const double mixture = acdf_mixture_sum(&source.mix) / source.sum;
+        for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = mixture * acdf_fast_share(&source.fast, t);
+    }
+
+    std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {
+        std::vector<double> out(boxes_.size());
+        if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
+        else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
+        for (std::uint32_t k = 0; k < local_.light_count; ++k)
+            out[local_.lights[k].tile] = acdf_light_weight(&local_.lights[k], &source) / source.sum;
+        return out;
+    }
+
+    NormalAccuracy sum(const float n[3], const TilePicture& picture, const std::vector<double>& tile) const {
+        return picture.slope.empty() ? sum<false>(n, picture, tile) : sum<true>(n, picture, tile);
+    }
+
+    template <bool sloped>
+    NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
+        NormalAccuracy out;
+        Sum flux, second, first_above, light, light_second;
+        const bool drawn = !tile.empty(), alone = !local_.company;
+        const double share = drawn ? double{local_.cosine_share} : 0.0;
+        for (double& probability : tile) probability *= 1.0 - share;
+        double largest = 0.0;
+        Combination both = no_combination(), rival = both;
+        for (std::uint32_t r = 0; r < target_.rows; ++r) {
+            const std::size_t row = std::size_t{r} * target_.columns;
+            double row_flux = 0.0, row_second = 0.0, row_above = 0.0, row_light = 0.0, row_light_second = 0.0;
+            cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
+                const double light_p = drawn ? tile[picture.tile[row + c]] * picture.density[row + c] : 0.0;
+                const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = light_p + rest;
+                const double omega = solid_angle(r, c), g = target_.row(r)[c];
+                row_above += light_p * omega;
+                if (!(g > 0.0)) return;
+                const double f = g * cosine;
+                row_flux += f * omega;
+                row_light += g * omega;
+                row_light_second += f * cosine * omega;
+                if (!alone) {
+                    both.add(f, omega, p, cosine / ACDF_PI);
+                    rival.add(f, omega, g / total_, cosine / ACDF_PI);
+                    return;
+                }
+                if (!(p > 0.0)) {
+                    ++out.support_violations;
+                    return;
+                }
+                if (!sloped) {
+                    row_second += f / p * f * omega;
+                    largest = std::max(largest, f / p);
+                    return;
+                }
+                // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
+                const Slope slope = picture.slope[row + c];
+                row_second += f / (light_p * static_cast<double>(slope.harmonic) + rest) * f * omega;
+                largest = std::max(largest, f / (light_p * static_cast<double>(slope.smallest) + rest));
+            });
+            flux.add(row_flux);
+            second.add(row_second);
+            first_above.add(row_above);
+            light.add(row_light);
+            light_second.add(row_light_second);
+        }
+        const double e = flux.value();
+        if (!(e > 0.0)) return {};
+        out.irradiance = e;
+        out.relative_variance = out.support_violations > 0 ? std::numeric_limits<double>::infinity()
+                                                           : std::max(0.0, second.value() / e / e - 1.0);
+        // What is drawn around the normal lies above its horizon, all of it.
+        out.share_above_horizon = drawn ? std::min(first_above.value() + share, 1.0) : 0.0;
+        out.max_weight = largest / e;
+        out.relative_variance_full_cdf = std::max(0.0, total_ / e * (light_second.value() / e) - 1.0);
+        out.share_above_horizon_full_cdf = light.value() / total_;
+        if (alone) return out;
+        out.relative_variance = both.relative_variance();
+        out.relative_variance_full_cdf = rival.relative_variance();
+        out.support_violations = both.violations();
+        out.max_weight = both.max_weight();
+        out.combined = true;
+        return out;
+    }
+
+    Combination no_combination() const {
+        if (!local_.company) return {0.5, ACDF_HEURISTIC_BALANCE};
+        return {double{local_.company->share}, static_cast<AcdfHeuristic>(local_.company->heuristic)};
+    }
+
+    const File& file_;
+    const Target& target_;
+    const AcdfLocal local_;
+    TexelCosines cosines_;
+    const std::vector<std::array<AcdfRange, 2>> boxes_;
+    TilePicture shared_;
+    double total_ = 0.0;
+};
+
+} // namespace
+
+std::vector<NormalAccuracy> measure_normals(const File& file, const Target& target,
+                                            const std::vector<Normal>& normals) {
+    const AcdfEnvironment environment = file.local().data().environment;
+    if (environment.columns != target.columns || environment.rows != target.rows ||
+        environment.parameterization != static_cast<std::uint32_t>(target.parameterization))
+        throw std::invalid_argument("a target on another grid");
+    const LocalMeasure local(file, target);
+    std::vector<NormalAccuracy> out(normals.size());
+    tbb::enumerable_thread_specific<TilePicture> own;
+    tbb::parallel_for(std::size_t{0}, normals.size(),
+                      [&](std::size_t i) { out[i] = local.measure(normals[i], own.local()); });
+    return out;
+}
+
+LocalAccuracy summary(const std::vector<NormalAccuracy>& normals) {
+    LocalAccuracy out;
+    std::vector<double> variances;
+    out.least_share_above_horizon = out.least_share_above_horizon_full_cdf = 1.0;
+    for (const NormalAccuracy& n : normals) {
+        if (!(n.irradiance > 0.0)) continue;
+        variances.push_back(n.relative_variance);
+        out.relative_variance += n.relative_variance;
+        out.relative_variance_full_cdf += n.relative_variance_full_cdf;
+        out.share_above_horizon += n.share_above_horizon;
+        out.share_above_horizon_full_cdf += n.share_above_horizon_full_cdf;
+        out.least_share_above_horizon = std::min(out.least_share_above_horizon, n.share_above_horizon);
+        out.least_share_above_horizon_full_cdf =
+            std::min(out.least_share_above_horizon_full_cdf, n.share_above_horizon_full_cdf);
+        out.max_weight = std::max(out.max_weight, n.max_weight);
+        out.support_violations += n.support_violations;
+        out.combined = out.combined || n.combined;
+    }
+    out.lit_normals = static_cast<std::uint32_t>(variances.size());
+    if (variances.empty()) return {};
+    for (double* mean : {&out.relative_variance, &out.relative_variance_full_cdf, &out.share_above_horizon,
+                         &out.share_above_horizon_full_cdf})
+        *mean /= out.lit_normals;
+    std::sort(variances.begin(), variances.end());
+    out.median = variances[variances.size() / 2];
+    out.worst = variances.back();
+    return out;
+}
+
+std::vector<Normal> random_normals(std::uint32_t count) {
+    std::mt19937_64 engine(20051); // the standard's own distributions differ from library to library
+    const auto uniform = [&] { return double(engine() >> 11) * 0x1p-53; };
+    std::vector<Normal> out;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double z = 1.0 - 2.0 * uniform(), r = std::sqrt((1.0 - z) * (1.0 + z));
+        double s, c;
+        acdf_sincospi(2.0 * uniform() - 1.0, &s, &c);
+        out.push_back({static_cast<float>(r * c), static_cast<float>(r * s), static_cast<float>(z)});
+    }
+    return out;
+}
+
+} // namespace acdf::build

@@ -1,0 +1,161 @@
+#include "build/probe/resample.h"
+
+#include "build/probe/overlap.h"
+#include "compress/threads.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cfloat>
+#include <cstdint>
+
+namespace acdf::build {
+namespace {
+
+constexpr int max_halvings = 6;
+
+// Solid angles are added up as integers: their sum is the same in any order, so on any number of threads.
+constexpr double units = 0x1p61 / (4.0 * compress::pi);
+
+// Small maps are cut into as many cells as larger ones. Their overlaps, some 15 MB, are kept from one pass to the
+// next.
+constexpr std::size_t max_kept_texels = 256 * 128;
+
+struct Overlap {
+    int x, y;
+    double omega;
+};
+
+class Resampler {
+public:
+    Resampler(const Map& map, std::vector<float>& rgb, int width)
+        : map_(map), rgb_(rgb), width_(width), height_(width / 2), covered_(texels(map)) {}
+
+    std::vector<float> run() {
+        const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+        if (count <= max_kept_texels) kept_.resize(count);
+        parallel_rows(height_, [&](int row) { add_coverage(row); });
+        parallel_rows(map_.height, [&](int row) { scale_source(row); });
+        std::vector<float> result(3 * count);
+        parallel_rows(height_, [&](int row) { gather(row, result); });
+        hand_out_missed(result);
+        return result;
+    }
+
+private:
+    static std::size_t texels(const Map& map) {
+        return static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
+    }
+    std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(map_.width) +
+               static_cast<std::size_t>(column);
+    }
+
+    template <typename Function>
+    static void parallel_rows(int rows, const Function& function) {
+        tbb::parallel_for(tbb::blocked_range<int>(0, rows, 4), [&](const tbb::blocked_range<int>& range) {
+            for (int row = range.begin(); row < range.end(); ++row) function(row);
+        });
+    }
+
+    SphereCell texel(int column, int row) const {
+        const auto phi = [&](int c) { return 1.0 - 2.0 * c / width_; };
+        const auto theta = [&](int r) { return 1.0 * r / height_; };
+        return {phi(column), phi(column + 1), theta(row), theta(row + 1)};
+    }
+
+    template <typename Visit>
+    void for_each_source(int column, int row, const Visit& visit) const {
+        for_each_overlap(map_, texel(column, row), max_halvings, [&](int x, int y, double omega, const Polygon&) {
+            visit(Overlap{x, y, omega});
+        });
+    }
+
+    void add_coverage(int row) {
+        for (int column = 0; column < width_; ++column)
+            for_each_source(column, row, [&](const Overlap& part) {
+                covered_[index(part.x, part.y)].fetch_add(static_cast<std::uint64_t>(part.omega * units),
+                                                          std::memory_order_relaxed);
+                if (!kept_.empty()) kept_[texel_index(column, row)].push_back(part);
+            });
+    }
+
+    // After this, `rgb_` times the solid angle by which lat-long texels overlap a texel is what it hands out.
+    void scale_source(int row) {
+        for (int column = 0; column < map_.width; ++column) {
+            const std::size_t i = index(column, row);
+            const double overlapped = static_cast<double>(covered_[i].load(std::memory_order_relaxed)) / units;
+            if (overlapped <= 0.0) continue;
+            const double scale = texel_solid_angle(map_, column, row) / overlapped;
+            for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) rgb_[c] = to_float(rgb_[c] * scale);
+        }
+    }
+
+    void gather(int row, std::vector<float>& result) const {
+        for (int column = 0; column < width_; ++column) {
+            double sum[3] = {0.0, 0.0, 0.0}, total = 0.0;
+            const auto add = [&](const Overlap& part) {
+                const float* source = rgb_.data() + 3 * index(part.x, part.y);
+                for (int c = 0; c < 3; ++c) sum[c] += part.omega * source[c];
+                total += part.omega;
+            };
+            if (kept_.empty()) for_each_source(column, row, add);
+            for (const Overlap& part : kept(column, row)) add(part);
+            for (int c = 0; c < 3; ++c)
+                result[result_index(column, row) + static_cast<std::size_t>(c)] = to_float(sum[c] / total);
+        }
+    }
+
+    std::size_t texel_index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+    }
+    std::size_t result_index(int column, int row) const { return 3 * texel_index(column, row); }
+
+    const std::vector<Overlap>& kept(int column, int row) const {
+        static const std::vector<Overlap> none;
+        return kept_.empty() ? none : kept_[texel_index(column, row)];
+    }
+
+    // Slivers at the rim of a disc may have been missed by all: each goes where its middle points.
+    void hand_out_missed(std::vector<float>& result) const {
+        for (int y = 0; y < map_.height; ++y)
+            for (int x = 0; x < map_.width; ++x) {
+                const std::size_t i = index(x, y);
+                if (covered_[i].load(std::memory_order_relaxed) != 0) continue;
+                const double omega = texel_solid_angle(map_, x, y);
+                if (omega > 0.0) hand_out(x, y, omega, result);
+            }
+    }
+
+    void hand_out(int x, int y, double omega, std::vector<float>& result) const {
+        Direction d{-1.0, 0.0, 0.0}; // the rim of both discs
+        to_direction(map_, (x + 0.5) / map_.width, (y + 0.5) / map_.height, d);
+        const Map latlong{Layout::latlong, width_, height_};
+        const ImagePoint p = to_image(latlong, d);
+        const int column = static_cast<int>(p.u * width_), row = static_cast<int>(p.v * height_);
+        const double share = omega / texel_solid_angle(latlong, column, row);
+        for (std::size_t c = 0; c < 3; ++c) {
+            float& at = result[result_index(column, row) + c];
+            at = to_float(at + rgb_[3 * index(x, y) + c] * share);
+        }
+    }
+
+    static float to_float(double v) { return static_cast<float>(v < FLT_MAX ? v : FLT_MAX); }
+
+    const Map map_;
+    std::vector<float>& rgb_;
+    const int width_, height_;
+    std::vector<std::atomic<std::uint64_t>> covered_;
+    std::vector<std::vector<Overlap>> kept_; ///< of each texel; none where there are many
+};
+
+} // namespace
+
+std::vector<float> resample_to_latlong(const Map& map, std::vector<float> rgb, int width, int threads) {
+    std::vector<float> result;
+    compress::with_threads(threads, [&] { result = Resampler(map, rgb, width).run(); });
+    return result;
+}
+
+} // namespace acdf::build
