@@ -67,7 +67,7 @@ compile_builder() {
     mkdir -p "$work/tbb"
     ln -sfn /usr/include/oneapi "$work/tbb/oneapi"
     ln -sfn /usr/include/tbb "$work/tbb/tbb"
-    for source in lib/compress/*.cpp lib/build/*.cpp lib/build/builder/*.cpp; do
+    for source in $(find lib/compress lib/build -name '*.cpp' | sort); do
         "$cxx" -std=c++17 -Wall -Wextra -Werror -Wno-psabi -DACDF_VERSION='"0"' -fsyntax-only -Iformat -Ilib/reader -Ilib -Ilib/build \
             -isystem "$work/tbb" "$source"
         count=$((count + 1))
