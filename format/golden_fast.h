@@ -3,6 +3,8 @@
 
 #include "compress/store/store.h"
 
+#include <acdf/sphere.h>
+
 #include <cstdint>
 
 constexpr std::uint32_t kGoldenFastLight = 9; ///< a tile
