@@ -265,9 +265,8 @@ void LocalConversion::add_bins(CLI::App& command) {
         ->group("Normals");
     scene_.add(command,
                "Only what a scene requires: a mesh (.obj, .ply, .instances), a normal pass (.exr) or a list of "
-               "normals (.txt, "
-               "x y z [weight] a line). Bins that do not occur are not stored: a normal outside is served by the "
-               "whole environment, unbiased but noisier",
+               "normals (.txt, x y z [weight] a line). Bins that do not occur are not stored: a normal outside is "
+               "served by the whole environment, unbiased but noisier",
                "Normals");
     scene_.add_axes(command, "Normals");
     command
@@ -310,8 +309,8 @@ void LocalConversion::add_size(CLI::App& command) {
 }
 
 void LocalConversion::add_shape(CLI::App& command) {
-    const std::map<std::string, builder::LocalShape> shapes{{"small", builder::LocalShape::small},
-                                                            {"fast", builder::LocalShape::fast}};
+    using Shape = builder::LocalShape;
+    const std::map<std::string, Shape> shapes{{"small", Shape::small}, {"fast", Shape::fast}};
     command
         .add_option(
             "--shape", local_.shape,
@@ -384,14 +383,12 @@ std::unique_ptr<Conversion> local_conversion() { return std::make_unique<LocalCo
 
 void add_local(CLI::App& program, int& exit_code) {
     CLI::App& command = *program.add_subcommand(
-        "local", "Compress an environment map for every normal: clipped at its horizon, times "
-                 "the cosine");
+        "local", "Compress an environment map for every normal: clipped at its horizon, times the cosine");
     add_conversion(
         command, local_conversion(),
         {"PROBE", "The environment map: any image OpenImageIO reads",
          help_footer("Prints the exact relative variance of irradiance estimates, mean over 256 random normals (or "
-                     "those of the "
-                     "scene), beside that of the probe's full-resolution CDF.",
+                     "those of the scene), beside that of the probe's full-resolution CDF.",
                      "acdf local probe.exr -o probe.local.acdf\n"
                      "acdf local probe.exr -o small.acdf --budget 128KiB\n"
                      "acdf local probe.exr -o car.acdf --scene car.obj --scene-up y --cosine-share 0.2\n"

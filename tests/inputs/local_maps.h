@@ -157,7 +157,8 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
             const std::uint32_t square[2] = {c, r};
             AcdfRange range[2];
             acdf_sphere_ranges(env.columns, env.rows, range);
-            const double p = source.what == ACDF_LOCAL_BLEND
+            const double p = source.what == ACDF_LOCAL_FAST ? acdf_local_fast_find(&local, &source, square, range)
+                             : source.what == ACDF_LOCAL_BLEND
                                  ? acdf_local_blend_find(&local, &source, square, range)
                                  : acdf_tree_find(env.tree, source.root, square, range, nullptr);
             const AcdfGrid grid = acdf_environment_grid(&env);
