@@ -249,9 +249,8 @@ Converted LocalConversion::convert(const Listener& listener) {
                       gain(result));
         listener.note(text);
     }
-    std::string told = json_text(report(loaded, result));
-    const std::string summary = summary_of(result);
-    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), summary};
+    std::string told = json_text(report(loaded, result)), summary = summary_of(result);
+    return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), std::move(summary)};
 }
 
 void LocalConversion::add_bins(CLI::App& command) {

@@ -67,6 +67,10 @@ TEST(BuilderLocal, MakesWhatTheProgramMakes) {
     EXPECT_EQ(local_bytes(file, options),
               file.program({"--budget", "32KiB", "--cosine-share", "0.2", "--normals", "4", "--tiles", "60"}));
     options = {};
+    options.goal = Goal::of_budget(32 << 10);
+    options.shape = LocalShape::fast;
+    EXPECT_EQ(local_bytes(file, options), file.program({"--budget", "32KiB", "--shape", "fast"}));
+    options = {};
     options.sharing = false;
     options.columns = 6, options.rows = 3;
     options.fit.fit = ACDF_FIT_CDF;
@@ -119,6 +123,18 @@ TEST(BuilderLocal, Misuse) {
     refused("tiles without sharing", [](LocalOptions& o) { o.tiles = 4, o.sharing = false; });
     refused("a small weight", [](LocalOptions& o) { o.max_weight = 0.5; });
     refused("a bound without sharing", [](LocalOptions& o) { o.max_weight = 9.0, o.sharing = false; });
+    refused("a wild shape", [](LocalOptions& o) { o.shape = static_cast<LocalShape>(9); });
+    refused("fast without sharing", [](LocalOptions& o) { o.shape = LocalShape::fast, o.sharing = false; });
+    refused("fast and a bound", [](LocalOptions& o) { o.shape = LocalShape::fast, o.max_weight = 9.0; });
+    refused("fast and a company", [](LocalOptions& o) {
+        o.shape = LocalShape::fast;
+        o.company.kind = ACDF_COMPANY_COSINE;
+    });
+    refused("fast and places", [](LocalOptions& o) {
+        o.shape = LocalShape::fast;
+        o.places.point = [](std::uint64_t, PlacePoint&) { return true; };
+        o.places.occluded = [](const PlacePoint&, const float*) { return false; };
+    });
     refused("a share", [](LocalOptions& o) { o.cosine_share = 1.0; });
     refused("a NaN share", [](LocalOptions& o) { o.cosine_share = kNan; });
     refused("a variance without sharing",
