@@ -143,7 +143,7 @@ Json local_json(const File& file) {
                                                : std::to_string(local.columns) + "x" + std::to_string(local.rows);
     report["bins_stored"] = stored;
     report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
-    if (local.blend.tiles) report["shape"] = is_fast(file) ? "fast" : "small";
+    if (is_fast(file)) report["shape"] = "fast"; // the usual one is not told
     report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
     report["lights"] = local.light_count;
     report["cosine_share"] = local.cosine_share;
@@ -239,10 +239,11 @@ std::string target_text(const Json& report) {
 std::string local_text(const Json& local) {
     const std::string bins =
         "--normals " + text_of(local["normals"]) + ", " + text_of(local["bins_stored"]) + " stored; ";
-    const std::string shared =
-        local["tiles"] == 0 ? "a tree each"
-                            : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) + " rows, " +
-                                  text_of(local["lights"]) + " lights; shape " + text_of(local["shape"]);
+    const std::string shared = local["tiles"] == 0
+                                   ? "a tree each"
+                                   : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
+                                         " rows, " + text_of(local["lights"]) + " lights" +
+                                         (local.contains("shape") ? "; shape " + text_of(local["shape"]) : "");
     const std::string places = local.contains("places")
                                    ? "; " + text_of(local["places"]["cells"]) + " places from " +
                                          text_of(local["places"]["low"]) + " to " + text_of(local["places"]["high"])
