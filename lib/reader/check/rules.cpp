@@ -133,7 +133,7 @@ const Rule rules[] = {
      "255, and "
      "nothing behind the last group and tile has a share."},
     {6029, error, malformed, "grid",
-     "GRID has the grids of all tiles without gaps, each at its root, with shifts of at most 30 and 1 to 32 cells "
+     "GRID has the grids of all tiles without gaps, each at its root, with shifts of at most 30 and 1 to 64 cells "
      "an "
      "axis, and behind them 64 zero bytes. The ends of a list never decrease up to 255."},
 
