@@ -199,10 +199,10 @@ typedef struct AcdfSplit {
 /* Chunk ROWS: row_count rows of tile_count - 1 bytes: codebook[code] / 65535 is the probability of a split's lower
  * part.
  *
- * Chunks SUMS and GRID, of the fast shape of local environments, instead (SPEC.md §5.11): `roots` are then offsets in
- * GRID, in bytes. SUMS: for each row cumulative uint16 over groups of tiles, as many as these rounded up to 16; then for
- * each row cumulative uint8 over the tiles of each group. GRID: for each tile two shifts, and the cumulative uint8 of its
- * cells; ACDF_FAST_CELLS bytes more, so that vectors may read on. */
+ * Chunks SUMS and GRID, of the fast shape of local environments, instead (SPEC.md §5.11): `roots` are then offsets
+ * in GRID, in bytes. SUMS: for each row cumulative uint16 over groups of tiles, as many as these rounded up to 16;
+ * then for each row cumulative uint8 over the tiles of each group. GRID: for each tile two shifts, and the
+ * cumulative uint8 of its cells; ACDF_FAST_CELLS bytes more, so that vectors may read on. */
 #define ACDF_FAST_GROUP 16u    /* tiles in a group */
 #define ACDF_FAST_CELLS 64u    /* on a side of a grid, at most */
 #define ACDF_FAST_WHOLE 32767u /* the last cumulative value of groups */

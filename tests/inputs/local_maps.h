@@ -37,6 +37,23 @@ struct LocalFileOptions {
     AcdfCodec codec = ACDF_CODEC_NONE;
 };
 
+/// Of so many tiles and bytes inside them.
+inline LocalFileOptions of_size(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0,
+                                bool sharing = true) {
+    LocalFileOptions options;
+    options.size = {tiles, bytes};
+    options.cosine_share = cosine_share;
+    options.sharing = sharing;
+    return options;
+}
+
+/// The same of the fast shape.
+inline LocalFileOptions fast_of_size(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0) {
+    LocalFileOptions options = of_size(tiles, bytes, cosine_share);
+    options.size.shape = acdf::compress::LocalShape::fast;
+    return options;
+}
+
 inline acdf::compress::Description local_description(const acdf::compress::Target& target,
                                                      const acdf::compress::NormalBins& bins) {
     acdf::compress::Description d =

@@ -195,7 +195,7 @@ bool WalkMaker::views() {
 }
 
 bool WalkMaker::make() {
-    parts_.add(WalkLeaf{0, 0.0f, {}});  // what is dark
+    parts_.add(WalkLeaf{0, 0.0f, {}}); // what is dark
     if (!cells_.remember(most_leaves_)) return false;
     if (local_.light_count > 0 && !light_links_.add(local_.light_count, ACDF_WALK_LEAF)) return false;
     if (!brdf()) root_ = tree(environment_.tree, environment_.root, cells_.whole(), 0);

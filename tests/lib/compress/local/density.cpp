@@ -24,20 +24,6 @@ struct MapCase {
 
 void PrintTo(const MapCase& map, std::ostream* out) { *out << map.name; } // for GoogleTest
 
-LocalFileOptions with(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0, bool sharing = true) {
-    LocalFileOptions options;
-    options.size = {tiles, bytes};
-    options.cosine_share = cosine_share;
-    options.sharing = sharing;
-    return options;
-}
-
-LocalFileOptions fast(std::uint32_t tiles, std::uint64_t bytes, double cosine_share = 0.0) {
-    LocalFileOptions options = with(tiles, bytes, cosine_share);
-    options.size.shape = LocalShape::fast;
-    return options;
-}
-
 std::function<std::optional<Target>()> synthetic(const std::string& name) {
     return [name]() -> std::optional<Target> {
         for (NamedTarget& t : synthetic_targets())
@@ -76,62 +62,63 @@ NormalBins scene_bins() {
 
 std::vector<MapCase> map_cases() {
     return {
-        {"smooth_sky", synthetic("smooth_sky"), corners(4), with(60, 1500)},
-        {"peaky_sun", synthetic("peaky_sun"), corners(5), with(120, 3000)},
-        {"one_lit_texel", synthetic("one_lit_texel"), corners(4), with(30, 400)},
-        {"black_lower_hemisphere", synthetic("black_lower_hemisphere"), corners(3), with(80, 2000, 0.25)},
-        {"checkerboard", synthetic("checkerboard"), corners(2), with(200, 8000)},
-        {"denormals", synthetic("denormals"), corners(3), with(50, 1000, 0.5)},
-        {"huge", synthetic("huge"), corners(3), with(50, 1000)},
-        {"one_row", synthetic("one_row"), corners(3), with(20, 500)},
-        {"one_column", synthetic("one_column"), corners(3), with(20, 500)},
-        {"one_texel", synthetic("one_texel"), corners(1), with(5, 100)},
-        {"one_tile", synthetic("odd_noise"), corners(2), with(1, 1000)},
-        {"odd_noise", synthetic("odd_noise"), corners(6), with(100, 3000, 0.0625)},
-        {"constant", synthetic("constant"), corners(1), with(40, 300)},
-        {"faint_texel", synthetic("faint_texel"), corners(3), with(30, 400)},
-        {"bright_texel_in_the_dark", synthetic("bright_texel_in_the_dark"), corners(3), with(60, 1000)},
-        {"largest_half", synthetic("largest_half"), corners(3), with(60, 1000)},
-        {"range_of_1e12", synthetic("range_of_1e12"), corners(3), with(150, 4000)},
-        {"sun_at_the_pole", synthetic("sun_at_the_pole"), corners(4), with(80, 1500)},
-        {"sun_at_the_seam", synthetic("sun_at_the_seam"), corners(4), with(80, 1500)},
-        {"sun_at_the_horizon", synthetic("sun_at_the_horizon"), corners(4), with(80, 1500)},
-        {"only_the_nadir", synthetic("only_the_nadir"), corners(4), with(60, 1000)},
-        {"suns", [] { return std::optional(suns_target(256, 128)); }, corners(5), with(150, 3000)},
-        {"suns_cosine", [] { return std::optional(suns_target(128, 64)); }, corners(4), with(100, 2000, 0.2)},
-        {"scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, with(100, 2000)},
-        {"separate_corners", synthetic("peaky_sun"), corners(3), with(0, 0, 0.0, false)},
-        {"separate_grid", synthetic("black_lower_hemisphere"), grid(9, 5), with(0, 0, 0.125, false)},
-        {"separate_paper_grid", synthetic("odd_noise"), grid(25, 10), with(0, 0, 0.0, false)},
-        {"octahedral_sky", squared("smooth_sky"), corners(4), with(60, 1500)},
-        {"octahedral_sun", squared("peaky_sun"), corners(5), with(120, 3000)},
-        {"octahedral_texel", squared("one_lit_texel"), corners(4), with(30, 400)},
-        {"octahedral_checkerboard", squared("checkerboard"), corners(2), with(200, 8000)},
-        {"octahedral_noise", squared("odd_noise"), corners(6), with(100, 3000, 0.0625)},
-        {"octahedral_fold", squared("sun_at_the_seam"), corners(4), with(80, 1500)},
-        {"octahedral_corner", squared("sun_at_the_pole"), corners(4), with(80, 1500)},
-        {"octahedral_range_of_1e12", squared("range_of_1e12"), corners(3), with(150, 4000)},
+        {"smooth_sky", synthetic("smooth_sky"), corners(4), of_size(60, 1500)},
+        {"peaky_sun", synthetic("peaky_sun"), corners(5), of_size(120, 3000)},
+        {"one_lit_texel", synthetic("one_lit_texel"), corners(4), of_size(30, 400)},
+        {"black_lower_hemisphere", synthetic("black_lower_hemisphere"), corners(3), of_size(80, 2000, 0.25)},
+        {"checkerboard", synthetic("checkerboard"), corners(2), of_size(200, 8000)},
+        {"denormals", synthetic("denormals"), corners(3), of_size(50, 1000, 0.5)},
+        {"huge", synthetic("huge"), corners(3), of_size(50, 1000)},
+        {"one_row", synthetic("one_row"), corners(3), of_size(20, 500)},
+        {"one_column", synthetic("one_column"), corners(3), of_size(20, 500)},
+        {"one_texel", synthetic("one_texel"), corners(1), of_size(5, 100)},
+        {"one_tile", synthetic("odd_noise"), corners(2), of_size(1, 1000)},
+        {"odd_noise", synthetic("odd_noise"), corners(6), of_size(100, 3000, 0.0625)},
+        {"constant", synthetic("constant"), corners(1), of_size(40, 300)},
+        {"faint_texel", synthetic("faint_texel"), corners(3), of_size(30, 400)},
+        {"bright_texel_in_the_dark", synthetic("bright_texel_in_the_dark"), corners(3), of_size(60, 1000)},
+        {"largest_half", synthetic("largest_half"), corners(3), of_size(60, 1000)},
+        {"range_of_1e12", synthetic("range_of_1e12"), corners(3), of_size(150, 4000)},
+        {"sun_at_the_pole", synthetic("sun_at_the_pole"), corners(4), of_size(80, 1500)},
+        {"sun_at_the_seam", synthetic("sun_at_the_seam"), corners(4), of_size(80, 1500)},
+        {"sun_at_the_horizon", synthetic("sun_at_the_horizon"), corners(4), of_size(80, 1500)},
+        {"only_the_nadir", synthetic("only_the_nadir"), corners(4), of_size(60, 1000)},
+        {"suns", [] { return std::optional(suns_target(256, 128)); }, corners(5), of_size(150, 3000)},
+        {"suns_cosine", [] { return std::optional(suns_target(128, 64)); }, corners(4), of_size(100, 2000, 0.2)},
+        {"scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, of_size(100, 2000)},
+        {"separate_corners", synthetic("peaky_sun"), corners(3), of_size(0, 0, 0.0, false)},
+        {"separate_grid", synthetic("black_lower_hemisphere"), grid(9, 5), of_size(0, 0, 0.125, false)},
+        {"separate_paper_grid", synthetic("odd_noise"), grid(25, 10), of_size(0, 0, 0.0, false)},
+        {"octahedral_sky", squared("smooth_sky"), corners(4), of_size(60, 1500)},
+        {"octahedral_sun", squared("peaky_sun"), corners(5), of_size(120, 3000)},
+        {"octahedral_texel", squared("one_lit_texel"), corners(4), of_size(30, 400)},
+        {"octahedral_checkerboard", squared("checkerboard"), corners(2), of_size(200, 8000)},
+        {"octahedral_noise", squared("odd_noise"), corners(6), of_size(100, 3000, 0.0625)},
+        {"octahedral_fold", squared("sun_at_the_seam"), corners(4), of_size(80, 1500)},
+        {"octahedral_corner", squared("sun_at_the_pole"), corners(4), of_size(80, 1500)},
+        {"octahedral_range_of_1e12", squared("range_of_1e12"), corners(3), of_size(150, 4000)},
         {"octahedral_suns", [] { return std::optional(octahedral(suns_target(128, 128))); }, corners(5),
-         with(150, 3000)},
+         of_size(150, 3000)},
         {"octahedral_scene", [] { return std::optional(octahedral(suns_target(96, 96))); }, scene_bins,
-         with(100, 2000)},
-        {"octahedral_separate", squared("peaky_sun"), corners(3), with(0, 0, 0.0, false)},
-        {"octahedral_separate_grid", squared("black_lower_hemisphere"), grid(9, 5), with(0, 0, 0.125, false)},
-        {"fast_sky", synthetic("smooth_sky"), corners(4), fast(60, 3000)},
-        {"fast_sun", synthetic("peaky_sun"), corners(5), fast(120, 6000)},
-        {"fast_texel", synthetic("one_lit_texel"), corners(4), fast(30, 600)},
-        {"fast_checkerboard", synthetic("checkerboard"), corners(2), fast(200, 9000)},
-        {"fast_denormals", synthetic("denormals"), corners(3), fast(50, 1000, 0.5)},
-        {"fast_range_of_1e12", synthetic("range_of_1e12"), corners(3), fast(150, 4000)},
-        {"fast_one_tile", synthetic("odd_noise"), corners(2), fast(1, 1000)},
-        {"fast_suns", [] { return std::optional(suns_target(256, 128)); }, corners(5), fast(600, 9000, 0.2)},
-        {"fast_scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, fast(100, 2000)},
+         of_size(100, 2000)},
+        {"octahedral_separate", squared("peaky_sun"), corners(3), of_size(0, 0, 0.0, false)},
+        {"octahedral_separate_grid", squared("black_lower_hemisphere"), grid(9, 5), of_size(0, 0, 0.125, false)},
+        {"fast_sky", synthetic("smooth_sky"), corners(4), fast_of_size(60, 3000)},
+        {"fast_sun", synthetic("peaky_sun"), corners(5), fast_of_size(120, 6000)},
+        {"fast_texel", synthetic("one_lit_texel"), corners(4), fast_of_size(30, 600)},
+        {"fast_checkerboard", synthetic("checkerboard"), corners(2), fast_of_size(200, 9000)},
+        {"fast_denormals", synthetic("denormals"), corners(3), fast_of_size(50, 1000, 0.5)},
+        {"fast_range_of_1e12", synthetic("range_of_1e12"), corners(3), fast_of_size(150, 4000)},
+        {"fast_one_tile", synthetic("odd_noise"), corners(2), fast_of_size(1, 1000)},
+        {"fast_suns", [] { return std::optional(suns_target(256, 128)); }, corners(5),
+         fast_of_size(600, 9000, 0.2)},
+        {"fast_scene", [] { return std::optional(suns_target(128, 64)); }, scene_bins, fast_of_size(100, 2000)},
         {"fast_octahedral", [] { return std::optional(octahedral(suns_target(96, 96))); }, scene_bins,
-         fast(150, 5000)},
-        {"city", probe("city.exr", 8), corners(6), with(200, 6000)},
-        {"noon_grass", probe("noon_grass_1k.hdr", 8), corners(6), with(200, 6000)},
-        {"grace", probe("grace_probe.hdr", 8), corners(6), with(200, 6000)},
-        {"city_cosine", probe("city.exr", 4), corners(4), with(300, 12000, 0.2)},
+         fast_of_size(150, 5000)},
+        {"city", probe("city.exr", 8), corners(6), of_size(200, 6000)},
+        {"noon_grass", probe("noon_grass_1k.hdr", 8), corners(6), of_size(200, 6000)},
+        {"grace", probe("grace_probe.hdr", 8), corners(6), of_size(200, 6000)},
+        {"city_cosine", probe("city.exr", 4), corners(4), of_size(300, 12000, 0.2)},
     };
 }
 
@@ -354,7 +341,7 @@ TEST_P(FineMaps, IrradianceIsAboutRight) {
 }
 
 TEST(LocalMap, IrradianceIsGoodToAFewPerCent) {
-    const LocalMap map(suns_target(256, 128), octahedral_bins(8), with(600, 20000));
+    const LocalMap map(suns_target(256, 128), octahedral_bins(8), of_size(600, 20000));
     std::mt19937_64 random(8);
     for (int i = 0; i < 60; ++i) {
         const Normal n = random_direction(random);
@@ -384,7 +371,8 @@ TEST_P(Maps, StrataStayStrata) {
             if (source.what == ACDF_LOCAL_NOTHING) break;
             AcdfRange range[2];
             acdf_sphere_ranges(columns, rows, range);
-            if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
+            if (source.what == ACDF_LOCAL_FAST) acdf_local_fast_sample(&local, &source, u, range);
+            else if (source.what == ACDF_LOCAL_BLEND) acdf_local_blend_sample(&local, &source, u, range);
             else acdf_tree_sample(local.environment.tree, source.root, u, range);
             const bool same = i > 0 && range[0].low == before[0].low && range[1].low == before[1].low &&
                               range[0].high == before[0].high && range[1].high == before[1].high;
