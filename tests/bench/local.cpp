@@ -110,7 +110,10 @@ bool run(const char* path) {
         "\nA file of %llu bytes%s, with tables of %llu bytes; full table of %u x %u\n\n| ns a call (of the full "
         "table's) | full table | walked | with tables | many, no vectors | many, AVX2 | many, AVX-512 "
         "|\n|---|---|---|---|---|---|---|\n",
-        static_cast<unsigned long long>(tables.size()), latlong ? "" : ", octahedral",
+        static_cast<unsigned long long>(tables.size()),
+        fast.data().fast.grid ? " in the fast shape"
+        : latlong             ? ""
+                              : ", octahedral",
         static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
     const Compared all = {full, plain, fast, q};
     const auto nothing = [](const auto&, const AcdfLocalPoint& point, std::size_t) { keep(point); };

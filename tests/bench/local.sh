@@ -12,10 +12,11 @@ local_file noon_grass_1k.hdr small --budget 128KiB
 local_file noon_grass_1k.hdr large
 local_file noon_grass_1k.hdr octahedral --domain octahedral
 local_file spruit_sunrise_4k.exr wide
+local_file noon_grass_1k.hdr fast --shape fast
 
 . "$here/instructions.sh"
 {
-    "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide}.acdf
+    "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide,fast}.acdf
     printf '\n| instructions, 1 MiB, noon_grass | shading point | and a draw | and a density |\n|---|---|---|---|\n'
     for how in tables walk; do
         if [ $how = walk ]; then options=(walk); else options=(); fi

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# The table of docs/local.md between its marks fast-shape: docs/make/fast_shape.sh DATA [ACDF] prints the mean relative variance of
+# local files of both shapes.
+set -euo pipefail
+data=$1
+acdf=${2:-build/release/tools/acdf}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# variance PROBE SIZE SHAPE
+variance() {
+    local options=()
+    [[ $1 == *grace_probe* ]] && options=(--projection angular)
+    "$acdf" local "$1" -o "$work/out.acdf" --budget "$2" --shape "$3" --force --quiet --json "${options[@]}" 2>/dev/null |
+        jq .relative_variance
+}
+
+echo "| mean relative variance | 1 MiB, small | fast | ratio | 128 KiB, small | fast | ratio |"
+echo "|---|---|---|---|---|---|---|"
+for name in noon_grass_1k.hdr studio_small_05_1k.hdr venice_sunset_1k.hdr courtyard.exr grace_probe.hdr city.exr; do
+    line="| ${name%.*} |"
+    for size in 1MiB 128KiB; do
+        small=$(variance "$data/probes/$name" $size small)
+        fast=$(variance "$data/probes/$name" $size fast)
+        line+=$(awk -v s="$small" -v f="$fast" 'BEGIN { printf " %.4f | %.4f | %.2f |", s, f, f / s }')
+    done
+    echo "$line"
+done
