@@ -138,9 +138,10 @@ public:
             for (std::size_t a = 0; a < 2; ++a)
                 found = found && square[a] >= cell.low[a] && square[a] < cell.high[a];
         }
-        Mixed mix = mixed(w);
-        const double s = w.empty() ? 0.0 : enter(row, mix, tile / 16), t = s > 0.0 ? tile_sum(row, mix, tile) : 0.0;
         const double inside = find_in_grid(tile, square, cell);
+        if (w.empty()) return 0.0;
+        Mixed mix = mixed(w);
+        const double s = enter(row, mix, tile / 16), t = s > 0.0 ? tile_sum(row, mix, tile) : 0.0;
         return t > 0.0 ? s * t / (32767.0 * 255.0 * mix.whole * total_of(mix.b)) * inside : 0.0;
     }
 
