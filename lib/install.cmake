@@ -30,12 +30,18 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_words.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast_rows.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/groups.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/lobe.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_corners.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast_point.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_lights.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_parts.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_place.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h
@@ -64,6 +70,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tile_blocks.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tile_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tree.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/views.h

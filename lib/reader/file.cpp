@@ -286,6 +286,7 @@ LocalEnvironmentView File::local() const noexcept {
     local.places = places_;
     local.portals = portals_;
     local.fast = fast_;
+    if (fast_.grid && local_tables_) acdf_local_use_upper(&local);
 #if ACDF_WAVEFRONT_X86
     local.vectors = local_vectors();
 #endif

@@ -174,7 +174,11 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
             const std::uint32_t square[2] = {c, r};
             AcdfRange range[2];
             acdf_sphere_ranges(env.columns, env.rows, range);
-            const double p = source.what == ACDF_LOCAL_FAST ? acdf_local_fast_find(&local, &source, square, range)
+            const auto fast = [&] {
+                const AcdfFastShare share = acdf_local_fast_find(&local, &source, square, range);
+                return share.of / share.all;
+            };
+            const double p = source.what == ACDF_LOCAL_FAST ? fast()
                              : source.what == ACDF_LOCAL_BLEND
                                  ? acdf_local_blend_find(&local, &source, square, range)
                                  : acdf_tree_find(env.tree, source.root, square, range, nullptr);

@@ -118,8 +118,10 @@ private:
     }
 
     void spread_sums(const AcdfLocalPoint& source, std::vector<double>& out) const {
-        const double mixture = acdf_mixture_sum(&source.mix) / source.sum;
-        for (std::uint32_t t = 0; t < out.size(); ++t) out[t] = mixture * acdf_fast_share(&source.fast, t);
+        for (std::uint32_t t = 0; t < out.size(); ++t) {
+            const AcdfFastShare share = acdf_fast_share(&source.fast, t);
+            out[t] = source.unit * share.of / share.all;
+        }
     }
 
     std::vector<double> tile_probabilities(const AcdfLocalPoint& source) const {

@@ -61,7 +61,9 @@ ACDF_FN void acdf_cut_begin(const AcdfLocal* local, const AcdfLocalPoint* point,
     cut->count = 1;
     if (acdf_local_tabled(local, point)) {
         const AcdfLightPair* pair = acdf_local_lights(local->tables);
-        for (i = 0; i < local->light_count; i += 2) acdf_light_pair_weights(pair++, point, &cut->light[i]);
+        const AcdfHorizon horizon = acdf_horizon(point);
+        for (i = 0; i < local->light_count; i += 2)
+            acdf_store_weights(acdf_light_pair_weights(pair++, &horizon), &cut->light[i]);
     } else
         for (i = 0; i < local->light_count; ++i) cut->light[i] = acdf_local_light_weight(local, point, i);
     whole->node = (uint16_t)acdf_blend_root(&local->blend);

@@ -161,14 +161,6 @@ ACDF_INLINE int acdf_local_table_pdf(const AcdfLocal* local, const AcdfLocalPoin
     return 1;
 }
 
-/* The square of a direction, as acdf_grid_square finds it. */
-ACDF_INLINE int acdf_local_square(const AcdfGrid* grid, const float direction[3], uint32_t square[2]) {
-    double position[2];
-    return (acdf_grid_is_octahedral(grid) ? acdf_fold_square(grid->columns, grid->rows, direction, square)
-                                          : acdf_row_square(grid->columns, grid->rows, direction, square)) ||
-           acdf_grid_square(grid, direction, square, position);
-}
-
 /* The density of a direction in a cell of probability p. */
 ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const float direction[3],
                                       const AcdfRange range[2], double p) {
@@ -187,12 +179,11 @@ ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const A
                                                  const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
                                                  double p) {
     AcdfDirectionSample out;
-    if (point->what >= ACDF_LOCAL_BLEND && local->tables &&
-        (local->tables->octahedral
-             ? acdf_fold_place(grid, range, u, p, &out)
-             : acdf_row_place(acdf_local_heights(local->tables), grid->columns, range, u, p, &out)))
-        return out;
-    return acdf_grid_place(grid, range, u, p);
+    if (point->what != ACDF_LOCAL_BLEND || !acdf_local_place_by_tables(local, grid, range, u, out.direction))
+        return acdf_grid_place(grid, range, u, p);
+    out.pdf = local->tables->octahedral ? acdf_fold_pdf(grid, range, p)
+                                        : acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
+    return out;
 }
 
 /* The density of what rows, or a tree, draw. */
@@ -205,10 +196,10 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     if (point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) && local->tables->pieces &&
         acdf_local_table_pdf(local, point, direction, &told))
         return told;
+    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_pdf(local, point, direction);
     if (point->what == ACDF_LOCAL_NOTHING || !acdf_local_square(&grid, direction, square)) return 0.0f;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    p = point->what == ACDF_LOCAL_FAST ? acdf_local_fast_find(local, point, square, range)
-        : point->what == ACDF_LOCAL_BLEND
+    p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_find(local, point, square, range)
             : acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->root, square, range);
     return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
@@ -255,10 +246,27 @@ ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, 
     for (i = 0; i < 3; ++i) direction[i] = (float)(r * (cosine * s[i] + sine * t[i]) + h * n[i]);
 }
 
-/* Density per steradian with which acdf_local_sample_at draws `direction` (unit). */
-ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+/* acdf_local_pdf_at of any shape, with windows and the cosine; and where rows of the fast shape are all there is.
+ * Each saves only the registers that it needs. */
+ACDF_OUTLINE_ON_CPU float acdf_local_any_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                const float direction[3]) {
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
     return acdf_local_density(local, point, direction, acdf_local_light_pdf(local, point, direction));
+}
+ACDF_OUTLINE_ON_CPU float acdf_local_fast_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                 const float direction[3]) {
+    return acdf_local_fast_pdf(local, point, direction);
+}
+
+/* Whether a point has no more than rows of the fast shape. */
+ACDF_INLINE int acdf_local_only_fast(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    return point->what == ACDF_LOCAL_FAST && local->cosine_share == 0.0;
+}
+
+/* Density per steradian with which acdf_local_sample_at draws `direction` (unit). */
+ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+    return acdf_local_only_fast(local, point) ? acdf_local_fast_pdf_at(local, point, direction)
+                                              : acdf_local_any_pdf_at(local, point, direction);
 }
 
 /* Draws by rows, or a tree; u[0] and u[1] in [0, 1]. */
@@ -267,9 +275,9 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     double p;
+    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, u);
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    p = point->what == ACDF_LOCAL_FAST ? acdf_local_fast_sample(local, point, u, range)
-        : point->what == ACDF_LOCAL_BLEND
+    p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
             : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
     return acdf_local_place(local, point, &grid, range, u, p);
@@ -286,10 +294,10 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_window_sample(const AcdfLocal
     return out;
 }
 
-/* Draws a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
- * direction) where the normal is not valid or nothing shines on it. */
-ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
-                                                 double u1) {
+/* acdf_local_sample_at of any shape, and where rows of the fast shape are all there is. */
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal* local,
+                                                                 const AcdfLocalPoint* point, double u0,
+                                                                 double u1) {
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
     double u[2];
     if (point->what == ACDF_LOCAL_NOTHING) return out;
@@ -304,7 +312,25 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
                                        : acdf_local_row_sample(local, point, u);
     }
     out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
-    return out;
+    return acdf_returned(&out);
+}
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLocal* local,
+                                                                  const AcdfLocalPoint* point, double u0,
+                                                                  double u1) {
+    AcdfDirectionSample out;
+    double u[2];
+    u[0] = acdf_unit_interval(u0);
+    u[1] = acdf_unit_interval(u1);
+    out = acdf_local_fast_sample(local, point, u);
+    return acdf_returned(&out);
+}
+
+/* Draws a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
+ * direction) where the normal is not valid or nothing shines on it. */
+ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const AcdfLocalPoint* point, double u0,
+                                                 double u1) {
+    return acdf_local_only_fast(local, point) ? acdf_local_fast_sample_at(local, point, u0, u1)
+                                              : acdf_local_any_sample_at(local, point, u0, u1);
 }
 
 /* The same for a normal that serves once. */

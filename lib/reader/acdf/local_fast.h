@@ -2,7 +2,7 @@
 #ifndef ACDF_LOCAL_FAST_H
 #define ACDF_LOCAL_FAST_H
 
-#include <acdf/local_point.h>
+#include <acdf/local_place.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -43,49 +43,128 @@ ACDF_INLINE AcdfFastGrid acdf_local_fast_drawn(const AcdfLocal* local, uint32_t 
 ACDF_INLINE uint32_t acdf_local_fast_found(const AcdfLocal* local, const uint32_t* square, AcdfFastGrid* grid,
                                            AcdfRange* range) {
     uint32_t node = acdf_blend_root(&local->blend);
-    if (local->tables) {
-        node = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
-        *grid = acdf_local_fast_record(local, node, range);
-        return node;
-    }
+    if (local->tables) node = acdf_tile_block_at(acdf_local_words(local->tables), &local->tables->blocks, square);
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &local->blend.splits[node];
         const uint32_t axis = split->place & 7u, position = split->place >> 3;
         const int in_upper = square[axis] >= position;
-        acdf_range_cut(&range[axis], position, in_upper);
+        if (!local->tables) acdf_range_cut(&range[axis], position, in_upper);
         node = split->child[in_upper];
     }
     node &= ~ACDF_TILE_FLAG;
-    *grid = acdf_fast_grid(&local->fast, local->blend.roots[node], range);
+    *grid = local->tables ? acdf_local_fast_record(local, node, range)
+                          : acdf_fast_grid(&local->fast, local->blend.roots[node], range);
     return node;
 }
 
-/* acdf_local_blend_sample of this shape. */
-ACDF_FN double acdf_local_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
-                                      AcdfRange* range) {
-    double probability;
-    uint32_t tile;
-    const AcdfLight* light = acdf_local_draw_light(local, point, u, &probability);
-    AcdfFastGrid grid;
-    if (light) {
-        tile = light->tile;
-        probability = acdf_positive(probability / point->sum);
-    } else {
-        tile = acdf_fast_draw_tile(&local->fast, &point->fast, u, &probability);
-        probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
-    }
-    grid = acdf_local_fast_drawn(local, tile, range);
-    return acdf_positive(probability * acdf_fast_draw_cell(&grid, u, range));
+/* How many sums up to lights are not above x. */
+ACDF_INLINE uint32_t acdf_local_fast_passed(const AcdfLocal* local, const AcdfLocalPoint* point, double x) {
+    uint32_t i;
+#ifdef ACDF_SSE2
+    const __m128d at = _mm_set1_pd(x);
+    __m128i passed = _mm_setzero_si128();
+    for (i = 0; i < local->light_count; i += 2) /* of an odd number the last one has two equal sums */
+        passed = _mm_sub_epi32(passed, _mm_castpd_si128(_mm_cmple_pd(_mm_loadu_pd(&point->light_end[i]), at)));
+    return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi32(passed, _mm_shuffle_epi32(passed, 0x4E)));
+#else
+    uint32_t k = 0;
+    for (i = 0; i < local->light_count; ++i) k += (uint32_t) !(x < point->light_end[i]);
+    return k;
+#endif
 }
 
-/* acdf_local_blend_find of this shape. */
-ACDF_FN double acdf_local_fast_find(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
-                                    AcdfRange* range) {
+/* The light that x of the sum of weights draws, and what is left of x as a number in [0, 1]. */
+ACDF_INLINE uint32_t acdf_local_fast_light(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
+                                           double* u) {
+    uint32_t k = acdf_local_fast_passed(local, point, x);
+    while (k >= local->light_count || !(point->light[k] > 0.0)) --k; /* x is the whole of them, or rounded to it */
+    *u = acdf_unit_interval((x - (k > 0 ? point->light_end[k - 1] : 0.0)) / point->light[k]);
+    return k;
+}
+
+/* Draws a cell; u and range as in acdf_tree_sample. Returns its probability. */
+ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
+                                               AcdfRange* range) {
+    const double x = u[0] * point->sum;
+    AcdfFastShare share;
+    AcdfFastGrid grid;
+    uint32_t tile;
+    if (x < point->lights || point->mix.count == 0) {
+        const uint32_t k = acdf_local_fast_light(local, point, x, u);
+        tile = local->lights[k].tile;
+        share.of = point->light[k];
+        share.all = point->sum * ACDF_FAST_STEPS;
+    } else {
+        const double most = 32767.0 * point->fast.whole * (1.0 - 0x1p-53);
+        const double of_mixture = (x - point->lights) * point->step;
+        tile = acdf_fast_draw_tile(&local->fast, &point->fast, of_mixture < most ? of_mixture : most, u, &share);
+        share.of *= point->unit;
+        share.all *= ACDF_FAST_STEPS;
+    }
+    grid = acdf_local_fast_drawn(local, tile, range);
+    share.of *= acdf_fast_draw_cell(&grid, u, range);
+    return share;
+}
+
+/* The cell of a square, which becomes `range`, and its probability: 0 where no sample can fall. */
+ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                               const uint32_t* square, AcdfRange* range) {
     AcdfFastGrid grid;
     const uint32_t tile = acdf_local_fast_found(local, square, &grid, range);
     const double inside = acdf_fast_find_cell(&grid, square, range);
-    const double probability = acdf_local_tile_probability(local, point, tile, acdf_fast_share(&point->fast, tile));
-    return probability > 0.0 && inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
+    const uint32_t light = acdf_local_light_of(local, tile);
+    AcdfFastShare share = acdf_fast_share(&point->fast, tile);
+    share.of *= point->unit;
+    if (light > 0) { /* no row gives it any */
+        share.of = point->light[light - 1];
+        share.all = point->sum;
+    }
+    share.of *= inside;
+    share.all *= ACDF_FAST_STEPS;
+    return share;
+}
+
+/* The density in a cell of such a probability; 0 where that is 0, which nobody guesses. */
+ACDF_INLINE float acdf_local_fast_density(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
+                                          const AcdfFastShare* share) {
+    double height, pdf, least;
+    if (local->tables && local->tables->heights) {
+        const double* z = acdf_local_heights(local->tables);
+        height = z[range[1].low] - z[range[1].high];
+    } else height = acdf_grid_height(grid, &range[1]);
+    pdf = share->of * (double)grid->columns /
+          (2.0 * ACDF_PI * (double)(range[0].high - range[0].low) * (share->all * height));
+    least = share->of > 0.0 ? 1.17549435e-38 : 0.0;
+    if (pdf >= 3.402823466e38) return 3.402823466e38f;
+    return (float)(pdf > least ? pdf : least);
+}
+
+/* acdf_local_row_sample of this shape. */
+ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                       double* u) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfRange range[2];
+    AcdfFastShare share;
+    AcdfDirectionSample out;
+    acdf_sphere_ranges(grid.columns, grid.rows, range);
+    share = acdf_local_fast_draw(local, point, u, range);
+    if (!acdf_local_place_by_tables(local, &grid, range, u, out.direction))
+        out = acdf_grid_place(&grid, range, u, 1.0);
+    out.pdf = acdf_local_fast_density(local, &grid, range, &share);
+    return out;
+}
+
+/* acdf_local_row_pdf of this shape. */
+ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                      const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfRange range[2];
+    AcdfFastShare share;
+    uint32_t square[2];
+    if (!acdf_local_square(&grid, direction, square)) return 0.0f;
+    acdf_sphere_ranges(grid.columns, grid.rows, range);
+    share = acdf_local_fast_find(local, point, square, range);
+    return acdf_local_fast_density(local, &grid, range, &share);
 }
 
 #ifdef __cplusplus

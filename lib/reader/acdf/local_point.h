@@ -2,102 +2,11 @@
 #ifndef ACDF_LOCAL_POINT_H
 #define ACDF_LOCAL_POINT_H
 
-#include <acdf/fast.h>
-#include <acdf/local_tables.h>
-#include <acdf/normals.h>
-#include <acdf/portals.h>
+#include <acdf/local_fast_point.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-struct AcdfLocalVectors;
-
-typedef struct AcdfLocal {
-    AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
-    AcdfEnvironment environment; /* the 2D table that is always there */
-    const AcdfBin* bins;
-    const AcdfLight* lights; /* of the blend */
-    uint32_t light_count;
-    uint32_t subdivisions; /* of an octahedron's edge; 0: bins are cells of a lat-long grid */
-    uint32_t columns;      /* of that grid */
-    uint32_t rows;
-    double cosine_share;
-    const AcdfLocalTables* tables;          /* runtime tables; null: splits are walked */
-    const AcdfCompany* company;             /* null: to be used alone */
-    AcdfPlaceTable places;                  /* its header is null where places are not told apart */
-    AcdfPortalTable portals;                /* its header is null where there are none */
-    const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
-    AcdfFast fast;                          /* the fast shape: the blend has no rows then, and roots are of grids */
-} AcdfLocal;
-
-ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
-    if (local->subdivisions > 0) return acdf_octahedral_bins(local->subdivisions, normal, out);
-    return acdf_latlong_bins(local->columns, local->rows, normal, out);
-}
-
-/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share, in either
- * shape. Made once for a shading point, it serves all samples there. */
-enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST };
-
-typedef struct AcdfLocalPoint {
-    int what;
-    uint32_t root;    /* of the tree */
-    float surface[3]; /* the normal as given */
-    double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
-    double length;    /* of that */
-    AcdfMixture mix;  /* of the blend; the weights are those that reach the place */
-    const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
-    const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
-    double lights;                             /* sum of the weights of the lights */
-    double sum;                                /* of all weights */
-    AcdfPlaceMixture place;                    /* empty: the position is not known, or does not matter */
-    AcdfWindows windows;                       /* as the place sees them; its count is 0 where there are none */
-    AcdfFastMixture fast;                      /* of the fast shape; `mix` has the weights, too */
-} AcdfLocalPoint;
-
-/* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
- * from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
-ACDF_INLINE double acdf_cap_weight(const AcdfLocalPoint* point, double x, double y, double z, double radius,
-                                   double share) {
-    const double height = point->normal[0] * x + point->normal[1] * y + point->normal[2] * z;
-    radius *= point->length;
-    /* The horizon rarely cuts a light, and whether one is above it is not to be guessed: no branch. */
-    if (fabs(height) < radius) return share * ((height + radius) * (height + radius) / (4.0 * radius));
-    return share * (0.5 * (height + fabs(height))); /* 0 below, exactly the height above */
-}
-ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
-    return acdf_cap_weight(point, (double)light->direction[0], (double)light->direction[1],
-                           (double)light->direction[2], (double)light->radius, (double)light->share);
-}
-
-/* The same of two lights. */
-ACDF_INLINE void acdf_light_pair_weights(const AcdfLightPair* pair, const AcdfLocalPoint* point, double weight[2]) {
-#ifdef ACDF_SSE2
-    const __m128d height =
-        _mm_add_pd(_mm_add_pd(_mm_mul_pd(_mm_set1_pd(point->normal[0]), _mm_loadu_pd(pair->direction[0])),
-                              _mm_mul_pd(_mm_set1_pd(point->normal[1]), _mm_loadu_pd(pair->direction[1]))),
-                   _mm_mul_pd(_mm_set1_pd(point->normal[2]), _mm_loadu_pd(pair->direction[2])));
-    const __m128d radius = _mm_mul_pd(_mm_loadu_pd(pair->radius), _mm_set1_pd(point->length));
-    const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), height), above = _mm_add_pd(height, radius);
-    const __m128d cut = _mm_div_pd(_mm_mul_pd(above, above), _mm_mul_pd(_mm_set1_pd(4.0), radius));
-    const __m128d whole = _mm_mul_pd(_mm_set1_pd(0.5), _mm_add_pd(height, size));
-    const __m128d is_cut = _mm_cmplt_pd(size, radius);
-    const __m128d mean = _mm_or_pd(_mm_and_pd(is_cut, cut), _mm_andnot_pd(is_cut, whole));
-    _mm_storeu_pd(weight, _mm_mul_pd(_mm_loadu_pd(pair->share), mean));
-#else
-    int i;
-    for (i = 0; i < 2; ++i)
-        weight[i] = acdf_cap_weight(point, pair->direction[0][i], pair->direction[1][i], pair->direction[2][i],
-                                    pair->radius[i], pair->share[i]);
-#endif
-}
-
-/* The same of light `k` as its place sees it. */
-ACDF_FN double acdf_local_light_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
-    const double weight = acdf_light_weight(&local->lights[k], point);
-    return point->place.count > 0 ? weight * acdf_place_visibility(&point->place, 1 + k) : weight;
-}
 
 /* The bin of the largest weight. */
 ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
@@ -105,17 +14,6 @@ ACDF_FN uint32_t acdf_nearest_bin(const AcdfNormalBins* bins) {
     for (i = 1; i < bins->count; ++i)
         if (bins->weight[i] > bins->weight[nearest]) nearest = i;
     return bins->bin[nearest];
-}
-
-/* Sets the normal in the scale of the weights of its bins. */
-ACDF_FN void acdf_local_normal(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    const double x = normal[0], y = normal[1], z = normal[2], length = sqrt(x * x + y * y + z * z);
-    const double scale =
-        local->subdivisions > 0 ? (double)local->subdivisions / (fabs(x) + fabs(y) + fabs(z)) : 1.0 / length;
-    out->normal[0] = scale * x;
-    out->normal[1] = scale * y;
-    out->normal[2] = scale * z;
-    out->length = scale * length;
 }
 
 /* Where the row of the next one that is added to the mixture goes. */
@@ -126,47 +24,17 @@ ACDF_INLINE void acdf_local_tabled_row(const AcdfLocal* local, uint32_t row, Acd
     if (tables->parts) out->parts[out->mix.count] = acdf_local_parts(tables, row, local->blend.tiles->tile_count);
 }
 
-/* The corners of the triangle of the octahedron that holds a normal, by tables, and the weights of their rows:
- * those of acdf_octahedral_bins. Returns 0 on the edges of triangles, and where a corner is not stored or has no
- * light. */
-ACDF_INLINE int acdf_local_table_corners(const AcdfLocal* local, const float normal[3],
-                                         const AcdfCornerRecord* corner[3], double weight[3]) {
-    const double ax = fabs((double)normal[0]), ay = fabs((double)normal[1]), az = fabs((double)normal[2]);
-    const double sum = ax + ay + az;
-    const int32_t n = (int32_t)local->subdivisions, side = 2 * n + 1;
-    double a[3];
-    int32_t base[3], over = n, down, x, y, i;
-    if (!acdf_are_finite(normal) || !(sum > 0.0)) return 0;
-    a[0] = ax / sum * n;
-    a[1] = ay / sum * n;
-    a[2] = az / sum * n;
-    for (i = 0; i < 3; ++i) {
-        base[i] = (int32_t)a[i];
-        over -= base[i];
-    }
-    if ((uint32_t)(over - 1) > 1) return 0;
-    down = over - 1;
-    x = 1 - 2 * (int32_t)(normal[0] < 0.0f);
-    y = side - 2 * side * (int32_t)(normal[1] < 0.0f);
-    corner[2] = acdf_local_corners(local->tables) + (side * side * (int32_t)(normal[2] < 0.0f) + n * side + n) +
-                (x * (base[0] + down) + y * (base[1] + down));
-    corner[0] = corner[2] + x * (1 - 2 * down);
-    corner[1] = corner[2] + y * (1 - 2 * down);
-    for (i = 0; i < 3; ++i)
-        weight[i] = fabs((double)down - (a[i] - base[i])) * corner[i]->length * (double)corner[i]->share;
-    return weight[0] > 0.0 && weight[1] > 0.0 && weight[2] > 0.0;
-}
-
 /* Finds the rows of a normal within a triangle. Returns 0 where tables do not tell. */
 ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     const AcdfCornerRecord* corner[3];
-    double weight[3];
+    double weight[3], scale;
     int i;
-    if (!acdf_local_table_corners(local, normal, corner, weight)) return 0;
+    if (!acdf_local_table_corners(local, normal, corner, weight, &scale)) return 0;
     for (i = 0; i < 3; ++i) {
         acdf_local_tabled_row(local, corner[i]->row, out);
         acdf_mixture_add(&out->mix, &local->blend, corner[i]->row, weight[i]);
     }
+    acdf_local_scaled(normal, scale, acdf_local_length(normal), out);
     return 1;
 }
 
@@ -185,11 +53,7 @@ ACDF_INLINE void acdf_local_nowhere(AcdfPlaceMixture* place) {
 /* Begins a point: nothing serves it. */
 ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) {
     int i;
-    out->what = ACDF_LOCAL_NOTHING;
-    out->root = 0;
-    acdf_as_given(normal, out->surface);
-    out->normal[0] = out->normal[1] = out->normal[2] = out->length = out->lights = out->sum = 0.0;
-    out->mix.count = 0;
+    acdf_local_no_rows(normal, out);
     for (i = 0; i < ACDF_MAX_ROWS_MIXED; ++i) {
         out->mix.row[i] = 0;
         out->mix.weight[i] = 0.0;
@@ -198,23 +62,13 @@ ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) 
     }
 }
 
-/* The environment's tree serves a normal: one of its bins is not stored. */
-ACDF_INLINE int acdf_local_whole(const AcdfLocal* local, AcdfLocalPoint* out) {
-    out->what = ACDF_LOCAL_TREE;
-    out->root = local->environment.root;
-    return 0;
-}
-
 /* Finds what serves a normal, without the weights of lights and the place. Returns 0 where lights and mixture do
  * not. */
 ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     int i;
     acdf_local_nothing(normal, out);
-    if (local->tables && local->tables->corners && acdf_local_table_rows(local, out->surface, out)) {
-        acdf_local_normal(local, out->surface, out);
-        return 1;
-    }
+    if (local->tables && local->tables->corners && acdf_local_table_rows(local, out->surface, out)) return 1;
     if (!acdf_local_bins(local, out->surface, &bins)) return 0;
     if (!local->blend.tiles) {
         const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
@@ -232,46 +86,15 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     return 1;
 }
 
-/* A row of the fast shape, and what of the mixture it weighs. */
-ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, double weight, AcdfLocalPoint* out) {
-    if (!(weight > 0.0)) return;
-    out->mix.weight[out->mix.count] = weight;
-    acdf_fast_set_row(&local->fast, &out->fast, out->mix.count, row);
-    acdf_fast_ahead(&local->fast, out->fast.group[out->mix.count]);
-    ++out->mix.count;
-}
-
-/* acdf_local_begin of files of the fast shape. */
-ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    const AcdfCornerRecord* corner[3];
-    AcdfNormalBins bins;
-    double weight[3];
-    int i;
-    acdf_local_nothing(normal, out);
-    for (i = 0; i < ACDF_FAST_ROWS; ++i) acdf_fast_set_row(&local->fast, &out->fast, i, 0);
-    if (local->tables && local->tables->corners && acdf_local_table_corners(local, out->surface, corner, weight)) {
-        for (i = 0; i < 3; ++i) acdf_local_fast_row(local, corner[i]->row, weight[i], out);
-    } else {
-        if (!acdf_local_bins(local, out->surface, &bins)) return 0;
-        for (i = 0; i < bins.count; ++i) {
-            const AcdfBin* bin = &local->bins[bins.bin[i]];
-            if (bin->root == ACDF_NO_ROOT) return acdf_local_whole(local, out);
-            acdf_local_fast_row(local, bin->root, bins.weight[i] * (double)bin->share, out);
-        }
-    }
-    acdf_local_normal(local, out->surface, out);
-    acdf_fast_mix(out->mix.weight, out->mix.count, &out->fast);
-    return 1;
-}
-
 /* Weighs lights and mixture together; `visible`: what of each light arrives, null: all. */
 ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
     double weight[2];
     uint32_t k;
     if (local->tables && !visible) {
         const AcdfLightPair* pair = acdf_local_lights(local->tables);
+        const AcdfHorizon horizon = acdf_horizon(out);
         for (k = 0; k < local->light_count; k += 2, ++pair) {
-            acdf_light_pair_weights(pair, out, weight);
+            acdf_store_weights(acdf_light_pair_weights(pair, &horizon), weight);
             out->lights += weight[0];
             out->lights += weight[1];
         }
@@ -281,15 +104,19 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
             out->lights += visible ? weight[0] * visible[k] : weight[0];
         }
     out->sum = out->lights + acdf_mixture_sum(&out->mix);
-    if (out->sum > 0.0) out->what = local->fast.grid ? ACDF_LOCAL_FAST : ACDF_LOCAL_BLEND;
+    if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;
 }
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    acdf_local_nowhere(&out->place);
     out->windows.count = 0;
-    if (local->fast.grid ? acdf_local_begin_fast(local, normal, out) : acdf_local_begin(local, normal, out))
-        acdf_local_sum(local, 0, out);
+    if (local->fast.grid) {
+        out->place.count = 0;
+        if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, out);
+        return;
+    }
+    acdf_local_nowhere(&out->place);
+    if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
 }
 
 /* Finds what serves a normal at a position of the scene by rows alone, whatever comes through windows. */

@@ -7,6 +7,7 @@
 #ifndef ACDF_LOCAL_TABLES_H
 #define ACDF_LOCAL_TABLES_H
 
+#include <acdf/tile_blocks.h>
 #include <acdf/tile_tables.h>
 
 #ifdef __cplusplus
@@ -34,6 +35,7 @@ typedef struct AcdfCornerRecord {
 /* Two lights, as acdf_light_weight needs them; of an odd number the last one has share 0. */
 typedef struct AcdfLightPair {
     double direction[3][2], radius[2], share[2];
+    double quarter[2]; /* of the share to the radius */
 } AcdfLightPair;
 
 /* Offsets in words from the start of this struct, which the arrays follow. */
@@ -48,11 +50,14 @@ typedef struct AcdfLocalTables {
     uint32_t corners;       /* AcdfCornerRecord, in two squares of (2 n + 1)^2, north and south, of x + n and
                                (y + n) (2 n + 1); 0: the octahedron is too large, or there is none */
     uint32_t lights;        /* AcdfLightPair, one two lights */
-    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and 0 */
+    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and 0; not of the fast
+                               shape, which products do not divide */
     uint32_t hearts;        /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
                                from it by the brighter halves; 0: there is no room */
     uint32_t octahedral;    /* whether cells lie on the octahedral square */
-    uint32_t reserved;
+    uint32_t upper;         /* of the fast shape: u16, as AcdfFast has them */
+    AcdfTileBlocks blocks;  /* of the fast shape */
+    uint32_t reserved[9];
 } AcdfLocalTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalTables) % 64 == 0); /* arrays are aligned */
 

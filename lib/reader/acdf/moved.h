@@ -78,6 +78,7 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(uint8_t, local->fast.grid);
     ACDF_MOVE(uint16_t, local->fast.groups);
     ACDF_MOVE(uint8_t, local->fast.tiles);
+    ACDF_MOVE(uint16_t, local->fast.upper);
     local->vectors = 0; /* of this process */
 }
 

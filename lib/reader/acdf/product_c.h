@@ -19,7 +19,7 @@ extern "C" {
 
 /* A shading point, ready to be drawn from: plain bytes that may be copied. */
 typedef union AcdfProductPoint {
-    unsigned char bytes[15360];
+    unsigned char bytes[16384];
     double align;
 } AcdfProductPoint;
 

@@ -120,14 +120,6 @@ ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const Acdf
     return 1;
 }
 
-/* The same with its density, in a cell of probability p. */
-ACDF_INLINE int acdf_row_place(const double* z, uint32_t columns, const AcdfRange range[2], const double u[2],
-                               double p, AcdfDirectionSample* out) {
-    if (!acdf_row_direction(z, columns, range, u, out->direction)) return 0;
-    out->pdf = acdf_row_pdf(z, columns, range, p);
-    return 1;
-}
-
 /* ---- the octahedral square -------------------------------------------------------------------------- */
 
 /* The part of the square's side that is at least ACDF_FLOAT_BORDER: ACDF_OCTAHEDRAL_LEAST_SPEED. */
@@ -161,13 +153,10 @@ ACDF_INLINE int acdf_fold_direction(const AcdfGrid* grid, const AcdfRange range[
     return 1;
 }
 
-/* As acdf_row_place. */
-ACDF_INLINE int acdf_fold_place(const AcdfGrid* grid, const AcdfRange range[2], const double u[2], double p,
-                                AcdfDirectionSample* out) {
+/* acdf_grid_pdf of a cell of probability p. */
+ACDF_INLINE float acdf_fold_pdf(const AcdfGrid* grid, const AcdfRange range[2], double p) {
     const double half[2] = {0.5, 0.5};
-    if (!acdf_fold_direction(grid, range, u, out->direction)) return 0;
-    out->pdf = acdf_grid_pdf(grid, range, half, p);
-    return 1;
+    return acdf_grid_pdf(grid, range, half, p);
 }
 
 #ifdef __cplusplus

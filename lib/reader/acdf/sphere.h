@@ -13,6 +13,20 @@ typedef struct AcdfDirectionSample {
     float pdf;          /* sr^-1, finite and > 0 */
 } AcdfDirectionSample;
 
+/* A draw that is returned by a call in two registers. Compilers take it out of memory then, where what was written
+ * in pieces of 4 bytes is waited for if more are read at once: so it is written at once. */
+ACDF_INLINE AcdfDirectionSample acdf_returned(const AcdfDirectionSample* sample) {
+#ifdef ACDF_SSE2
+    AcdfDirectionSample out;
+    const float* d = sample->direction;
+    const __m128 all = _mm_setr_ps(d[0], d[1], d[2], sample->pdf);
+    memcpy(&out, &all, sizeof out);
+    return out;
+#else
+    return *sample;
+#endif
+}
+
 enum { ACDF_AXIS_PHI = 0, ACDF_AXIS_THETA = 1 };
 
 /* A sample stays this angle (radians) inside its cell: rounding the direction to float, and normalising it

@@ -113,8 +113,11 @@ void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report
     const bool sums_right = check_sums(sums, *parts.tiles, report);
     if (report.stopped() || !check_grid(grid, boxes, parts, report) || !sums_right) return;
     const u32 count = parts.tiles->tile_count, ends = acdf_fast_ends(count);
-    parts.fast = {grid.data, reinterpret_cast<const u16*>(sums.data),
-                  sums.data + u64{2} * parts.tiles->row_count * ends, ends, acdf_fast_stride(count)};
+    parts.fast.grid = grid.data;
+    parts.fast.groups = reinterpret_cast<const u16*>(sums.data);
+    parts.fast.tiles = sums.data + u64{2} * parts.tiles->row_count * ends;
+    parts.fast.ends = ends;
+    parts.fast.stride = acdf_fast_stride(count);
 }
 
 } // namespace acdf

@@ -121,14 +121,15 @@ struct DarkBySums {
     u32 tile;
 
     DarkBySums(const Parts& of, const AcdfLight& light) : parts(of), tile(light.tile) {}
+    template <class Value>
+    static bool has_none(const Value* ends, u32 i) {
+        return ends[i] == (i > 0 ? ends[i - 1] : 0);
+    }
     bool in(u32 row) const {
         const AcdfFast& fast = parts.fast;
-        u32 end;
-        u32 before = acdf_fast_group_before(fast.groups + u64{row} * fast.ends, tile / ACDF_FAST_GROUP, &end);
-        if (before == end) return true;
-        const u8* list = fast.tiles + u64{row} * fast.stride + (tile & ~(ACDF_FAST_GROUP - 1));
-        before = acdf_fast_before(list, tile % ACDF_FAST_GROUP, &end);
-        return before == end;
+        const u32 first = tile & ~(ACDF_FAST_GROUP - 1);
+        return has_none(fast.groups + u64{row} * fast.ends, tile / ACDF_FAST_GROUP) ||
+               has_none(fast.tiles + u64{row} * fast.stride + first, tile - first);
     }
 };
 

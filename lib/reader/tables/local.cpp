@@ -3,6 +3,7 @@
 #include "memory.h"
 #include "tables/sides.h"
 #include "tables/squares.h"
+#include "tables/tile_blocks.h"
 #include "tables/tiles.h"
 
 #include <acdf/cut.h>
@@ -162,14 +163,7 @@ void place_corners(const AcdfLocal& local, AcdfCornerRecord* out) {
 }
 
 void place_lights(const AcdfLocal& local, AcdfLightPair* out) {
-    if (local.light_count % 2 > 0) out[local.light_count / 2].radius[1] = 1.0;
-    for (u32 i = 0; i < local.light_count; ++i) {
-        const AcdfLight& light = local.lights[i];
-        AcdfLightPair& pair = out[i / 2];
-        for (int k = 0; k < 3; ++k) pair.direction[k][i % 2] = light.direction[k];
-        pair.radius[i % 2] = light.radius;
-        pair.share[i % 2] = light.share;
-    }
+    for (u32 k = 0; k < local.light_count; k += 2) acdf_local_light_pair(&local, k, out++);
 }
 
 // Of the fast shape, in place of the way to a tile: the shifts and counts of its grid.
@@ -183,6 +177,19 @@ void place_grids(const AcdfLocal& local, const AcdfLocalTables& tables) {
             record.step[axis] = static_cast<std::uint16_t>(grid.shift[axis]);
             record.step[2 + axis] = static_cast<std::uint16_t>(grid.count[axis]);
         }
+    }
+}
+
+// Of the fast shape, of each row every sixteenth end of its groups.
+std::size_t upper_words(const AcdfLocal& local) {
+    return whole_lines((std::size_t{local.blend.tiles->row_count} * acdf_fast_upper_ends(local.fast.ends) + 1) / 2);
+}
+
+void place_upper(const AcdfLocal& local, std::uint16_t* out) {
+    const u32 count = acdf_fast_upper_ends(local.fast.ends);
+    for (u32 row = 0; row < local.blend.tiles->row_count; ++row, out += count) {
+        const std::uint16_t* const ends = local.fast.groups + std::size_t{row} * local.fast.ends;
+        for (u32 i = 0; i < count; ++i) out[i] = ends[std::min(16 * i + 15, local.fast.ends - 1)];
     }
 }
 
@@ -207,8 +214,11 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     if (!tiles.make()) return nullptr;
     const std::size_t corners = corner_words(local),
                       lights = whole_lines((local.light_count + 1) / 2 * sizeof(AcdfLightPair) / 4);
-    const std::size_t middles = whole_lines(4 * std::size_t{local.blend.tiles->tile_count});
-    std::size_t words = at + tiles.words() + heights + corners + lights + middles;
+    const std::size_t middles = local.fast.grid ? 0 : whole_lines(4 * std::size_t{local.blend.tiles->tile_count});
+    TileBlocksMaker blocks;
+    if (local.fast.grid && !blocks.make(local.blend, env.columns, env.rows)) return nullptr;
+    const std::size_t upper = local.fast.grid ? upper_words(local) + blocks.words() : 0;
+    std::size_t words = at + tiles.words() + heights + corners + lights + middles + upper;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
     const bool small = !local.fast.grid && pieces.make();
@@ -240,9 +250,16 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
         for (u32 i = 0; i <= env.rows; ++i) reinterpret_cast<double*>(out + at)[i] = acdf_row_z(i, env.rows);
         at += heights;
     }
-    tables->middles = static_cast<u32>(at);
-    place_middles(local, *tables, reinterpret_cast<float*>(out + at));
-    at += middles;
+    if (middles > 0) {
+        tables->middles = static_cast<u32>(at);
+        place_middles(local, *tables, reinterpret_cast<float*>(out + at));
+        at += middles;
+    }
+    if (upper > 0) {
+        tables->upper = static_cast<u32>(at);
+        place_upper(local, reinterpret_cast<std::uint16_t*>(out + at));
+        at = blocks.place(out, at + upper_words(local), tables->blocks);
+    }
     if (hearts > 0) {
         tables->hearts = static_cast<u32>(at);
         tiles.place_hearts(reinterpret_cast<std::uint16_t*>(out + at));

@@ -185,6 +185,34 @@ TEST(FastShape, HandMadeDensities) {
     EXPECT_GT(view.sample(back, 0.3, 0.6).pdf, 0.0f);
 }
 
+// Of each square of the grid: tables find the tile, or a split on the way to it, and both happen.
+TEST(FastShape, TablesFindTheTilesOfSquares) {
+    int at_once = 0, walked = 0;
+    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+        const FastFile loaded(random_fast(seed), true);
+        const AcdfLocal local = loaded.file.local().data();
+        ASSERT_NE(local.tables, nullptr);
+        const auto walk = [&](std::uint32_t node, const std::uint32_t* square) {
+            while (!(node & ACDF_TILE_FLAG)) {
+                const AcdfSplit& split = local.blend.splits[node];
+                node = split.child[square[split.place & 7u] >= split.place >> 3];
+            }
+            return node;
+        };
+        for (std::uint32_t row = 0; row < local.environment.rows; ++row)
+            for (std::uint32_t column = 0; column < local.environment.columns; ++column) {
+                const std::uint32_t square[2] = {column, row};
+                const std::uint32_t node =
+                    acdf_tile_block_at(acdf_local_words(local.tables), &local.tables->blocks, square);
+                ASSERT_EQ(walk(node, square), walk(acdf_blend_root(&local.blend), square))
+                    << "seed " << seed << ", " << column << ", " << row;
+                ++(node & ACDF_TILE_FLAG ? at_once : walked);
+            }
+    }
+    EXPECT_GT(at_once, 1000);
+    EXPECT_GT(walked, 100);
+}
+
 TEST(FastShape, StrataStayStrata) {
     const FastFile loaded(random_fast(7), true);
     const acdf::LocalEnvironmentView view = loaded.file.local();
@@ -193,8 +221,11 @@ TEST(FastShape, StrataStayStrata) {
     ASSERT_EQ(point.what, ACDF_LOCAL_FAST);
     double before = -1.0;
     for (int i = 0; i <= 100000; ++i) { // tiles are drawn in their order within a group, groups in theirs
-        double u[2] = {i / 100000.0, 0.5}, part;
-        const std::uint32_t tile = acdf_fast_draw_tile(&view.data().fast, &point.fast, u, &part);
+        double u[2] = {0.0, 0.5};
+        const double whole = 32767.0 * point.fast.whole;
+        AcdfFastShare share;
+        const std::uint32_t tile =
+            acdf_fast_draw_tile(&view.data().fast, &point.fast, acdf_fast_scaled(i / 100000.0, whole), u, &share);
         ASSERT_GE(double(tile / ACDF_FAST_GROUP), before);
         ASSERT_GE(u[0], 0.0);
         ASSERT_LE(u[0], 1.0);

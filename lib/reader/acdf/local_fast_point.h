@@ -1,0 +1,87 @@
+/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. */
+#ifndef ACDF_LOCAL_FAST_POINT_H
+#define ACDF_LOCAL_FAST_POINT_H
+
+#include <acdf/local_corners.h>
+#include <acdf/local_lights.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A row of the fast shape, and what of the mixture it weighs. */
+ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, double weight, AcdfLocalPoint* out) {
+    out->mix.weight[out->mix.count] = weight;
+    acdf_fast_set_row(&local->fast, &out->fast, out->mix.count, row);
+    ++out->mix.count;
+}
+
+/* acdf_local_table_rows of the fast shape. */
+ACDF_INLINE int acdf_local_fast_corners(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    const AcdfCornerRecord* corner[3];
+    double weight[3], scale;
+    int i;
+    if (!acdf_local_table_corners(local, normal, corner, weight, &scale)) return 0;
+    for (i = 0; i < 3; ++i) acdf_local_fast_row(local, corner[i]->row, weight[i], out);
+    acdf_local_scaled(normal, scale, acdf_local_length(normal), out);
+    acdf_fast_mix(weight, ACDF_FAST_ROWS, &out->fast);
+    return 1;
+}
+
+/* acdf_local_begin of files of the fast shape. */
+ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+    AcdfNormalBins bins;
+    int i;
+    acdf_local_no_rows(normal, out);
+    if (local->tables && local->tables->corners && acdf_local_fast_corners(local, out->surface, out)) return 1;
+    if (!acdf_local_bins(local, out->surface, &bins)) return 0;
+    for (i = 0; i < bins.count; ++i) {
+        const AcdfBin* bin = &local->bins[bins.bin[i]];
+        const double share = bins.weight[i] * (double)bin->share;
+        if (bin->root == ACDF_NO_ROOT) return acdf_local_whole(local, out);
+        if (share > 0.0) acdf_local_fast_row(local, bin->root, share, out);
+    }
+    for (i = out->mix.count; i < ACDF_FAST_ROWS; ++i) {
+        out->mix.weight[i] = 0.0;
+        acdf_fast_set_row(&local->fast, &out->fast, i, 0);
+    }
+    acdf_local_normal(local, out->surface, out);
+    acdf_fast_mix(out->mix.weight, out->mix.count, &out->fast);
+    return 1;
+}
+
+/* Weighs the lights of the fast shape. */
+ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
+    const AcdfHorizon horizon = acdf_horizon(out);
+    const double inverse = 1.0 / out->length;
+    AcdfLightSum sum = acdf_light_sum_none();
+    AcdfLightPair of;
+    double end = 0.0;
+    uint32_t k;
+    if (local->tables) {
+        const AcdfLightPair* pair = acdf_local_lights(local->tables);
+        for (k = 0; k < local->light_count; k += 2, ++pair)
+            sum = acdf_local_add_lights(pair, &horizon, inverse, sum, &end, &out->light[k], &out->light_end[k]);
+    } else
+        for (k = 0; k < local->light_count; k += 2) {
+            acdf_local_light_pair(local, k, &of);
+            sum = acdf_local_add_lights(&of, &horizon, inverse, sum, &end, &out->light[k], &out->light_end[k]);
+        }
+    out->lights = acdf_light_sum_all(sum);
+}
+
+/* acdf_local_sum of the fast shape. */
+ACDF_INLINE void acdf_local_fast_sum(const AcdfLocal* local, AcdfLocalPoint* out) {
+    const double mixture = out->mix.weight[0] + out->mix.weight[1] + out->mix.weight[2];
+    acdf_local_fast_lights(local, out);
+    out->sum = out->lights + mixture;
+    if (!(out->sum > 0.0)) return;
+    out->step = 32767.0 * out->fast.whole / mixture;
+    out->unit = mixture / (out->sum * (32767.0 * 255.0 * out->fast.whole));
+    out->what = ACDF_LOCAL_FAST;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

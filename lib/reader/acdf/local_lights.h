@@ -1,0 +1,162 @@
+/* Weights of the lights of a local environment map at a point (SPEC.md §6.7). Part of acdf/local.h. */
+#ifndef ACDF_LOCAL_LIGHTS_H
+#define ACDF_LOCAL_LIGHTS_H
+
+#include <acdf/local_parts.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Weight of a light: its share times the mean over it of the cosine above the horizon. It is taken as spread evenly
+ * from -radius to radius around its middle, so that no weight is 0 where any of it can be seen. */
+ACDF_INLINE double acdf_cap_weight(const AcdfLocalPoint* point, double x, double y, double z, double radius,
+                                   double share) {
+    const double height = point->normal[0] * x + point->normal[1] * y + point->normal[2] * z;
+    radius *= point->length;
+    /* The horizon rarely cuts a light, and whether one is above it is not to be guessed: no branch. */
+    if (fabs(height) < radius) return share * ((height + radius) * (height + radius) / (4.0 * radius));
+    return share * (0.5 * (height + fabs(height))); /* 0 below, exactly the height above */
+}
+ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
+    return acdf_cap_weight(point, (double)light->direction[0], (double)light->direction[1],
+                           (double)light->direction[2], (double)light->radius, (double)light->share);
+}
+
+/* What weights of lights need of a point, and those of two lights. */
+#ifdef ACDF_SSE2
+typedef __m128d AcdfTwoWeights;
+typedef struct AcdfHorizon {
+    __m128d normal[3], length;
+} AcdfHorizon;
+
+ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
+    AcdfHorizon out;
+    int i;
+    for (i = 0; i < 3; ++i) out.normal[i] = _mm_set1_pd(point->normal[i]);
+    out.length = _mm_set1_pd(point->length);
+    return out;
+}
+ACDF_INLINE AcdfTwoWeights acdf_light_pair_weights(const AcdfLightPair* pair, const AcdfHorizon* horizon) {
+    const __m128d height = _mm_add_pd(_mm_add_pd(_mm_mul_pd(horizon->normal[0], _mm_loadu_pd(pair->direction[0])),
+                                                 _mm_mul_pd(horizon->normal[1], _mm_loadu_pd(pair->direction[1]))),
+                                      _mm_mul_pd(horizon->normal[2], _mm_loadu_pd(pair->direction[2])));
+    const __m128d radius = _mm_mul_pd(_mm_loadu_pd(pair->radius), horizon->length);
+    const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), height), above = _mm_add_pd(height, radius);
+    const __m128d cut = _mm_div_pd(_mm_mul_pd(above, above), _mm_mul_pd(_mm_set1_pd(4.0), radius));
+    const __m128d whole = _mm_mul_pd(_mm_set1_pd(0.5), _mm_add_pd(height, size));
+    const __m128d is_cut = _mm_cmplt_pd(size, radius);
+    const __m128d mean = _mm_or_pd(_mm_and_pd(is_cut, cut), _mm_andnot_pd(is_cut, whole));
+    return _mm_mul_pd(_mm_loadu_pd(pair->share), mean);
+}
+ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) { _mm_storeu_pd(out, weights); }
+#else
+typedef struct AcdfTwoWeights {
+    double of[2];
+} AcdfTwoWeights;
+typedef struct AcdfHorizon {
+    const AcdfLocalPoint* point;
+} AcdfHorizon;
+
+ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
+    AcdfHorizon out;
+    out.point = point;
+    return out;
+}
+ACDF_INLINE AcdfTwoWeights acdf_light_pair_weights(const AcdfLightPair* pair, const AcdfHorizon* horizon) {
+    AcdfTwoWeights out;
+    int i;
+    for (i = 0; i < 2; ++i)
+        out.of[i] = acdf_cap_weight(horizon->point, pair->direction[0][i], pair->direction[1][i],
+                                    pair->direction[2][i], pair->radius[i], pair->share[i]);
+    return out;
+}
+ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) {
+    out[0] = weights.of[0];
+    out[1] = weights.of[1];
+}
+#endif
+
+/* The same of light `k` as its place sees it. */
+ACDF_FN double acdf_local_light_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
+    const double weight = acdf_light_weight(&local->lights[k], point);
+    return point->place.count > 0 ? weight * acdf_place_visibility(&point->place, 1 + k) : weight;
+}
+
+/* Two lights, from number k on, for those who have no tables. */
+ACDF_FN void acdf_local_light_pair(const AcdfLocal* local, uint32_t k, AcdfLightPair* out) {
+    uint32_t i;
+    int axis;
+    for (i = 0; i < 2; ++i) {
+        const AcdfLight* light = &local->lights[k + i < local->light_count ? k + i : k];
+        for (axis = 0; axis < 3; ++axis) out->direction[axis][i] = (double)light->direction[axis];
+        out->radius[i] = (double)light->radius;
+        out->share[i] = k + i < local->light_count ? (double)light->share : 0.0;
+        out->quarter[i] = out->share[i] / (4.0 * out->radius[i]);
+    }
+}
+
+/* Sums of weights of lights of the fast shape: by twos, so that few wait for each other. */
+#ifdef ACDF_SSE2
+typedef __m128d AcdfLightSum;
+
+ACDF_INLINE AcdfLightSum acdf_light_sum_none(void) { return _mm_setzero_pd(); }
+ACDF_INLINE double acdf_light_sum_all(AcdfLightSum sum) {
+    return _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+}
+
+/* acdf_cap_weight of two lights, without a quotient; `inverse` is that of the point's length. Adds them to a sum,
+ * and stores them, and the sums up to each, of which *end is that before. */
+ACDF_INLINE AcdfLightSum acdf_local_add_lights(const AcdfLightPair* pair, const AcdfHorizon* horizon,
+                                               double inverse, AcdfLightSum sum, double* end, double weight[2],
+                                               double ends[2]) {
+    const __m128d height = _mm_add_pd(_mm_add_pd(_mm_mul_pd(horizon->normal[0], _mm_loadu_pd(pair->direction[0])),
+                                                 _mm_mul_pd(horizon->normal[1], _mm_loadu_pd(pair->direction[1]))),
+                                      _mm_mul_pd(horizon->normal[2], _mm_loadu_pd(pair->direction[2])));
+    const __m128d radius = _mm_mul_pd(_mm_loadu_pd(pair->radius), horizon->length);
+    const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), height), above = _mm_add_pd(height, radius);
+    const __m128d cut =
+        _mm_mul_pd(_mm_mul_pd(above, above), _mm_mul_pd(_mm_loadu_pd(pair->quarter), _mm_set1_pd(inverse)));
+    const __m128d whole = _mm_mul_pd(_mm_loadu_pd(pair->share), _mm_max_pd(height, _mm_setzero_pd()));
+    const __m128d is_cut = _mm_cmplt_pd(size, radius);
+    const __m128d both = _mm_or_pd(_mm_and_pd(is_cut, cut), _mm_andnot_pd(is_cut, whole));
+    const __m128d after = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(_mm_setzero_pd(), both)), _mm_set1_pd(*end));
+    _mm_storeu_pd(weight, both);
+    _mm_storeu_pd(ends, after); /* at once, as draws read them */
+    *end = _mm_cvtsd_f64(_mm_unpackhi_pd(after, after));
+    return _mm_add_pd(sum, both);
+}
+#else
+typedef struct AcdfLightSum {
+    double of[2];
+} AcdfLightSum;
+
+ACDF_INLINE AcdfLightSum acdf_light_sum_none(void) {
+    const AcdfLightSum none = {{0.0, 0.0}};
+    return none;
+}
+ACDF_INLINE double acdf_light_sum_all(AcdfLightSum sum) { return sum.of[0] + sum.of[1]; }
+
+ACDF_INLINE AcdfLightSum acdf_local_add_lights(const AcdfLightPair* pair, const AcdfHorizon* horizon,
+                                               double inverse, AcdfLightSum sum, double* end, double weight[2],
+                                               double ends[2]) {
+    int i;
+    for (i = 0; i < 2; ++i) {
+        const double height = horizon->point->normal[0] * pair->direction[0][i] +
+                              horizon->point->normal[1] * pair->direction[1][i] +
+                              horizon->point->normal[2] * pair->direction[2][i];
+        const double radius = pair->radius[i] * horizon->point->length, above = height + radius;
+        weight[i] = fabs(height) < radius ? above * above * (pair->quarter[i] * inverse)
+                                          : pair->share[i] * (height > 0.0 ? height : 0.0);
+        sum.of[i] += weight[i];
+    }
+    ends[0] = weight[0] + *end;
+    *end = ends[1] = (weight[1] + weight[0]) + *end;
+    return sum;
+}
+#endif
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,72 @@
+/* A local environment map in memory, and a shading point in it (SPEC.md §6.7). Part of acdf/local.h. */
+#ifndef ACDF_LOCAL_PARTS_H
+#define ACDF_LOCAL_PARTS_H
+
+#include <acdf/fast_rows.h>
+#include <acdf/local_tables.h>
+#include <acdf/normals.h>
+#include <acdf/portals.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct AcdfLocalVectors;
+
+typedef struct AcdfLocal {
+    AcdfBlend blend;             /* blend.tiles is null where each bin has a tree of its own */
+    AcdfEnvironment environment; /* the 2D table that is always there */
+    const AcdfBin* bins;
+    const AcdfLight* lights; /* of the blend */
+    uint32_t light_count;
+    uint32_t subdivisions; /* of an octahedron's edge; 0: bins are cells of a lat-long grid */
+    uint32_t columns;      /* of that grid */
+    uint32_t rows;
+    double cosine_share;
+    const AcdfLocalTables* tables;          /* runtime tables; null: splits are walked */
+    const AcdfCompany* company;             /* null: to be used alone */
+    AcdfPlaceTable places;                  /* its header is null where places are not told apart */
+    AcdfPortalTable portals;                /* its header is null where there are none */
+    const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
+    AcdfFast fast;                          /* the fast shape: the blend has no rows then, and roots are of grids */
+} AcdfLocal;
+
+/* Runtime tables of the fast shape: what they have of its rows. */
+ACDF_FN void acdf_local_use_upper(AcdfLocal* local) {
+    local->fast.upper = (const uint16_t*)(const void*)(acdf_local_words(local->tables) + local->tables->upper);
+    local->fast.upper_ends = acdf_fast_upper_ends(local->fast.ends);
+}
+
+ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfNormalBins* out) {
+    if (local->subdivisions > 0) return acdf_octahedral_bins(local->subdivisions, normal, out);
+    return acdf_latlong_bins(local->columns, local->rows, normal, out);
+}
+
+/* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share, in either
+ * shape. Made once for a shading point, it serves all samples there. */
+enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST };
+
+typedef struct AcdfLocalPoint {
+    int what;
+    uint32_t root;    /* of the tree */
+    float surface[3]; /* the normal as given */
+    double normal[3]; /* with the weights of the mixture: the weighted sum of its bins' corners */
+    double length;    /* of that */
+    AcdfMixture mix;  /* of the blend; the weights are those that reach the place */
+    const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
+    const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
+    double lights;                             /* sum of the weights of the lights */
+    double sum;                                /* of all weights */
+    AcdfPlaceMixture place;                    /* empty: the position is not known, or does not matter */
+    AcdfWindows windows;                       /* as the place sees them; its count is 0 where there are none */
+    AcdfFastMixture fast;                      /* of the fast shape; `mix` has the weights, too */
+    double step;                               /* of the fast shape: 32767 times the mixture's whole a weight */
+    double unit;                               /* of the fast shape: that of acdf_fast_share, of `sum` */
+    double light[ACDF_MAX_LIGHTS];             /* of the fast shape: weights of the lights, */
+    double light_end[ACDF_MAX_LIGHTS];         /* and their sums from the first one to each */
+} AcdfLocalPoint;
+
+#ifdef __cplusplus
+}
+#endif
+#endif
