@@ -50,34 +50,53 @@ ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3],
     return 1;
 }
 
-/* Weighs the lights of the fast shape. */
+/* Weighs the lights of the fast shape: each, the sums up to each, and all. Sums are made by twos, so that few wait
+ * for each other. */
 ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
-    const AcdfHorizon horizon = acdf_horizon(out);
     const double inverse = 1.0 / out->length;
-    AcdfLightSum sum = acdf_light_sum_none();
-    AcdfLightPair of;
-    double end = 0.0;
+    double end = 0.0, sum[2] = {0.0, 0.0};
+    AcdfLightPair pair;
     uint32_t k;
-    if (local->tables) {
-        const AcdfLightPair* pair = acdf_local_lights(local->tables);
-        for (k = 0; k < local->light_count; k += 2, ++pair)
-            sum = acdf_local_add_lights(pair, &horizon, inverse, sum, &end, &out->light[k], &out->light_end[k]);
-    } else
-        for (k = 0; k < local->light_count; k += 2) {
-            acdf_local_light_pair(local, k, &of);
-            sum = acdf_local_add_lights(&of, &horizon, inverse, sum, &end, &out->light[k], &out->light_end[k]);
-        }
-    out->lights = acdf_light_sum_all(sum);
+    for (k = 0; k < local->light_count; k += 2) {
+        int i;
+        acdf_local_light_pair(local, k, &pair);
+        for (i = 0; i < 2; ++i) sum[i] += out->light[k + (uint32_t)i] = acdf_pair_weight(out, &pair, i, inverse);
+        out->light_end[k] = out->light[k] + end;
+        end = out->light_end[k + 1] = (out->light[k + 1] + out->light[k]) + end;
+    }
+    out->lights = sum[0] + sum[1];
+}
+/* The same by tables. */
+ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
+#ifdef ACDF_SSE2
+    const AcdfLightPair* pair = acdf_local_lights(local->tables);
+    const AcdfHorizon horizon = acdf_horizon(out);
+    const __m128d inverse = _mm_set1_pd(1.0 / out->length), zero = _mm_setzero_pd();
+    __m128d end = zero, sum = zero;
+    uint32_t k;
+    for (k = 0; k < local->light_count; k += 2, ++pair) {
+        const __m128d both = acdf_pair_weights(&horizon, pair, inverse);
+        end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
+        _mm_storeu_pd(&out->light[k], both);
+        _mm_storeu_pd(&out->light_end[k], end); /* at once, as draws read them */
+        end = _mm_unpackhi_pd(end, end);
+        sum = _mm_add_pd(sum, both);
+    }
+    out->lights = _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+#else
+    acdf_local_fast_lights(local, out);
+#endif
 }
 
 /* acdf_local_sum of the fast shape. */
 ACDF_INLINE void acdf_local_fast_sum(const AcdfLocal* local, AcdfLocalPoint* out) {
     const double mixture = out->mix.weight[0] + out->mix.weight[1] + out->mix.weight[2];
-    acdf_local_fast_lights(local, out);
+    if (local->tables) acdf_local_tabled_lights(local, out);
+    else acdf_local_fast_lights(local, out);
     out->sum = out->lights + mixture;
     if (!(out->sum > 0.0)) return;
-    out->step = 32767.0 * out->fast.whole / mixture;
-    out->unit = mixture / (out->sum * (32767.0 * 255.0 * out->fast.whole));
+    out->step = mixture > 0.0 ? 32767.0 * out->fast.whole / mixture : 0.0;
+    out->unit = mixture > 0.0 ? mixture / (out->sum * (32767.0 * 255.0 * out->fast.whole)) : 0.0;
     out->what = ACDF_LOCAL_FAST;
 }
 

@@ -96,63 +96,27 @@ ACDF_FN void acdf_local_light_pair(const AcdfLocal* local, uint32_t k, AcdfLight
     }
 }
 
-/* Sums of weights of lights of the fast shape: by twos, so that few wait for each other. */
-#ifdef ACDF_SSE2
-typedef __m128d AcdfLightSum;
-
-ACDF_INLINE AcdfLightSum acdf_light_sum_none(void) { return _mm_setzero_pd(); }
-ACDF_INLINE double acdf_light_sum_all(AcdfLightSum sum) {
-    return _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+/* acdf_cap_weight of light i of two without a quotient, as the fast shape has it; `inverse` is that of the point's
+ * length. */
+ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfLightPair* pair, int i, double inverse) {
+    const double height = point->normal[0] * pair->direction[0][i] + point->normal[1] * pair->direction[1][i] +
+                          point->normal[2] * pair->direction[2][i];
+    const double radius = pair->radius[i] * point->length, above = height + radius;
+    return fabs(height) < radius ? above * above * (pair->quarter[i] * inverse)
+                                 : pair->share[i] * (height > 0.0 ? height : 0.0);
 }
-
-/* acdf_cap_weight of two lights, without a quotient; `inverse` is that of the point's length. Adds them to a sum,
- * and stores them, and the sums up to each, of which *end is that before. */
-ACDF_INLINE AcdfLightSum acdf_local_add_lights(const AcdfLightPair* pair, const AcdfHorizon* horizon,
-                                               double inverse, AcdfLightSum sum, double* end, double weight[2],
-                                               double ends[2]) {
+#ifdef ACDF_SSE2
+/* That of both. */
+ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfLightPair* pair, __m128d inverse) {
     const __m128d height = _mm_add_pd(_mm_add_pd(_mm_mul_pd(horizon->normal[0], _mm_loadu_pd(pair->direction[0])),
                                                  _mm_mul_pd(horizon->normal[1], _mm_loadu_pd(pair->direction[1]))),
                                       _mm_mul_pd(horizon->normal[2], _mm_loadu_pd(pair->direction[2])));
     const __m128d radius = _mm_mul_pd(_mm_loadu_pd(pair->radius), horizon->length);
     const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), height), above = _mm_add_pd(height, radius);
-    const __m128d cut =
-        _mm_mul_pd(_mm_mul_pd(above, above), _mm_mul_pd(_mm_loadu_pd(pair->quarter), _mm_set1_pd(inverse)));
+    const __m128d cut = _mm_mul_pd(_mm_mul_pd(above, above), _mm_mul_pd(_mm_loadu_pd(pair->quarter), inverse));
     const __m128d whole = _mm_mul_pd(_mm_loadu_pd(pair->share), _mm_max_pd(height, _mm_setzero_pd()));
     const __m128d is_cut = _mm_cmplt_pd(size, radius);
-    const __m128d both = _mm_or_pd(_mm_and_pd(is_cut, cut), _mm_andnot_pd(is_cut, whole));
-    const __m128d after = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(_mm_setzero_pd(), both)), _mm_set1_pd(*end));
-    _mm_storeu_pd(weight, both);
-    _mm_storeu_pd(ends, after); /* at once, as draws read them */
-    *end = _mm_cvtsd_f64(_mm_unpackhi_pd(after, after));
-    return _mm_add_pd(sum, both);
-}
-#else
-typedef struct AcdfLightSum {
-    double of[2];
-} AcdfLightSum;
-
-ACDF_INLINE AcdfLightSum acdf_light_sum_none(void) {
-    const AcdfLightSum none = {{0.0, 0.0}};
-    return none;
-}
-ACDF_INLINE double acdf_light_sum_all(AcdfLightSum sum) { return sum.of[0] + sum.of[1]; }
-
-ACDF_INLINE AcdfLightSum acdf_local_add_lights(const AcdfLightPair* pair, const AcdfHorizon* horizon,
-                                               double inverse, AcdfLightSum sum, double* end, double weight[2],
-                                               double ends[2]) {
-    int i;
-    for (i = 0; i < 2; ++i) {
-        const double height = horizon->point->normal[0] * pair->direction[0][i] +
-                              horizon->point->normal[1] * pair->direction[1][i] +
-                              horizon->point->normal[2] * pair->direction[2][i];
-        const double radius = pair->radius[i] * horizon->point->length, above = height + radius;
-        weight[i] = fabs(height) < radius ? above * above * (pair->quarter[i] * inverse)
-                                          : pair->share[i] * (height > 0.0 ? height : 0.0);
-        sum.of[i] += weight[i];
-    }
-    ends[0] = weight[0] + *end;
-    *end = ends[1] = (weight[1] + weight[0]) + *end;
-    return sum;
+    return _mm_or_pd(_mm_and_pd(is_cut, cut), _mm_andnot_pd(is_cut, whole));
 }
 #endif
 
