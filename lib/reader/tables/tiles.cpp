@@ -9,8 +9,6 @@ namespace {
 
 using u32 = std::uint32_t;
 
-constexpr std::size_t kEntriesATile = 16;
-constexpr u32 kMostGridBits = 15;
 constexpr std::size_t kCodes = 256;
 constexpr std::size_t kLine = 64; // bytes
 
@@ -23,17 +21,10 @@ bool TileTablesMaker::make() noexcept {
     const std::size_t tiles = blend_.tiles->tile_count;
     if (!arrange() || !tiles_.add(tiles, {})) return false;
     follow(acdf_blend_root(&blend_), {{0, 0}, {end_[0], end_[1]}}, 0);
-    // As fine as positions or as there are entries for, twice as many along the first axis.
-    for (int axis = 0; axis < 2; ++axis)
-        while (u32{1} << shift_[axis] < end_[axis]) ++shift_[axis];
-    for (u32 bits = 0; bits < kMostGridBits && std::size_t{1} << bits < kEntriesATile * tiles; ++bits) {
-        const int axis = shift_[0] >= shift_[1] ? 0 : 1;
-        if (shift_[axis] == 0) break;
-        --shift_[axis];
-        ++bits_[axis];
-    }
-    if (!grid_.add(std::size_t{1} << (bits_[0] + bits_[1]), 0)) return false;
-    enter(acdf_blend_root(&blend_), {{0, 0}, {u32{1} << bits_[0], u32{1} << bits_[1]}});
+    bits_ = GridBits(end_, tiles);
+    if (!grid_.add(bits_.count(), 0)) return false;
+    divide(blend_, acdf_blend_root(&blend_), bits_.all(), bits_.shift,
+           [this](u32 node, const Entries& entries) { fill(node, entries); });
     return !paths_.failed();
 }
 
@@ -101,30 +92,12 @@ void TileTablesMaker::follow(u32 node, const Box& box, u32 depth) {
     follow(split.child[1], half, depth + 1);
 }
 
-void TileTablesMaker::fill(u32 node, const Box& entries) {
+void TileTablesMaker::fill(u32 node, const Entries& entries) {
     const auto entry = static_cast<std::uint16_t>(renumbered(node));
     for (u32 row = entries.low[1]; row < entries.high[1]; ++row) {
-        std::uint16_t* const begin = grid_.data() + (std::size_t{row} << bits_[0]);
+        std::uint16_t* const begin = grid_.data() + (std::size_t{row} << bits_.bits[0]);
         std::fill(begin + entries.low[0], begin + entries.high[0], entry);
     }
-}
-
-// Entries of the grid that lie in a node: those that a split cuts begin there.
-void TileTablesMaker::enter(u32 node, const Box& entries) {
-    if (entries.low[0] >= entries.high[0] || entries.low[1] >= entries.high[1]) return;
-    if (node & ACDF_TILE_FLAG) return fill(node, entries);
-    const AcdfSplit& split = blend_.splits[node];
-    const u32 axis = split.place & 7u, position = split.place >> 3;
-    const u32 below = position >> shift_[axis], above = below + ((below << shift_[axis]) < position ? 1 : 0);
-    Box part = entries;
-    part.high[axis] = std::min(entries.high[axis], below);
-    enter(split.child[0], part);
-    part.low[axis] = std::max(entries.low[axis], below);
-    part.high[axis] = std::min(entries.high[axis], above);
-    if (part.low[axis] < part.high[axis]) fill(node, part);
-    part.low[axis] = std::max(entries.low[axis], above);
-    part.high[axis] = entries.high[axis];
-    enter(split.child[1], part);
 }
 
 std::size_t TileTablesMaker::stride() const noexcept { return (used_ + kLine - 1) / kLine * kLine; }
@@ -172,9 +145,9 @@ std::size_t TileTablesMaker::place(u32* words, std::size_t at, AcdfTileTables& o
     out.tiles = copy_lines(tiles_, words, at);
     out.paths = copy_lines(paths_, words, at);
     out.grid = copy_lines(grid_, words, at);
-    out.shift[0] = shift_[0];
-    out.shift[1] = shift_[1];
-    out.bits0 = bits_[0];
+    out.shift[0] = bits_.shift[0];
+    out.shift[1] = bits_.shift[1];
+    out.bits0 = bits_.bits[0];
     return at;
 }
 

@@ -1,6 +1,7 @@
 // Makes the runtime tables of acdf/tile_tables.h.
 #pragma once
 
+#include "tables/entries.h"
 #include "tables/growable.h"
 
 #include <acdf/tile_tables.h>
@@ -39,11 +40,11 @@ private:
     void give(std::uint32_t split);
     std::uint32_t renumbered(std::uint32_t node) const;
     void follow(std::uint32_t node, const Box& box, std::uint32_t depth);
-    void fill(std::uint32_t node, const Box& entries);
-    void enter(std::uint32_t node, const Box& entries);
+    void fill(std::uint32_t node, const Entries& entries);
 
     AcdfBlend blend_;
-    std::uint32_t end_[2], shift_[2] = {}, bits_[2] = {};
+    std::uint32_t end_[2];
+    GridBits bits_;
     std::uint16_t way_[ACDF_MAX_SPLITS_DEEP] = {};
     std::size_t used_ = 0; // numbers of splits
     Growable<std::uint16_t> numbers_, sizes_, tops_;
