@@ -169,6 +169,11 @@ ACDF_INLINE uint32_t acdf_blend_find_rows(const AcdfBlend* blend, const AcdfMixt
     return node & ~ACDF_TILE_FLAG;
 }
 
+/* The half of a split that holds a square. */
+ACDF_INLINE uint32_t acdf_split_upper(const AcdfSplit* split, const uint32_t* square) {
+    return (uint32_t)(square[split->place & 7u] >= split->place >> 3);
+}
+
 /* Where walks begin: split 0, or the only tile. */
 ACDF_FN uint32_t acdf_blend_root(const AcdfBlend* blend) {
     return blend->tiles->tile_count > 1 ? 0 : ACDF_TILE_FLAG;

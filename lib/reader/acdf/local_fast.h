@@ -46,9 +46,8 @@ ACDF_INLINE uint32_t acdf_local_fast_found(const AcdfLocal* local, const uint32_
     if (local->tables) node = acdf_tile_block_at(acdf_local_words(local->tables), &local->tables->blocks, square);
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &local->blend.splits[node];
-        const uint32_t axis = split->place & 7u, position = split->place >> 3;
-        const int in_upper = square[axis] >= position;
-        if (!local->tables) acdf_range_cut(&range[axis], position, in_upper);
+        const uint32_t in_upper = acdf_split_upper(split, square);
+        if (!local->tables) acdf_range_cut(&range[split->place & 7u], split->place >> 3, (int)in_upper);
         node = split->child[in_upper];
     }
     node &= ~ACDF_TILE_FLAG;

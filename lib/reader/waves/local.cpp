@@ -73,13 +73,26 @@ void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count)
 
 // Whether vectors serve a file, and a point of such.
 bool serves_waves(const AcdfLocal& local) {
-    return local.tables && local.tables->corners && local.cosine_share == 0.0 &&
-           local.blend.tiles->tile_count > 1 && !local.fast.grid;
+    return local.tables && local.tables->corners && local.cosine_share == 0.0 && local.blend.tiles->tile_count > 1;
 }
 bool serves_waves(const AcdfLocalPoint& point) {
-    return point.what == ACDF_LOCAL_BLEND && point.mix.count == kRows && point.place.count == 0 &&
-           point.windows.count == 0;
+    return (point.what == ACDF_LOCAL_BLEND || point.what == ACDF_LOCAL_FAST) && point.mix.count == kRows &&
+           point.place.count == 0 && point.windows.count == 0;
 }
+
+#if ACDF_WAVEFRONT_X86
+/// Loops by instructions that serve a file; null: by none.
+const LocalLoops* loops_of(const AcdfLocal& local, Instructions instructions) {
+    switch (instructions) {
+    case Instructions::avx512:
+        return local.fast.grid ? &fast_avx512 : &local_avx512;
+    case Instructions::avx2:
+        return local.fast.grid ? &fast_avx2 : &local_avx2;
+    default:
+        return nullptr;
+    }
+}
+#endif
 
 } // namespace
 
@@ -90,10 +103,8 @@ LocalWavefront::LocalWavefront(const LocalEnvironmentView& view, Instructions mo
 void LocalWavefront::sample(const AcdfLocalPoint& point, const double (*u)[2], std::size_t count,
                             DirectionSample* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ != Instructions::none && count >= kFewest && serves_waves(point)) {
-        if (instructions_ == Instructions::avx512) return local_sample_avx512(local_, point, u, count, out);
-        return local_sample_avx2(local_, point, u, count, out);
-    }
+    const LocalLoops* const loops = loops_of(local_, instructions_);
+    if (loops && count >= kFewest && serves_waves(point)) return loops->sample_at(local_, point, u, count, out);
 #endif
     for (std::size_t i = 0; i < count; ++i) out[i] = acdf_local_sample_at(&local_, &point, u[i][0], u[i][1]);
 }
@@ -101,8 +112,8 @@ void LocalWavefront::sample(const AcdfLocalPoint& point, const double (*u)[2], s
 void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std::size_t count,
                             DirectionSample* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ == Instructions::avx512) return local_sample_avx512(local_, normals, u, count, out);
-    if (instructions_ == Instructions::avx2) return local_sample_avx2(local_, normals, u, count, out);
+    if (const LocalLoops* const loops = loops_of(local_, instructions_))
+        return loops->sample(local_, normals, u, count, out);
 #endif
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     Lane lane[kBlock];
@@ -132,10 +143,9 @@ void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std
 void LocalWavefront::pdf(const AcdfLocalPoint& point, const float (*directions)[3], std::size_t count,
                          float* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ != Instructions::none && count >= kFewest && serves_waves(point)) {
-        if (instructions_ == Instructions::avx512) return local_pdf_avx512(local_, point, directions, count, out);
-        return local_pdf_avx2(local_, point, directions, count, out);
-    }
+    const LocalLoops* const loops = loops_of(local_, instructions_);
+    if (loops && count >= kFewest && serves_waves(point))
+        return loops->pdf_at(local_, point, directions, count, out);
 #endif
     for (std::size_t i = 0; i < count; ++i) out[i] = acdf_local_pdf_at(&local_, &point, directions[i]);
 }
@@ -143,8 +153,8 @@ void LocalWavefront::pdf(const AcdfLocalPoint& point, const float (*directions)[
 void LocalWavefront::pdf(const float (*normals)[3], const float (*directions)[3], std::size_t count,
                          float* out) const noexcept {
 #if ACDF_WAVEFRONT_X86
-    if (instructions_ == Instructions::avx512) return local_pdf_avx512(local_, normals, directions, count, out);
-    if (instructions_ == Instructions::avx2) return local_pdf_avx2(local_, normals, directions, count, out);
+    if (const LocalLoops* const loops = loops_of(local_, instructions_))
+        return loops->pdf(local_, normals, directions, count, out);
 #endif
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     Lane lane[kBlock];

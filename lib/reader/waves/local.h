@@ -8,19 +8,18 @@
 namespace acdf {
 
 #if ACDF_WAVEFRONT_X86
-// Of files that serves_waves approves; points are such as it approves, too.
-void local_sample_avx2(const AcdfLocal&, const float (*)[3], const double (*)[2], std::size_t,
-                       AcdfDirectionSample*);
-void local_sample_avx512(const AcdfLocal&, const float (*)[3], const double (*)[2], std::size_t,
-                         AcdfDirectionSample*);
-void local_sample_avx2(const AcdfLocal&, const AcdfLocalPoint&, const double (*)[2], std::size_t,
-                       AcdfDirectionSample*);
-void local_sample_avx512(const AcdfLocal&, const AcdfLocalPoint&, const double (*)[2], std::size_t,
-                         AcdfDirectionSample*);
-void local_pdf_avx2(const AcdfLocal&, const float (*)[3], const float (*)[3], std::size_t, float*);
-void local_pdf_avx512(const AcdfLocal&, const float (*)[3], const float (*)[3], std::size_t, float*);
-void local_pdf_avx2(const AcdfLocal&, const AcdfLocalPoint&, const float (*)[3], std::size_t, float*);
-void local_pdf_avx512(const AcdfLocal&, const AcdfLocalPoint&, const float (*)[3], std::size_t, float*);
+/// What LocalWavefront does of the same names: with a normal each, and at one point. Of files that serves_waves
+/// approves; points are such as it approves, too.
+struct LocalLoops {
+    void (*sample)(const AcdfLocal&, const float (*)[3], const double (*)[2], std::size_t, AcdfDirectionSample*);
+    void (*sample_at)(const AcdfLocal&, const AcdfLocalPoint&, const double (*)[2], std::size_t,
+                      AcdfDirectionSample*);
+    void (*pdf)(const AcdfLocal&, const float (*)[3], const float (*)[3], std::size_t, float*);
+    void (*pdf_at)(const AcdfLocal&, const AcdfLocalPoint&, const float (*)[3], std::size_t, float*);
+};
+
+extern const LocalLoops local_avx2, local_avx512; // of files whose bins share tiles
+extern const LocalLoops fast_avx2, fast_avx512;   // of the fast shape
 #endif
 
 } // namespace acdf

@@ -89,7 +89,7 @@ struct Seen {
 ACDF_LANE void keep(const Points& p, std::size_t at, Seen* seen) {
     for (int i = 0; i < kRows; ++i) {
         stored(&seen->weight[i][at], p.weight[i]);
-        stored(&seen->row[i][at], p.row[i]);
+        stored(&seen->row[i][at], p.codes[i]);
         stored(&seen->normal[i][at], p.normal[i]);
     }
     stored(&seen->mixture[at], p.mixture);

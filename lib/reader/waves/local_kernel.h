@@ -55,7 +55,7 @@ ACDF_LANE void draw_lights(const AcdfLocal& local, const Points& p, const Vector
 struct OwnRows {
     ACDF_LANE_MEMBER void keep(const Points& p, unsigned mask, Walks* walks) const {
         const std::size_t at = walks->count;
-        for (int i = 0; i < kRows; ++i) store_packed(&walks->row[i][at], p.row[i], mask);
+        for (int i = 0; i < kRows; ++i) store_packed(&walks->row[i][at], p.codes[i], mask);
         for (std::size_t k = at; k < at + (std::size_t)__builtin_popcount(mask); ++k)
             for (const auto& row : walks->row) ACDF_PREFETCH((const std::uint8_t*)row[k]);
     }
@@ -281,13 +281,13 @@ ACDF_LANE void sample_all(const AcdfLocal& local, const float (*normals)[3], con
                           std::size_t count, AcdfDirectionSample* out) {
     for (std::size_t first = 0; first < count; first += kBlock, normals += kBlock, u += kBlock, out += kBlock)
         draw_block(
-            local, OwnRows{}, PointsOf{local, normals},
+            local, OwnRows{}, PointsOf<Points>{local, normals},
             [&](std::size_t lane) { out[lane] = acdf_local_sample(&local, normals[lane], u[lane][0], u[lane][1]); },
             u, std::min(count - first, kBlock), out);
 }
 ACDF_LANE void sample_all(const AcdfLocal& local, const AcdfLocalPoint& point, const double (*u)[2],
                           std::size_t count, AcdfDirectionSample* out) {
-    const OnePoint points(local, point);
+    const OnePoint<Points> points(local, point);
     for (std::size_t first = 0; first < count; first += kBlock, u += kBlock, out += kBlock)
         draw_block(
             local, SameRows{point.codes}, points,

@@ -56,14 +56,10 @@ ACDF_LANE std::uint32_t enter_pieces(const AcdfTilePiece* pieces, const long lon
     return lost;
 }
 
-/* The addresses of what a vector of rows, which are those of codes, give to tiles. */
+/* The addresses of what a vector of rows give to tiles. */
 ACDF_LANE Integer parts_of(const AcdfLocal& local, Integer row) {
-    const AcdfLocalTables& tables = *local.tables;
-    const auto first = (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(&tables), &tables.tiles, 0);
-    const auto parts = (long long)(std::uintptr_t)acdf_local_parts(&tables, 0, 0);
-    const Integer number =
-        truncated(converted(row - first) / (double)tables.tiles.stride); /* the quotient is exact */
-    return multiplied(number, 8ll * local.blend.tiles->tile_count) + parts;
+    const auto parts = (long long)(std::uintptr_t)acdf_local_parts(local.tables, 0, 0);
+    return multiplied(row, 8ll * local.blend.tiles->tile_count) + parts;
 }
 
 /* Densities of up to kSearched lanes; `at` and `alone` as in draw_block. */
@@ -140,15 +136,15 @@ ACDF_LANE void pdf_all(const AcdfLocal& local, const float (*normals)[3], const 
     pdf_all(
         local, directions, count, out,
         [&](std::size_t first) {
-            return PointsOf{local, normals + first};
+            return PointsOf<Points>{local, normals + first};
         },
         [&](std::size_t i) { out[i] = acdf_local_pdf(&local, normals[i], directions[i]); });
 }
 ACDF_LANE void pdf_all(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
                        std::size_t count, float* out) {
-    const OnePoint points(local, point);
+    const OnePoint<Points> points(local, point);
     pdf_all(
-        local, directions, count, out, [&](std::size_t) -> const OnePoint& { return points; },
+        local, directions, count, out, [&](std::size_t) -> const OnePoint<Points>& { return points; },
         [&](std::size_t i) { out[i] = acdf_local_pdf_at(&local, &point, directions[i]); });
 }
 

@@ -12,10 +12,17 @@ namespace {
 
 constexpr int kRows = 3; // of nearly all normals: those on edges of triangles have fewer
 
+/// The corners around normals, with the numbers of their rows: 0 in lanes that are not served, and all else is any
+/// number there.
+struct Corners {
+    Integer served, row[kRows];
+    Vector weight[kRows], normal[3], length;
+};
+
 /// Of lanes that are not served the rows are some of the table, and all else is any number.
-struct Points {
-    Integer served, row[kRows]; // rows: addresses of their codes
-    Vector weight[kRows], normal[3], length, lights, mixture, sum, light[ACDF_MAX_LIGHTS];
+struct Points : Corners {
+    Integer codes[kRows]; // addresses of those of the rows
+    Vector lights, mixture, sum, light[ACDF_MAX_LIGHTS];
 };
 
 /* acdf_local_sum by the normals in the scale of the weights. The horizon cuts few lights: those are weighed again.
@@ -47,7 +54,7 @@ ACDF_LANE void weigh_lights(const AcdfLocal& local, Points* out) {
     out->sum = out->lights + out->mixture;
 }
 
-/* The corners that a table has at some numbers: how long they are, their shares and the addresses of their rows. */
+/* The corners that a table has at some numbers: how long they are, their shares and their rows. */
 ACDF_LANE void load_corners(const AcdfLocalTables& tables, Integer number, Vector* length, Vector* share,
                             Integer* row) {
     const AcdfCornerRecord* const corners = acdf_local_corners(&tables);
@@ -59,12 +66,11 @@ ACDF_LANE void load_corners(const AcdfLocalTables& tables, Integer number, Vecto
     gather_pairs(from, pair);
     *length = pair[0];
     *share = low_floats((Integer)pair[1]);
-    *row = multiplied((Integer)((Unsigned)pair[1] >> 32), tables.tiles.stride) +
-           (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(&tables), &tables.tiles, 0);
+    *row = (Integer)((Unsigned)pair[1] >> 32);
 }
 
-/* acdf_local_at by tables of corners; what those do not serve is not served. Small whole numbers are doubles. */
-ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points* out) {
+/* acdf_local_table_corners; what tables do not serve is not served. Small whole numbers are doubles. */
+ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], Corners* out) {
     const double n = local.subdivisions, side = 2.0 * n + 1.0;
     Vector v[3], a[3], base[3], length, share, sign[3], corner[kRows];
     load_transposed(normals, v);
@@ -87,20 +93,30 @@ ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Poin
         out->weight[i] = absolute(down - (a[i] - base[i])) * length * share;
     }
     for (int i = 0; i < kRows; ++i) served &= out->weight[i] > 0.0;
-    const Integer any_row = Integer{} + (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(local.tables),
-                                                                                 &local.tables->tiles, 0);
-    for (int i = 0; i < kRows; ++i) out->row[i] = select(served, out->row[i], any_row);
+    for (int i = 0; i < kRows; ++i) out->row[i] &= served;
     const Vector scale = n / sum, size = root((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
     for (int i = 0; i < 3; ++i) out->normal[i] = scale * v[i];
     out->length = scale * size;
+    out->served = served;
+}
+
+/* acdf_local_at by tables of corners. */
+ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points* out) {
+    const AcdfTileTables& tiles = local.tables->tiles;
+    const auto rows = (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
+    corners_of(local, normals, out);
+    for (int i = 0; i < kRows; ++i) out->codes[i] = multiplied(out->row[i], tiles.stride) + rows;
     weigh_lights(local, out);
-    out->served = served & (out->sum > 0.0);
+    out->served &= out->sum > 0.0;
 }
 
 /* One point in all lanes, which serves_waves has approved. */
 ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Points* out) {
+    const AcdfTileTables& tiles = local.tables->tiles;
+    const std::uint8_t* const rows = acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
     for (int i = 0; i < kRows; ++i) {
-        out->row[i] = Integer{} + (long long)(std::uintptr_t)point.codes[i];
+        out->codes[i] = Integer{} + (long long)(std::uintptr_t)point.codes[i];
+        out->row[i] = Integer{} + (long long)((std::size_t)(point.codes[i] - rows) / tiles.stride);
         out->weight[i] = all(point.mix.weight[i]);
         out->normal[i] = all(point.normal[i]);
     }
@@ -110,23 +126,22 @@ ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Po
 }
 
 /// The points of a vector of normals from a lane on, of which `count` are there; and one point in all lanes.
+template <class P>
 struct PointsOf {
     const AcdfLocal& local;
     const float (*normals)[3];
-    __attribute__((always_inline)) const Points& operator()(std::size_t lane, std::size_t count,
-                                                            Points* room) const {
+    ACDF_LANE_MEMBER const P& operator()(std::size_t lane, std::size_t count, P* room) const {
         float last[ACDF_WIDTH][3] = {};
         if (count < ACDF_WIDTH) std::memcpy(last, normals + lane, count * sizeof *normals);
         points_of(local, count < ACDF_WIDTH ? last : normals + lane, room);
         return *room;
     }
 };
+template <class P>
 struct OnePoint {
-    Points points;
+    P points;
     OnePoint(const AcdfLocal& local, const AcdfLocalPoint& point) { points_of(local, point, &points); }
-    __attribute__((always_inline)) const Points& operator()(std::size_t, std::size_t, Points*) const {
-        return points;
-    }
+    ACDF_LANE_MEMBER const P& operator()(std::size_t, std::size_t, P*) const { return points; }
 };
 
 } // namespace

@@ -111,10 +111,17 @@ ACDF_LANE void pointers_of(Integer address, const T* out[ACDF_WIDTH]) {
 }
 ACDF_LANE Integer two_bytes_at(Integer address) {
     const std::uint16_t* at[ACDF_WIDTH];
-    alignas(64) long long value[ACDF_WIDTH];
+    __m128i value = _mm_setzero_si128(); /* not by memory: a vector would wait for what is stored in parts */
     pointers_of(address, at);
-    for (int i = 0; i < ACDF_WIDTH; ++i) value[i] = *at[i];
-    return loaded(value);
+#define ACDF_INSERT(i) value = _mm_insert_epi16(value, (std::int16_t)*at[i], i)
+    ACDF_INSERT(0), ACDF_INSERT(1), ACDF_INSERT(2), ACDF_INSERT(3);
+#if ACDF_WIDTH == 8
+    ACDF_INSERT(4), ACDF_INSERT(5), ACDF_INSERT(6), ACDF_INSERT(7);
+    return (Integer)_mm512_cvtepu16_epi64(value);
+#else
+    return (Integer)_mm256_cvtepu16_epi64(value);
+#endif
+#undef ACDF_INSERT
 }
 
 // ---- pairs of doubles, and packed lanes ------------------------------------------------------------------------

@@ -144,4 +144,17 @@ private:
     std::vector<Box> boxes_;
 };
 
+/// A file of the fast shape: on both grids, of few columns and of many.
+inline LocalSpec random_fast(std::uint32_t seed) {
+    RandomOptions options;
+    options.columns = seed % 3 == 0 ? 1 + seed : seed % 3 == 1 ? 64 : 5000;
+    options.rows = seed % 4 == 0 ? 33 : 1 + 7 * seed;
+    options.long_curves = false;
+    options.tilts = false; // of the tree beside the tiles
+    options.octahedral = seed % 2 == 1;
+    LocalSpec spec = RandomFast(seed, options).make();
+    spec.zlib = seed % 5 == 0;
+    return spec;
+}
+
 } // namespace acdf_test

@@ -1,6 +1,7 @@
 // Local environments many times at once, of a normal each or at one point: the same bits as one by one, with each
 // set of instructions, on frozen and random files of both grids, with and without runtime tables.
 #include "tests/lib/reader/golden_files.h"
+#include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 #include "tests/lib/reader/tables/no_pieces.h"
@@ -139,6 +140,22 @@ TEST(LocalWavefront, IsTheViewOnRandomFiles) {
         if (HasFatalFailure()) return;
     }
     EXPECT_GT(with_tables, 15);
+#if defined(__x86_64__)
+    EXPECT_EQ(by_vectors > 5, __builtin_cpu_supports("avx2") != 0);
+#endif
+}
+
+TEST(LocalWavefront, IsTheViewOnRandomFilesOfTheFastShape) {
+    int by_vectors = 0;
+    for (std::uint32_t seed = 0; seed < 30; ++seed) {
+        SCOPED_TRACE(seed);
+        LocalSpec spec = random_fast(seed);
+        if (seed % 4 > 0) spec.cosine_share = 0.0f; // vectors serve no others
+        const LoadedLocal loaded(spec);
+        by_vectors += acdf::LocalWavefront(loaded.file.local()).instructions() != acdf::Instructions::none;
+        expect_all(loaded.file);
+        if (HasFatalFailure()) return;
+    }
 #if defined(__x86_64__)
     EXPECT_EQ(by_vectors > 5, __builtin_cpu_supports("avx2") != 0);
 #endif

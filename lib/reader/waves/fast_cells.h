@@ -1,0 +1,108 @@
+// Lanes in tiles and cells of the fast shape: the second half of acdf/fast.h and acdf_local_fast_density over
+// vectors. Internal linkage: see local_kernel.h.
+#pragma once
+
+#include "waves/fast_vectors.h"
+
+#include <cstddef>
+#include <cstring>
+
+namespace {
+
+/// Cells of lanes, and how they are reached; of, all: AcdfFastShare of tiles.
+struct FastCells {
+    alignas(64) double u[2][kRoom], of[kRoom], all[kRoom];
+    alignas(64) std::int32_t index[2][kRoom]; // of the cell in its line, and of that
+    alignas(64) std::int32_t ends[2][kRoom];  // two bytes, as they lie: cumulative values before and at these
+    const AcdfTileRecord* tile[kRoom];
+    const std::uint8_t* list[kRoom]; // the lists of a tile, and then that of a line
+};
+
+/* The grid of a lane's tile. */
+ACDF_LANE void enter_tile(const AcdfLocal& local, std::uint32_t tile, std::size_t i, FastCells* c) {
+    c->tile[i] = acdf_local_tile(local.tables, tile);
+    c->list[i] = local.fast.grid + c->tile[i]->root + 2;
+    ACDF_PREFETCH(c->list[i]);
+}
+
+/* A number in the list that a lane is at. Of the first one what stands before is no cumulative value. */
+ACDF_LANE void take_end(int axis, std::uint32_t number, std::size_t i, FastCells* c) {
+    std::uint16_t both;
+    std::memcpy(&both, c->list[i] + (std::ptrdiff_t)number - 1, 2);
+    c->ends[axis][i] = both;
+    c->index[axis][i] = (std::int32_t)number;
+}
+
+/* Goes on to the list of a line's cells. */
+ACDF_LANE void enter_line(std::uint32_t line, std::size_t i, FastCells* c) {
+    c->list[i] += c->tile[i]->step[3] + line * c->tile[i]->step[2];
+}
+
+/* Cumulative values before and at some numbers. */
+ACDF_LANE void loaded_ends(const std::int32_t* ends, Ints number, Ints* before, Ints* end) {
+    const Ints both = loaded(ends);
+    *before = both & 0xFF & (number > 0);
+    *end = both >> 8;
+}
+
+/// Boxes of a vector of tiles or cells.
+struct FastBoxes {
+    Integer low[2], high[2];
+};
+
+/* The boxes of tiles, and the shifts of their grids. */
+ACDF_LANE FastBoxes boxes_of(const AcdfTileRecord* const* tile, Integer shift[2]) {
+    FastBoxes out;
+    const double* from[ACDF_WIDTH];
+    Vector corner[2];
+    Integer at;
+    std::memcpy(&at, tile, sizeof at);
+    for (int i = 0; i < ACDF_WIDTH; ++i) from[i] = (const double*)(const void*)tile[i];
+    gather_pairs(from, corner);
+    const Integer steps = loaded_at(at + (long long)offsetof(AcdfTileRecord, step));
+    for (int axis = 0; axis < 2; ++axis) {
+        shift[axis] = steps >> 16 * axis & 0xFFFF;
+        out.low[axis] = (Integer)corner[0] >> 32 * axis & 0xFFFFFFFF;
+        out.high[axis] = (Integer)corner[1] >> 32 * axis & 0xFFFFFFFF;
+    }
+    return out;
+}
+
+/* acdf_fast_narrow */
+ACDF_LANE FastBoxes narrowed(const FastCells& c, std::size_t at) {
+    Integer shift[2];
+    FastBoxes box = boxes_of(c.tile + at, shift);
+    for (int axis = 0; axis < 2; ++axis) {
+        const Integer size = (Integer{} + 1) << shift[axis];
+        box.low[axis] += to_indices(loaded(&c.index[axis][at])) << shift[axis];
+        const Integer left = box.high[axis] - box.low[axis];
+        box.high[axis] = box.low[axis] + select(left < size, left, size);
+    }
+    return box;
+}
+
+/* z at the borders of rows of the lat-long grid. */
+ACDF_LANE void heights_of(const AcdfLocal& local, const FastBoxes& box, Vector z[2]) {
+    const double* const heights = acdf_local_heights(local.tables);
+    z[0] = (Vector)loaded_from(heights, box.low[1]);
+    z[1] = (Vector)loaded_from(heights, box.high[1]);
+}
+
+/* acdf_local_fast_density of a vector of cells, `height` what acdf_grid_height says of them. */
+ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const FastBoxes& box, Vector height,
+                              std::size_t at) {
+    Ints before[2], end[2];
+    for (int axis = 0; axis < 2; ++axis)
+        loaded_ends(&c.ends[axis][at], loaded(&c.index[axis][at]), &before[axis], &end[axis]);
+    const Vector of = loaded(&c.of[at]) * to_doubles((end[0] - before[0]) * (end[1] - before[1]));
+    const Vector width = converted(box.high[0] - box.low[0]);
+    const Vector pdf =
+        of * (double)local.environment.columns / (2.0 * ACDF_PI * width * (loaded(&c.all[at]) * height));
+    const Vector least = select(of > 0.0, all(1.17549435e-38), all(0.0));
+    return select(pdf >= 3.402823466e38, all((double)3.402823466e38f), select(pdf > least, pdf, least));
+}
+ACDF_LANE Vector fold_heights(const AcdfLocal& local, const FastBoxes& box) {
+    return 2.0 * converted(box.high[1] - box.low[1]) / (double)local.environment.rows;
+}
+
+} // namespace

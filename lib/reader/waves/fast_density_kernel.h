@@ -1,0 +1,195 @@
+// Densities of LocalWavefront in files of the fast shape over vectors, as fast_kernel.h draws.
+#pragma once
+
+#include "waves/fast_cells.h"
+#include "waves/local.h"
+#include "waves/row_vectors.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+/// Directions of a block.
+struct FastFinds {
+    FastLanes rows;
+    FastCells cells;
+    alignas(64) std::int32_t square[2][kRoom];
+    alignas(64) std::int32_t ends[kRows][kRoom]; // of a tile in its group, as they lie
+    alignas(64) double sum[kRoom], normal[3][kRoom], length[kRoom];
+    std::uint32_t lit[kBlock], lit_count; // lanes whose tiles are lights
+};
+
+/* The points of a vector. */
+ACDF_LANE void keep_points(const FastPoints<false>& p, std::size_t at, FastFinds* f) {
+    keep_rows(p, at, &f->rows);
+    stored(&f->sum[at], p.sum);
+    for (int i = 0; i < 3; ++i) stored(&f->normal[i][at], p.normal[i]);
+    stored(&f->length[at], p.length);
+}
+
+/* acdf_tile_block_at of a vector of squares. */
+ACDF_LANE Integer tile_blocks_at(const AcdfLocal& local, const FastFinds& f, std::size_t at) {
+    const std::uint32_t* const words = acdf_local_words(local.tables);
+    const AcdfTileBlocks& t = local.tables->blocks;
+    const auto grid = (long long)(std::uintptr_t)(words + t.grid),
+               blocks = (long long)(std::uintptr_t)(words + t.blocks);
+    const Integer s0 = to_indices(loaded(&f.square[0][at])), s1 = to_indices(loaded(&f.square[1][at]));
+    const Integer inside = (s1 >> t.fine[1] & 3) * 4 + (s0 >> t.fine[0] & 3);
+    const Integer entry = two_bytes_at(((s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])) * 2 + grid);
+    const Integer told = -(entry >> 15);
+    const Integer finer = two_bytes_at((16 * (entry & ~told) + inside) * 2 + blocks);
+    return finer ^ ((finer ^ entry) & told);
+}
+
+/* The tiles of all squares, and what is asked for once they are known. */
+ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastFinds* f) {
+    alignas(64) long long node[kRoom];
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) stored(&node[at], tile_blocks_at(local, *f, at));
+    for (std::size_t i = 0; i < count; ++i) {
+        auto at = (std::uint32_t)node[i];
+        while (!(at & ACDF_TILE_FLAG)) {
+            const std::uint32_t square[2] = {(std::uint32_t)f->square[0][i], (std::uint32_t)f->square[1][i]};
+            const AcdfSplit& split = local.blend.splits[at];
+            at = split.child[acdf_split_upper(&split, square)];
+        }
+        const std::uint32_t tile = at & ~ACDF_TILE_FLAG;
+        f->rows.tile[i] = (std::int32_t)tile;
+        ACDF_PREFETCH(acdf_local_tile(local.tables, tile));
+        for (int row = 0; row < kRows; ++row)
+            ACDF_PREFETCH((const std::uint16_t*)f->rows.group[row][i] + tile / ACDF_FAST_GROUP);
+    }
+}
+
+/* The cells of all squares and what rows have of their tiles. */
+ACDF_LANE void find_fast_cells(const AcdfLocal& local, std::size_t count, FastFinds* f) {
+    FastCells& c = f->cells;
+    f->lit_count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        enter_tile(local, (std::uint32_t)f->rows.tile[i], i, &c);
+        f->lit[f->lit_count] = (std::uint32_t)i;
+        f->lit_count += c.tile[i]->light > 0;
+    }
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
+        Integer shift[2];
+        const FastBoxes box = boxes_of(c.tile + at, shift);
+        for (int axis = 0; axis < 2; ++axis) {
+            const Integer square = to_indices(loaded(&f->square[axis][at]));
+            stored(&c.index[axis][at], __builtin_convertvector((square - box.low[axis]) >> shift[axis], Ints));
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto tile = (std::uint32_t)f->rows.tile[i], line = (std::uint32_t)c.index[1][i];
+        load_ends(&f->rows, i, tile / ACDF_FAST_GROUP);
+        for (int row = 0; row < kRows; ++row) {
+            std::uint16_t both; /* what stands before the first row of tiles is of groups */
+            std::memcpy(&both, (const std::uint8_t*)f->rows.tile_row[row][i] + tile - 1, 2);
+            f->ends[row][i] = both;
+        }
+        take_end(1, line, i, &c);
+        enter_line(line, i, &c);
+        take_end(0, (std::uint32_t)c.index[0][i], i, &c);
+    }
+}
+
+/* acdf_local_fast_find of a vector but for what the cell has of its tile. */
+ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
+    FastLanes& w = f->rows;
+    find_groups(&w, at);
+    Ints share = {};
+    const Ints inner = -((loaded(&w.tile[at]) & (std::int32_t)(ACDF_FAST_GROUP - 1)) > 0 ? Ints{} + 1 : Ints{});
+    for (int row = 0; row < kRows; ++row) {
+        const Ints ends = loaded(&f->ends[row][at]);
+        share += loaded(&w.part[row][at]) * ((ends >> 8) - (ends & inner & 0xFF));
+    }
+    const Vector whole = loaded(&w.whole[at]);
+    stored(&f->cells.of[at], loaded(&w.mass[at]) * to_doubles(share) * loaded(&w.unit[at]));
+    stored(&f->cells.all[at], select(whole > 1.0, whole, all(1.0)) * ACDF_FAST_STEPS);
+}
+
+/* The same of a lane whose tile is a light: no row gives it any. */
+ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) {
+    const std::uint32_t k = f->cells.tile[i]->light - 1u;
+    AcdfLocalPoint point;
+    for (int axis = 0; axis < 3; ++axis) point.normal[axis] = f->normal[axis][i];
+    point.length = f->length[i];
+    f->cells.of[i] =
+        acdf_pair_weight(&point, acdf_local_lights(local.tables) + k / 2, (int)(k % 2), 1.0 / point.length);
+    f->cells.all[i] = f->sum[i] * ACDF_FAST_STEPS;
+}
+
+/* Densities of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
+template <class At, class Alone>
+ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Alone& alone,
+                                  const float (*directions)[3], std::size_t count, float* out) {
+    FastFinds f;
+    FastPoints<false> room;
+    const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
+    std::uint64_t lost = 0;
+    for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) {
+        const FastPoints<false>& p =
+            at(first, std::min<std::size_t>(count - std::min(first, count), ACDF_WIDTH), &room);
+        keep_points(p, first, &f);
+        lost |= (std::uint64_t)(~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
+    }
+    for (std::size_t first = 0; first < whole; first += kLanes) {
+        const AcdfEnvironment& grid = local.environment;
+        const std::size_t more = std::min(count - first, kLanes);
+        float last[kLanes][3] = {};
+        Signed square[2];
+        if (more < kLanes) std::memcpy(last, directions + first, more * sizeof *directions);
+        const Signed sure = squares_of(local.tables->octahedral != 0, grid.columns, grid.rows,
+                                       more < kLanes ? last : directions + first, square);
+        for (int axis = 0; axis < 2; ++axis) {
+            const Signed kept = square[axis] & sure; /* of others any that the grid has */
+            std::memcpy(&f.square[axis][first], &kept, sizeof kept);
+        }
+        lost |= (std::uint64_t)bits(~sure) << first;
+    }
+    find_fast_tiles(local, whole, &f);
+    find_fast_cells(local, whole, &f);
+    for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) weigh_fast_tiles(first, &f);
+    for (std::size_t k = 0; k < f.lit_count; ++k) weigh_light(local, f.lit[k], &f);
+    for (std::size_t first = 0; first < whole; first += kLanes) {
+        Vector pdf[2];
+        for (std::size_t half = 0; half < 2; ++half) {
+            const std::size_t lane = first + ACDF_WIDTH * half;
+            const FastBoxes box = narrowed(f.cells, lane);
+            Vector z[2], height;
+            if (local.tables->octahedral) height = fold_heights(local, box);
+            else {
+                heights_of(local, box, z);
+                height = z[0] - z[1];
+            }
+            pdf[half] = fast_density(local, f.cells, box, height, lane);
+        }
+        const Floats told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
+        if (count - first >= kLanes) std::memcpy(out + first, &told, sizeof told);
+        else std::memcpy(out + first, &told, (count - first) * sizeof *out);
+    }
+    if (count < kBlock) lost &= (std::uint64_t{1} << count) - 1;
+    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+}
+
+// ---- all of an array -------------------------------------------------------------------------------------------
+
+ACDF_LANE void pdf_all_fast(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
+                            std::size_t count, float* out) {
+    for (std::size_t first = 0; first < count;
+         first += kBlock, normals += kBlock, directions += kBlock, out += kBlock)
+        fast_density_block(
+            local, PointsOf<FastPoints<false>>{local, normals},
+            [&](std::size_t lane) { out[lane] = acdf_local_pdf(&local, normals[lane], directions[lane]); },
+            directions, std::min(count - first, kBlock), out);
+}
+ACDF_LANE void pdf_all_fast(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
+                            std::size_t count, float* out) {
+    const OnePoint<FastPoints<false>> points(local, point);
+    for (std::size_t first = 0; first < count; first += kBlock, directions += kBlock, out += kBlock)
+        fast_density_block(
+            local, points,
+            [&](std::size_t lane) { out[lane] = acdf_local_pdf_at(&local, &point, directions[lane]); }, directions,
+            std::min(count - first, kBlock), out);
+}
+
+} // namespace

@@ -1,0 +1,265 @@
+// Draws of LocalWavefront in files of the fast shape over vectors: acdf/local_fast.h, operation by operation; see
+// local_kernel.h. All lanes of a block take a step before any takes the next one, and what that will read is asked
+// for before: so none waits for memory.
+#pragma once
+
+#include "waves/fast_cells.h"
+#include "waves/local.h"
+#include "waves/row_vectors.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+// ---- lights ----------------------------------------------------------------------------------------------------
+
+/* How many sums up to lights are not above x; of an odd number the last one has two equal sums. */
+ACDF_LANE Integer lights_passed(const AcdfLocal& local, const FastPoints<true>& p, Vector x) {
+    Integer passed = {};
+    for (std::uint32_t k = 0; k < local.light_count; k += 2)
+        passed -= (p.light_end[k] <= x) + (p.light_end[k + 1] <= x);
+    return passed;
+}
+
+/* acdf_local_fast_light of the lanes of a mask, by x; their elements of `weight` and `before` become the light's
+ * and the sum up to the one before, of `tile` its tile. Returns the lanes that it does not tell: those next to
+ * borders. */
+ACDF_LANE unsigned draw_lights(const AcdfLocal& local, const FastPoints<true>& p, Vector x, unsigned mask,
+                               double* weight, double* before, std::int32_t* tile) {
+    alignas(64) long long passed[ACDF_WIDTH];
+    unsigned lost = 0;
+    stored(passed, lights_passed(local, p, x));
+    for (; mask; mask &= mask - 1) {
+        const std::uint32_t lane = acdf_lowest_bit(mask), k = (std::uint32_t)passed[lane];
+        if (k >= local.light_count || !(p.light[k][lane] > 0.0)) {
+            lost |= 1u << lane;
+            continue;
+        }
+        weight[lane] = p.light[k][lane];
+        before[lane] = k > 0 ? p.light_end[k - 1][lane] : 0.0;
+        tile[lane] = (std::int32_t)local.lights[k].tile;
+        ACDF_PREFETCH(acdf_local_tile(local.tables, local.lights[k].tile));
+    }
+    return lost;
+}
+
+// ---- tiles -----------------------------------------------------------------------------------------------------
+
+/// Draws of a block.
+struct FastDraws {
+    FastLanes rows;
+    FastCells cells;
+    alignas(64) double x[kRoom], before[kRoom];                    // of the mixture, or of lights
+    alignas(64) long long lit[kRoom];                              // all ones: a light is drawn
+    alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
+    std::uint32_t mixed[kBlock], mixed_count;                      // lanes that draw from the mixture
+};
+
+/* Begins the lanes of a vector: their tiles, where they draw lights, and else what they look for. Returns those
+ * that are left to single calls. */
+ACDF_LANE unsigned begin_draws(const AcdfLocal& local, const FastPoints<true>& p, const Vector u[2], unsigned there,
+                               std::size_t at, FastDraws* d) {
+    const Vector x = u[0] * p.sum, of_mixture = (x - p.lights) * p.step;
+    const Vector most = 32767.0 * p.whole * (1.0 - 0x1p-53);
+    const Vector mixed = select(of_mixture < most, of_mixture, most);
+    const Integer lit = p.served & (x < p.lights);
+    const unsigned lights = bits(lit) & there, others = bits(p.served & ~lit) & there;
+    unsigned lost = ~bits(p.served) & there;
+    keep_rows(p, at, &d->rows);
+    stored(&d->cells.of[at], all(0.0));
+    stored(&d->x[at], select(lit, x, mixed));
+    stored(&d->before[at], all(0.0));
+    stored(&d->at[at], to_integers(mixed));
+    stored(&d->lit[at], lit);
+    stored(&d->rows.tile[at], Ints{});
+    if (lights) lost |= draw_lights(local, p, x, lights, &d->cells.of[at], &d->before[at], &d->rows.tile[at]);
+    stored(&d->cells.u[1][at], u[1]);
+    stored(&d->cells.all[at], p.sum * ACDF_FAST_STEPS);
+    stored(&d->below[at], Ints{});
+    stored(&d->mass[at], Ints{});
+    for (unsigned k = 0; k < ACDF_WIDTH; ++k) {
+        d->mixed[d->mixed_count] = (std::uint32_t)(at + k);
+        d->mixed_count += others >> k & 1u;
+    }
+    return lost;
+}
+
+/* acdf_fast_group_of of all lanes that draw from the mixture. */
+ACDF_LANE void search_groups(FastDraws* d) {
+    FastLanes& w = d->rows;
+    for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
+        const std::uint32_t i = d->mixed[k];
+        const std::uint16_t* const upper[kRows] = {(const std::uint16_t*)w.upper[0][i],
+                                                   (const std::uint16_t*)w.upper[1][i],
+                                                   (const std::uint16_t*)w.upper[2][i]};
+        const std::uint32_t first =
+            16u * search_words(upper, 0, w.share[0][i] | w.share[1][i] << 16, w.share[2][i], d->at[i]);
+        w.number[i] = (std::int32_t)first;
+        for (int row = 0; row < kRows; ++row) ACDF_PREFETCH((const std::uint16_t*)w.group[row][i] + first);
+    }
+    for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
+        const std::uint32_t i = d->mixed[k];
+        const std::uint16_t* const group[kRows] = {(const std::uint16_t*)w.group[0][i],
+                                                   (const std::uint16_t*)w.group[1][i],
+                                                   (const std::uint16_t*)w.group[2][i]};
+        const std::uint32_t number = search_words(group, (std::uint32_t)w.number[i],
+                                                  w.share[0][i] | w.share[1][i] << 16, w.share[2][i], d->at[i]);
+        load_ends(&w, i, number);
+    }
+}
+
+/* acdf_fast_tile_of of the same. */
+ACDF_LANE void search_tiles(const AcdfLocal& local, FastDraws* d) {
+    FastLanes& w = d->rows;
+    for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
+        const std::uint32_t i = d->mixed[k], first = ACDF_FAST_GROUP * (std::uint32_t)w.number[i];
+        Sixteen ends;
+        std::int32_t sum[4 + 16];
+        ends.mix(sixteen_widened((const std::uint8_t*)w.tile_row[0][i] + first),
+                 sixteen_widened((const std::uint8_t*)w.tile_row[1][i] + first),
+                 sixteen_widened((const std::uint8_t*)w.tile_row[2][i] + first), w.part[0][i] | w.part[1][i] << 16,
+                 w.part[2][i]);
+        const std::uint32_t tile = acdf_lowest_bit(ends.above(d->at[i])) / Sixteen::kBits;
+        sum[3] = 0;
+        ends.store(sum + 4);
+        d->below[i] = sum[3 + tile];
+        d->mass[i] = sum[4 + tile] - sum[3 + tile];
+        w.tile[i] = (std::int32_t)(first + tile);
+        ACDF_PREFETCH(acdf_local_tile(local.tables, first + tile));
+    }
+}
+
+/* acdf_fast_draw_tile of all lanes; of those that draw a light it is told before. */
+ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* d) {
+    FastLanes& w = d->rows;
+    alignas(64) double y[kRoom];
+    search_groups(d);
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
+        find_groups(&w, at);
+        const Vector scaled_u = scaled(loaded(&d->cells.u[1][at]), 255.0 * loaded(&w.whole[at]));
+        stored(&y[at], scaled_u);
+        stored(&d->at[at], to_integers(scaled_u));
+    }
+    search_tiles(local, d);
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
+        FastCells& c = d->cells;
+        const Integer lit = loaded(&d->lit[at]);
+        const Vector of_group = loaded(&w.mass[at]), of_tile = to_doubles(loaded(&d->mass[at]));
+        const Vector light = loaded(&c.of[at]), below = select(lit, loaded(&d->before[at]), loaded(&w.below[at]));
+        const Vector left = (loaded(&d->x[at]) - below) / select(lit, light, of_group);
+        const Vector in_group = (loaded(&y[at]) - to_doubles(loaded(&d->below[at]))) / of_tile;
+        stored(&c.u[0][at], select(lit, unit_interval(left), left));
+        stored(&c.u[1][at], select(lit, loaded(&c.u[1][at]), in_group));
+        stored(&c.of[at], select(lit, light, of_group * of_tile * loaded(&w.unit[at])));
+        stored(&c.all[at], select(lit, loaded(&c.all[at]), loaded(&w.whole[at]) * ACDF_FAST_STEPS));
+    }
+}
+
+// ---- cells -----------------------------------------------------------------------------------------------------
+
+/* acdf_fast_draw_cell of all lanes, but for what they share with densities. */
+ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* d) {
+    FastCells& c = d->cells;
+    alignas(64) double z[2][kRoom];
+    alignas(64) std::int32_t least[2][kRoom];
+    for (std::size_t i = 0; i < count; ++i) enter_tile(local, (std::uint32_t)d->rows.tile[i], i, &c);
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH)
+        for (int axis = 0; axis < 2; ++axis) {
+            const Vector scaled_u = scaled(loaded(&c.u[axis][at]), all(255.0));
+            stored(&z[axis][at], scaled_u);
+            stored(&least[axis][at], to_integers(scaled_u) + 1);
+        }
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t line = end_at_least(c.list[i], least[1][i]);
+        take_end(1, line, i, &c);
+        enter_line(line, i, &c);
+        ACDF_PREFETCH(c.list[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i) take_end(0, end_at_least(c.list[i], least[0][i]), i, &c);
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH)
+        for (int axis = 0; axis < 2; ++axis) {
+            Ints before, end;
+            loaded_ends(&c.ends[axis][at], loaded(&c.index[axis][at]), &before, &end);
+            stored(&c.u[axis][at], (loaded(&z[axis][at]) - to_doubles(before)) / to_doubles(end - before));
+        }
+}
+
+// ---- directions ------------------------------------------------------------------------------------------------
+
+/* Half of some directions up to where floats go on; densities as acdf_local_fast_density has them. */
+ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastCells& c, std::size_t at, int half,
+                                  Drawn* out) {
+    const double columns = local.environment.columns, rows = local.environment.rows;
+    const FastBoxes box = narrowed(c, at);
+    const Vector u[2] = {loaded(&c.u[0][at]), loaded(&c.u[1][at])};
+    if (local.tables->octahedral) {
+        const Vector low[2] = {converted(box.low[0]), converted(box.low[1])};
+        const Vector width[2] = {converted(box.high[0] - box.low[0]), converted(box.high[1] - box.low[1])};
+        fold_direction(columns, rows, low, width, u, half, out);
+        return fast_density(local, c, box, fold_heights(local, box), at);
+    }
+    Vector z[2];
+    heights_of(local, box, z);
+    row_direction(columns, converted(box.low[0]), converted(box.high[0]), z[0], z[1], u, half, out);
+    return fast_density(local, c, box, z[0] - z[1], at);
+}
+
+/* Draws of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
+template <class At, class Alone>
+ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone& alone, const double (*u)[2],
+                               std::size_t count, AcdfDirectionSample* out) {
+    FastDraws d;
+    FastPoints<true> room;
+    const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes; // those behind the last one are not served
+    std::uint64_t lost = 0;
+    d.mixed_count = 0;
+    for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) {
+        const std::size_t more = std::min<std::size_t>(count - std::min(first, count), ACDF_WIDTH);
+        double last[ACDF_WIDTH][2] = {};
+        Doubles given[2];
+        if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
+        load_pairs(more < ACDF_WIDTH ? last : u + first, given);
+        const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
+        lost |= (std::uint64_t)begin_draws(local, at(first, more, &room), v, (1u << more) - 1u, first, &d) << first;
+    }
+    draw_tiles(local, whole, &d);
+    draw_cells(local, whole, &d);
+    for (std::size_t first = 0; first < whole; first += kLanes) {
+        Drawn drawn;
+        Vector pdf[2];
+        Floats direction[3];
+        const std::size_t more = std::min(count - first, kLanes);
+        AcdfDirectionSample last[kLanes];
+        for (int half = 0; half < 2; ++half)
+            pdf[half] = begin_directions(local, d.cells, first + ACDF_WIDTH * (std::size_t)half, half, &drawn);
+        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, drawn, direction);
+        store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), more < kLanes ? last : out + first);
+        if (more < kLanes) std::memcpy(out + first, last, more * sizeof *out);
+        lost |= (std::uint64_t)refused << first;
+    }
+    if (count < kBlock) lost &= (std::uint64_t{1} << count) - 1;
+    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+}
+
+// ---- all of an array -------------------------------------------------------------------------------------------
+
+ACDF_LANE void sample_all_fast(const AcdfLocal& local, const float (*normals)[3], const double (*u)[2],
+                               std::size_t count, AcdfDirectionSample* out) {
+    for (std::size_t first = 0; first < count; first += kBlock, normals += kBlock, u += kBlock, out += kBlock)
+        draw_fast_block(
+            local, PointsOf<FastPoints<true>>{local, normals},
+            [&](std::size_t lane) { out[lane] = acdf_local_sample(&local, normals[lane], u[lane][0], u[lane][1]); },
+            u, std::min(count - first, kBlock), out);
+}
+ACDF_LANE void sample_all_fast(const AcdfLocal& local, const AcdfLocalPoint& point, const double (*u)[2],
+                               std::size_t count, AcdfDirectionSample* out) {
+    const OnePoint<FastPoints<true>> points(local, point);
+    for (std::size_t first = 0; first < count; first += kBlock, u += kBlock, out += kBlock)
+        draw_fast_block(
+            local, points,
+            [&](std::size_t lane) { out[lane] = acdf_local_sample_at(&local, &point, u[lane][0], u[lane][1]); }, u,
+            std::min(count - first, kBlock), out);
+}
+
+} // namespace

@@ -1,0 +1,273 @@
+// The fast shape (acdf/fast_rows.h) over vectors: shading points and what their rows give to tiles a lane an
+// element, and searches of a lane's lists, each by one vector of sixteen ends. The same integers, so the same bits.
+// Internal linkage: see local_kernel.h.
+#pragma once
+
+#include "waves/local_tile_vectors.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace {
+
+// ---- numbers of 32 bits ----------------------------------------------------------------------------------------
+
+typedef HalfSigned Ints; // ACDF_WIDTH of them
+
+ACDF_LANE Ints loaded(const std::int32_t* from) {
+    Ints x;
+    __builtin_memcpy(&x, from, sizeof x);
+    return x;
+}
+ACDF_LANE void stored(std::int32_t* to, Ints x) { __builtin_memcpy(to, &x, sizeof x); }
+ACDF_LANE Vector to_doubles(Ints x) { return __builtin_convertvector(x, Vector); }
+ACDF_LANE Ints to_integers(Vector x) { return __builtin_convertvector(x, Ints); } // rounded towards 0
+ACDF_LANE Integer to_indices(Ints x) { return __builtin_convertvector(x, Integer); }
+
+ACDF_LANE Vector above_zero(Vector x) {
+#if ACDF_WIDTH == 8
+    return (Vector)_mm512_max_pd((__m512d)x, _mm512_setzero_pd());
+#else
+    return (Vector)_mm256_max_pd((__m256d)x, _mm256_setzero_pd());
+#endif
+}
+
+/* acdf_fast_scaled */
+ACDF_LANE Vector scaled(Vector u, Vector whole) {
+    const Vector x = u * whole, most = whole * (1.0 - 0x1p-53);
+    return select(x < most, x, most);
+}
+
+/* How many lower bits of masses, below 2^30, weights of 14 bits leave out. */
+ACDF_LANE Ints shift_of(Ints mass) {
+    /* With the bit below the highest one cleared nothing is rounded up to the next power of two. */
+    const Ints exponent = (Ints) __builtin_convertvector(mass & ~(mass >> 1), HalfFloats) >> 23;
+    const Ints shift = exponent - (127 + 13);
+    return shift & ~(shift >> 31);
+}
+
+// ---- searches --------------------------------------------------------------------------------------------------
+
+/// Sixteen mixed ends, and the weights that mix them: of two rows in one word, and of the third.
+struct Sixteen {
+#if ACDF_WIDTH == 8
+    __m512i sum;
+
+    ACDF_LANE_MEMBER void mix(__m256i end0, __m256i end1, __m256i end2, std::int32_t pair, std::int32_t last) {
+        const __m512i both =
+            _mm512_or_si512(_mm512_cvtepu16_epi32(end0), _mm512_slli_epi32(_mm512_cvtepu16_epi32(end1), 16));
+        sum = _mm512_add_epi32(_mm512_madd_epi16(both, _mm512_set1_epi32(pair)),
+                               _mm512_madd_epi16(_mm512_cvtepu16_epi32(end2), _mm512_set1_epi32(last)));
+    }
+    /* Bit i, or more of them: whether number i is above x. */
+    ACDF_LANE_MEMBER std::uint32_t above(std::int32_t x) const {
+        return _mm512_cmpgt_epi32_mask(sum, _mm512_set1_epi32(x));
+    }
+    static constexpr std::uint32_t kBits = 1;
+    ACDF_LANE_MEMBER void store(std::int32_t* out) const { _mm512_storeu_si512(out, sum); }
+#else
+    __m256i low, high; // numbers 0 to 3 and 8 to 11, and the others
+
+    ACDF_LANE_MEMBER void mix(__m256i end0, __m256i end1, __m256i end2, std::int32_t pair, std::int32_t last) {
+        const __m256i weight01 = _mm256_set1_epi32(pair), weight2 = _mm256_set1_epi32(last);
+        const __m256i zero = _mm256_setzero_si256();
+        low = _mm256_add_epi32(_mm256_madd_epi16(_mm256_unpacklo_epi16(end0, end1), weight01),
+                               _mm256_madd_epi16(_mm256_unpacklo_epi16(end2, zero), weight2));
+        high = _mm256_add_epi32(_mm256_madd_epi16(_mm256_unpackhi_epi16(end0, end1), weight01),
+                                _mm256_madd_epi16(_mm256_unpackhi_epi16(end2, zero), weight2));
+    }
+    ACDF_LANE_MEMBER std::uint32_t above(std::int32_t x) const {
+        const __m256i at = _mm256_set1_epi32(x);
+        return (std::uint32_t)_mm256_movemask_epi8(
+            _mm256_packs_epi32(_mm256_cmpgt_epi32(low, at), _mm256_cmpgt_epi32(high, at)));
+    }
+    static constexpr std::uint32_t kBits = 2;
+    ACDF_LANE_MEMBER void store(std::int32_t* out) const {
+        _mm256_storeu_si256((__m256i*)(void*)out, _mm256_permute2x128_si256(low, high, 0x20));
+        _mm256_storeu_si256((__m256i*)(void*)(out + 8), _mm256_permute2x128_si256(low, high, 0x31));
+    }
+#endif
+};
+
+ACDF_LANE __m256i sixteen_words(const std::uint16_t* at) {
+    return _mm256_loadu_si256((const __m256i*)(const void*)at);
+}
+ACDF_LANE __m256i sixteen_widened(const std::uint8_t* at) {
+    return _mm256_cvtepu8_epi16(_mm_loadu_si128((const __m128i*)(const void*)at));
+}
+
+/* acdf_fast_search of three rows. */
+ACDF_LANE std::uint32_t search_words(const std::uint16_t* const row[kRows], std::uint32_t first, std::int32_t pair,
+                                     std::int32_t last, std::int32_t x) {
+    for (;; first += 16) {
+        Sixteen ends;
+        ends.mix(sixteen_words(row[0] + first), sixteen_words(row[1] + first), sixteen_words(row[2] + first), pair,
+                 last);
+        const std::uint32_t mask = ends.above(x);
+        if (mask) return first + acdf_lowest_bit(mask) / Sixteen::kBits;
+    }
+}
+
+/* acdf_fast_end_of: the first of a list of ends that is at least `least`. 64 bytes from its start may be read. */
+ACDF_LANE std::uint32_t end_at_least(const std::uint8_t* ends, std::int32_t least) {
+#if ACDF_WIDTH == 8
+    const __mmask64 mask =
+        _mm512_cmpge_epu8_mask(_mm512_loadu_si512((const void*)ends), _mm512_set1_epi8((char)least));
+    return (std::uint32_t)__builtin_ctzll(mask);
+#else
+    const __m256i key = _mm256_set1_epi8((char)least);
+    for (std::uint32_t first = 0;; first += 32) {
+        const __m256i some = _mm256_loadu_si256((const __m256i*)(const void*)(ends + first));
+        const __m256i is = _mm256_cmpeq_epi8(_mm256_max_epu8(some, key), some);
+        const auto mask = (std::uint32_t)_mm256_movemask_epi8(is);
+        if (mask) return first + acdf_lowest_bit(mask);
+    }
+#endif
+}
+
+// ---- shading points --------------------------------------------------------------------------------------------
+
+/// Points of the fast shape. What AcdfFastMixture and AcdfLocalPoint have of it, and addresses.
+template <bool Draws>
+struct FastPoints : Corners {
+    Integer group[kRows], tile[kRows], upper[kRows];
+    Ints share[kRows]; // AcdfFastMixture::weight
+    Vector whole, lights, sum, step, unit, light[ACDF_MAX_LIGHTS], light_end[ACDF_MAX_LIGHTS];
+};
+
+/* acdf_fast_mix */
+template <bool Draws>
+ACDF_LANE void mix_rows(Vector mixture, FastPoints<Draws>* out) {
+    const Vector scale = (Vector)(((2 * 1023 + 13) - (Integer)((Unsigned)mixture >> 52)) << 52);
+    Ints whole = {};
+    for (int i = 0; i < kRows; ++i) whole += out->share[i] = to_integers(out->weight[i] * scale) + 1;
+    out->whole = to_doubles(whole);
+}
+
+/* acdf_local_tabled_lights; of densities only their sum. */
+template <bool Each>
+ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<Each>* out) {
+    const AcdfLightPair* pair = acdf_local_lights(local.tables);
+    const Vector length = out->length, inverse = 1.0 / length;
+    Vector end = all(0.0), sum[2] = {end, end};
+    for (std::uint32_t k = 0; k < local.light_count; k += 2, ++pair) {
+        Vector weight[2];
+        for (int i = 0; i < 2; ++i) {
+            const Vector height =
+                (out->normal[0] * pair->direction[0][i] + out->normal[1] * pair->direction[1][i]) +
+                out->normal[2] * pair->direction[2][i];
+            const Vector radius = pair->radius[i] * length, above = height + radius;
+            const Vector cut = above * above * (pair->quarter[i] * inverse);
+            const Vector whole = pair->share[i] * above_zero(height);
+            weight[i] = choose(less(absolute(height), radius), cut, whole);
+            sum[i] += weight[i];
+            if (Each) out->light[k + (std::uint32_t)i] = weight[i];
+        }
+        if (!Each) continue;
+        out->light_end[k] = weight[0] + end;
+        out->light_end[k + 1] = end = (weight[1] + weight[0]) + end;
+    }
+    out->lights = sum[0] + sum[1];
+}
+
+/* acdf_local_at of files of the fast shape. */
+template <bool Draws>
+ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], FastPoints<Draws>* out) {
+    const AcdfFast& fast = local.fast;
+    corners_of(local, normals, out);
+    for (int i = 0; i < kRows; ++i) {
+        out->group[i] = multiplied(out->row[i], 2ll * fast.ends) + (long long)(std::uintptr_t)fast.groups;
+        out->tile[i] = multiplied(out->row[i], fast.stride) + (long long)(std::uintptr_t)fast.tiles;
+        out->upper[i] = multiplied(out->row[i], 2ll * fast.upper_ends) + (long long)(std::uintptr_t)fast.upper;
+    }
+    const Vector mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
+    mix_rows(mixture, out);
+    weigh_fast_lights(local, out);
+    out->sum = out->lights + mixture;
+    out->step = 32767.0 * out->whole / mixture;
+    out->unit = mixture / (out->sum * (32767.0 * 255.0 * out->whole));
+}
+
+/* One point in all lanes, which serves_waves has approved. */
+template <bool Draws>
+ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, FastPoints<Draws>* out) {
+    const AcdfFastMixture& mix = point.fast;
+    for (int i = 0; i < kRows; ++i) {
+        out->group[i] = Integer{} + (long long)(std::uintptr_t)mix.group[i];
+        out->tile[i] = Integer{} + (long long)(std::uintptr_t)mix.tile[i];
+        out->upper[i] = Integer{} + (long long)(std::uintptr_t)mix.upper[i];
+        out->share[i] = Ints{} + mix.weight[i];
+    }
+    for (std::uint32_t k = 0; Draws && k < local.light_count; k += 2)
+        for (std::uint32_t i = k; i < k + 2; ++i) {
+            out->light[i] = all(point.light[i]);
+            out->light_end[i] = all(point.light_end[i]);
+        }
+    for (int i = 0; i < 3; ++i) out->normal[i] = all(point.normal[i]);
+    out->length = all(point.length);
+    out->whole = all(mix.whole);
+    out->lights = all(point.lights);
+    out->sum = all(point.sum);
+    out->step = all(point.step);
+    out->unit = all(point.unit);
+    out->served = ~Integer{};
+}
+
+// ---- what rows give --------------------------------------------------------------------------------------------
+
+/// Lanes of a block in the fast shape; `end` of groups: cumulative values before and at the group's end, as they
+/// lie.
+struct FastLanes {
+    alignas(64) long long group[kRows][kRoom], tile_row[kRows][kRoom], upper[kRows][kRoom];
+    alignas(64) std::int32_t share[kRows][kRoom], end[kRows][kRoom], inner[kRoom]; // inner: 0 of first groups
+    alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom];       // part: weights in the group
+    alignas(64) double mass[kRoom], below[kRoom], whole[kRoom], unit[kRoom];       // of groups, but for unit
+};
+
+/* Begins lanes: what their points have of rows. */
+template <bool Draws>
+ACDF_LANE void keep_rows(const FastPoints<Draws>& p, std::size_t at, FastLanes* w) {
+    for (int i = 0; i < kRows; ++i) {
+        stored(&w->group[i][at], p.group[i]);
+        stored(&w->tile_row[i][at], p.tile[i]);
+        stored(&w->upper[i][at], p.upper[i]);
+        stored(&w->share[i][at], p.share[i]);
+        stored(&w->end[i][at], Ints{});
+    }
+    stored(&w->inner[at], Ints{});
+    stored(&w->number[at], Ints{});
+    stored(&w->unit[at], p.unit);
+}
+
+/* What rows give to the group of a lane. */
+ACDF_LANE void load_ends(FastLanes* w, std::size_t lane, std::uint32_t number) {
+    const std::uint32_t inner = number > 0;
+    for (int i = 0; i < kRows; ++i)
+        std::memcpy(&w->end[i][lane], (const std::uint16_t*)w->group[i][lane] + (number - inner), 4);
+    w->inner[lane] = -(std::int32_t)inner;
+    w->number[lane] = (std::int32_t)number;
+}
+
+/* acdf_fast_find_group of a vector. */
+ACDF_LANE void find_groups(FastLanes* w, std::size_t at) {
+    Ints part[kRows], mass = {}, below = {}, whole = {};
+    const Ints inner = loaded(&w->inner[at]);
+    for (int i = 0; i < kRows; ++i) {
+        const Ints ends = loaded(&w->end[i][at]), share = loaded(&w->share[i][at]);
+        const Ints before = ends & inner & 0xFFFF, end = (ends >> (inner & 16)) & 0xFFFF;
+        part[i] = (end - before) * share;
+        mass += part[i];
+        below += before * share;
+    }
+    const Ints shift = shift_of(mass), most = ((Ints{} + 1) << shift) - 1;
+    for (int i = 0; i < kRows; ++i) {
+        part[i] = (part[i] + most) >> shift;
+        whole += part[i];
+        stored(&w->part[i][at], part[i]);
+    }
+    stored(&w->mass[at], to_doubles(mass));
+    stored(&w->below[at], to_doubles(below));
+    stored(&w->whole[at], to_doubles(whole));
+}
+
+} // namespace
