@@ -1,4 +1,4 @@
-// Time of a shading point, a draw and a density of local environment files, with runtime tables and without, and
+// Time of a shading point, draws and densities of local environment files, with runtime tables and without, and
 // many at once, beside the full table of an environment of as many columns, which knows nothing of normals.
 //
 //   bench_local FILE.acdf...      tables in Markdown
@@ -47,6 +47,7 @@ struct Questions {
     }
 };
 
+/// Calls at a point, which serves `shared` of them.
 template <class Ask>
 Candidate each(const LocalEnvironmentView& view, const Questions& q, std::size_t shared, const Ask& ask) {
     return {"", [&view, &q, shared, ask](std::size_t first, std::size_t count) {
@@ -54,6 +55,14 @@ Candidate each(const LocalEnvironmentView& view, const Questions& q, std::size_t
                     const AcdfLocalPoint point = view.at(q.normals[i].data());
                     for (std::size_t k = i; k < i + shared; ++k) ask(view, point, k);
                 }
+            }};
+}
+
+/// Densities at a normal that serves once.
+Candidate density_each(const LocalEnvironmentView& view, const Questions& q, const Directions& directions) {
+    return {"", [&](std::size_t first, std::size_t count) {
+                for (std::size_t i = first; i < first + count; ++i)
+                    keep(view.pdf(q.normals[i].data(), directions[i].data()));
             }};
 }
 
@@ -68,15 +77,15 @@ struct Compared {
 /// Calls of a wave from one on, into memory of its own.
 using Wave = std::function<void(const LocalWavefront& wavefront, std::size_t first, std::size_t count)>;
 
-template <class Ask, class Full>
-void report(const char* what, const Compared& all, std::size_t shared, const Ask& ask, const Full& full,
-            const Wave& wave) {
+/// `ours`: the calls of a view.
+template <class Ours, class Full>
+void report(const char* what, const Compared& all, const Ours& ours, const Full& full, const Wave& wave) {
     std::vector<Candidate> rows = {{"",
                                     [&](std::size_t first, std::size_t count) {
                                         for (std::size_t i = first; i < first + count; ++i) full(i);
                                     }},
-                                   each(all.plain, all.q, shared, ask),
-                                   each(all.fast, all.q, shared, ask)};
+                                   ours(all.plain),
+                                   ours(all.fast)};
     if (wave)
         for (const LocalWavefront& wavefront : all.waves)
             rows.push_back({"", [&](std::size_t first, std::size_t count) {
@@ -120,9 +129,6 @@ bool run(const char* path) {
     const auto draw = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.sample(point, q.u[k][0], q.u[k][1]));
     };
-    const auto anywhere = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
-        keep(view.pdf(point, q.anywhere[k].data()));
-    };
     const auto drawn = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.pdf(point, q.drawn[k].data()));
     };
@@ -151,12 +157,19 @@ bool run(const char* path) {
                           densities.data());
         };
     };
-    report("shading point (full table: a draw)", all, 1, nothing, full_draw, nullptr);
-    report("shading point and draw", all, 1, draw, full_draw, draws);
-    report("one of 16 draws at a point", all, kShared, draw, full_draw, shared_draws);
-    report("shading point and density of a uniform direction", all, 1, anywhere, full_anywhere, of(q.anywhere));
-    report("shading point and density of a drawn direction", all, 1, drawn, full_drawn, of(q.drawn));
-    report("one of 16 densities at a point", all, kShared, drawn, full_drawn, shared_densities);
+    const auto at_points = [&q](std::size_t shared, const auto& ask) {
+        return [&q, shared, ask](const LocalEnvironmentView& view) { return each(view, q, shared, ask); };
+    };
+    const auto once = [&q](const Directions& directions) {
+        return [&](const LocalEnvironmentView& view) { return density_each(view, q, directions); };
+    };
+    report("shading point (full table: a draw)", all, at_points(1, nothing), full_draw, nullptr);
+    report("shading point and draw", all, at_points(1, draw), full_draw, draws);
+    report("one of 16 draws at a point", all, at_points(kShared, draw), full_draw, shared_draws);
+    report("density of a uniform direction at a normal of its own", all, once(q.anywhere), full_anywhere,
+           of(q.anywhere));
+    report("density of a drawn direction at a normal of its own", all, once(q.drawn), full_drawn, of(q.drawn));
+    report("one of 16 densities at a point", all, at_points(kShared, drawn), full_drawn, shared_densities);
     return true;
 }
 
@@ -186,10 +199,10 @@ bool count(char** arguments, const char* how) {
     }
     for (std::size_t i = 0; i < calls; ++i) {
         const std::size_t k = i % kCalls;
-        const AcdfLocalPoint point = view.at(q.normals[k].data());
-        if (what == 'o') keep(point);
-        if (what == 'r') keep(view.sample(point, q.u[k][0], q.u[k][1]));
-        if (what == 'd') keep(view.pdf(point, q.anywhere[k].data()));
+        const float* const normal = q.normals[k].data();
+        if (what == 'd') keep(view.pdf(normal, q.anywhere[k].data()));
+        else if (what == 'r') keep(view.sample(view.at(normal), q.u[k][0], q.u[k][1]));
+        else keep(view.at(normal));
     }
     return true;
 }

@@ -173,15 +173,7 @@ inline std::vector<double> square_probabilities(const acdf::LocalEnvironmentView
         for (std::uint32_t c = 0; c < env.columns; ++c) {
             const std::uint32_t square[2] = {c, r};
             AcdfRange range[2];
-            acdf_sphere_ranges(env.columns, env.rows, range);
-            const auto fast = [&] {
-                const AcdfFastShare share = acdf_local_fast_find(&local, &source, square, range);
-                return share.of / share.all;
-            };
-            const double p = source.what == ACDF_LOCAL_FAST ? fast()
-                             : source.what == ACDF_LOCAL_BLEND
-                                 ? acdf_local_blend_find(&local, &source, square, range)
-                                 : acdf_tree_find(env.tree, source.root, square, range, nullptr);
+            const double p = acdf_local_find_cell(&local, &source, square, range);
             const AcdfGrid grid = acdf_environment_grid(&env);
             out[std::size_t{r} * env.columns + c] = p * square_area(env, r) / acdf_grid_solid_angle(&grid, range);
         }

@@ -32,10 +32,8 @@ std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map
         std::uint32_t square[2];
         double position[2];
         acdf_sphere_ranges(env.columns, env.rows, range);
-        if (!acdf_grid_square(&grid, direction, square, position)) return;
-        if (point.what == ACDF_LOCAL_FAST) acdf_local_fast_find(&local, &point, square, range);
-        else if (point.what == ACDF_LOCAL_BLEND) acdf_local_blend_find(&local, &point, square, range);
-        else if (point.what == ACDF_LOCAL_TREE) acdf_tree_find(env.tree, point.root, square, range, nullptr);
+        if (acdf_grid_square(&grid, direction, square, position))
+            acdf_local_find_cell(&local, &point, square, range);
     };
     return knot_opacity(find, grid, map, progress);
 }

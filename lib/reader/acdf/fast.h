@@ -47,10 +47,13 @@ typedef struct AcdfFastMixture {
     double whole;                          /* their sum */
 } AcdfFastMixture;
 
-/* Row i of a mixture. What a draw looks at first is asked for, while something else is done. */
-ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, int i, uint32_t row) {
+/* Row i of a mixture. What a draw looks at first is asked for, while something else is done; where nothing will be
+ * drawn, it is left open. */
+ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, int i, uint32_t row,
+                                   const int draws) {
     mix->group[i] = fast->groups + (size_t)row * fast->ends;
     mix->tile[i] = fast->tiles + (size_t)row * fast->stride;
+    if (!draws) return;
     mix->upper[i] = fast->upper ? fast->upper + (size_t)row * fast->upper_ends : 0;
     ACDF_PREFETCH(fast->upper ? mix->upper[i] : mix->group[i]);
 }

@@ -8,28 +8,11 @@
 #ifndef ACDF_LOCAL_H
 #define ACDF_LOCAL_H
 
-#include <acdf/local_fast.h>
-#include <acdf/row_heights.h>
+#include <acdf/local_pdf.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Whether runtime tables know the tiles as a point sees them. */
-ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return local->tables && point->place.count == 0;
-}
-
-/* Where the curves of a tile begin; ACDF_NO_ROOT: it is a cell. */
-ACDF_INLINE uint32_t acdf_local_tile_root(const AcdfLocal* local, uint32_t tile) {
-    if (local->tables) return acdf_local_tile(local->tables, tile)->root;
-    return local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
-}
-
-/* Asks for the curves of a tile while something else is done. */
-ACDF_INLINE void acdf_local_ahead(const AcdfLocal* local, const AcdfTileRecord* tile) {
-    if (tile->root != ACDF_NO_ROOT) ACDF_PREFETCH(local->blend.tree + 2 * (size_t)tile->root);
-}
 
 /* A tile of the mixture: by the walk of the normal alone or of normal and place. */
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
@@ -66,33 +49,6 @@ ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLoc
     return tile;
 }
 
-/* The range of a tile that tables found, and its share of a mixture that `first` splits above it have been taken
- * from. */
-ACDF_INLINE double acdf_local_found_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                         const AcdfMixture* mix, uint32_t tile, uint32_t first, AcdfRange* range) {
-    const AcdfTileRecord* record = acdf_local_tile(local->tables, tile);
-    double given;
-    acdf_local_ahead(local, record);
-    given =
-        acdf_tile_share(acdf_local_words(local->tables), &local->tables->tiles, mix, point->codes, record, first);
-    acdf_tile_range(record, range);
-    return given > 0.0 ? acdf_positive(given / acdf_mixture_sum(mix)) : 0.0;
-}
-
-/* Finds the tile of a square, with its share of the mixture. */
-ACDF_FN uint32_t acdf_local_find_tile(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
-                                      AcdfRange* range, double* probability) {
-    if (acdf_local_tabled(local, point)) {
-        const uint32_t tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
-        *probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
-        return tile;
-    }
-    if (point->place.count > 0)
-        return acdf_place_find_below(&local->places, &local->blend, &point->mix, &point->place,
-                                     acdf_blend_root(&local->blend), square, range, probability);
-    return acdf_blend_find_tile(&local->blend, &point->mix, square, range, 0, probability);
-}
-
 /* Draws a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
  * records, which not all draws have asked for. */
 ACDF_INLINE double acdf_local_draw_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
@@ -122,58 +78,6 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
     return acdf_local_draw_inside(local, tile, probability, u, range);
 }
 
-/* Finds the cell of a square in a tile of a probability; returns that of the cell. */
-ACDF_INLINE double acdf_local_find_inside(const AcdfLocal* local, uint32_t tile, double probability,
-                                          const uint32_t* square, AcdfRange* range) {
-    const uint32_t root = acdf_local_tile_root(local, tile);
-    double inside;
-    if (!(probability > 0.0) || root == ACDF_NO_ROOT) return probability;
-    inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
-    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
-}
-
-/* Finds the cell of a grid square, as acdf_tree_find does. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t* square,
-                                     AcdfRange* range) {
-    double probability;
-    const uint32_t tile = acdf_local_find_tile(local, point, square, range, &probability);
-    probability = acdf_local_tile_probability(local, point, tile, probability);
-    return acdf_local_find_inside(local, tile, probability, square, range);
-}
-
-/* The part of the density that follows the light, by runtime tables, as the walk finds it. Returns 0 where they do
- * not tell. */
-ACDF_INLINE int acdf_local_table_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
-                                     float* pdf) {
-    const AcdfMixture* mix = &point->mix;
-    const AcdfTilePiece* piece = acdf_local_find_piece(local->tables, direction);
-    double part[ACDF_MAX_ROWS_MIXED], probability;
-    int i;
-    if (!piece) return 0;
-    for (i = 0; i < mix->count; ++i) part[i] = point->parts[i][piece->tile];
-    probability = acdf_mixture_of(mix, mix->count, part);
-    if (probability > 0.0) probability = acdf_positive(probability / acdf_mixture_sum(mix));
-    probability = acdf_local_tile_probability(local, point, piece->tile, probability);
-    *pdf = 0.0f;
-    if (probability > 0.0 && piece->probability > 0.0)
-        *pdf = acdf_area_pdf(acdf_positive(probability * piece->probability), local->environment.columns,
-                             piece->area, 1.0);
-    return 1;
-}
-
-/* The density of a direction in a cell of probability p. */
-ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const float direction[3],
-                                      const AcdfRange range[2], double p) {
-    double t[2] = {0.5, 0.5}, position[2];
-    uint32_t square[2];
-    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) {
-        if (!acdf_grid_square(grid, direction, square, position)) return 0.0f;
-        acdf_grid_fractions(grid, direction, position, range, t);
-    } else if (local->tables && local->tables->heights)
-        return acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
-    return acdf_grid_pdf(grid, range, t, p);
-}
-
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
 ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                  const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
@@ -184,50 +88,6 @@ ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const A
     out.pdf = local->tables->octahedral ? acdf_fold_pdf(grid, range, p)
                                         : acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
     return out;
-}
-
-/* The density of what rows, or a tree, draw. */
-ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
-    AcdfRange range[2];
-    double p;
-    uint32_t square[2];
-    float told;
-    if (point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) && local->tables->pieces &&
-        acdf_local_table_pdf(local, point, direction, &told))
-        return told;
-    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_pdf(local, point, direction);
-    if (point->what == ACDF_LOCAL_NOTHING || !acdf_local_square(&grid, direction, square)) return 0.0f;
-    acdf_sphere_ranges(grid.columns, grid.rows, range);
-    p = point->what == ACDF_LOCAL_BLEND
-            ? acdf_local_blend_find(local, point, square, range)
-            : acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->root, square, range);
-    return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
-}
-
-/* The part of the density that follows the light: that of rows, and of windows where a place sees any. */
-ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
-    const float row = acdf_local_row_pdf(local, point, direction);
-    return point->windows.count > 0 ? acdf_windows_pdf(&point->windows, direction, row) : row;
-}
-
-/* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
-ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
-                                 float light) {
-    const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
-    const double share = local->cosine_share;
-    double dx, dy, dz, size, cosine, pdf;
-    float given[3];
-    if (share == 0.0) return light;
-    acdf_as_given(direction, given);
-    dx = given[0];
-    dy = given[1];
-    dz = given[2];
-    size = sqrt(dx * dx + dy * dy + dz * dz);
-    if (!(size > 0.9995 && size < 1.0005)) return 0.0f;
-    cosine = (x * dx + y * dy + z * dz) / sqrt(x * x + y * y + z * z);
-    pdf = (1.0 - share) * (double)light + (cosine > 0.0 ? share * cosine * (1.0 / ACDF_PI) : 0.0);
-    return pdf > 1.17549435e-38 || pdf == 0.0 ? (float)pdf : 1.17549435e-38f;
 }
 
 /* A direction around the normal with density cos / pi: the unit normal plus a point of the unit sphere. */
@@ -244,29 +104,6 @@ ACDF_FN void acdf_cosine_direction(const float normal[3], double u0, double u1, 
     int i;
     acdf_sincospi(2.0 * u0 - 1.0, &sine, &cosine);
     for (i = 0; i < 3; ++i) direction[i] = (float)(r * (cosine * s[i] + sine * t[i]) + h * n[i]);
-}
-
-/* acdf_local_pdf_at of any shape, with windows and the cosine; and where rows of the fast shape are all there is.
- * Each saves only the registers that it needs. */
-ACDF_OUTLINE_ON_CPU float acdf_local_any_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                const float direction[3]) {
-    if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
-    return acdf_local_density(local, point, direction, acdf_local_light_pdf(local, point, direction));
-}
-ACDF_OUTLINE_ON_CPU float acdf_local_fast_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                 const float direction[3]) {
-    return acdf_local_fast_pdf(local, point, direction);
-}
-
-/* Whether a point has no more than rows of the fast shape. */
-ACDF_INLINE int acdf_local_only_fast(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return point->what == ACDF_LOCAL_FAST && local->cosine_share == 0.0;
-}
-
-/* Density per steradian with which acdf_local_sample_at draws `direction` (unit). */
-ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
-    return acdf_local_only_fast(local, point) ? acdf_local_fast_pdf_at(local, point, direction)
-                                              : acdf_local_any_pdf_at(local, point, direction);
 }
 
 /* Draws by rows, or a tree; u[0] and u[1] in [0, 1]. */
@@ -334,11 +171,6 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
 }
 
 /* The same for a normal that serves once. */
-ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
-    AcdfLocalPoint point;
-    acdf_local_at(local, normal, &point);
-    return acdf_local_pdf_at(local, &point, direction);
-}
 ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);

@@ -39,9 +39,8 @@ ACDF_INLINE AcdfFastGrid acdf_local_fast_drawn(const AcdfLocal* local, uint32_t 
     return acdf_fast_grid(&local->fast, local->blend.roots[tile], range);
 }
 
-/* The tile of a square; *grid and range become its own. */
-ACDF_INLINE uint32_t acdf_local_fast_found(const AcdfLocal* local, const uint32_t* square, AcdfFastGrid* grid,
-                                           AcdfRange* range) {
+/* The tile of a square; without tables `range` becomes its own. */
+ACDF_INLINE uint32_t acdf_local_fast_tile(const AcdfLocal* local, const uint32_t* square, AcdfRange* range) {
     uint32_t node = acdf_blend_root(&local->blend);
     if (local->tables) node = acdf_tile_block_at(acdf_local_words(local->tables), &local->tables->blocks, square);
     while (!(node & ACDF_TILE_FLAG)) {
@@ -50,10 +49,7 @@ ACDF_INLINE uint32_t acdf_local_fast_found(const AcdfLocal* local, const uint32_
         if (!local->tables) acdf_range_cut(&range[split->place & 7u], split->place >> 3, (int)in_upper);
         node = split->child[in_upper];
     }
-    node &= ~ACDF_TILE_FLAG;
-    *grid = local->tables ? acdf_local_fast_record(local, node, range)
-                          : acdf_fast_grid(&local->fast, local->blend.roots[node], range);
-    return node;
+    return node & ~ACDF_TILE_FLAG;
 }
 
 /* How many sums up to lights are not above x. */
@@ -105,11 +101,11 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const Acd
     return share;
 }
 
-/* The cell of a square, which becomes `range`, and its probability: 0 where no sample can fall. */
-ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const AcdfLocalPoint* point,
+/* The cell of a square in its tile, which becomes `range`, and its probability: 0 where no sample can fall. */
+ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
                                                const uint32_t* square, AcdfRange* range) {
-    AcdfFastGrid grid;
-    const uint32_t tile = acdf_local_fast_found(local, square, &grid, range);
+    const AcdfFastGrid grid = local->tables ? acdf_local_fast_record(local, tile, range)
+                                            : acdf_fast_grid(&local->fast, local->blend.roots[tile], range);
     const double inside = acdf_fast_find_cell(&grid, square, range);
     const uint32_t light = acdf_local_light_of(local, tile);
     AcdfFastShare share = acdf_fast_share(&point->fast, tile);
@@ -151,19 +147,6 @@ ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, c
         out = acdf_grid_place(&grid, range, u, 1.0);
     out.pdf = acdf_local_fast_density(local, &grid, range, &share);
     return out;
-}
-
-/* acdf_local_row_pdf of this shape. */
-ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                      const float direction[3]) {
-    const AcdfGrid grid = acdf_environment_grid(&local->environment);
-    AcdfRange range[2];
-    AcdfFastShare share;
-    uint32_t square[2];
-    if (!acdf_local_square(&grid, direction, square)) return 0.0f;
-    acdf_sphere_ranges(grid.columns, grid.rows, range);
-    share = acdf_local_fast_find(local, point, square, range);
-    return acdf_local_fast_density(local, &grid, range, &share);
 }
 
 #ifdef __cplusplus

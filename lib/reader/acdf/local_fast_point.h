@@ -1,4 +1,5 @@
-/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. */
+/* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `draws` is 0 what only draws
+ * need is left open: of rows where they are searched, of lights the sums up to each. */
 #ifndef ACDF_LOCAL_FAST_POINT_H
 #define ACDF_LOCAL_FAST_POINT_H
 
@@ -10,40 +11,44 @@ extern "C" {
 #endif
 
 /* A row of the fast shape, and what of the mixture it weighs. */
-ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, double weight, AcdfLocalPoint* out) {
+ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, double weight, const int draws,
+                                     AcdfLocalPoint* out) {
     out->mix.weight[out->mix.count] = weight;
-    acdf_fast_set_row(&local->fast, &out->fast, out->mix.count, row);
+    acdf_fast_set_row(&local->fast, &out->fast, out->mix.count, row, draws);
     ++out->mix.count;
 }
 
 /* acdf_local_table_rows of the fast shape. */
-ACDF_INLINE int acdf_local_fast_corners(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+ACDF_INLINE int acdf_local_fast_corners(const AcdfLocal* local, const float normal[3], const int draws,
+                                        AcdfLocalPoint* out) {
     const AcdfCornerRecord* corner[3];
     double weight[3], scale;
     int i;
     if (!acdf_local_table_corners(local, normal, corner, weight, &scale)) return 0;
-    for (i = 0; i < 3; ++i) acdf_local_fast_row(local, corner[i]->row, weight[i], out);
+    for (i = 0; i < 3; ++i) acdf_local_fast_row(local, corner[i]->row, weight[i], draws, out);
     acdf_local_scaled(normal, scale, acdf_local_length(normal), out);
     acdf_fast_mix(weight, ACDF_FAST_ROWS, &out->fast);
     return 1;
 }
 
 /* acdf_local_begin of files of the fast shape. */
-ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
+ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3], const int draws,
+                                  AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     int i;
     acdf_local_no_rows(normal, out);
-    if (local->tables && local->tables->corners && acdf_local_fast_corners(local, out->surface, out)) return 1;
+    if (local->tables && local->tables->corners && acdf_local_fast_corners(local, out->surface, draws, out))
+        return 1;
     if (!acdf_local_bins(local, out->surface, &bins)) return 0;
     for (i = 0; i < bins.count; ++i) {
         const AcdfBin* bin = &local->bins[bins.bin[i]];
         const double share = bins.weight[i] * (double)bin->share;
         if (bin->root == ACDF_NO_ROOT) return acdf_local_whole(local, out);
-        if (share > 0.0) acdf_local_fast_row(local, bin->root, share, out);
+        if (share > 0.0) acdf_local_fast_row(local, bin->root, share, draws, out);
     }
     for (i = out->mix.count; i < ACDF_FAST_ROWS; ++i) {
         out->mix.weight[i] = 0.0;
-        acdf_fast_set_row(&local->fast, &out->fast, i, 0);
+        acdf_fast_set_row(&local->fast, &out->fast, i, 0, draws);
     }
     acdf_local_normal(local, out->surface, out);
     acdf_fast_mix(out->mix.weight, out->mix.count, &out->fast);
@@ -52,7 +57,7 @@ ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3],
 
 /* Weighs the lights of the fast shape: each, the sums up to each, and all. Sums are made by twos, so that few wait
  * for each other. */
-ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
+ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, const int draws, AcdfLocalPoint* out) {
     const double inverse = 1.0 / out->length;
     double end = 0.0, sum[2] = {0.0, 0.0};
     AcdfLightPair pair;
@@ -61,13 +66,14 @@ ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, AcdfLocalPoint* 
         int i;
         acdf_local_light_pair(local, k, &pair);
         for (i = 0; i < 2; ++i) sum[i] += out->light[k + (uint32_t)i] = acdf_pair_weight(out, &pair, i, inverse);
+        if (!draws) continue;
         out->light_end[k] = out->light[k] + end;
         end = out->light_end[k + 1] = (out->light[k + 1] + out->light[k]) + end;
     }
     out->lights = sum[0] + sum[1];
 }
 /* The same by tables. */
-ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
+ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, const int draws, AcdfLocalPoint* out) {
 #ifdef ACDF_SSE2
     const AcdfLightPair* pair = acdf_local_lights(local->tables);
     const AcdfHorizon horizon = acdf_horizon(out);
@@ -76,23 +82,24 @@ ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, AcdfLocalPoint
     uint32_t k;
     for (k = 0; k < local->light_count; k += 2, ++pair) {
         const __m128d both = acdf_pair_weights(&horizon, pair, inverse);
-        end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
         _mm_storeu_pd(&out->light[k], both);
+        sum = _mm_add_pd(sum, both);
+        if (!draws) continue;
+        end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
         _mm_storeu_pd(&out->light_end[k], end); /* at once, as draws read them */
         end = _mm_unpackhi_pd(end, end);
-        sum = _mm_add_pd(sum, both);
     }
     out->lights = _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
 #else
-    acdf_local_fast_lights(local, out);
+    acdf_local_fast_lights(local, draws, out);
 #endif
 }
 
 /* acdf_local_sum of the fast shape. */
-ACDF_INLINE void acdf_local_fast_sum(const AcdfLocal* local, AcdfLocalPoint* out) {
+ACDF_INLINE void acdf_local_fast_sum(const AcdfLocal* local, const int draws, AcdfLocalPoint* out) {
     const double mixture = out->mix.weight[0] + out->mix.weight[1] + out->mix.weight[2];
-    if (local->tables) acdf_local_tabled_lights(local, out);
-    else acdf_local_fast_lights(local, out);
+    if (local->tables) acdf_local_tabled_lights(local, draws, out);
+    else acdf_local_fast_lights(local, draws, out);
     out->sum = out->lights + mixture;
     if (!(out->sum > 0.0)) return;
     out->step = mixture > 0.0 ? 32767.0 * out->fast.whole / mixture : 0.0;

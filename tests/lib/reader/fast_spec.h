@@ -22,7 +22,7 @@ struct FastGrid {
     std::vector<Bytes> cells; ///< of each line the ends of its cells
 
     Bytes encode() const {
-        Bytes out = {shift[0], shift[1]};
+        Bytes out(shift, shift + 2);
         out.insert(out.end(), lines.begin(), lines.end());
         for (const Bytes& line : cells) out.insert(out.end(), line.begin(), line.end());
         return out;

@@ -90,8 +90,10 @@ void expect_the_local_view(const acdf::LocalEnvironmentView& view, std::size_t c
     for (std::size_t i = 0; i < count; ++i) {
         const acdf::DirectionSample s = view.sample(normals[i], u[i][0], u[i][1]);
         ASSERT_EQ(std::memcmp(&s, &samples[i], sizeof s), 0) << i;
-        const float pdf = view.pdf(normals[i], directions[i]);
+        const float pdf = view.pdf(normals[i], directions[i]),
+                    at_a_point = view.pdf(view.at(normals[i]), directions[i]);
         ASSERT_EQ(std::memcmp(&pdf, &pdfs[i], sizeof pdf), 0) << i;
+        ASSERT_EQ(std::memcmp(&pdf, &at_a_point, sizeof pdf), 0) << i;
     }
     EXPECT_EQ(samples[count].pdf, 7.0f);
     EXPECT_EQ(pdfs[count], 7.0f);

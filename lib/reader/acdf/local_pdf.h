@@ -1,0 +1,277 @@
+/* Densities of local environment maps. Part of acdf/local.h. */
+#ifndef ACDF_LOCAL_PDF_H
+#define ACDF_LOCAL_PDF_H
+
+#include <acdf/local_fast.h>
+#include <acdf/row_heights.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Whether runtime tables know the tiles as a point sees them. */
+ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    return local->tables && point->place.count == 0;
+}
+
+/* Where the curves of a tile begin; ACDF_NO_ROOT: it is a cell. */
+ACDF_INLINE uint32_t acdf_local_tile_root(const AcdfLocal* local, uint32_t tile) {
+    if (local->tables) return acdf_local_tile(local->tables, tile)->root;
+    return local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
+}
+
+/* Asks for the curves of a tile while something else is done. */
+ACDF_INLINE void acdf_local_ahead(const AcdfLocal* local, const AcdfTileRecord* tile) {
+    if (tile->root != ACDF_NO_ROOT) ACDF_PREFETCH(local->blend.tree + 2 * (size_t)tile->root);
+}
+
+/* The range of a tile that tables found, and its share of a mixture that `first` splits above it have been taken
+ * from. */
+ACDF_INLINE double acdf_local_found_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                         const AcdfMixture* mix, uint32_t tile, uint32_t first, AcdfRange* range) {
+    const AcdfTileRecord* record = acdf_local_tile(local->tables, tile);
+    double given;
+    acdf_local_ahead(local, record);
+    given =
+        acdf_tile_share(acdf_local_words(local->tables), &local->tables->tiles, mix, point->codes, record, first);
+    acdf_tile_range(record, range);
+    return given > 0.0 ? acdf_positive(given / acdf_mixture_sum(mix)) : 0.0;
+}
+
+/* Finds the cell of a square in a tile of a probability; returns that of the cell. */
+ACDF_INLINE double acdf_local_find_inside(const AcdfLocal* local, uint32_t tile, double probability,
+                                          const uint32_t* square, AcdfRange* range) {
+    const uint32_t root = acdf_local_tile_root(local, tile);
+    double inside;
+    if (!(probability > 0.0) || root == ACDF_NO_ROOT) return probability;
+    inside = acdf_tree_locate(local->blend.tree, local->environment.tree_units, root, square, range);
+    return inside > 0.0 ? acdf_positive(probability * inside) : 0.0;
+}
+
+/* Where a direction lies, which does not depend on the shading point: it is looked for before that is made, where
+ * both are new. */
+typedef struct AcdfLocalSpot {
+    const AcdfTilePiece* piece; /* by tables; null: they do not tell */
+    uint32_t square[2];
+    uint32_t tile; /* by tables, where they tell no piece */
+    int valid;     /* 0: it is no direction */
+} AcdfLocalSpot;
+
+/* `tables`: those that serve the shading point; null: none do, or it may be served by none. */
+ACDF_INLINE AcdfLocalSpot acdf_local_spot(const AcdfLocal* local, const AcdfLocalTables* tables,
+                                          const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfLocalSpot out;
+    out.piece = tables && tables->pieces ? acdf_local_find_piece(tables, direction) : 0;
+    out.square[0] = out.square[1] = out.tile = 0;
+    out.valid = out.piece || acdf_local_square(&grid, direction, out.square);
+    if (!tables || out.piece || !out.valid) return out;
+    out.tile = acdf_tile_at(acdf_local_words(tables), &tables->tiles, out.square);
+    ACDF_PREFETCH(acdf_local_tile(tables, out.tile));
+    return out;
+}
+
+/* The cell of a square in the mixture of lights and rows, which becomes `range`, as acdf_tree_find does. Returns
+ * its probability, 0 where no sample can fall. */
+ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfLocalSpot* spot,
+                                     AcdfRange* range) {
+    double probability;
+    uint32_t tile = spot->tile;
+    if (acdf_local_tabled(local, point))
+        probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
+    else if (point->place.count > 0)
+        tile = acdf_place_find_below(&local->places, &local->blend, &point->mix, &point->place,
+                                     acdf_blend_root(&local->blend), spot->square, range, &probability);
+    else tile = acdf_blend_find_tile(&local->blend, &point->mix, spot->square, range, 0, &probability);
+    probability = acdf_local_tile_probability(local, point, tile, probability);
+    return acdf_local_find_inside(local, tile, probability, spot->square, range);
+}
+
+/* The part of the density that follows the light, in a piece that tables know. */
+ACDF_INLINE float acdf_local_piece_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                       const AcdfTilePiece* piece) {
+    const AcdfMixture* mix = &point->mix;
+    double part[ACDF_MAX_ROWS_MIXED], probability;
+    int i;
+    for (i = 0; i < mix->count; ++i) part[i] = point->parts[i][piece->tile];
+    probability = acdf_mixture_of(mix, mix->count, part);
+    if (probability > 0.0) probability = acdf_positive(probability / acdf_mixture_sum(mix));
+    probability = acdf_local_tile_probability(local, point, piece->tile, probability);
+    if (!(probability > 0.0 && piece->probability > 0.0)) return 0.0f;
+    return acdf_area_pdf(acdf_positive(probability * piece->probability), local->environment.columns, piece->area,
+                         1.0);
+}
+
+/* The density of a direction in a cell of probability p. */
+ACDF_INLINE float acdf_local_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const float direction[3],
+                                      const AcdfRange range[2], double p) {
+    double t[2] = {0.5, 0.5}, position[2];
+    uint32_t square[2];
+    if (range[0].tilt != 0.0 || range[1].tilt != 0.0) {
+        if (!acdf_grid_square(grid, direction, square, position)) return 0.0f;
+        acdf_grid_fractions(grid, direction, position, range, t);
+    } else if (local->tables && local->tables->heights)
+        return acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
+    return acdf_grid_pdf(grid, range, t, p);
+}
+
+/* The density of what rows of codes, or a tree, draw. */
+ACDF_FN float acdf_local_spot_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
+                                  const AcdfLocalSpot* spot) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    const uint32_t* square = spot->square;
+    uint32_t told[2];
+    AcdfRange range[2];
+    double p;
+    if (point->what == ACDF_LOCAL_NOTHING || !spot->valid) return 0.0f;
+    if (point->what == ACDF_LOCAL_BLEND && spot->piece) return acdf_local_piece_pdf(local, point, spot->piece);
+    acdf_sphere_ranges(grid.columns, grid.rows, range);
+    if (point->what == ACDF_LOCAL_BLEND) {
+        p = acdf_local_blend_find(local, point, spot, range);
+    } else {
+        if (spot->piece) { /* of tiles, which the tree does not know */
+            if (!acdf_local_square(&grid, direction, told)) return 0.0f;
+            square = told;
+        }
+        p = acdf_tree_locate(local->environment.tree, local->environment.tree_units, point->root, square, range);
+    }
+    return p > 0.0 ? acdf_local_cell_pdf(local, &grid, direction, range, p) : 0.0f;
+}
+
+/* The same of the fast shape. */
+ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                      const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    AcdfRange range[2];
+    AcdfFastShare share;
+    uint32_t square[2];
+    if (!acdf_local_square(&grid, direction, square)) return 0.0f;
+    acdf_sphere_ranges(grid.columns, grid.rows, range);
+    share = acdf_local_fast_find(local, point, acdf_local_fast_tile(local, square, range), square, range);
+    return acdf_local_fast_density(local, &grid, range, &share);
+}
+
+/* The cell of a grid square that rows, or a tree, draw at a point, which becomes `range`, and its probability: 0
+ * where no sample can fall. */
+ACDF_FN double acdf_local_find_cell(const AcdfLocal* local, const AcdfLocalPoint* point, const uint32_t square[2],
+                                    AcdfRange range[2]) {
+    const AcdfEnvironment* env = &local->environment;
+    AcdfLocalSpot spot = {0, {0, 0}, 0, 1};
+    AcdfFastShare share;
+    acdf_sphere_ranges(env->columns, env->rows, range);
+    if (point->what == ACDF_LOCAL_NOTHING) return 0.0;
+    if (point->what == ACDF_LOCAL_TREE)
+        return acdf_tree_locate(env->tree, env->tree_units, point->root, square, range);
+    if (point->what == ACDF_LOCAL_FAST) {
+        share = acdf_local_fast_find(local, point, acdf_local_fast_tile(local, square, range), square, range);
+        return share.of / share.all;
+    }
+    spot.square[0] = square[0];
+    spot.square[1] = square[1];
+    if (acdf_local_tabled(local, point))
+        spot.tile = acdf_tile_at(acdf_local_words(local->tables), &local->tables->tiles, square);
+    return acdf_local_blend_find(local, point, &spot, range);
+}
+
+/* Of either, in a direction. */
+ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+    AcdfLocalSpot spot;
+    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_pdf(local, point, direction);
+    if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
+    spot = acdf_local_spot(
+        local, point->what == ACDF_LOCAL_BLEND && acdf_local_tabled(local, point) ? local->tables : 0, direction);
+    return acdf_local_spot_pdf(local, point, direction, &spot);
+}
+
+/* The part of the density that follows the light: that of rows, and of windows where a place sees any. */
+ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+    const float row = acdf_local_row_pdf(local, point, direction);
+    return point->windows.count > 0 ? acdf_windows_pdf(&point->windows, direction, row) : row;
+}
+
+/* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
+ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
+                                 float light) {
+    const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
+    const double share = local->cosine_share;
+    double dx, dy, dz, size, cosine, pdf;
+    float given[3];
+    if (share == 0.0) return light;
+    acdf_as_given(direction, given);
+    dx = given[0];
+    dy = given[1];
+    dz = given[2];
+    size = sqrt(dx * dx + dy * dy + dz * dz);
+    if (!(size > 0.9995 && size < 1.0005)) return 0.0f;
+    cosine = (x * dx + y * dy + z * dz) / sqrt(x * x + y * y + z * z);
+    pdf = (1.0 - share) * (double)light + (cosine > 0.0 ? share * cosine * (1.0 / ACDF_PI) : 0.0);
+    return pdf > 1.17549435e-38 || pdf == 0.0 ? (float)pdf : 1.17549435e-38f;
+}
+
+/* acdf_local_pdf_at of any shape, with windows and the cosine; and where rows of the fast shape are all there is.
+ * Each saves only the registers that it needs. */
+ACDF_OUTLINE_ON_CPU float acdf_local_any_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                const float direction[3]) {
+    if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
+    return acdf_local_density(local, point, direction, acdf_local_light_pdf(local, point, direction));
+}
+ACDF_OUTLINE_ON_CPU float acdf_local_fast_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                 const float direction[3]) {
+    return acdf_local_fast_pdf(local, point, direction);
+}
+
+/* Whether a point has no more than rows of the fast shape. */
+ACDF_INLINE int acdf_local_only_fast(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    return point->what == ACDF_LOCAL_FAST && local->cosine_share == 0.0;
+}
+
+/* Density per steradian with which acdf_local_sample_at draws `direction` (unit). */
+ACDF_FN float acdf_local_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
+    return acdf_local_only_fast(local, point) ? acdf_local_fast_pdf_at(local, point, direction)
+                                              : acdf_local_any_pdf_at(local, point, direction);
+}
+
+/* The same for a normal that serves once, in files of codes that have tables. */
+ACDF_OUTLINE_ON_CPU float acdf_local_new_pdf(const AcdfLocal* local, const float normal[3],
+                                             const float direction[3]) {
+    const AcdfLocalSpot spot = acdf_local_spot(local, local->tables, direction);
+    AcdfLocalPoint point;
+    acdf_local_at(local, normal, &point);
+    if (point.what == ACDF_LOCAL_NOTHING) return 0.0f;
+    return acdf_local_density(local, &point, direction, acdf_local_spot_pdf(local, &point, direction, &spot));
+}
+/* And of the fast shape. */
+ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const float normal[3],
+                                                  const float direction[3]) {
+    const AcdfGrid grid = acdf_environment_grid(&local->environment);
+    uint32_t square[2], tile;
+    AcdfLocalPoint point;
+    AcdfRange range[2];
+    AcdfFastShare share;
+    const int valid = acdf_local_square(&grid, direction, square);
+    if (!valid) square[0] = square[1] = 0;
+    acdf_sphere_ranges(grid.columns, grid.rows, range);
+    tile = acdf_local_fast_tile(local, square, range);
+    ACDF_PREFETCH(acdf_local_tile(local->tables, tile));
+    point.windows.count = 0;
+    point.place.count = 0;
+    if (acdf_local_begin_fast(local, normal, 0, &point)) acdf_local_fast_sum(local, 0, &point);
+    if (!acdf_local_only_fast(local, &point)) return acdf_local_any_pdf_at(local, &point, direction);
+    if (!valid) return 0.0f;
+    share = acdf_local_fast_find(local, &point, tile, square, range);
+    return acdf_local_fast_density(local, &grid, range, &share);
+}
+/* In any. */
+ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
+    AcdfLocalPoint point;
+    if (local->tables)
+        return local->fast.grid ? acdf_local_new_fast_pdf(local, normal, direction)
+                                : acdf_local_new_pdf(local, normal, direction);
+    acdf_local_at(local, normal, &point);
+    return acdf_local_pdf_at(local, &point, direction);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
