@@ -30,7 +30,8 @@ typedef struct AcdfTileRecord {
 ACDF_STATIC_ASSERT(sizeof(AcdfTileRecord) == 64);
 
 /* Offsets are in words, from the start of all tables. Splits are numbered anew: those of the upper levels stand in
- * one cache line of a row, those below them line by line. */
+ * one cache line of a row, those below them line by line. Files of the fast shape, whose splits nothing walks by
+ * tables, have `tiles` alone. */
 typedef struct AcdfTileTables {
     uint32_t codes;    /* f64, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
     uint32_t splits;   /* AcdfSplit, `stride` of them; some are none */

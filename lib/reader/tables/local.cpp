@@ -210,7 +210,7 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     const bool latlong = env.parameterization == ACDF_PARAM_LATLONG;
     const std::size_t heights = latlong ? whole_lines(2 * (std::size_t{env.rows} + 1)) : 0;
     std::size_t at = sizeof(AcdfLocalTables) / 4;
-    TileTablesMaker tiles(local.blend, env.columns, env.rows);
+    TileTablesMaker tiles(local.blend, env.columns, env.rows, !local.fast.grid);
     if (!tiles.make()) return nullptr;
     const std::size_t corners = corner_words(local),
                       lights = whole_lines((local.light_count + 1) / 2 * sizeof(AcdfLightPair) / 4);
