@@ -51,7 +51,7 @@ public:
     LocalWavefront() noexcept = default;
     /// Uses the best instructions that the processor has, up to `most`. Served without are files without runtime
     /// tables, with a share of the cosine, with bins on a lat-long grid or of more than 32 subdivisions: there
-    /// calls of several normals wait for memory together, at most.
+    /// draws at several normals wait for memory together, at most.
     explicit LocalWavefront(const LocalEnvironmentView& view, Instructions most = Instructions::avx512) noexcept;
 
     /// LocalEnvironmentView::sample of normals[i] and u[i] into out[i], i < count.

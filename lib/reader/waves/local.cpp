@@ -15,23 +15,18 @@ constexpr std::size_t kBlock = 16, kSideBySide = 4;
 constexpr std::size_t kFewest = 6; // fewer wait for each other as long as single calls do
 constexpr int kRows = 3;           // of nearly all normals: those on edges of triangles have fewer
 
-/// Where a draw or a density is, of those that are side by side.
+/// Where a draw is, of those that are side by side.
 struct Lane {
     std::size_t number;
     AcdfLocalPoint point;
     u32 tile;
-    union {
-        AcdfTileWalk walk;
-        u32 square[2];
-    };
+    AcdfTileWalk walk;
 };
 
 bool usual(const AcdfLocal& local, const AcdfLocalPoint& point) {
     return point.what == ACDF_LOCAL_BLEND && point.mix.count == kRows && local.cosine_share == 0.0 &&
            local.tables && local.blend.tiles->tile_count > 1;
 }
-
-void ask_for_tile(const AcdfLocal& local, u32 tile) { ACDF_PREFETCH(acdf_local_tile(local.tables, tile)); }
 
 /// Steps of the walks of some lanes until all are at a tile.
 void walk(const AcdfLocal& local, Lane* lane, std::size_t count) {
@@ -44,7 +39,10 @@ void walk(const AcdfLocal& local, Lane* lane, std::size_t count) {
             any = true;
         }
     }
-    for (Lane* l = lane; l < lane + count; ++l) ask_for_tile(local, l->tile = l->walk.node & ~ACDF_TILE_FLAG);
+    for (Lane* l = lane; l < lane + count; ++l) {
+        l->tile = l->walk.node & ~ACDF_TILE_FLAG;
+        ACDF_PREFETCH(acdf_local_tile(local.tables, l->tile));
+    }
 }
 
 DirectionSample end_draw(const AcdfLocal& local, const AcdfGrid& grid, const Lane& lane) {
@@ -56,15 +54,6 @@ DirectionSample end_draw(const AcdfLocal& local, const AcdfGrid& grid, const Lan
     const double probability = acdf_local_tile_probability(&local, &lane.point, lane.tile, of_mixture);
     const double p = acdf_local_draw_inside(&local, lane.tile, probability, u, range);
     return acdf_local_place(&local, &lane.point, &grid, range, u, p);
-}
-
-float end_density(const AcdfLocal& local, const AcdfGrid& grid, const Lane& lane, const float direction[3]) {
-    AcdfRange range[2];
-    acdf_sphere_ranges(grid.columns, grid.rows, range);
-    const double of_mixture = acdf_local_found_tile(&local, &lane.point, &lane.point.mix, lane.tile, 0, range);
-    const double probability = acdf_local_tile_probability(&local, &lane.point, lane.tile, of_mixture);
-    const double p = acdf_local_find_inside(&local, lane.tile, probability, lane.square, range);
-    return p > 0.0 ? acdf_local_cell_pdf(&local, &grid, direction, range, p) : 0.0f;
 }
 
 void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count) {
@@ -156,28 +145,7 @@ void LocalWavefront::pdf(const float (*normals)[3], const float (*directions)[3]
     if (const LocalLoops* const loops = loops_of(local_, instructions_))
         return loops->pdf(local_, normals, directions, count, out);
 #endif
-    const AcdfGrid grid = acdf_environment_grid(&local_.environment);
-    Lane lane[kBlock];
-    for (std::size_t first = 0; first < count; first += kBlock) {
-        std::size_t used = 0;
-        for (std::size_t i = first; i < std::min(count, first + kBlock); ++i) {
-            Lane& l = lane[used];
-            acdf_local_at(&local_, normals[i], &l.point);
-            if (!usual(local_, l.point) || local_.tables->pieces) {
-                out[i] = acdf_local_pdf_at(&local_, &l.point, directions[i]);
-                continue;
-            }
-            out[i] = 0.0f;
-            if (!acdf_local_square(&grid, directions[i], l.square)) continue;
-            l.tile = acdf_tile_at(acdf_local_words(local_.tables), &local_.tables->tiles, l.square);
-            ask_for_tile(local_, l.tile);
-            l.number = i;
-            ++used;
-        }
-        ask_for_curves(local_, lane, used);
-        for (std::size_t k = 0; k < used; ++k)
-            out[lane[k].number] = end_density(local_, grid, lane[k], directions[lane[k].number]);
-    }
+    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_local_pdf(&local_, normals[i], directions[i]);
 }
 
 } // namespace acdf
