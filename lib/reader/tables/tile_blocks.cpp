@@ -20,10 +20,12 @@ bool TileBlocksMaker::make(const AcdfBlend& blend, u32 columns, u32 rows) noexce
     for (int axis = 0; axis < 2; ++axis) tables_.shift[axis] = bits.shift[axis];
     for (int axis = 0; axis < 2; ++axis) tables_.fine[axis] = std::max(tables_.shift[axis], 2u) - 2;
     tables_.bits0 = bits.bits[0];
-    // Block 0 is looked at where there is no need for any.
-    if (!grid_.add(bits.count(), 0) || !blocks_.add(kBlock * kBlock, ACDF_TILE_FLAG)) return false;
+    if (!grid_.add(bits.count(), 0)) return false;
     divide(blend_, acdf_blend_root(&blend_), bits.all(), tables_.shift,
            [this](u32 node, const Entries& entries) { fill(node, entries); });
+    // The first block is looked at where there is no need for any. Not one more than there are entries: numbers of
+    // blocks have 15 bits, and so have those of entries.
+    if (blocks_.size() == 0) blocks_.add(kBlock * kBlock, ACDF_TILE_FLAG);
     return !blocks_.failed();
 }
 

@@ -171,6 +171,14 @@ TEST(FastShape, HandMadeDensities) {
     EXPECT_GT(view.sample(back, 0.3, 0.6).pdf, 0.0f);
 }
 
+std::uint32_t walked_from(const AcdfLocal& local, std::uint32_t node, const std::uint32_t* square) {
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit& split = local.blend.splits[node];
+        node = split.child[square[split.place & 7u] >= split.place >> 3];
+    }
+    return node;
+}
+
 // Of each square of the grid: tables find the tile, or a split on the way to it, and both happen.
 TEST(FastShape, TablesFindTheTilesOfSquares) {
     int at_once = 0, walked = 0;
@@ -178,25 +186,38 @@ TEST(FastShape, TablesFindTheTilesOfSquares) {
         const FastFile loaded(random_fast(seed), true);
         const AcdfLocal local = loaded.file.local().data();
         ASSERT_NE(local.tables, nullptr);
-        const auto walk = [&](std::uint32_t node, const std::uint32_t* square) {
-            while (!(node & ACDF_TILE_FLAG)) {
-                const AcdfSplit& split = local.blend.splits[node];
-                node = split.child[square[split.place & 7u] >= split.place >> 3];
-            }
-            return node;
-        };
         for (std::uint32_t row = 0; row < local.environment.rows; ++row)
             for (std::uint32_t column = 0; column < local.environment.columns; ++column) {
                 const std::uint32_t square[2] = {column, row};
                 const std::uint32_t node =
                     acdf_tile_block_at(acdf_local_words(local.tables), &local.tables->blocks, square);
-                ASSERT_EQ(walk(node, square), walk(acdf_blend_root(&local.blend), square))
+                ASSERT_EQ(walked_from(local, node, square),
+                          walked_from(local, acdf_blend_root(&local.blend), square))
                     << "seed " << seed << ", " << column << ", " << row;
                 ++(node & ACDF_TILE_FLAG ? at_once : walked);
             }
     }
     EXPECT_GT(at_once, 1000);
     EXPECT_GT(walked, 100);
+}
+
+// The same where all entries of the grid, as many as it can have, are cut.
+TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
+    RandomOptions options;
+    options.columns = options.rows = 65536;
+    options.tilts = options.long_curves = false;
+    options.octahedral = true;
+    const FastFile loaded(RandomFast(5, options).make_cut_evenly(256, 8), true);
+    const AcdfLocal local = loaded.file.local().data();
+    ASSERT_NE(local.tables, nullptr);
+    for (std::uint32_t row = 0; row < 65536; row += 509)
+        for (std::uint32_t column = 0; column < 65536; column += 61) {
+            const std::uint32_t square[2] = {column, row};
+            const std::uint32_t node =
+                acdf_tile_block_at(acdf_local_words(local.tables), &local.tables->blocks, square);
+            ASSERT_EQ(walked_from(local, node, square), walked_from(local, acdf_blend_root(&local.blend), square))
+                << column << ", " << row;
+        }
 }
 
 TEST(FastShape, StrataStayStrata) {

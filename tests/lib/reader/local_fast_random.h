@@ -11,6 +11,23 @@ public:
     RandomFast(std::uint32_t seed, const RandomOptions& options) : rng_(seed), options_(options) {}
 
     LocalSpec make() {
+        return make([this](LocalSpec& spec, const Box& all) { divide(spec, all, static_cast<int>(below(9))); });
+    }
+
+    /// With so many splits across each axis, in the middles of as many parts; a cell each tile.
+    LocalSpec make_cut_evenly(std::uint32_t across0, std::uint32_t across1) {
+        return make([&](LocalSpec& spec, const Box& all) {
+            cut_evenly(spec, all, {{{0, across0, across0}, {0, across1, across1}}});
+        });
+    }
+
+private:
+    struct Box {
+        std::array<std::uint32_t, 2> low, high;
+    };
+
+    template <class Divide>
+    LocalSpec make(const Divide& divide_all) {
         LocalSpec spec;
         spec.columns = options_.columns;
         spec.rows = options_.rows;
@@ -24,7 +41,7 @@ public:
         RandomTree trees(static_cast<std::uint32_t>(rng_()), options_);
         spec.tree = trees.make_within({0, 0}, {options_.columns, options_.rows});
         spec.fast.emplace();
-        divide(spec, {{0, 0}, {options_.columns, options_.rows}}, static_cast<int>(below(9)));
+        divide_all(spec, {{0, 0}, {options_.columns, options_.rows}});
         spec.tiles = static_cast<std::uint32_t>(boxes_.size());
         for (std::uint32_t t = 0; t < spec.tiles; ++t)
             if (spec.tiles > 1 && below(spec.tiles) < 3) add_light(spec, t);
@@ -39,23 +56,43 @@ public:
         return spec;
     }
 
-private:
-    struct Box {
-        std::array<std::uint32_t, 2> low, high;
-    };
-
     double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(rng_); }
     std::uint32_t below(std::uint32_t n) { return std::uniform_int_distribution<std::uint32_t>(0, n - 1)(rng_); }
     float share() { return below(8) == 0 ? 0.0f : static_cast<float>(std::exp(6.0 * uniform() - 4.0)); }
 
+    // Splits of an axis, from a number on to before another, of so many that lie in the middles of as many parts.
+    struct Cuts {
+        std::uint32_t first, end, all;
+    };
+
     // Returns what stands for the box in its parent.
+    std::uint32_t cut_evenly(LocalSpec& spec, const Box& box, const std::array<Cuts, 2>& cuts) {
+        const std::uint32_t axis = cuts[0].first < cuts[0].end ? 0 : 1;
+        const Cuts& along = cuts[axis];
+        if (along.first == along.end) return add_tile(spec, box, 16);
+        const std::uint32_t middle = (along.first + along.end) / 2;
+        const std::uint64_t whole = axis == 0 ? spec.columns : spec.rows;
+        const std::size_t index = spec.splits.size();
+        const auto position = static_cast<std::uint32_t>(whole * (2 * middle + 1) / (2 * along.all));
+        spec.splits.push_back({axis, position, {}});
+        Box lower = box, upper = box;
+        lower.high[axis] = upper.low[axis] = position;
+        std::array<Cuts, 2> below_it = cuts, above_it = cuts;
+        below_it[axis].end = middle;
+        above_it[axis].first = middle + 1;
+        const std::uint32_t first = cut_evenly(spec, lower, below_it), second = cut_evenly(spec, upper, above_it);
+        spec.splits[index].child[0] = first;
+        spec.splits[index].child[1] = second;
+        return static_cast<std::uint32_t>(index);
+    }
+    std::uint32_t add_tile(LocalSpec& spec, const Box& box, std::uint8_t least_shift) {
+        boxes_.push_back(box);
+        spec.fast->grids.push_back(grid(box, least_shift));
+        return tile_flag | static_cast<std::uint32_t>(boxes_.size() - 1);
+    }
     std::uint32_t divide(LocalSpec& spec, const Box& box, int depth) {
         const std::uint32_t axis = box.high[0] - box.low[0] < 2 || (below(2) == 0 && box.high[1] - box.low[1] > 1);
-        if (depth == 0 || below(12) == 0 || box.high[axis] - box.low[axis] < 2) {
-            boxes_.push_back(box);
-            spec.fast->grids.push_back(grid(box));
-            return tile_flag | static_cast<std::uint32_t>(boxes_.size() - 1);
-        }
+        if (depth == 0 || below(12) == 0 || box.high[axis] - box.low[axis] < 2) return add_tile(spec, box, 0);
         const std::size_t index = spec.splits.size();
         const std::uint32_t position = box.low[axis] + 1 + below(box.high[axis] - box.low[axis] - 1);
         spec.splits.push_back({axis, position, {}});
@@ -90,12 +127,12 @@ private:
         return Bytes(list.begin(), list.end());
     }
 
-    FastGrid grid(const Box& box) {
+    FastGrid grid(const Box& box, std::uint8_t least_shift) {
         FastGrid out;
         std::uint32_t count[2];
         for (std::size_t a = 0; a < 2; ++a) {
             const std::uint32_t length = box.high[a] - box.low[a];
-            std::uint8_t shift = static_cast<std::uint8_t>(below(4));
+            std::uint8_t shift = std::max(least_shift, static_cast<std::uint8_t>(below(4)));
             const auto cells = [&] { return (length + (1u << shift) - 1) >> shift; };
             while (cells() > 64) ++shift;
             if (below(9) == 0) shift = 30;
