@@ -189,6 +189,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
     compress::LocalSize size = size_for(options, bins, double(budget));
     if (max_weight > 0.0) size.max_weight = max_weight;
     std::optional<compress::LocalFitter> fitter; // of so many tiles
+    std::optional<Local> grown;                  // the best of those that left bytes
     for (int tries = 0, growths = 0;; ++tries) {
         if (!fitter) fitter.emplace(target, bins, size, fitting(progress), options.company);
         compress::LocalFit fit = fitter->outlined(size.inside_bytes);
@@ -196,18 +197,24 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
+        const auto completed = [&] {
+            fitter->fill(fit);
+            draft = shared_draft(fit, target, source, options, bins);
+            if (options.places.scene) add_places(draft, target, options, whole_budget, progress);
+            Local made = finish(std::move(draft), target, source, options, bins);
+            // More tiles may take more from grids than they give.
+            if (grown && grown->accuracy.relative_variance < made.accuracy.relative_variance)
+                return std::move(*grown);
+            return made;
+        };
         if (fits && growths < kMostGrowths && more_tiles(options, bins, fit, budget, bytes, size)) {
+            grown = completed();
             fitter.reset();
             ++growths;
             tries = -1;
             continue;
         }
-        if (fits && (full || tries > 0)) {
-            fitter->fill(fit);
-            draft = shared_draft(fit, target, source, options, bins);
-            if (options.places.scene) add_places(draft, target, options, whole_budget, progress);
-            return finish(std::move(draft), target, source, options, bins);
-        }
+        if (fits && (full || tries > 0)) return completed();
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
         const std::int64_t next = static_cast<std::int64_t>(size.inside_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
@@ -249,7 +256,7 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
     const auto reaches = [&](const std::optional<Local>& made) {
         return made && made->accuracy.relative_variance <= options.goal.variance;
     };
-    constexpr double largest = 64.0 * 1048576.0;
+    constexpr double smallest = 256.0, largest = 64.0 * 1048576.0;
     double low = 16384.0, high = 65536.0;
     std::optional<Local> best = at(high);
     while (!reaches(best)) {
@@ -260,6 +267,12 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
         low = high;
         high = std::min(4.0 * high, largest);
         best = at(high);
+    }
+    for (; low < 65536.0 && low >= smallest; low /= 4.0) { // not the first size that was tried is too small
+        std::optional<Local> less = at(low);
+        if (!reaches(less)) break;
+        high = low;
+        best = std::move(less);
     }
     for (int step = 0; step < 7; ++step) {
         share = 0.3 + 0.1 * step;

@@ -93,6 +93,10 @@ double bytes_around(double inside_bytes) { return inside_bytes / kInsideOfCells;
 
 compress::LocalSize size_around(const LocalOptions& o, const NormalBins& bins, double inside_bytes) {
     compress::LocalSize size = size_for(o, bins, bytes_around(inside_bytes), kInsideOfCells);
+    // Small grids leave no bytes for rows beside what all files have.
+    const double cells = inside_bytes / bytes_of_cell(o.shape);
+    if (o.tiles == 0 && o.shape == LocalShape::fast)
+        size.tiles = std::max(size.tiles, static_cast<std::uint32_t>(std::min(cells / 8.0, 128.0)));
     size.inside_bytes = static_cast<std::uint64_t>(inside_bytes);
     return size;
 }

@@ -54,15 +54,38 @@ std::size_t NormalBins::stored() const {
     return static_cast<std::size_t>(std::count_if(weight.begin(), weight.end(), [](double w) { return w > 0.0; }));
 }
 
+namespace {
+
+/// Adds what a normal weighs to the bins around it.
+bool add(NormalBins& bins, const float normal[3], double weight) {
+    AcdfNormalBins found;
+    if (!bins.find(normal, found)) return false;
+    double all = 0.0;
+    for (int i = 0; i < found.count; ++i) all += found.weight[i];
+    for (int i = 0; i < found.count; ++i) bins.weight[found.bin[i]] += weight * found.weight[i] / all;
+    return true;
+}
+
+/// The bins of normals nearly the same, with next to no weight: a renderer's normals are rounded, and one that is
+/// off a corner or an edge of the octahedron by 1e-7 has bins that the normal itself has not.
+void add_around(NormalBins& bins, const std::array<float, 3>& normal, double weight) {
+    constexpr double tilt = 1e-3, of_weight = 1e-6;
+    const std::uint32_t sides = std::max(8u, 2 * bins.columns); // at a pole of a lat-long grid all columns meet
+    for (std::uint32_t side = 0; side < sides; ++side) {
+        float tilted[3];
+        acdf_cosine_direction(normal.data(), (side + 0.5) / sides, tilt * tilt, tilted);
+        add(bins, tilted, of_weight * weight / sides);
+    }
+}
+
+} // namespace
+
 void weigh(NormalBins& bins, const std::vector<SceneNormal>& scene) {
     std::fill(bins.weight.begin(), bins.weight.end(), 0.0);
     double sum = 0.0;
     for (const SceneNormal& n : scene) {
-        AcdfNormalBins found;
-        if (!bins.find(n.normal.data(), found)) continue;
-        double all = 0.0;
-        for (int i = 0; i < found.count; ++i) all += found.weight[i];
-        for (int i = 0; i < found.count; ++i) bins.weight[found.bin[i]] += n.weight * found.weight[i] / all;
+        if (!add(bins, n.normal.data(), n.weight)) continue;
+        add_around(bins, n.normal, n.weight);
         sum += n.weight;
     }
     if (!(sum > 0.0)) throw std::invalid_argument("no valid normal");

@@ -31,8 +31,8 @@ struct SceneNormal {
     double weight = 1.0; ///< > 0
 };
 
-/// Weighs bins by the normals that they serve: those that serve none are not stored. Throws std::invalid_argument
-/// where no normal is valid.
+/// Weighs bins by the normals that they serve, and hardly by those that serve one that is tilted by a thousandth:
+/// those that serve none are not stored. Throws std::invalid_argument where no normal is valid.
 void weigh(NormalBins& bins, const std::vector<SceneNormal>& scene);
 
 } // namespace acdf::compress

@@ -33,7 +33,9 @@ Header header_of(const OIIO::ImageInput& input) {
 
 void* open_image(const std::string& path, int threads, Header& header, std::string& error) {
     const Quiet quiet;
-    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+    OIIO::ImageSpec asked; // colours as they are: not multiplied by an alpha that nobody reads
+    asked.attribute("oiio:UnassociatedAlpha", 1);
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &asked);
     error = OIIO::geterror();
     if (!input) return nullptr;
     input->threads(threads);

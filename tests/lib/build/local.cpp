@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace acdf {
 namespace {
@@ -91,6 +93,31 @@ TEST(LocalFiles, FastOnesFillAndKeepTheirBudget) {
     EXPECT_EQ(build::option_text("", options).rfind("--shape fast ", 0), 0u);
     options.goal = {Goal::Kind::cells, 4000, 0, 0.0};
     EXPECT_GT(load(build(options)).local().data().blend.tiles->tile_count, 10u);
+}
+
+/// More tiles take nothing from grids: a larger file is hardly ever worse, and never by much.
+TEST(LocalFiles, FastOnesGainByBytes) {
+    std::mt19937 rng(3);
+    std::lognormal_distribution<double> noise(0.0, 1.5);
+    const Target noisy = acdf_test::texel_target(64, 32, [&](std::uint32_t, std::uint32_t) { return noise(rng); });
+    build::LocalOptions options;
+    options.shape = compress::LocalShape::fast;
+    options.scene = {{{0.3f, 0.1f, 0.9f}, 1.0}};
+    double best = INFINITY;
+    for (std::uint64_t kib = 8; kib <= 24; kib += acdf_test::kSanitized ? 4 : 1) {
+        options.goal.budget = 1024 * kib;
+        const double variance = build::build_local(noisy, {}, options).accuracy.relative_variance;
+        EXPECT_LT(variance, 2.0 * best) << kib;
+        best = std::min(best, variance);
+    }
+}
+
+TEST(LocalFiles, TargetVarianceIsReachedBySmallFilesWhereTheyDo) {
+    build::LocalOptions options;
+    options.goal = {Goal::Kind::variance, 0, 0, 2.0};
+    const build::Local local = build(options);
+    EXPECT_LE(local.accuracy.relative_variance, 2.0);
+    EXPECT_LT(local.bytes.size(), 12288u);
 }
 
 TEST(LocalFiles, FitsOfKnotsTakeNoBudget) {

@@ -246,6 +246,20 @@ TEST(InputFiles, IntegersAreLinearizedAndWarnedOf) {
     for (std::size_t i = 0; i < ramp.rgb.size(); ++i) ASSERT_NEAR(probe.rgb[i], ramp.rgb[i], 1e-4);
 }
 
+TEST(InputFiles, AlphaIsIgnored) {
+    const Folder folder;
+    const Pixels plain{32, 16, std::vector<float>(32 * 16 * 3, 0.5f)};
+    std::vector<float> rgba;
+    for (std::size_t i = 0; i < 32 * 16; ++i) rgba.insert(rgba.end(), {0.5f, 0.5f, 0.5f, i < 256 ? 0.0f : 0.5f});
+    for (const char* name : {"a.png", "a.tif"}) {
+        OIIO::ImageSpec spec(32, 16, 4, OIIO::TypeDesc::UINT8);
+        spec.attribute("oiio:UnassociatedAlpha", 1); // what is written is not multiplied by it
+        write_image(folder.file(name), spec, rgba);
+        write_rgb(folder.file("plain.png"), plain, OIIO::TypeDesc::UINT8);
+        EXPECT_EQ(read_probe(folder.file(name)).rgb, read_probe(folder.file("plain.png")).rgb) << name;
+    }
+}
+
 TEST(InputFiles, BadTexelsAreCountedAndZeroed) {
     const Folder folder;
     Pixels sky = latlong_sky(32);
