@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iostream>
 #include <iterator>
 #include <memory>
 #include <new>
@@ -113,6 +114,11 @@ void add_commands(CLI::App& program, std::string_view called, int& exit_code) {
     }
 }
 
+constexpr const char* unwritten = "stdout: cannot write all results";
+
+/// Whether all went to stdout, by either way.
+bool is_written(const std::ostream& out) { return out && std::fflush(stdout) == 0 && !std::ferror(stdout); }
+
 int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code) {
     try {
         program.parse(argc, argv);
@@ -121,7 +127,8 @@ int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code
             return exit_usage;
         }
     } catch (const CLI::Success& help_or_version) {
-        return program.exit(help_or_version);
+        const int code = program.exit(help_or_version);
+        return is_written(std::cout.flush()) ? code : failure(unwritten);
     } catch (const CLI::ParseError& error) {
         return usage_error(program, error);
     } catch (const std::bad_alloc&) {
@@ -129,8 +136,7 @@ int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code
     } catch (const std::exception& error) {
         return failure(error.what());
     }
-    if (std::fflush(stdout) != 0 || std::ferror(stdout)) return failure("stdout: cannot write all results");
-    return exit_code;
+    return is_written(std::cout) ? exit_code : failure(unwritten);
 }
 
 } // namespace

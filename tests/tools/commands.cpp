@@ -195,6 +195,8 @@ TEST_F(Commands, FullDiskIsAnError) {
     const Result result = run_acdf({"sample", sky, "-n", "10", "-o", "/dev/full"});
     expect_one_line_error(result, 1, "No space left");
     EXPECT_EQ(wait_for(start_acdf({"info", sky}, "/dev/null", "/dev/full", "/dev/null")), 1);
+    for (const char* told : {"--help", "--version"})
+        EXPECT_EQ(wait_for(start_acdf({told}, "/dev/null", "/dev/full", "/dev/null")), 1) << told;
 }
 
 // ---- info ----------------------------------------------------------------------------------------------

@@ -227,10 +227,10 @@ TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
 
 // A file is measured against any source, which is told; where it has no density for the light, that is an error.
 TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
-    const auto write = [&](const std::string& path, int bright) { // the only one
+    const auto write = [&](const std::string& path, int bright, int height = 8) { // the only one
         std::ofstream out(path, std::ios::binary);
-        out << "PF\n16 8\n-1.0\n";
-        for (int i = 0; i < 16 * 8 * 3; ++i) {
+        out << "PF\n16 " << height << "\n-1.0\n";
+        for (int i = 0; i < 16 * height * 3; ++i) {
             const float value = i / 3 == bright ? 9.0f : 0.0f;
             out.write(reinterpret_cast<const char*>(&value), sizeof value);
         }
@@ -250,6 +250,13 @@ TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
         EXPECT_EQ(lines_in(result.err), 1u) << result.err;
         EXPECT_NE(result.err.find("does not stand for " + there), std::string::npos) << result.err;
     }
+    const std::string square = folder / "square.pfm";
+    write(square, 70, 16);
+    ASSERT_EQ(run_acdf({"env", square, "--projection", "octahedral", "-o", file, "-q", "-f"}).code, 0);
+    EXPECT_EQ(run_acdf({"measure", file, "--against", square, "--projection", "octahedral"}).code, 0);
+    const Result otherwise = run_acdf({"measure", file, "--against", square, "--projection", "angular", "-q"});
+    EXPECT_EQ(otherwise.code, 1); // the same file, but read as another one
+    EXPECT_NE(otherwise.err.find("as it is read here"), std::string::npos) << otherwise.err;
     ASSERT_EQ(run_acdf({"env", even, "-o", file, "-q", "-f"}).code, 0);
     const Result covered = run_acdf({"measure", file, "--against", there});
     EXPECT_EQ(covered.code, 0); // it has a density there: noise, no bias

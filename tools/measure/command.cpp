@@ -147,6 +147,11 @@ void run(const MeasureArguments& options) {
     else print_text(options, loaded.file, measured);
     require_support(options.file, loaded.file, options.source, source.probe.source_sha256,
                     measured.accuracy.support_violations);
+    if (measured.accuracy.support_violations > 0)
+        throw Failure(
+            options.file + ": its density is 0 where " + options.source +
+            ", as it is read here, has light; measure with the options that it was made with, which `acdf "
+            "info` tells");
 }
 
 } // namespace

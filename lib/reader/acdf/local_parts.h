@@ -43,7 +43,8 @@ ACDF_FN int acdf_local_bins(const AcdfLocal* local, const float normal[3], AcdfN
 }
 
 /* What serves a normal: nothing, a tree of its own (or the environment's), or lights and what bins share, in either
- * shape. Made once for a shading point, it serves all samples there. */
+ * shape. Made once for a shading point, it serves all samples there. It points into the memory of the AcdfLocal
+ * that made it: not for one that was opened otherwise, or moved since. */
 enum { ACDF_LOCAL_NOTHING, ACDF_LOCAL_TREE, ACDF_LOCAL_BLEND, ACDF_LOCAL_FAST };
 
 typedef struct AcdfLocalPoint {
