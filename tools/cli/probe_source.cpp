@@ -27,15 +27,22 @@ std::string reading_text(const input::ProbeOptions& options) {
 
 namespace {
 
-/// What `make` makes, unless it has no energy, or more than floats hold.
+std::string counts(const build::BadTexels& bad) {
+    return std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) + " infinite and " +
+           std::to_string(bad.negative) + " negative";
+}
+
+/// What `make` makes of a probe, unless that has no energy, or more than floats hold. `make` may read it.
 template <class Make>
-builder::Target lit(const std::string& path, const Make& make) {
+builder::Target lit(const std::string& path, const input::Probe& probe, const Make& make) {
     try {
         return make();
     } catch (const build::NoEnergy&) {
-        throw Failure(path +
-                      ": the probe is black in the channels asked for, so there is nothing to sample; is it the "
-                      "right file or layer? (what is black in all channels is accepted with --on-black uniform)");
+        const build::BadTexels& bad = probe.bad;
+        const std::string repaired = bad.count() == 0 ? "" : " once " + counts(bad) + " texels are repaired";
+        throw Failure(path + ": the probe is black in the channels asked for" + repaired +
+                      ", so there is nothing to sample; is it the right file or layer? (what is black in all "
+                      "channels is accepted with --on-black uniform)");
     } catch (const std::invalid_argument& error) {
         throw Failure(path + ": " + error.what());
     }
@@ -51,10 +58,8 @@ void tell(const input::Probe& probe, const input::ProbeOptions& options, const s
              (grid.empty() ? "" : ", resampled to a " + size(probe.width, probe.height) + " " + grid + " map"));
     const build::BadTexels& bad = probe.bad;
     if (bad.count() > 0)
-        note(std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) + " infinite and " +
-             std::to_string(bad.negative) + " negative texels " +
-             (options.bad_pixels == build::BadPixels::clamp ? "clamped" : "set to 0") + ", the first at " +
-             std::to_string(bad.x) + "," + std::to_string(bad.y));
+        note(counts(bad) + " texels " + (options.bad_pixels == build::BadPixels::clamp ? "clamped" : "set to 0") +
+             ", the first at " + std::to_string(bad.x) + "," + std::to_string(bad.y));
     for (const std::string& warning : probe.warnings) note(warning);
 }
 
@@ -68,7 +73,7 @@ Note notes_of(const std::string& path, bool quiet) {
 
 builder::Target probe_target(const std::string& path, const input::Probe& probe,
                              const builder::TargetOptions& options) {
-    return lit(path, [&] {
+    return lit(path, probe, [&] {
         builder::TargetRows rows(options);
         rows.begin(probe.width, probe.height);
         rows.take(0, probe.height, probe.rgb.data());
@@ -87,7 +92,7 @@ namespace {
 ProbeTarget load(const std::string& path, const input::ProbeOptions& options, builder::TargetRows rows,
                  const Note& note) {
     ProbeTarget out;
-    out.target = lit(path, [&] {
+    out.target = lit(path, out.probe, [&] {
         out.probe = input::read_probe(path, options, rows);
         return rows.finish();
     });
