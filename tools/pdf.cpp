@@ -34,7 +34,7 @@ template <class Density>
 std::string density_line(std::vector<double> v, const PdfArguments& options, const Density& density) {
     if (options.normalize) {
         const double length = std::hypot(v[0], v[1], v[2]);
-        for (std::size_t i = 0; i < 3; ++i) v[i] /= length; // 0/0 is NaN: density 0
+        for (std::size_t i = 0; i < 3 && length > 0.0 && std::isfinite(length); ++i) v[i] /= length;
     }
     const float direction[3] = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     std::string line;

@@ -1,6 +1,7 @@
 // The `acdf` program: a table of subcommands, and the one place where errors become exit codes.
 #include "tools/cli/help.h"
 #include "tools/cli/messages.h"
+#include "tools/cli/usage.h"
 #include "tools/cli/values.h"
 #include "tools/commands.h"
 
@@ -60,22 +61,6 @@ std::string version_text() {
 std::string called(const CLI::App& program) {
     const auto parsed = program.get_subcommands();
     return parsed.empty() ? "acdf" : "acdf " + parsed.front()->get_name();
-}
-
-// CLI11 tells an option without its value, or with commas alone, by the name of a type, which may be empty.
-std::string what_is_wrong(const CLI::ParseError& error) {
-    const std::string text = on_one_line(error.what());
-    const auto option = [&](const char* what) { return text.substr(0, text.find(what)); };
-    if (text.find(": 1 required ") != std::string::npos) return option(": 1 required ") + ": needs a value";
-    if (text.find(": At Most 1 required ") != std::string::npos)
-        return option(": At Most ") + ": is given more than once";
-    const std::string at_least = ": At least ";
-    if (const std::size_t count = text.find(at_least), end = text.find(" required but received ");
-        count < end && end != std::string::npos)
-        return option(at_least.c_str()) + ": needs " +
-               text.substr(count + at_least.size(), end - count - at_least.size()) +
-               " numbers with commas between them";
-    return text;
 }
 
 // CLI11 tells words that nothing takes last first, and knows no word for a command that is none.

@@ -118,10 +118,13 @@ std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
 
 /// A size is too small.
 struct OutOfReach : std::runtime_error {
-    OutOfReach(std::uint64_t budget, std::uint64_t least)
+    std::uint64_t least;
+
+    OutOfReach(std::uint64_t budget, std::uint64_t least_bytes)
         : std::runtime_error("a size of " + std::to_string(budget) +
                              " bytes is out of reach; the least that can be had is about " +
-                             std::to_string(least)) {}
+                             std::to_string(least_bytes)),
+          least(least_bytes) {}
 };
 
 /// Of a file that has bins, but nothing in them: known before anything is fitted.
@@ -235,7 +238,14 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
         const auto build = [&](std::uint64_t bytes) {
             return build_plain(target, source, options, bytes, max_weight, progress);
         };
-        return options.codec == ACDF_CODEC_NONE ? build(budget) : fill_compressed(budget, build);
+        if (options.codec == ACDF_CODEC_NONE) return build(budget);
+        try {
+            return fill_compressed(budget, build);
+        } catch (const OutOfReach& plain) { // compressed, the least may be small enough
+            Local made = build(plain.least);
+            if (made.bytes.size() > budget) throw OutOfReach(budget, made.bytes.size());
+            return made;
+        }
     });
 }
 

@@ -361,6 +361,7 @@ TEST_F(Commands, PdfReadsWhatPeopleWrite) {
     EXPECT_NEAR(upper[0][0], 0.5 / pi, 1e-4);
     EXPECT_NEAR(upper[1][0], 0.25 / pi, 1e-4);
     EXPECT_EQ(upper[2][0], 0.0);
+    EXPECT_EQ(run_acdf({"pdf", sky, "--normalize", "--csv"}, "0 0 0\n").out, "x,y,z,pdf\n0,0,0,0\n");
 }
 
 TEST_F(Commands, PdfFindsColumnsByName) {

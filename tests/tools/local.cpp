@@ -126,6 +126,16 @@ TEST_F(LocalCommand, ScenesAreRead) {
                scene = made({"--budget", "40kB", "--scene", folder / "normals.txt"});
     EXPECT_NE(messages.find("a list with 2 different normals"), std::string::npos) << messages;
     EXPECT_LT(scene["relative_variance"], all["relative_variance"]);
+    const auto measured = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"measure", output, "--against", probe, "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        return json::parse(run_acdf(words).out)["relative_variance"];
+    };
+    EXPECT_EQ(measured({"--scene", folder / "normals.txt"}), scene["relative_variance"]);
+    EXPECT_GT(measured({}), scene["relative_variance"]); // of other normals it knows nothing
+    EXPECT_EQ(
+        run_acdf({"measure", output, "--against", probe, "--scene", folder / "normals.txt", "--points", "3"}).code,
+        2);
     const Result missing = run_acdf({"local", probe, "-o", folder / "x.acdf", "--scene", folder / "none.obj"});
     EXPECT_EQ(missing.code, 1);
     EXPECT_EQ(lines_in(missing.err), 1u) << missing.err;

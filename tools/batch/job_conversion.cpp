@@ -1,5 +1,6 @@
 #include "tools/batch/job_conversion.h"
 
+#include "tools/cli/usage.h"
 #include "tools/cli/values.h"
 
 #include <CLI/CLI.hpp>
@@ -37,7 +38,7 @@ std::shared_ptr<Conversion> make_conversion(const BatchJob& job) {
             if (file != &conversion.source) *file = (std::filesystem::path(job.base) / *file).string();
         conversion.check();
     } catch (const CLI::ParseError& error) {
-        throw OptionError(error.what());
+        throw OptionError(what_is_wrong(error));
     }
     return {parsed, &conversion};
 }

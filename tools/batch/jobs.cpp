@@ -275,7 +275,7 @@ std::string output_name_error(const std::string& name) {
     for (const char c : name)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return "has a control character in it";
     for (const fs::path& part : fs::path(name)) {
-        if (part == "..") return "leaves the output folder";
+        if (part == "..") return "has a part '..'; outputs are below the output folder";
         if (part.string().size() > 255) return "has a part of more than 255 bytes";
         if (part.string().compare(0, 6, ".acdf-") == 0) return "is named like a temporary file";
     }

@@ -127,6 +127,8 @@ void run(const MeasureArguments& options) {
     case ACDF_KIND_BRDF:
         return measure_brdf(options.file, loaded.file, options.source, options.views, options.json, options.quiet);
     case ACDF_KIND_LOCAL:
+        if (!loaded.file.local().has_places() && options.command->get_option("--points")->count() > 0)
+            throw CLI::ValidationError("--points", "is for files that tell places apart");
         return measure_local(loaded.file,
                              {options.file, options.source, options.input, options.normals, options.mesh,
                               options.up, options.points, options.rivals, options.json, options.quiet});
@@ -188,8 +190,8 @@ void add_measure(CLI::App& program, int& exit_code) {
     command
         .add_option("--scene", options->mesh,
                     "Of a file that tells places apart: the mesh (.obj, .ply, .instances) to look from, usually "
-                    "the one it was made "
-                    "for; its variance there is told, beside that of its normals alone")
+                    "the one it was made for; its variance there is told, beside that of its normals alone. Of "
+                    "other local files: what acdf local takes, to measure by the normals of a scene alone")
         ->type_name("FILE")
         ->group("Input");
     const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};

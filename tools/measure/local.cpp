@@ -6,6 +6,7 @@
 
 #include "build/accuracy/cells.h"
 #include "build/accuracy/local.h"
+#include "build/local.h"
 #include "measure/samplers/light_samplers.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/tiling.h"
@@ -66,6 +67,15 @@ std::uint64_t count_cells(const File& file) {
     for (std::uint32_t b = 0; boxes.empty() && b < file.description().bin_count; ++b)
         if (file.bin(b).root != ACDF_NO_ROOT) build::for_each_cell(file, file.bin(b).root, count);
     return cells;
+}
+
+/// As many normals as are asked for: of the scene, as often as they occur in it, where that says no more of a file.
+std::vector<build::Normal> normals_of(const LocalMeasureOptions& options, bool of_scene) {
+    if (!of_scene) return build::random_normals(options.normals);
+    std::vector<compress::SceneNormal> scene;
+    for (const input::WeightedNormal& found : input::read_scene_normals(options.mesh, {options.up, false}).normals)
+        scene.push_back({{found.n[0], found.n[1], found.n[2]}, found.weight});
+    return build::test_normals(scene, options.normals);
 }
 
 /// Over points of a mesh that see any light.
@@ -150,8 +160,9 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
 
 void print_text(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
                 const std::vector<Rival>& rivals, const PlacesAccuracy& places) {
-    std::printf("%s against %s, %u random normals\n", printable(options.file).c_str(),
-                printable(options.source).c_str(), a.lit_normals);
+    std::printf("%s against %s, %u %s\n", printable(options.file).c_str(), printable(options.source).c_str(),
+                a.lit_normals,
+                options.mesh.empty() || places.points > 0 ? "random normals" : "normals of the scene");
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
                 a.combined ? "a sample of the irradiance, with its company: not to be used alone"
                            : "of one sample of the irradiance, mean over normals");
@@ -177,18 +188,15 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    if (!options.mesh.empty() && !file.local().has_places())
-        throw Failure(options.file + ": tells no places apart; leave out --scene");
-    if (!options.mesh.empty() && file.company())
-        throw Failure(options.file + ": is made for a company; leave out --scene");
+    const bool mesh = !options.mesh.empty() && file.local().has_places();
+    if (mesh && file.company()) throw Failure(options.file + ": is made for a company; leave out --scene");
     const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
-    const std::vector<build::Normal> normals = build::random_normals(options.normals);
+    const std::vector<build::Normal> normals = normals_of(options, !mesh && !options.mesh.empty());
     const build::LocalAccuracy accuracy =
         build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     std::vector<Rival> rivals;
     PlacesAccuracy places;
     // Rivals draw texels, of the source itself or of what it is resampled to; points of meshes see lat-long ones.
-    const bool mesh = !options.mesh.empty();
     const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
     const bool other_texels = source.resampled, other_light = source.resampled || square;
     builder::Target latlong;

@@ -15,14 +15,15 @@ struct LocalMeasureOptions {
     std::string file, source; ///< paths
     input::ProbeOptions input;
     std::uint32_t normals = 256;
-    std::string mesh; ///< a path: places on it are measured, too
+    std::string mesh; ///< a path: places on it are measured, too; of files without places, only its normals
     input::UpAxis up = input::UpAxis::z;
     std::uint32_t points = 64; ///< on the mesh
     bool rivals = false, json = false, quiet = false;
 };
 
-/// Compares a local environment file with its probe over random normals, and with what a renderer could do instead
-/// if asked, and over points of a mesh where there is one, and prints what comes out. Throws Failure.
+/// Compares a local environment file with its probe over random normals, or a scene's, and with what a renderer
+/// could do instead if asked, and over points of a mesh where there is one, and prints what comes out. Throws
+/// Failure.
 void measure_local(const File& file, const LocalMeasureOptions& options);
 
 } // namespace acdf::tools

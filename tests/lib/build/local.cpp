@@ -120,6 +120,15 @@ TEST(LocalFiles, TargetVarianceIsReachedBySmallFilesWhereTheyDo) {
     EXPECT_LT(local.bytes.size(), 12288u);
 }
 
+TEST(LocalFiles, CompressedOnesMayBeSmallerThanTheLeastThatIsNot) {
+    build::LocalOptions options;
+    options.codec = ACDF_CODEC_ZLIB;
+    options.goal.budget = 3000;
+    EXPECT_LE(build(options).bytes.size(), 3000u);
+    options.goal.budget = 1000;
+    EXPECT_THROW(build(options), std::runtime_error);
+}
+
 TEST(LocalFiles, FitsOfKnotsTakeNoBudget) {
     build::LocalOptions options = separate(ACDF_FIT_CDF);
     options.fit.column_segments = options.fit.row_segments = 3;

@@ -28,6 +28,8 @@ TEST_F(BatchCommand, RefusesManifestsBeforeAnythingStarts) {
     expect_refused(good + "{\"source\": \"probes/a.pfm\", \"output\": \"b.acdf\", "
                           "\"options\": {\"cells\": 5, \"budget\": \"1KiB\"}}\n",
                    at2 + "options of env: ");
+    expect_refused(good + "{\"source\": \"probes/a.pfm\", \"kind\": \"local\", \"options\": {\"shape\": true}}\n",
+                   at2 + "options of local: --shape: needs a value");
     expect_refused("\n", "has no jobs");
 }
 
