@@ -109,7 +109,11 @@ TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
     const Result text = run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.pfm", "--scene",
                                   folder / "room.obj", "--points", "9"});
     EXPECT_NE(text.out.find("places of the scene"), std::string::npos) << text.out;
-    EXPECT_EQ(measure("plain.acdf", {"--scene", folder / "room.obj"}).code, 1);
+    const Result by_normals =
+        measure("plain.acdf", {"--scene", folder / "room.obj"}); // which tells no places apart
+    EXPECT_EQ(by_normals.code, 0) << by_normals.err;
+    EXPECT_FALSE(Json::parse(by_normals.out).contains("places"));
+    EXPECT_EQ(measure("plain.acdf", {"--scene", folder / "room.obj", "--points", "9"}).code, 2);
     EXPECT_EQ(measure("room.acdf", {"--scene", folder / "none.obj"}).code, 1);
     EXPECT_EQ(measure("room.acdf", {"--points", "9"}).code, 2);
     EXPECT_EQ(measure("room.acdf", {"--scene-up", "y"}).code, 2);
