@@ -23,7 +23,7 @@ std::uint32_t subdivisions_for(LocalShape shape, double bytes) {
 NormalBins bins_of(const LocalOptions& o, std::uint32_t subdivisions) {
     NormalBins bins =
         o.columns > 0 ? compress::latlong_bins(o.columns, o.rows) : compress::octahedral_bins(subdivisions);
-    if (!o.scene.empty()) compress::weigh(bins, o.scene);
+    if (!o.scene.empty()) compress::weigh(bins, o.scene, compress::Rounded::yes);
     return bins;
 }
 

@@ -80,12 +80,12 @@ void add_around(NormalBins& bins, const std::array<float, 3>& normal, double wei
 
 } // namespace
 
-void weigh(NormalBins& bins, const std::vector<SceneNormal>& scene) {
+void weigh(NormalBins& bins, const std::vector<SceneNormal>& scene, Rounded rounded) {
     std::fill(bins.weight.begin(), bins.weight.end(), 0.0);
     double sum = 0.0;
     for (const SceneNormal& n : scene) {
         if (!add(bins, n.normal.data(), n.weight)) continue;
-        add_around(bins, n.normal, n.weight);
+        if (rounded == Rounded::yes) add_around(bins, n.normal, n.weight);
         sum += n.weight;
     }
     if (!(sum > 0.0)) throw std::invalid_argument("no valid normal");

@@ -31,8 +31,11 @@ struct SceneNormal {
     double weight = 1.0; ///< > 0
 };
 
-/// Weighs bins by the normals that they serve, and hardly by those that serve one that is tilted by a thousandth:
-/// those that serve none are not stored. Throws std::invalid_argument where no normal is valid.
-void weigh(NormalBins& bins, const std::vector<SceneNormal>& scene);
+/// Whether normals that are nearly the same are to be served, too, as those of renderers are rounded.
+enum class Rounded { no, yes };
+
+/// Weighs bins by the normals that they serve, and hardly, where these are rounded, by such as are tilted by a
+/// thousandth: those that serve none are not stored. Throws std::invalid_argument where no normal is valid.
+void weigh(NormalBins& bins, const std::vector<SceneNormal>& scene, Rounded rounded = Rounded::no);
 
 } // namespace acdf::compress

@@ -98,7 +98,7 @@ TEST(MixedRows, KeepWhatACornerSees) {
 
 TEST(MixedRows, BinsThatAreNotStoredHaveNone) {
     Tiled map(4);
-    const SceneNormal scene = {{0.23f, 0.11f, 0.9f}, 1.0};
+    const SceneNormal scene = {{0.2f, 0.1f, 0.9f}, 1.0};
     weigh(map.bins, {scene});
     const TileParts rows = mixed_rows(*map.light, map.bins, {});
     std::size_t stored = 0;

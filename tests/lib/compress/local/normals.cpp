@@ -16,7 +16,7 @@ constexpr Normal kNormals[] = {{0.0f, 0.0f, 1.0f},  {0.0f, -1.0f, 0.0f}, {1.0f, 
                                {1.0f, 1.0f, -1.0f}, {0.2f, -0.3f, 0.5f}, {0.3f, 0.1f, 0.9f}};
 
 void expect_served_around(const Normal& normal, NormalBins bins) {
-    acdf::compress::weigh(bins, {{normal, 2.0}});
+    acdf::compress::weigh(bins, {{normal, 2.0}}, acdf::compress::Rounded::yes);
     EXPECT_NEAR(std::accumulate(bins.weight.begin(), bins.weight.end(), 0.0), 1.0, 1e-5);
     std::mt19937 rng(7);
     std::uniform_real_distribution<float> off(-3e-4f, 3e-4f);
