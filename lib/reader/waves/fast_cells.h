@@ -81,14 +81,16 @@ ACDF_LANE FastBoxes narrowed(const FastCells& c, std::size_t at) {
     return box;
 }
 
-/* z at the borders of rows of the lat-long grid. */
-ACDF_LANE void heights_of(const AcdfLocal& local, const FastBoxes& box, Vector z[2]) {
+/* What acdf_grid_height says of cells; on the lat-long grid z becomes what it is at their borders. */
+ACDF_LANE Vector heights_of(const AcdfLocal& local, const FastBoxes& box, Vector z[2]) {
     const double* const heights = acdf_local_heights(local.tables);
+    if (local.tables->octahedral) return 2.0 * converted(box.high[1] - box.low[1]) / (double)local.environment.rows;
     z[0] = (Vector)loaded_from(heights, box.low[1]);
     z[1] = (Vector)loaded_from(heights, box.high[1]);
+    return z[0] - z[1];
 }
 
-/* acdf_local_fast_density of a vector of cells, `height` what acdf_grid_height says of them. */
+/* acdf_local_fast_density of a vector of cells of such heights. */
 ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const FastBoxes& box, Vector height,
                               std::size_t at) {
     Ints before[2], end[2];
@@ -100,9 +102,6 @@ ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const 
         of * (double)local.environment.columns / (2.0 * ACDF_PI * width * (loaded(&c.all[at]) * height));
     const Vector least = select(of > 0.0, all(1.17549435e-38), all(0.0));
     return select(pdf >= 3.402823466e38, all((double)3.402823466e38f), select(pdf > least, pdf, least));
-}
-ACDF_LANE Vector fold_heights(const AcdfLocal& local, const FastBoxes& box) {
-    return 2.0 * converted(box.high[1] - box.low[1]) / (double)local.environment.rows;
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "waves/fast_cells.h"
 #include "waves/local.h"
+#include "waves/local_blocks.h"
 #include "waves/row_vectors.h"
 
 #include <algorithm>
@@ -97,10 +98,11 @@ ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     FastLanes& w = f->rows;
     find_groups(&w, at);
     Ints share = {};
-    const Ints inner = -((loaded(&w.tile[at]) & (std::int32_t)(ACDF_FAST_GROUP - 1)) > 0 ? Ints{} + 1 : Ints{});
+    const Ints number = loaded(&w.tile[at]) & (std::int32_t)(ACDF_FAST_GROUP - 1);
     for (int row = 0; row < kRows; ++row) {
-        const Ints ends = loaded(&f->ends[row][at]);
-        share += loaded(&w.part[row][at]) * ((ends >> 8) - (ends & inner & 0xFF));
+        Ints before, end;
+        loaded_ends(&f->ends[row][at], number, &before, &end);
+        share += loaded(&w.part[row][at]) * (end - before);
     }
     const Vector whole = loaded(&w.whole[at]);
     stored(&f->cells.of[at], loaded(&w.mass[at]) * to_doubles(share) * loaded(&w.unit[at]));
@@ -127,8 +129,7 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
     const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
     std::uint64_t lost = 0;
     for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) {
-        const FastPoints<false>& p =
-            at(first, std::min<std::size_t>(count - std::min(first, count), ACDF_WIDTH), &room);
+        const FastPoints<false>& p = at(first, lanes_there(first, count), &room);
         keep_points(p, first, &f);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
     }
@@ -155,41 +156,24 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
         for (std::size_t half = 0; half < 2; ++half) {
             const std::size_t lane = first + ACDF_WIDTH * half;
             const FastBoxes box = narrowed(f.cells, lane);
-            Vector z[2], height;
-            if (local.tables->octahedral) height = fold_heights(local, box);
-            else {
-                heights_of(local, box, z);
-                height = z[0] - z[1];
-            }
-            pdf[half] = fast_density(local, f.cells, box, height, lane);
+            Vector z[2];
+            pdf[half] = fast_density(local, f.cells, box, heights_of(local, box, z), lane);
         }
         const Floats told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
         if (count - first >= kLanes) std::memcpy(out + first, &told, sizeof told);
         else std::memcpy(out + first, &told, (count - first) * sizeof *out);
     }
-    if (count < kBlock) lost &= (std::uint64_t{1} << count) - 1;
-    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+    leave_alone(lost, count, alone);
 }
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-ACDF_LANE void pdf_all_fast(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
-                            std::size_t count, float* out) {
-    for (std::size_t first = 0; first < count;
-         first += kBlock, normals += kBlock, directions += kBlock, out += kBlock)
-        fast_density_block(
-            local, PointsOf<FastPoints<false>>{local, normals},
-            [&](std::size_t lane) { out[lane] = acdf_local_pdf(&local, normals[lane], directions[lane]); },
-            directions, std::min(count - first, kBlock), out);
-}
-ACDF_LANE void pdf_all_fast(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
-                            std::size_t count, float* out) {
-    const OnePoint<FastPoints<false>> points(local, point);
-    for (std::size_t first = 0; first < count; first += kBlock, directions += kBlock, out += kBlock)
-        fast_density_block(
-            local, points,
-            [&](std::size_t lane) { out[lane] = acdf_local_pdf_at(&local, &point, directions[lane]); }, directions,
-            std::min(count - first, kBlock), out);
+/* `of`: normals, one each, or the point of all. */
+template <class Of>
+ACDF_LANE void pdf_all_fast(const AcdfLocal& local, Of of, const float (*directions)[3], std::size_t count,
+                            float* out) {
+    densities_in_blocks<kBlock, FastPoints<false>>(
+        local, of, directions, count, out, [&](const auto&... rest) { fast_density_block(local, rest...); });
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 
 #include "waves/fast_cells.h"
 #include "waves/local.h"
+#include "waves/local_blocks.h"
 #include "waves/row_vectors.h"
 
 #include <algorithm>
@@ -193,16 +194,16 @@ ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastCells& c, st
     const double columns = local.environment.columns, rows = local.environment.rows;
     const FastBoxes box = narrowed(c, at);
     const Vector u[2] = {loaded(&c.u[0][at]), loaded(&c.u[1][at])};
+    const Vector low[2] = {converted(box.low[0]), converted(box.low[1])};
+    Vector z[2];
+    const Vector height = heights_of(local, box, z);
     if (local.tables->octahedral) {
-        const Vector low[2] = {converted(box.low[0]), converted(box.low[1])};
         const Vector width[2] = {converted(box.high[0] - box.low[0]), converted(box.high[1] - box.low[1])};
         fold_direction(columns, rows, low, width, u, half, out);
-        return fast_density(local, c, box, fold_heights(local, box), at);
+    } else {
+        row_direction(columns, low[0], converted(box.high[0]), z[0], z[1], u, half, out);
     }
-    Vector z[2];
-    heights_of(local, box, z);
-    row_direction(columns, converted(box.low[0]), converted(box.high[0]), z[0], z[1], u, half, out);
-    return fast_density(local, c, box, z[0] - z[1], at);
+    return fast_density(local, c, box, height, at);
 }
 
 /* Draws of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
@@ -215,7 +216,7 @@ ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone
     std::uint64_t lost = 0;
     d.mixed_count = 0;
     for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) {
-        const std::size_t more = std::min<std::size_t>(count - std::min(first, count), ACDF_WIDTH);
+        const std::size_t more = lanes_there(first, count);
         double last[ACDF_WIDTH][2] = {};
         Doubles given[2];
         if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
@@ -238,28 +239,17 @@ ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone
         if (more < kLanes) std::memcpy(out + first, last, more * sizeof *out);
         lost |= (std::uint64_t)refused << first;
     }
-    if (count < kBlock) lost &= (std::uint64_t{1} << count) - 1;
-    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+    leave_alone(lost, count, alone);
 }
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-ACDF_LANE void sample_all_fast(const AcdfLocal& local, const float (*normals)[3], const double (*u)[2],
-                               std::size_t count, AcdfDirectionSample* out) {
-    for (std::size_t first = 0; first < count; first += kBlock, normals += kBlock, u += kBlock, out += kBlock)
-        draw_fast_block(
-            local, PointsOf<FastPoints<true>>{local, normals},
-            [&](std::size_t lane) { out[lane] = acdf_local_sample(&local, normals[lane], u[lane][0], u[lane][1]); },
-            u, std::min(count - first, kBlock), out);
-}
-ACDF_LANE void sample_all_fast(const AcdfLocal& local, const AcdfLocalPoint& point, const double (*u)[2],
-                               std::size_t count, AcdfDirectionSample* out) {
-    const OnePoint<FastPoints<true>> points(local, point);
-    for (std::size_t first = 0; first < count; first += kBlock, u += kBlock, out += kBlock)
-        draw_fast_block(
-            local, points,
-            [&](std::size_t lane) { out[lane] = acdf_local_sample_at(&local, &point, u[lane][0], u[lane][1]); }, u,
-            std::min(count - first, kBlock), out);
+/* `of`: normals, one each, or the point of all. */
+template <class Of>
+ACDF_LANE void sample_all_fast(const AcdfLocal& local, Of of, const double (*u)[2], std::size_t count,
+                               AcdfDirectionSample* out) {
+    draws_in_blocks<FastPoints<true>>(local, of, u, count, out,
+                                      [&](const auto&... rest) { draw_fast_block(local, rest...); });
 }
 
 } // namespace

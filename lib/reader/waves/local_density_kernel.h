@@ -2,6 +2,7 @@
 #pragma once
 
 #include "waves/local.h"
+#include "waves/local_blocks.h"
 #include "waves/local_curve_vectors.h"
 #include "waves/row_vectors.h"
 
@@ -196,7 +197,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     std::uint64_t lost = 0;
     cells.count = count;
     for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
-        const std::size_t more = std::min<std::size_t>(count - first, ACDF_WIDTH);
+        const std::size_t more = lanes_there(first, count);
         const Points& p = at(first, more, &room);
         keep(p, first, &seen);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << more) - 1u)) << first;
@@ -210,7 +211,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     weigh_tiles(local, seen, cells.tile, given, count, cells.probability);
     find_cells<true>(local, cells, &done);
     lost |= told_densities(local, cells, done, out);
-    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+    leave_alone(lost, count, alone);
 }
 
 } // namespace

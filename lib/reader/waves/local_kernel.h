@@ -9,6 +9,7 @@
 #pragma once
 
 #include "waves/local.h"
+#include "waves/local_blocks.h"
 #include "waves/local_curve_vectors.h"
 #include "waves/row_vectors.h"
 
@@ -251,7 +252,7 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
     std::uint64_t lost = 0;
     walks.count = cells.count = 0;
     for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
-        const std::size_t more = std::min<std::size_t>(count - first, ACDF_WIDTH);
+        const std::size_t more = lanes_there(first, count);
         const unsigned there = (1u << more) - 1u;
         double last[ACDF_WIDTH][2] = {};
         Doubles given[2];
@@ -274,25 +275,18 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
         local, walks, [](std::size_t, Vector of_all) { return of_all; }, &cells);
     find_cells<false>(local, cells, &done);
     lost |= place_cells(local, cells, done, out);
-    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+    leave_alone(lost, count, alone);
 }
 
-ACDF_LANE void sample_all(const AcdfLocal& local, const float (*normals)[3], const double (*u)[2],
-                          std::size_t count, AcdfDirectionSample* out) {
-    for (std::size_t first = 0; first < count; first += kBlock, normals += kBlock, u += kBlock, out += kBlock)
-        draw_block(
-            local, OwnRows{}, PointsOf<Points>{local, normals},
-            [&](std::size_t lane) { out[lane] = acdf_local_sample(&local, normals[lane], u[lane][0], u[lane][1]); },
-            u, std::min(count - first, kBlock), out);
-}
-ACDF_LANE void sample_all(const AcdfLocal& local, const AcdfLocalPoint& point, const double (*u)[2],
-                          std::size_t count, AcdfDirectionSample* out) {
-    const OnePoint<Points> points(local, point);
-    for (std::size_t first = 0; first < count; first += kBlock, u += kBlock, out += kBlock)
-        draw_block(
-            local, SameRows{point.codes}, points,
-            [&](std::size_t lane) { out[lane] = acdf_local_sample_at(&local, &point, u[lane][0], u[lane][1]); }, u,
-            std::min(count - first, kBlock), out);
+ACDF_LANE OwnRows rows_of(const float (*)[3]) { return {}; }
+ACDF_LANE SameRows rows_of(const AcdfLocalPoint& point) { return {point.codes}; }
+
+/* `of`: normals, one each, or the point of all. */
+template <class Of>
+ACDF_LANE void sample_all(const AcdfLocal& local, Of of, const double (*u)[2], std::size_t count,
+                          AcdfDirectionSample* out) {
+    draws_in_blocks<Points>(local, of, u, count, out,
+                            [&](const auto&... rest) { draw_block(local, rows_of(of), rest...); });
 }
 
 } // namespace

@@ -76,7 +76,7 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
     std::uint32_t lost = find_places(*local.tables, s, count < kSearched ? last : directions, &lanes);
     ask_for_blocks(s, lanes.sought);
     for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
-        const std::size_t more = std::min<std::size_t>(count - first, ACDF_WIDTH);
+        const std::size_t more = lanes_there(first, count);
         const Points& p = at(first, more, &room);
         keep(p, first, &seen);
         for (int k = 0; k < kRows; ++k) stored(&seen.row[k][first], parts_of(local, p.row[k]));
@@ -108,44 +108,22 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
         *(Floats*)told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
         if (first < count) std::memcpy(out + first, told, std::min(count - first, kLanes) * sizeof *out);
     }
-    if (count < kSearched) lost &= (1u << count) - 1u;
-    for (; lost; lost &= lost - 1) alone((std::size_t)acdf_lowest_bit(lost));
+    leave_alone(lost, count, alone);
 }
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-/* Densities by pieces where a file has them; block(first, more) has a type of its own for each. */
-template <class PointsFrom, class AloneFrom>
-ACDF_LANE void pdf_all(const AcdfLocal& local, const float (*directions)[3], std::size_t count, float* out,
-                       const PointsFrom& points_from, const AloneFrom& alone) {
-    const auto in_blocks = [&](std::size_t size, const auto& block) {
-        for (std::size_t first = 0; first < count; first += size)
-            block(
-                points_from(first), [&alone, first](std::size_t lane) { alone(first + lane); }, directions + first,
-                std::min(count - first, size), out + first);
-    };
+/* Densities by pieces where a file has them; `of`: normals, one each, or the point of all. */
+template <class Of>
+ACDF_LANE void pdf_all(const AcdfLocal& local, Of of, const float (*directions)[3], std::size_t count, float* out) {
     if (local.tables->pieces) {
         const Search s = search_of(local.tables, local.tables->directions);
-        in_blocks(kSearched, [&](const auto&... rest) { piece_block(local, s, rest...); });
+        densities_in_blocks<kSearched, Points>(local, of, directions, count, out,
+                                               [&](const auto&... rest) { piece_block(local, s, rest...); });
     } else {
-        in_blocks(kBlock, [&](const auto&... rest) { density_block(local, rest...); });
+        densities_in_blocks<kBlock, Points>(local, of, directions, count, out,
+                                            [&](const auto&... rest) { density_block(local, rest...); });
     }
-}
-ACDF_LANE void pdf_all(const AcdfLocal& local, const float (*normals)[3], const float (*directions)[3],
-                       std::size_t count, float* out) {
-    pdf_all(
-        local, directions, count, out,
-        [&](std::size_t first) {
-            return PointsOf<Points>{local, normals + first};
-        },
-        [&](std::size_t i) { out[i] = acdf_local_pdf(&local, normals[i], directions[i]); });
-}
-ACDF_LANE void pdf_all(const AcdfLocal& local, const AcdfLocalPoint& point, const float (*directions)[3],
-                       std::size_t count, float* out) {
-    const OnePoint<Points> points(local, point);
-    pdf_all(
-        local, directions, count, out, [&](std::size_t) -> const OnePoint<Points>& { return points; },
-        [&](std::size_t i) { out[i] = acdf_local_pdf_at(&local, &point, directions[i]); });
 }
 
 } // namespace

@@ -65,43 +65,47 @@ private:
         std::uint32_t first, end, all;
     };
 
-    // Returns what stands for the box in its parent.
+    // What stands for a box in its parent: a tile, or a split whose halves half(box, whether it is the upper one)
+    // adds.
+    std::uint32_t add_tile(LocalSpec& spec, const Box& box, std::uint8_t least_shift) {
+        boxes_.push_back(box);
+        spec.fast->grids.push_back(grid(box, least_shift));
+        return tile_flag | static_cast<std::uint32_t>(boxes_.size() - 1);
+    }
+    template <class Half>
+    static std::uint32_t add_split(LocalSpec& spec, const Box& box, std::uint32_t axis, std::uint32_t position,
+                                   const Half& half) {
+        const std::size_t index = spec.splits.size();
+        spec.splits.push_back({axis, position, {}});
+        Box lower = box, upper = box;
+        lower.high[axis] = upper.low[axis] = position;
+        const std::uint32_t first = half(lower, false), second = half(upper, true);
+        spec.splits[index].child[0] = first;
+        spec.splits[index].child[1] = second;
+        return static_cast<std::uint32_t>(index);
+    }
+
     std::uint32_t cut_evenly(LocalSpec& spec, const Box& box, const std::array<Cuts, 2>& cuts) {
         const std::uint32_t axis = cuts[0].first < cuts[0].end ? 0 : 1;
         const Cuts& along = cuts[axis];
         if (along.first == along.end) return add_tile(spec, box, 16);
         const std::uint32_t middle = (along.first + along.end) / 2;
         const std::uint64_t whole = axis == 0 ? spec.columns : spec.rows;
-        const std::size_t index = spec.splits.size();
         const auto position = static_cast<std::uint32_t>(whole * (2 * middle + 1) / (2 * along.all));
-        spec.splits.push_back({axis, position, {}});
-        Box lower = box, upper = box;
-        lower.high[axis] = upper.low[axis] = position;
-        std::array<Cuts, 2> below_it = cuts, above_it = cuts;
-        below_it[axis].end = middle;
-        above_it[axis].first = middle + 1;
-        const std::uint32_t first = cut_evenly(spec, lower, below_it), second = cut_evenly(spec, upper, above_it);
-        spec.splits[index].child[0] = first;
-        spec.splits[index].child[1] = second;
-        return static_cast<std::uint32_t>(index);
+        return add_split(spec, box, axis, position, [&](const Box& half, bool upper) {
+            std::array<Cuts, 2> left = cuts;
+            if (upper) left[axis].first = middle + 1;
+            else left[axis].end = middle;
+            return cut_evenly(spec, half, left);
+        });
     }
-    std::uint32_t add_tile(LocalSpec& spec, const Box& box, std::uint8_t least_shift) {
-        boxes_.push_back(box);
-        spec.fast->grids.push_back(grid(box, least_shift));
-        return tile_flag | static_cast<std::uint32_t>(boxes_.size() - 1);
-    }
+
     std::uint32_t divide(LocalSpec& spec, const Box& box, int depth) {
         const std::uint32_t axis = box.high[0] - box.low[0] < 2 || (below(2) == 0 && box.high[1] - box.low[1] > 1);
         if (depth == 0 || below(12) == 0 || box.high[axis] - box.low[axis] < 2) return add_tile(spec, box, 0);
-        const std::size_t index = spec.splits.size();
         const std::uint32_t position = box.low[axis] + 1 + below(box.high[axis] - box.low[axis] - 1);
-        spec.splits.push_back({axis, position, {}});
-        Box lower = box, upper = box;
-        lower.high[axis] = upper.low[axis] = position;
-        const std::uint32_t first = divide(spec, lower, depth - 1), second = divide(spec, upper, depth - 1);
-        spec.splits[index].child[0] = first;
-        spec.splits[index].child[1] = second;
-        return static_cast<std::uint32_t>(index);
+        return add_split(spec, box, axis, position,
+                         [&](const Box& half, bool) { return divide(spec, half, depth - 1); });
     }
 
     // Ends of `count` parts of some whole, some of which are 0; of those that must be 0 none else.
