@@ -3,7 +3,7 @@
 
 #include "waves/fast_cells.h"
 #include "waves/local.h"
-#include "waves/local_blocks.h"
+#include "waves/local_blocks_kernel.h"
 #include "waves/row_vectors.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "waves/local.h"
-#include "waves/local_blocks.h"
+#include "waves/local_blocks_kernel.h"
 #include "waves/local_curve_vectors.h"
 #include "waves/row_vectors.h"
 
