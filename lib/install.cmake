@@ -30,6 +30,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/dialect_words.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/elementary.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast_cut.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast_rows.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/groups.h
@@ -56,6 +57,9 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/portals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_cut.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_groups.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/random.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/row_heights.h

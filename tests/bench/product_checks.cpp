@@ -60,7 +60,9 @@ struct Counts {
     int disagree = 0, violations = 0, beyond = 0;
 };
 
-double cut_integral(const AcdfLocal& light, const AcdfLocalPoint& point, const AcdfCut& cut) {
+/// Of the density by which parts are drawn, whatever their shape.
+template <class Point>
+double cut_integral(const AcdfLocal& light, const Point& point) {
     const AcdfGrid grid = acdf_environment_grid(&light.environment);
     const double middle[2] = {0.5, 0.5};
     double sum = 0.0;
@@ -68,9 +70,19 @@ double cut_integral(const AcdfLocal& light, const AcdfLocalPoint& point, const A
         for (std::uint32_t x = 0; x < grid.columns; ++x) {
             const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
             const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
-            sum += double{acdf_cut_pdf(&light, &point, &cut, at.direction)} * acdf_grid_solid_angle(&grid, square);
+            const float pdf = point.light.what == ACDF_LOCAL_FAST
+                                  ? acdf_fast_cut_pdf(&light, &point.light, &point.fast, at.direction)
+                                  : acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
+            sum += double{pdf} * acdf_grid_solid_angle(&grid, square);
         }
     return sum;
+}
+
+/// Whether a point's light is drawn by parts.
+template <class Point>
+bool has_parts(const Point& point) {
+    return (point.light.what == ACDF_LOCAL_BLEND && point.cut.count > 0) ||
+           (point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0);
 }
 
 template <class AnyLobe>
@@ -121,9 +133,8 @@ Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
         }
         const double error = std::sqrt(ours.error2() + other.error2());
         out.beyond += std::fabs(ours.value() - other.value()) > 4.0 * error;
-        if (i < sums && point.light.what == ACDF_LOCAL_BLEND && point.cut.count > 0)
-            out.worst_integral =
-                std::max(out.worst_integral, std::fabs(cut_integral(light, point.light, point.cut) - 1.0));
+        if (i < sums && has_parts(point))
+            out.worst_integral = std::max(out.worst_integral, std::fabs(cut_integral(light, point) - 1.0));
     }
     return out;
 }

@@ -109,7 +109,8 @@ inline void product_at_once_is_the_product(const acdf::LocalEnvironmentView& vie
         return s;
     };
     const acdf::Lobe lobe([](const float*, const float*) { return 1.0; }, draw, density);
-    const acdf::ProductSampler sampler(view.data(), lobe, {static_cast<int>(1 + random.below(12))});
+    const acdf::ProductSampler sampler(view.data(), lobe,
+                                       {static_cast<int>(1 + random.below(random.below(4) == 0 ? 96 : 12))});
     FuzzWave wave(random, false);
     const auto point = sampler.at(wave.first[0], wave.first[1]);
     acdf::ProductSample at_once[samples_a_file];

@@ -128,7 +128,7 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// " --with cosine --shares 2:1 --heuristic power --scene".
+/// " --with cosine --shares 2:1 --heuristic power --scene --shape fast".
 void read_company(const std::string& options, SamplerSpec& spec) {
     if (spec.kind != SamplerKind::env && spec.kind != SamplerKind::local && spec.kind != SamplerKind::ideal)
         fail(spec.text, "takes no options: env, local and ideal do");
@@ -141,13 +141,18 @@ void read_company(const std::string& options, SamplerSpec& spec) {
             continue;
         }
         const std::string value = i + 1 < words.size() ? words[i + 1] : "";
+        if (words[i] == "--shape" && value == "fast" && spec.kind == SamplerKind::local) {
+            spec.fast = true;
+            ++i;
+            continue;
+        }
         const bool known = words[i] == "--with"        ? parse_company(value, spec.company)
                            : words[i] == "--shares"    ? parse_shares(value, spec.company)
                            : words[i] == "--heuristic" ? parse_heuristic(value, spec.company)
                                                        : false;
         if (!known)
             fail(spec.text, "'" + words[i] + " " + value + "' is no option: --with cosine, --shares 2:1, " +
-                                "--heuristic power or --scene");
+                                "--heuristic power, --scene, or of local --shape fast");
         ++i;
     }
     if (spec.kind == SamplerKind::ideal && spec.company.kind > ACDF_COMPANY_COSINE)

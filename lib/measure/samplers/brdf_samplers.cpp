@@ -33,7 +33,7 @@ BrdfSample GgxSampler::sample(const double wo[3], const double u[2]) const {
     double v[3] = {alpha_x_ * wo[0], alpha_y_ * wo[1], wo[2]};
     const double length = std::sqrt(dot_product(v, v));
     for (double& x : v) x /= length;
-    const double across = std::hypot(v[0], v[1]);
+    const double across = std::sqrt(v[0] * v[0] + v[1] * v[1]);
     const double a[3] = {across > 0.0 ? -v[1] / across : 1.0, across > 0.0 ? v[0] / across : 0.0, 0.0};
     const double b[3] = {-v[2] * a[1], v[2] * a[0], v[0] * a[1] - v[1] * a[0]};
 

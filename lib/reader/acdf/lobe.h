@@ -89,6 +89,14 @@ ACDF_METHOD ProductSample lobe_about(const AnyLobe& lobe, const typename AnyLobe
     return lobe.sample(point, u0, u1);
 }
 
+/// Sample i of `drawn`, at most 8, that look for a lobe: the points of Hammersley, moved off the borders.
+template <class AnyLobe>
+ACDF_METHOD ProductSample guide(const AnyLobe& lobe, const typename AnyLobe::Point& point, int i,
+                                int drawn) noexcept {
+    const int reversed = (i & 1) << 2 | (i & 2) | i >> 2;
+    return lobe_about(lobe, point, (i + 0.5) / drawn, (reversed + 0.5) / 8.0, 0);
+}
+
 /// Densities of several directions: `pdfs` where it has that, else `pdf`.
 template <class AnyLobe>
 ACDF_METHOD auto lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],

@@ -50,14 +50,16 @@ typedef struct AcdfLocalTables {
     uint32_t corners;       /* AcdfCornerRecord, in two squares of (2 n + 1)^2, north and south, of x + n and
                                (y + n) (2 n + 1); 0: the octahedron is too large, or there is none */
     uint32_t lights;        /* AcdfLightPair, one two lights */
-    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and 0; not of the fast
-                               shape, which products do not divide */
+    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and its solid angle */
     uint32_t hearts;        /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
                                from it by the brighter halves; 0: there is no room */
     uint32_t octahedral;    /* whether cells lie on the octahedral square */
     uint32_t upper;         /* of the fast shape: u16, as AcdfFast has them */
     AcdfTileBlocks blocks;  /* of the fast shape */
-    uint32_t reserved[9];
+    uint32_t group_hearts; /* of the fast shape: u8, of each row and group its tile that gets most, as many of a row
+                              as it has ends; 0: there are more than cuts have */
+    uint32_t group_angles; /* f32: the solid angle of each group, and 0 up to as many as a row has ends */
+    uint32_t reserved[7];
 } AcdfLocalTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalTables) % 64 == 0); /* arrays are aligned */
 
@@ -78,6 +80,12 @@ ACDF_INLINE const AcdfLightPair* acdf_local_lights(const AcdfLocalTables* tables
 }
 ACDF_INLINE const float* acdf_local_middle(const AcdfLocalTables* tables, uint32_t tile) {
     return (const float*)(const void*)(acdf_local_words(tables) + tables->middles) + 4 * (size_t)tile;
+}
+ACDF_INLINE const uint8_t* acdf_local_group_hearts(const AcdfLocalTables* tables, uint32_t row, uint32_t ends) {
+    return (const uint8_t*)(const void*)(acdf_local_words(tables) + tables->group_hearts) + (size_t)row * ends;
+}
+ACDF_INLINE const float* acdf_local_group_angles(const AcdfLocalTables* tables) {
+    return (const float*)(const void*)(acdf_local_words(tables) + tables->group_angles);
 }
 /* Of the row whose codes these are, one a split. */
 ACDF_INLINE const uint16_t* acdf_local_hearts(const AcdfLocalTables* tables, const uint8_t* codes) {

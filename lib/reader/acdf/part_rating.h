@@ -27,6 +27,15 @@ struct LobeGuides {
         return upper & some;
     }
 
+    /// Sets what they weigh where the light has such densities.
+    ACDF_METHOD void weigh(const float* light) noexcept {
+        for (int i = 0; i < count; ++i) {
+            const double weight = double{light[i]} * double{value[i]} / double{pdf[i]};
+            weights += weight;
+            squares += weight * weight;
+        }
+    }
+
     /// Relative variance of one sample of the lobe's own sampler, as the guides tell, and what they have missed
     /// where the parts expect a larger mean: small lights in a lobe make it large.
     ACDF_METHOD double variance(double expected) const noexcept {
@@ -66,58 +75,82 @@ struct PartRating {
     }
 };
 
-/// A sum by four others, which need not wait for each other.
-ACDF_METHOD inline double sum_by_four(const double* x, int count) noexcept {
-    double sum[4] = {0.0, 0.0, 0.0, 0.0};
+/// A sum by eight others, which need not wait for each other.
+template <class Real>
+ACDF_METHOD Real sum_by_eight(const Real* x, int count) noexcept {
+    Real sum[8] = {};
     int i = 0;
-    for (; i + 4 <= count; i += 4)
-        for (int k = 0; k < 4; ++k) sum[k] += x[i + k];
+    for (; i + 8 <= count; i += 8)
+        for (int k = 0; k < 8; ++k) sum[k] += x[i + k];
     for (; i < count; ++i) sum[0] += x[i];
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-/// Gives all parts their probabilities. Returns the share of samples that is left to the lobe's own sampler: the
-/// more the lobe changes within parts, and the less the light within the lobe.
-ACDF_METHOD inline double weigh_parts(AcdfCut& cut, const LobeGuides& guides, const PartRating* ratings) noexcept {
+/// Gives all parts their probabilities, into `left`. Returns the share of samples that is left to the lobe's own
+/// sampler: the more the lobe changes within parts, and the less the light within the lobe. 1, and nothing is
+/// given, where parts have no light or reflect none. `Most`: of parts; `least_share`: what that sampler gets at
+/// least; `parts` tell what light is in one, and its rating.
+template <int Most, class Real, class Parts>
+ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least_share, const Parts& parts,
+                               Real* left) noexcept {
     // What the value may be elsewhere in a part, beside what was seen: a little of what is around it and of the
     // mean.
-    constexpr double around = 0.1, anywhere = 0.02;
-    constexpr double least_share = 0.03, most_share = 0.8;
+    constexpr Real around = Real(0.1), anywhere = Real(0.02);
+    constexpr double most_share = 0.8;
     // How much of what the lobe's own sampler gives is left out of the parts, and what they keep at least.
     constexpr double left_out = 0.8, kept = 0.1;
-    double light = 0.0, reflected = 0.0, spread = 0.0;
-    for (int i = 0; i < cut.count; ++i) {
-        const double both = cut.part[i].sum * double{ratings[i].mean};
-        light += cut.part[i].sum;
-        reflected += both;
-        spread += both * double{ratings[i].spread};
-    }
-    if (!(light > 0.0 && reflected > 0.0)) return 1.0;
-    const double variance = guides.variance(reflected / light);
-    const double share = acdf_clamp(4.0 * (spread / reflected) / (1.0 + 2.0 * variance), least_share, most_share);
-    const double least = anywhere * (reflected / light), kept_share = kept * (1.0 - share);
-    double wanted[ACDF_CUT_MAX_PARTS], lobe[ACDF_CUT_MAX_PARTS], left[ACDF_CUT_MAX_PARTS],
-        above[ACDF_CUT_MAX_PARTS];
-    const int count = cut.count;
+    Real wanted[Most], lobe[Most], above[Most];
     for (int i = 0; i < count; ++i) {
-        wanted[i] = cut.part[i].sum * (double{ratings[i].mean} + around * double{ratings[i].around} + least);
-        lobe[i] = left_out * share * double{ratings[i].mass};
+        wanted[i] = parts.light(i);
+        lobe[i] = wanted[i] * Real(parts.mean(i));
+        above[i] = lobe[i] * Real(parts.spread(i));
     }
-    const double whole = sum_by_four(wanted, count);
+    const Real light = sum_by_eight(wanted, count), reflected = sum_by_eight(lobe, count);
+    if (!(light > 0 && reflected > 0)) return 1.0;
+    const double mean = double{reflected} / double{light}, spread = double{sum_by_eight(above, count)};
+    const double share = acdf_clamp(4.0 * (spread / double{reflected}) / (1.0 + 2.0 * guides.variance(mean)),
+                                    least_share, most_share);
+    const Real least = anywhere * Real(mean), given = Real(left_out * share),
+               kept_share = Real(kept * (1.0 - share));
+    const Real rest = Real(1.0 - share);
+    for (int i = 0; i < count; ++i) {
+        wanted[i] = parts.light(i) * (Real(parts.mean(i)) + around * Real(parts.around(i)) + least);
+        lobe[i] = given * Real(parts.mass(i));
+    }
+    const Real whole = sum_by_eight(wanted, count);
     for (int i = 0; i < count; ++i) wanted[i] /= whole;
     // Raised until what is left of them after the lobe's share adds up to the rest.
-    double scale = 1.0;
+    Real scale = 1;
     for (int pass = 0;; ++pass) {
         for (int i = 0; i < count; ++i) {
-            const double p = scale * wanted[i], rest = p - lobe[i], floor = kept_share * p;
-            left[i] = rest > floor ? rest : floor;
-            above[i] = rest > floor ? wanted[i] : 0.0;
+            const Real p = scale * wanted[i], over = p - lobe[i], floor = kept_share * p;
+            left[i] = over > floor ? over : floor;
+            above[i] = over > floor ? wanted[i] : Real(0);
         }
         if (pass == 3) break;
-        scale += (1.0 - share - sum_by_four(left, count)) / (0.05 + sum_by_four(above, count));
-        if (!(scale > 0.5)) scale = 0.5;
+        scale += (rest - sum_by_eight(left, count)) / (Real(0.05) + sum_by_eight(above, count));
+        if (!(scale > Real(0.5))) scale = Real(0.5);
     }
-    for (int i = 0; i < count; ++i) cut.part[i].probability = left[i];
+    return share;
+}
+
+/// The parts of a cut, to be weighed.
+struct CutParts {
+    const AcdfCut& cut;
+    const PartRating* ratings;
+
+    ACDF_METHOD double light(int i) const noexcept { return cut.part[i].sum; }
+    ACDF_METHOD float mean(int i) const noexcept { return ratings[i].mean; }
+    ACDF_METHOD float mass(int i) const noexcept { return ratings[i].mass; }
+    ACDF_METHOD float around(int i) const noexcept { return ratings[i].around; }
+    ACDF_METHOD float spread(int i) const noexcept { return ratings[i].spread; }
+};
+
+/// Gives all parts of a cut their probabilities, and returns the share of the lobe's own sampler, as weigh_parts.
+ACDF_METHOD inline double weigh_cut(AcdfCut& cut, const LobeGuides& guides, const PartRating* ratings) noexcept {
+    double left[ACDF_CUT_MAX_PARTS];
+    const double share = weigh_parts<ACDF_CUT_MAX_PARTS>(cut.count, guides, 0.03, CutParts{cut, ratings}, left);
+    for (int i = 0; share < 1.0 && i < cut.count; ++i) cut.part[i].probability = left[i];
     return share;
 }
 

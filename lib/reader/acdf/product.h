@@ -19,9 +19,8 @@
 #pragma once
 
 #include <acdf/cut_wave.h>
-#include <acdf/lobe.h>
-#include <acdf/part_queue.h>
-#include <acdf/part_rating.h>
+#include <acdf/product_cut.h>
+#include <acdf/product_groups.h>
 
 namespace acdf {
 
@@ -37,7 +36,10 @@ template <class LobePoint>
 struct ProductPoint {
     SurfaceFrame frame;
     AcdfLocalPoint light; ///< what serves the normal
-    AcdfCut cut;          ///< empty where the light's own density is used as it is, or not at all
+    union {               // empty where the light's own density is used as it is, or not at all
+        AcdfCut cut;
+        AcdfFastCut fast; ///< of lights of the fast shape
+    };
     LobePoint lobe;
     double share; ///< of the samples that the BRDF's own sampler draws; below 0: nothing is drawn
 };
@@ -86,33 +88,25 @@ public:
                          float* out) const noexcept;
 
 private:
-    /// How many parts are divided at once, so that what is looked at in one need not wait for the others.
-    static constexpr int at_once = 4;
-    /// Two halves of a part, by number, and what was known of the whole.
-    struct Division {
-        int lower, upper;
-        int unknown; ///< which of the two does not have the whole's heart
-        float mean, around;
-    };
-    /// Beyond this the lobe's value and density are not told apart: no sum of products overflows.
-    static constexpr float most_value = 1e18f;
-
-    ACDF_METHOD static float bounded(float x) noexcept;
-    ACDF_METHOD LobeGuides guides(const Point& point) const noexcept;
-    ACDF_METHOD void look(const Point& point, int count, const int* parts, PartRating* ratings) const noexcept;
-    ACDF_METHOD Division halve(Point& point, const LobeGuides& guides, int part,
-                               PartRating* ratings) const noexcept;
-    ACDF_METHOD void divide(Point& point, const LobeGuides& guides, PartRating* ratings) const noexcept;
     ACDF_METHOD float light_pdf(const Point& point, const float direction[3]) const noexcept;
     ACDF_METHOD float lobe_pdf(const Point& point, const float direction[3]) const noexcept {
         float wi[3];
         point.frame.to_local(direction, wi);
         return lobe_.pdf(point.lobe, wi);
     }
+    /// Several of the light's part, where a cut is drawn from.
+    ACDF_METHOD void light_samples(const Point& point, std::size_t count, const double (*u)[2],
+                                   ProductSample* out) const noexcept;
+    ACDF_METHOD void light_pdfs(const Point& point, std::size_t count, const float (*directions)[3],
+                                float* out) const noexcept;
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
     /// Whether a cut is drawn from, and the lobe.
     ACDF_METHOD static bool draws_both(const Point& point) noexcept {
-        return point.light.what == ACDF_LOCAL_BLEND && point.share >= 0.0 && point.share < 1.0;
+        return (point.light.what == ACDF_LOCAL_BLEND || draws_groups(point)) && point.share >= 0.0 &&
+               point.share < 1.0;
+    }
+    ACDF_METHOD static bool draws_groups(const Point& point) noexcept {
+        return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
     }
     ACDF_METHOD void sample_wave(const Point& point, std::size_t count, const double (*u)[2],
                                  ProductSample* out) const noexcept;
@@ -122,127 +116,6 @@ private:
     AnyLobe lobe_;
     int parts_;
 };
-
-template <class AnyLobe>
-ACDF_METHOD float ProductSampler<AnyLobe>::bounded(float x) noexcept {
-    return x < most_value ? x > 0.0f ? x : 0.0f : most_value;
-}
-
-template <class AnyLobe>
-ACDF_METHOD LobeGuides ProductSampler<AnyLobe>::guides(const Point& point) const noexcept {
-    const AcdfGrid grid = acdf_environment_grid(&light_.environment);
-    LobeGuides out;
-    float world[8][3], light[8];
-    out.drawn = parts_ < 32 ? 4 : 8;
-    for (int i = 0; i < out.drawn; ++i) {
-        const int reversed = (i & 1) << 2 | (i & 2) | i >> 2; // the points of Hammersley, moved off the borders
-        const ProductSample s = lobe_about(lobe_, point.lobe, (i + 0.5) / out.drawn, (reversed + 0.5) / 8.0, 0);
-        if (!(s.pdf > 0.0f && s.direction[2] > 0.0f)) continue;
-        std::uint32_t square[2];
-        point.frame.to_world(s.direction, world[out.count]);
-        if (!acdf_local_square(&grid, world[out.count], square)) continue;
-        const float value = bounded(lobe_.value(point.lobe, s.direction, s.pdf)), pdf = bounded(s.pdf);
-        if (!(value > 0.0f && pdf > 0.0f)) continue;
-        for (int axis = 0; axis < 2; ++axis) out.square[axis][out.count] = square[axis];
-        out.value[out.count] = value;
-        out.pdf[out.count] = pdf;
-        if (value > out.brightest) out.brightest = value;
-        ++out.count;
-    }
-    acdf_cut_pdf_wave(&light_, &point.light, &point.cut, world, static_cast<std::size_t>(out.count), light);
-    for (int i = 0; i < out.count; ++i) {
-        const double weight = double{light[i]} * double{out.value[i]} / double{out.pdf[i]};
-        out.weights += weight;
-        out.squares += weight * weight;
-    }
-    return out;
-}
-
-/// The lobe at the hearts of some parts.
-template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::look(const Point& point, int count, const int* parts,
-                                               PartRating* ratings) const noexcept {
-    float wi[at_once][3], pdf[at_once];
-    for (int i = 0; i < count; ++i) {
-        float world[3];
-        ratings[parts[i]].tile = acdf_cut_heart(&light_, &point.light, &point.cut, parts[i], world);
-        point.frame.to_local(world, wi[i]);
-    }
-    lobe_pdfs(lobe_, point.lobe, wi, static_cast<std::size_t>(count), pdf, 0);
-    for (int i = 0; i < count; ++i) {
-        PartRating& rating = ratings[parts[i]];
-        const bool above = wi[i][2] > 0.0f;
-        rating.value = above ? bounded(lobe_.value(point.lobe, wi[i], pdf[i])) : 0.0f;
-        rating.pdf = above ? bounded(pdf[i]) : 0.0f;
-    }
-}
-
-/// Divides a part; all is known of its halves then but the lobe at the heart of one of them.
-template <class AnyLobe>
-ACDF_METHOD auto ProductSampler<AnyLobe>::halve(Point& point, const LobeGuides& guides, int part,
-                                                PartRating* ratings) const noexcept -> Division {
-    AcdfCut& cut = point.cut;
-    acdf_cut_divide(&light_, &point.light, &cut, part);
-    const int last = cut.count - 1;
-    const AcdfCutSplit& split = cut.split[last - 1];
-    PartRating &low = ratings[part], &high = ratings[last];
-    high = low;
-    high.guides = guides.above(split.place & 7u, split.place >> 3, low.guides);
-    low.guides ^= high.guides;
-    low.solid_angle = static_cast<float>(acdf_cut_solid_angle(&light_, &cut.part[part]));
-    const float rest = high.solid_angle - low.solid_angle;
-    high.solid_angle = rest > 0.0f ? rest : 0.0f;
-    return {part, last, low.tile >= cut.part[last].tile ? 0 : 1, low.mean, low.around};
-}
-
-/// Divides where light times BRDF is large, and the part is.
-template <class AnyLobe>
-ACDF_METHOD void ProductSampler<AnyLobe>::divide(Point& point, const LobeGuides& guides,
-                                                 PartRating* ratings) const noexcept {
-    AcdfCut& cut = point.cut;
-    int chosen[at_once] = {0}, count = acdf_cut_divisible(&cut, 0);
-    look(point, 1, chosen, ratings);
-    ratings[0].guides = (1u << guides.count) - 1u;
-    ratings[0].solid_angle = static_cast<float>(4.0 * ACDF_PI);
-    ratings[0].rate(guides);
-    ratings[0].around = ratings[0].mean;
-    ratings[0].spread = 1.0f;
-    const double most_light =
-        cut.part[0].sum * double{guides.brightest > 0.0f ? guides.brightest : ratings[0].value};
-    PartQueue queue(most_light * most_light * (4.0 * ACDF_PI));
-    const int most = parts_ < ACDF_CUT_MAX_PARTS ? parts_ : ACDF_CUT_MAX_PARTS;
-    while (count > 0) {
-        Division division[at_once];
-        for (int i = 0; i < count; ++i) division[i] = halve(point, guides, chosen[i], ratings);
-        for (int i = 0; i < count; ++i) chosen[i] = division[i].unknown ? division[i].upper : division[i].lower;
-        look(point, count, chosen, ratings);
-        for (int i = 0; i < count; ++i) {
-            const int number[2] = {division[i].lower, division[i].upper};
-            PartRating &low = ratings[number[0]], &high = ratings[number[1]];
-            low.rate(guides);
-            high.rate(guides);
-            const float mean = division[i].mean, larger = low.mean > high.mean ? low.mean : high.mean;
-            const float smaller = low.mean < high.mean ? low.mean : high.mean;
-            const float most_seen = larger > mean ? larger : mean, least_seen = smaller < mean ? smaller : mean;
-            const float change = most_seen > 0.0f ? 1.0f - least_seen / most_seen : 0.0f;
-            const float hoped = 0.5f * most_seen + 0.25f * division[i].around;
-            for (const int part : number) {
-                PartRating& rating = ratings[part];
-                rating.spread = change * change;
-                rating.around = hoped;
-                if (cut.part[part].node & ACDF_TILE_FLAG) continue;
-                const double light = cut.part[part].sum * double{rating.mean + 0.3f * hoped};
-                const double square = light * light * double{rating.solid_angle};
-                if (square > 0.0) queue.push(part, square);
-            }
-        }
-        // Early on the order matters: the best part is among few.
-        const int some = 1 + cut.count / 8, room = most - cut.count;
-        const int wanted = some < at_once ? some : at_once, next = wanted < room ? wanted : room;
-        for (count = 0; count < next; ++count)
-            if ((chosen[count] = queue.pop()) < 0) break;
-    }
-}
 
 template <class AnyLobe>
 ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const SurfaceFrame& frame,
@@ -265,17 +138,14 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
         point.light.windows.count = 0;
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
-    if (point.light.what != ACDF_LOCAL_BLEND) return point;
-    acdf_cut_begin(&light_, &point.light, &point.cut);
-    if (parts_ > 1) {
-        PartRating ratings[ACDF_CUT_MAX_PARTS];
-        acdf_cut_ahead(&light_, &point.light, &point.cut, parts_);
-        const LobeGuides drawn = guides(point);
-        divide(point, drawn, ratings);
-        point.share = weigh_parts(point.cut, drawn, ratings);
+    const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};
+    if (point.light.what == ACDF_LOCAL_BLEND) {
+        point.share = CutRating<AnyLobe>(of_lobe, point.cut).make();
+    } else if (point.light.what == ACDF_LOCAL_FAST) {
+        point.fast.whole = 0;
+        if (parts_ > 1 && acdf_fast_cut_serves(&light_))
+            point.share = GroupRating<AnyLobe>(of_lobe).make(point.fast);
     }
-    acdf_cut_finish(&point.cut);
-    if (point.cut.count == 0) point.share = 1.0;
     return point;
 }
 
@@ -283,7 +153,29 @@ template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
     if (point.light.what == ACDF_LOCAL_BLEND) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
+    if (draws_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
+}
+
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::light_samples(const Point& point, std::size_t count, const double (*u)[2],
+                                                        ProductSample* out) const noexcept {
+    if (point.light.what == ACDF_LOCAL_BLEND) {
+        acdf_cut_sample_wave(&light_, &point.light, &point.cut, u, count, out);
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        out[i] = acdf_fast_cut_sample(&light_, &point.light, &point.fast, u[i][0], u[i][1]);
+}
+template <class AnyLobe>
+ACDF_METHOD void ProductSampler<AnyLobe>::light_pdfs(const Point& point, std::size_t count,
+                                                     const float (*directions)[3], float* out) const noexcept {
+    if (point.light.what == ACDF_LOCAL_BLEND) {
+        acdf_cut_pdf_wave(&light_, &point.light, &point.cut, directions, count, out);
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        out[i] = acdf_fast_cut_pdf(&light_, &point.light, &point.fast, directions[i]);
 }
 
 /// Of the mixture, by those of its parts.
@@ -316,6 +208,8 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     const double rest = (u - point.share) / (1.0 - point.share);
     if (point.light.what == ACDF_LOCAL_BLEND) {
         out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
+    } else if (draws_groups(point)) {
+        out = acdf_fast_cut_sample(&light_, &point.light, &point.fast, rest, u1);
     } else {
         out = acdf_local_sample_at(&light_, &point.light, rest, u1);
         if (out.pdf > 0.0f) out.pdf = light_pdf(point, out.direction);
@@ -340,7 +234,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::s
         lit += static_cast<std::size_t>(!(x < point.share));
     }
     const std::size_t reflected = count - lit;
-    acdf_cut_sample_wave(&light_, &point.light, &point.cut, rest, lit, drawn);
+    light_samples(point, lit, rest, drawn);
     for (std::size_t k = 0; k < lit; ++k) {
         out[of_light[k]] = drawn[k];
         light[of_light[k]] = drawn[k].pdf;
@@ -351,7 +245,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample_wave(const Point& point, std::s
     }
     lobe_samples(lobe_, point.lobe, rest, reflected, drawn, 0);
     for (std::size_t k = 0; k < reflected; ++k) point.frame.to_world(drawn[k].direction, directions[k]);
-    acdf_cut_pdf_wave(&light_, &point.light, &point.cut, directions, reflected, lobe);
+    light_pdfs(point, reflected, directions, lobe);
     for (std::size_t k = 0; k < reflected; ++k) {
         const std::size_t i = of_lobe[k];
         out[i] = {{directions[k][0], directions[k][1], directions[k][2]}, drawn[k].pdf};
@@ -386,7 +280,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::pdf(const Point& point, std::size_t co
     for (; count > 0;) {
         const std::size_t some = count < ACDF_CUT_WAVE ? count : std::size_t{ACDF_CUT_WAVE};
         for (std::size_t i = 0; i < some; ++i) point.frame.to_local(directions[i], wi[i]);
-        acdf_cut_pdf_wave(&light_, &point.light, &point.cut, directions, some, light);
+        light_pdfs(point, some, directions, light);
         lobe_pdfs(lobe_, point.lobe, wi, some, lobe, 0);
         for (std::size_t i = 0; i < some; ++i) out[i] = mixed(point, light[i], lobe[i]);
         count -= some;

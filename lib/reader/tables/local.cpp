@@ -7,6 +7,7 @@
 #include "tables/tiles.h"
 
 #include <acdf/cut.h>
+#include <acdf/fast_cut.h>
 
 #include <algorithm>
 #include <cmath>
@@ -193,12 +194,43 @@ void place_upper(const AcdfLocal& local, std::uint16_t* out) {
     }
 }
 
-// Of each tile the direction of its middle.
+// Of each tile the direction of its middle, and its solid angle.
 void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float* out) {
     for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 4) {
         const AcdfTileRecord& record = *acdf_local_tile(&tables, tile);
         const u32 box[2][2] = {{record.high[0], record.low[0]}, {record.high[1], record.low[1]}};
         acdf_cut_middle(&local, box, out);
+        AcdfRange range[2];
+        acdf_tile_range(&record, range);
+        range[0].tilt = range[1].tilt = 0.0;
+        const AcdfGrid grid = acdf_environment_grid(&local.environment);
+        out[3] = static_cast<float>(acdf_grid_solid_angle(&grid, range));
+    }
+}
+
+// Of the fast shape, for cuts: which tile of each group gets most of a row, and how large groups are.
+std::size_t group_heart_words(const AcdfLocal& local) {
+    if (!local.fast.grid || local.fast.ends > ACDF_FAST_CUT_GROUPS) return 0;
+    return whole_lines(std::size_t{local.blend.tiles->row_count} * local.fast.ends / 4);
+}
+
+std::uint8_t brightest(const std::uint8_t* ends) {
+    int most = -1, found = 0;
+    for (int i = 0, before = 0; i < int{ACDF_FAST_GROUP}; before = ends[i++])
+        if (ends[i] - before > most) {
+            most = ends[i] - before;
+            found = i;
+        }
+    return static_cast<std::uint8_t>(found);
+}
+
+void place_groups(const AcdfLocal& local, const AcdfLocalTables& tables, std::uint8_t* hearts, float* angles) {
+    const u32 tile_count = local.blend.tiles->tile_count, groups = acdf_fast_group_count(tile_count);
+    for (u32 tile = 0; tile < tile_count; ++tile)
+        angles[tile / ACDF_FAST_GROUP] += acdf_local_middle(&tables, tile)[3];
+    for (u32 row = 0; row < local.blend.tiles->row_count; ++row, hearts += local.fast.ends) {
+        const std::uint8_t* const ends = local.fast.tiles + std::size_t{row} * local.fast.stride;
+        for (u32 group = 0; group < groups; ++group) hearts[group] = brightest(ends + ACDF_FAST_GROUP * group);
     }
 }
 
@@ -214,11 +246,13 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     if (!tiles.make()) return nullptr;
     const std::size_t corners = corner_words(local),
                       lights = whole_lines((local.light_count + 1) / 2 * sizeof(AcdfLightPair) / 4);
-    const std::size_t middles = local.fast.grid ? 0 : whole_lines(4 * std::size_t{local.blend.tiles->tile_count});
+    const std::size_t group_hearts = group_heart_words(local), group_angles = whole_lines(local.fast.ends);
+    const std::size_t groups = group_hearts > 0 ? group_hearts + group_angles : 0;
+    const std::size_t middles = whole_lines(4 * std::size_t{local.blend.tiles->tile_count});
     TileBlocksMaker blocks;
     if (local.fast.grid && !blocks.make(local.blend, env.columns, env.rows)) return nullptr;
     const std::size_t upper = local.fast.grid ? upper_words(local) + blocks.words() : 0;
-    std::size_t words = at + tiles.words() + heights + corners + lights + middles + upper;
+    std::size_t words = at + tiles.words() + heights + corners + lights + middles + upper + groups;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
     const bool small = !local.fast.grid && pieces.make();
@@ -250,15 +284,20 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
         for (u32 i = 0; i <= env.rows; ++i) reinterpret_cast<double*>(out + at)[i] = acdf_row_z(i, env.rows);
         at += heights;
     }
-    if (middles > 0) {
-        tables->middles = static_cast<u32>(at);
-        place_middles(local, *tables, reinterpret_cast<float*>(out + at));
-        at += middles;
-    }
+    tables->middles = static_cast<u32>(at);
+    place_middles(local, *tables, reinterpret_cast<float*>(out + at));
+    at += middles;
     if (upper > 0) {
         tables->upper = static_cast<u32>(at);
         place_upper(local, reinterpret_cast<std::uint16_t*>(out + at));
         at = blocks.place(out, at + upper_words(local), tables->blocks);
+    }
+    if (groups > 0) {
+        tables->group_hearts = static_cast<u32>(at);
+        tables->group_angles = static_cast<u32>(at + group_hearts);
+        place_groups(local, *tables, reinterpret_cast<std::uint8_t*>(out + at),
+                     reinterpret_cast<float*>(out + at + group_hearts));
+        at += groups;
     }
     if (hearts > 0) {
         tables->hearts = static_cast<u32>(at);

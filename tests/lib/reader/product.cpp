@@ -1,6 +1,7 @@
 // acdf/product.h and acdf/cut.h on files and lobes of every kind: that the density is exactly that of the samples,
 // that it integrates to 1, and that nothing is left out.
 #include "tests/lib/reader/load.h"
+#include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 
@@ -23,18 +24,33 @@ using namespace acdf_test;
 
 namespace {
 
-constexpr std::uint32_t file_count = 48;
+constexpr std::uint32_t file_count = 64; // every fourth one of the fast shape
 
 // Small grids, so that densities can be summed over their squares.
-LocalSpec random_local(std::uint32_t seed, bool tilts) {
+RandomOptions small_grid(std::uint32_t seed) {
     RandomOptions options;
     options.columns = 17 + seed % 16;
     options.rows = 9 + seed % 13;
     options.depth = 3;
-    options.tilts = tilts;
+    options.tilts = false;
     options.long_curves = false;
     options.octahedral = seed % 2 == 1;
+    return options;
+}
+LocalSpec random_local(std::uint32_t seed, bool tilts) {
+    RandomOptions options = small_grid(seed);
+    options.tilts = tilts;
     return RandomLocal(seed, options).make();
+}
+// From one tile to as many as there are squares, in several groups.
+LocalSpec random_fast_local(std::uint32_t seed) {
+    const RandomOptions options = small_grid(seed);
+    RandomFast random(seed, options);
+    if (seed % 3 != 0) return random.make();
+    return random.make_cut_evenly(options.columns / 2, 1 + seed % 4);
+}
+LocalSpec random_light(std::uint32_t seed, bool tilts) {
+    return seed % 4 == 3 ? random_fast_local(seed / 4) : random_local(seed, tilts);
 }
 
 double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
@@ -111,12 +127,15 @@ struct TestLobe {
 constexpr double widths[] = {1.0, 0.1, 1e-3};
 using Sampler = acdf::ProductSampler<TestLobe>;
 
+bool has_groups(const Sampler::Point& point) { return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0; }
+bool has_cut(const Sampler::Point& point) { return point.light.what == ACDF_LOCAL_BLEND && point.cut.count > 0; }
+
 // visit(file, lobe, sampler, point, name, random): of many files, with any number of parts, and vectors up to some;
 // `walked`: each eighth file is used without its runtime tables.
 template <class Visit>
 void each_point(bool tilts, acdf::Instructions most, bool walked, const Visit& visit) {
     for (std::uint32_t seed = 0; seed < file_count; ++seed) {
-        const LoadedLocal loaded(random_local(seed, tilts));
+        const LoadedLocal loaded(random_light(seed, tilts));
         AcdfLocal light = loaded.light();
         light.vectors = acdf::local_vectors(most);
         if (walked && seed % 8 == 7) light.tables = nullptr;
@@ -163,8 +182,8 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
 
 // A point is made in memory that holds anything: nothing is read of it that was not written.
 TEST(Product, PointsAreTheSameInAnyMemory) {
-    for (std::uint32_t seed = 0; seed < 8; ++seed) {
-        const LoadedLocal loaded(random_local(seed, false));
+    for (std::uint32_t seed = 0; seed < 16; ++seed) {
+        const LoadedLocal loaded(random_light(seed, false));
         std::mt19937_64 rng(seed);
         const TestLobe lobe{widths[seed % 3]};
         const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
@@ -224,7 +243,7 @@ void expect_single_calls(const AnySampler& sampler, const typename AnySampler::P
 }
 
 TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
-    int together = 0, by_vectors = 0;
+    int together = 0, by_vectors = 0, in_groups = 0;
     for (const acdf::Instructions most : each_instructions)
         for (const bool tilts : {false, true})
             each_point(
@@ -234,13 +253,15 @@ TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
                     SCOPED_TRACE(name + ", instructions up to " + std::to_string(int(most)));
                     AcdfLocal light = loaded.light();
                     light.vectors = acdf::local_vectors(most);
-                    together += point.cut.count > 1 && point.light.mix.count == ACDF_CUT_WAVE_ROWS;
-                    by_vectors +=
-                        point.cut.count > 1 && point.light.codes[0] && acdf_cut_by_vectors(&light, &point.light);
+                    in_groups += has_groups(point);
+                    const bool in_parts = has_cut(point) && point.cut.count > 1;
+                    together += in_parts && point.light.mix.count == ACDF_CUT_WAVE_ROWS;
+                    by_vectors += in_parts && point.light.codes[0] && acdf_cut_by_vectors(&light, &point.light);
                     for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{16}, rng() % 70})
                         expect_single_calls(sampler, point, count, rng);
                 });
     EXPECT_GT(together, 150);
+    EXPECT_GT(in_groups, 150);
 #if defined(__x86_64__)
     EXPECT_EQ(by_vectors > 50, __builtin_cpu_supports("avx2") != 0);
 #endif
@@ -276,11 +297,13 @@ TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
 
 // The light's part, over the squares of its grid, in which it is constant; the lobe's part is the lobe's own.
 TEST(Product, DensityIntegratesToOne) {
-    int cuts = 0;
+    int cuts = 0, groups = 0, open = 0;
     each_point(false, [&](const LoadedLocal& loaded, const TestLobe& lobe, const Sampler& sampler,
                           const Sampler::Point& point, const std::string& name, std::mt19937_64&) {
-        if (point.light.what != ACDF_LOCAL_BLEND || point.cut.count == 0) return;
-        ++cuts;
+        if (!has_cut(point) && !has_groups(point)) return;
+        cuts += has_cut(point);
+        groups += has_groups(point);
+        for (const std::uint8_t list : point.fast.open) open += has_groups(point) && list > 0;
         const AcdfLocal light = loaded.light();
         const AcdfGrid grid = acdf_environment_grid(&light.environment);
         double sum = 0.0;
@@ -289,7 +312,8 @@ TEST(Product, DensityIntegratesToOne) {
                 const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
                 const double middle[2] = {0.5, 0.5};
                 const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
-                const float p = acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
+                const float p = has_cut(point) ? acdf_cut_pdf(&light, &point.light, &point.cut, at.direction)
+                                               : acdf_fast_cut_pdf(&light, &point.light, &point.fast, at.direction);
                 sum += double{p} * acdf_grid_solid_angle(&grid, square);
                 float wi[3];
                 point.frame.to_local(at.direction, wi);
@@ -299,6 +323,8 @@ TEST(Product, DensityIntegratesToOne) {
         ASSERT_NEAR(sum, 1.0, 1e-5) << name;
     });
     EXPECT_GT(cuts, 100);
+    EXPECT_GT(groups, 50);
+    EXPECT_GT(open, 50);
 }
 
 // Wherever the lobe's own sampler draws, whatever the light; nothing is drawn where nothing is reflected.
@@ -358,8 +384,8 @@ AcdfDirectionSample c_sample(const void* data, const float wo[3], double u0, dou
 }
 
 TEST(Product, InCIsTheSame) {
-    for (std::uint32_t seed = 0; seed < 8; ++seed) {
-        const LoadedLocal loaded(random_local(seed, false));
+    for (std::uint32_t seed = 0; seed < 16; ++seed) {
+        const LoadedLocal loaded(random_light(seed, false));
         const AcdfLocal light = loaded.light();
         const TestLobe lobe{0.1};
         const AcdfLobe c_lobe{&lobe, c_value, c_sample, c_pdf};

@@ -17,14 +17,13 @@ struct Light {
     std::unique_ptr<LocalMap> map;
 };
 
-/// Smooth, noisy, and with small suns; one on the octahedral square; one dark below its horizon.
+/// Smooth, noisy, and with small suns; one on the octahedral square; one dark below its horizon; two of the fast
+/// shape.
 const std::vector<Light>& lights() {
-    LocalFileOptions options;
-    options.size = {60, 1500};
     static std::vector<Light> out;
     if (!out.empty()) return out;
-    const auto add = [&](const std::string& name, const acdf::compress::Target& target,
-                         std::uint32_t subdivisions) {
+    const auto add = [&](const std::string& name, const acdf::compress::Target& target, std::uint32_t subdivisions,
+                         const LocalFileOptions& options = of_size(60, 1500)) {
         out.push_back(
             {name, std::make_unique<LocalMap>(target, acdf::compress::octahedral_bins(subdivisions), options)});
     };
@@ -33,8 +32,12 @@ const std::vector<Light>& lights() {
     add("octahedral", octahedral(noise_target(48, 48, 3, 1.5)), 3);
     add("dark below",
         sphere_target(64, 32, [](double phi, double z) { return z > 0.1 ? 1.5 + std::sin(phi) : 0.0; }), 4);
+    add("fast suns", suns_target(64, 32), 4, fast_of_size(400, 4000));
+    add("fast octahedral", octahedral(noise_target(48, 48, 3, 1.5)), 3, fast_of_size(300, 4000));
     return out;
 }
+
+bool is_fast(const Light& light) { return light.map->file.local().data().fast.grid != nullptr; }
 
 /// Where bins of normals meet, and anywhere; views at all angles, one grazing.
 std::vector<ShadingPoint> points(int count) {
@@ -102,8 +105,9 @@ TEST(Product, WarpedNumbersDrawByTheirDensity) {
     check.samples = 4000;
     const std::vector<ShadingPoint> at = points(12);
     for (std::size_t i = 0; i < all_lights.size(); ++i)
-        expect_samples_as_its_density(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
-                                      SphereBins{64, 32, 12}, all_lights[i].name, check);
+        if (!is_fast(all_lights[i])) // which tells no numbers of a direction
+            expect_samples_as_its_density(*product_warp_sampler(all_lights[i].map->file, brdf), at[2 * i],
+                                          SphereBins{64, 32, 12}, all_lights[i].name, check);
 }
 
 /// Reflected light of a point, by summation over the grid of the light.
@@ -124,6 +128,28 @@ double reflected(const LocalMap& light, const acdf::build::Brdf& brdf, const Sha
     return double{light.radiance(wi)} * w[2] * rho[0];
 }
 
+struct Estimate {
+    double mean = 0.0, squares = 0.0;
+
+    double variance() const { return std::max(0.0, squares - mean * mean); }
+};
+
+/// Of so many samples at a point.
+Estimate estimate(const acdf::measure::LightSampler& sampler, const LocalMap& light, const acdf::build::Brdf& brdf,
+                  const ShadingPoint& point, int samples, std::mt19937_64& random) {
+    const auto in_hand = sampler.point_sampler();
+    Estimate out;
+    in_hand->move_to(point);
+    for (int i = 0; i < samples; ++i) {
+        const double u0 = uniform(random), u1 = uniform(random);
+        const AcdfDirectionSample s = in_hand->sample(u0, u1);
+        const double x = s.pdf > 0.0f ? reflected(light, brdf, point, s.direction) / double{s.pdf} : 0.0;
+        out.mean += x / samples;
+        out.squares += x * x / samples;
+    }
+    return out;
+}
+
 TEST(Product, EstimatesWhatSummationGives) {
     const std::vector<Light>& all_lights = lights();
     const std::vector<Surface>& all_surfaces = surfaces();
@@ -133,31 +159,69 @@ TEST(Product, EstimatesWhatSummationGives) {
     for (const Light& light : all_lights)
         for (const Surface& surface : all_surfaces) {
             const auto sampler = product_sampler(light.map->file, surface.made->file, 64);
-            const auto in_hand = sampler->point_sampler();
             const SphereBins bins{64, 32, 4};
             for (const ShadingPoint& point : at) {
-                double exact = 0.0, sum = 0.0, squares = 0.0;
+                double exact = 0.0;
                 bins.for_each([&](std::size_t, const float* w, double omega) {
                     exact += omega * reflected(*light.map, *surface.brdf, point, w);
                 });
-                in_hand->move_to(point);
                 constexpr int n = 2000;
-                for (int i = 0; i < n; ++i) {
-                    const double u0 = uniform(random), u1 = uniform(random);
-                    const AcdfDirectionSample s = in_hand->sample(u0, u1);
-                    const double x = s.pdf > 0.0f
-                                         ? reflected(*light.map, *surface.brdf, point, s.direction) / double{s.pdf}
-                                         : 0.0;
-                    sum += x / n;
-                    squares += x * x / n;
-                }
-                const double error = std::sqrt(std::max(0.0, squares - sum * sum) / n) + 2e-3 * exact;
-                beyond += std::abs(sum - exact) > 4.0 * error;
+                const Estimate found = estimate(*sampler, *light.map, *surface.brdf, point, n, random);
+                const double error = std::sqrt(found.variance() / n) + 2e-3 * exact;
+                beyond += std::abs(found.mean - exact) > 4.0 * error;
                 ++all;
-                EXPECT_NEAR(sum, exact, 6.0 * error) << light.name << ", " << surface.name;
+                EXPECT_NEAR(found.mean, exact, 6.0 * error) << light.name << ", " << surface.name;
             }
         }
     EXPECT_LE(beyond, 1) << "of " << all;
+}
+
+/// Relative variance of a sample at a point, by summation.
+double exact_variance(const acdf::measure::LightSampler& sampler, const LocalMap& light,
+                      const acdf::build::Brdf& brdf, const ShadingPoint& point) {
+    const auto in_hand = sampler.point_sampler();
+    double mean = 0.0, squares = 0.0;
+    in_hand->move_to(point);
+    SphereBins{64, 32, 4}.for_each([&](std::size_t, const float* w, double omega) {
+        const double f = reflected(light, brdf, point, w), p = double{in_hand->pdf(w)};
+        mean += omega * f;
+        if (p > 0.0) squares += omega * f * f / p;
+    });
+    return mean > 0.0 ? squares / (mean * mean) - 1.0 : 1.0;
+}
+
+// Geometric means over points, where groups of tiles are weighed: of few parts beside light and BRDF half and half,
+// and of many beside few.
+TEST(Product, WeighingGroupsAndOpeningThemIsLessNoise) {
+    for (const Light& light : lights())
+        for (const Surface& surface : surfaces()) {
+            if (!is_fast(light)) continue;
+            double log_variance[3] = {0.0, 0.0, 0.0};
+            const int parts[3] = {1, 8, 64};
+            for (int k = 0; k < 3; ++k)
+                for (const ShadingPoint& point : points(12)) {
+                    const auto sampler = product_sampler(light.map->file, surface.made->file, parts[k]);
+                    log_variance[k] += std::log(exact_variance(*sampler, *light.map, *surface.brdf, point)) / 12.0;
+                }
+            const std::string name = light.name + ", " + surface.name;
+            EXPECT_LT(log_variance[1], log_variance[0]) << name;
+            EXPECT_LT(log_variance[2], log_variance[1] - 0.2) << name;
+        }
+}
+
+// A tile with much light that reaches above the horizon where its middle does not: it is drawn nonetheless.
+TEST(Product, LightAtTheHorizonIsDrawn) {
+    const Light& light = lights()[4];
+    const Surface& surface = surfaces()[0];
+    const ShadingPoint point = points(8)[2]; // a sun is at its horizon
+    const auto variance = [&](int parts) {
+        const auto sampler = product_sampler(light.map->file, surface.made->file, parts);
+        return exact_variance(*sampler, *light.map, *surface.brdf, point);
+    };
+    const double half_and_half = variance(1);
+    ASSERT_GT(half_and_half, 5.0);
+    EXPECT_LT(variance(8), half_and_half);
+    EXPECT_LT(variance(64), half_and_half);
 }
 
 } // namespace
