@@ -5,13 +5,14 @@
 #define ACDF_CUT_WAVE_H
 
 #include <acdf/cut_sample.h>
+#include <acdf/fast_cut.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* As many as are on their way at once, and fewer than are worth vectors; rows are those of nearly all points. */
-enum { ACDF_CUT_WAVE = 16, ACDF_CUT_FEWEST = 2, ACDF_CUT_WAVE_ROWS = 3 };
+enum { ACDF_CUT_WAVE = 16, ACDF_CUT_FEWEST = 2, ACDF_FAST_CUT_FEWEST = 3, ACDF_CUT_WAVE_ROWS = 3 };
 
 /* The same by vectors of this process's processor, which the linked library has: files that it opens name them.
  * Cuts have parts, and points are such as acdf_cut_by_vectors approves. */
@@ -20,6 +21,10 @@ typedef struct AcdfLocalVectors {
                        const double (*u)[2], size_t count, AcdfDirectionSample* out);
     void (*cut_pdf)(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                     const float (*directions)[3], size_t count, float* out);
+    void (*fast_cut_sample)(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                            const double (*u)[2], size_t count, AcdfDirectionSample* out);
+    void (*fast_cut_pdf)(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                         const float (*directions)[3], size_t count, float* out);
 } AcdfLocalVectors;
 
 ACDF_INLINE int acdf_cut_by_vectors(const AcdfLocal* local, const AcdfLocalPoint* point) {
@@ -258,6 +263,32 @@ ACDF_FN void acdf_cut_pdf_wave(const AcdfLocal* local, const AcdfLocalPoint* poi
                 p > 0.0 ? acdf_local_cell_pdf(local, &grid, directions[first + i], lane[i].range, p) : 0.0f;
         }
     }
+}
+
+/* acdf_fast_cut_sample of u[i] into out[i], i < count; of cuts that are not empty. */
+ACDF_FN void acdf_fast_cut_sample_wave(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                                       const double (*u)[2], size_t count, AcdfDirectionSample* out) {
+    size_t i;
+#if ACDF_SIDE_BY_SIDE
+    if (count >= ACDF_FAST_CUT_FEWEST && local->vectors) {
+        local->vectors->fast_cut_sample(local, point, cut, u, count, out);
+        return;
+    }
+#endif
+    for (i = 0; i < count; ++i) out[i] = acdf_fast_cut_sample(local, point, cut, u[i][0], u[i][1]);
+}
+
+/* acdf_fast_cut_pdf of directions[i] into out[i], i < count; of cuts that are not empty. */
+ACDF_FN void acdf_fast_cut_pdf_wave(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                                    const float (*directions)[3], size_t count, float* out) {
+    size_t i;
+#if ACDF_SIDE_BY_SIDE
+    if (count >= ACDF_FAST_CUT_FEWEST && local->vectors) {
+        local->vectors->fast_cut_pdf(local, point, cut, directions, count, out);
+        return;
+    }
+#endif
+    for (i = 0; i < count; ++i) out[i] = acdf_fast_cut_pdf(local, point, cut, directions[i]);
 }
 
 #ifdef __cplusplus

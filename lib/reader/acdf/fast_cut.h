@@ -191,6 +191,35 @@ ACDF_INLINE void acdf_fast_cut_find_tile(const AcdfLocalPoint* point, const Acdf
     }
 }
 
+/* The share of a tile, whose light has number `light` - 1; 0: it has none. */
+ACDF_INLINE AcdfFastShare acdf_fast_cut_find(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t tile,
+                                             uint32_t light) {
+    const uint32_t part = light > 0 ? light - 1 : cut->lights + tile / ACDF_FAST_GROUP;
+    AcdfFastShare share;
+    share.of = acdf_fast_cut_part(cut->end, part).mass;
+    share.all = (double)cut->whole;
+    if (light == 0) acdf_fast_cut_find_tile(point, cut, tile, &share);
+    return share;
+}
+
+/* Draws a tile by two numbers; `left` becomes what is left of them, *share that of acdf_fast_cut_find. */
+ACDF_INLINE uint32_t acdf_fast_cut_draw(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                                        const double u[2], double left[2], AcdfFastShare* share) {
+    const double x = acdf_fast_scaled(acdf_unit_interval(u[0]), (double)cut->whole);
+    AcdfFastPart part;
+    uint32_t block = 0, number;
+    while (!(cut->upper[block + 15] > (int32_t)x)) block += 16;
+    block += acdf_fast_cut_search(cut->upper + block, x);
+    number = 16 * block + acdf_fast_cut_search(cut->end + 16 * block, x);
+    part = acdf_fast_cut_part(cut->end, number);
+    left[0] = (x - part.below) / part.mass;
+    left[1] = acdf_unit_interval(u[1]);
+    share->of = part.mass;
+    share->all = (double)cut->whole;
+    if (number < cut->lights) return local->lights[number].tile;
+    return acdf_fast_cut_draw_tile(point, cut, number - cut->lights, left, share);
+}
+
 /* Density per steradian with which acdf_fast_cut_sample draws `direction` (unit). */
 ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                                     const float direction[3]) {
@@ -198,14 +227,10 @@ ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint
     AcdfRange range[2];
     AcdfFastGrid cells;
     AcdfFastShare share;
-    uint32_t square[2], tile, light, part;
+    uint32_t square[2], tile;
     if (cut->whole == 0 || !acdf_local_square(&grid, direction, square)) return 0.0f;
     tile = acdf_local_fast_tile(local, square, range);
-    light = acdf_local_light_of(local, tile);
-    part = light > 0 ? light - 1 : cut->lights + tile / ACDF_FAST_GROUP;
-    share.of = acdf_fast_cut_part(cut->end, part).mass;
-    share.all = (double)cut->whole;
-    if (light == 0) acdf_fast_cut_find_tile(point, cut, tile, &share);
+    share = acdf_fast_cut_find(point, cut, tile, acdf_local_light_of(local, tile));
     cells = acdf_local_fast_record(local, tile, range);
     share.of *= acdf_fast_find_cell(&cells, square, range);
     share.all *= ACDF_FAST_STEPS;
@@ -218,31 +243,21 @@ ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, con
                                                      const AcdfFastCut* cut, double u0, double u1) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfDirectionSample out = {{0.0f, 0.0f, 0.0f}, 0.0f};
-    const double x = acdf_fast_scaled(acdf_unit_interval(u0), (double)cut->whole);
     AcdfRange range[2];
     AcdfFastGrid cells;
     AcdfFastShare share;
-    AcdfFastPart part;
-    uint32_t block = 0, number, tile;
-    double u[2];
+    uint32_t tile;
+    double u[2], left[2];
     if (cut->whole == 0) return out;
+    u[0] = u0;
+    u[1] = u1;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    for (; !(cut->upper[block + 15] > (int32_t)x); block += 16) {
-    }
-    block += acdf_fast_cut_search(cut->upper + block, x);
-    number = 16 * block + acdf_fast_cut_search(cut->end + 16 * block, x);
-    part = acdf_fast_cut_part(cut->end, number);
-    u[0] = (x - part.below) / part.mass;
-    u[1] = acdf_unit_interval(u1);
-    share.of = part.mass;
-    share.all = (double)cut->whole;
-    if (number < cut->lights) tile = local->lights[number].tile;
-    else tile = acdf_fast_cut_draw_tile(point, cut, number - cut->lights, u, &share);
+    tile = acdf_fast_cut_draw(local, point, cut, u, left, &share);
     cells = acdf_local_fast_record(local, tile, range);
-    share.of *= acdf_fast_draw_cell(&cells, u, range);
+    share.of *= acdf_fast_draw_cell(&cells, left, range);
     share.all *= ACDF_FAST_STEPS;
-    if (!acdf_local_place_by_tables(local, &grid, range, u, out.direction))
-        out = acdf_grid_place(&grid, range, u, 1.0);
+    if (!acdf_local_place_by_tables(local, &grid, range, left, out.direction))
+        out = acdf_grid_place(&grid, range, left, 1.0);
     out.pdf = acdf_local_fast_density(local, &grid, range, &share);
     return out;
 }

@@ -164,8 +164,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::light_samples(const Point& point, std:
         acdf_cut_sample_wave(&light_, &point.light, &point.cut, u, count, out);
         return;
     }
-    for (std::size_t i = 0; i < count; ++i)
-        out[i] = acdf_fast_cut_sample(&light_, &point.light, &point.fast, u[i][0], u[i][1]);
+    acdf_fast_cut_sample_wave(&light_, &point.light, &point.fast, u, count, out);
 }
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::light_pdfs(const Point& point, std::size_t count,
@@ -174,8 +173,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::light_pdfs(const Point& point, std::si
         acdf_cut_pdf_wave(&light_, &point.light, &point.cut, directions, count, out);
         return;
     }
-    for (std::size_t i = 0; i < count; ++i)
-        out[i] = acdf_fast_cut_pdf(&light_, &point.light, &point.fast, directions[i]);
+    acdf_fast_cut_pdf_wave(&light_, &point.light, &point.fast, directions, count, out);
 }
 
 /// Of the mixture, by those of its parts.

@@ -19,6 +19,14 @@ void cut_sample_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, 
 void cut_pdf_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const float (*)[3], std::size_t, float*);
 void cut_pdf_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfCut*, const float (*)[3], std::size_t,
                     float*);
+void fast_cut_sample_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const double (*)[2],
+                          std::size_t, AcdfDirectionSample*);
+void fast_cut_pdf_avx2(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const float (*)[3], std::size_t,
+                       float*);
+void fast_cut_sample_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const double (*)[2],
+                            std::size_t, AcdfDirectionSample*);
+void fast_cut_pdf_avx512(const AcdfLocal*, const AcdfLocalPoint*, const AcdfFastCut*, const float (*)[3],
+                         std::size_t, float*);
 #endif
 
 } // namespace acdf

@@ -1,7 +1,16 @@
 #if ACDF_WAVEFRONT_X86
 #define ACDF_WIDTH 4
-#include "waves/fast_density_kernel.h"
-#include "waves/fast_kernel.h"
+#include "waves/cut.h"
+#include "waves/fast_cut_kernel.h"
 
 const acdf::LocalLoops acdf::fast_avx2 = {sample_all_fast, sample_all_fast, pdf_all_fast, pdf_all_fast};
+
+void acdf::fast_cut_sample_avx2(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                                const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
+    sample_all_of_cut(*local, *point, *cut, u, count, out);
+}
+void acdf::fast_cut_pdf_avx2(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+                             const float (*directions)[3], std::size_t count, float* out) {
+    pdf_all_of_cut(*local, *point, *cut, directions, count, out);
+}
 #endif

@@ -11,11 +11,15 @@
 
 namespace {
 
-/// Directions of a block.
-struct FastFinds {
-    FastLanes rows;
+/// Directions of a block in cells.
+struct FastSquares {
     FastCells cells;
-    alignas(64) std::int32_t square[2][kRoom];
+    alignas(64) std::int32_t square[2][kRoom], tile[kRoom];
+};
+
+/// The same where rows are mixed.
+struct FastFinds : FastSquares {
+    FastLanes rows;
     alignas(64) std::int32_t ends[kRows][kRoom]; // of a tile in its group, as they lie
     alignas(64) double sum[kRoom], normal[3][kRoom], length[kRoom];
     std::uint32_t lit[kBlock], lit_count; // lanes whose tiles are lights
@@ -30,7 +34,7 @@ ACDF_LANE void keep_points(const FastPoints<false>& p, std::size_t at, FastFinds
 }
 
 /* acdf_tile_block_at of a vector of squares. */
-ACDF_LANE Integer tile_blocks_at(const AcdfLocal& local, const FastFinds& f, std::size_t at) {
+ACDF_LANE Integer tile_blocks_at(const AcdfLocal& local, const FastSquares& f, std::size_t at) {
     const std::uint32_t* const words = acdf_local_words(local.tables);
     const AcdfTileBlocks& t = local.tables->blocks;
     const auto grid = (long long)(std::uintptr_t)(words + t.grid),
@@ -43,8 +47,29 @@ ACDF_LANE Integer tile_blocks_at(const AcdfLocal& local, const FastFinds& f, std
     return finer ^ ((finer ^ entry) & told);
 }
 
-/* The tiles of all squares, and what is asked for once they are known. */
-ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastFinds* f) {
+/* The squares of directions. Returns the lanes that are left to single calls. */
+ACDF_LANE std::uint64_t find_squares(const AcdfLocal& local, const float (*directions)[3], std::size_t count,
+                                     FastSquares* f) {
+    const AcdfEnvironment& grid = local.environment;
+    std::uint64_t lost = 0;
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const std::size_t more = std::min(count - first, kLanes);
+        float last[kLanes][3] = {};
+        Signed square[2];
+        if (more < kLanes) std::memcpy(last, directions + first, more * sizeof *directions);
+        const Signed sure = squares_of(local.tables->octahedral != 0, grid.columns, grid.rows,
+                                       more < kLanes ? last : directions + first, square);
+        for (int axis = 0; axis < 2; ++axis) {
+            const Signed kept = square[axis] & sure; /* of others any that the grid has */
+            std::memcpy(&f->square[axis][first], &kept, sizeof kept);
+        }
+        lost |= (std::uint64_t)bits(~sure) << first;
+    }
+    return lost;
+}
+
+/* The tiles of all squares. */
+ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastSquares* f) {
     alignas(64) long long node[kRoom];
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) stored(&node[at], tile_blocks_at(local, *f, at));
     for (std::size_t i = 0; i < count; ++i) {
@@ -54,23 +79,25 @@ ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastFi
             const AcdfSplit& split = local.blend.splits[at];
             at = split.child[acdf_split_upper(&split, square)];
         }
-        const std::uint32_t tile = at & ~ACDF_TILE_FLAG;
-        f->rows.tile[i] = (std::int32_t)tile;
-        ACDF_PREFETCH(acdf_local_tile(local.tables, tile));
-        for (int row = 0; row < kRows; ++row)
-            ACDF_PREFETCH((const std::uint16_t*)f->rows.group[row][i] + tile / ACDF_FAST_GROUP);
+        f->tile[i] = (std::int32_t)(at & ~ACDF_TILE_FLAG);
+        ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)f->tile[i]));
     }
 }
 
-/* The cells of all squares and what rows have of their tiles. */
-ACDF_LANE void find_fast_cells(const AcdfLocal& local, std::size_t count, FastFinds* f) {
-    FastCells& c = f->cells;
-    f->lit_count = 0;
+/* What rows have of the groups of all tiles is asked for. */
+ACDF_LANE void ask_for_groups(std::size_t count, FastFinds* f) {
     for (std::size_t i = 0; i < count; ++i) {
-        enter_tile(local, (std::uint32_t)f->rows.tile[i], i, &c);
-        f->lit[f->lit_count] = (std::uint32_t)i;
-        f->lit_count += c.tile[i]->light > 0;
+        f->rows.tile[i] = f->tile[i];
+        for (int row = 0; row < kRows; ++row)
+            ACDF_PREFETCH((const std::uint16_t*)f->rows.group[row][i] +
+                          (std::uint32_t)f->tile[i] / ACDF_FAST_GROUP);
     }
+}
+
+/* The cells of all squares in their tiles. */
+ACDF_LANE void find_fast_cells(const AcdfLocal& local, std::size_t count, FastSquares* f) {
+    FastCells& c = f->cells;
+    for (std::size_t i = 0; i < count; ++i) enter_tile(local, (std::uint32_t)f->tile[i], i, &c);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
         Integer shift[2];
         const FastBoxes box = boxes_of(c.tile + at, shift);
@@ -80,16 +107,26 @@ ACDF_LANE void find_fast_cells(const AcdfLocal& local, std::size_t count, FastFi
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
-        const auto tile = (std::uint32_t)f->rows.tile[i], line = (std::uint32_t)c.index[1][i];
+        const auto line = (std::uint32_t)c.index[1][i];
+        take_end(1, line, i, &c);
+        enter_line(line, i, &c);
+        take_end(0, (std::uint32_t)c.index[0][i], i, &c);
+    }
+}
+
+/* What rows have of all tiles, and which of them are lights. */
+ACDF_LANE void find_fast_rows(std::size_t count, FastFinds* f) {
+    f->lit_count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto tile = (std::uint32_t)f->tile[i];
+        f->lit[f->lit_count] = (std::uint32_t)i;
+        f->lit_count += f->cells.tile[i]->light > 0;
         load_ends(&f->rows, i, tile / ACDF_FAST_GROUP);
         for (int row = 0; row < kRows; ++row) {
             std::uint16_t both; /* what stands before the first row of tiles is of groups */
             std::memcpy(&both, (const std::uint8_t*)f->rows.tile_row[row][i] + tile - 1, 2);
             f->ends[row][i] = both;
         }
-        take_end(1, line, i, &c);
-        enter_line(line, i, &c);
-        take_end(0, (std::uint32_t)c.index[0][i], i, &c);
     }
 }
 
@@ -120,6 +157,22 @@ ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) 
     f->cells.all[i] = f->sum[i] * ACDF_FAST_STEPS;
 }
 
+/* The densities of lanes whose cells are known. */
+ACDF_LANE void store_densities(const AcdfLocal& local, const FastCells& c, std::size_t count, float* out) {
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        Vector pdf[2];
+        for (std::size_t half = 0; half < 2; ++half) {
+            const std::size_t lane = first + ACDF_WIDTH * half;
+            const FastBoxes box = narrowed(c, lane);
+            Vector z[2];
+            pdf[half] = fast_density(local, c, box, heights_of(local, box, z), lane);
+        }
+        const Floats told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
+        if (count - first >= kLanes) std::memcpy(out + first, &told, sizeof told);
+        else std::memcpy(out + first, &told, (count - first) * sizeof *out);
+    }
+}
+
 /* Densities of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
 template <class At, class Alone>
 ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Alone& alone,
@@ -133,36 +186,14 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
         keep_points(p, first, &f);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
     }
-    for (std::size_t first = 0; first < whole; first += kLanes) {
-        const AcdfEnvironment& grid = local.environment;
-        const std::size_t more = std::min(count - first, kLanes);
-        float last[kLanes][3] = {};
-        Signed square[2];
-        if (more < kLanes) std::memcpy(last, directions + first, more * sizeof *directions);
-        const Signed sure = squares_of(local.tables->octahedral != 0, grid.columns, grid.rows,
-                                       more < kLanes ? last : directions + first, square);
-        for (int axis = 0; axis < 2; ++axis) {
-            const Signed kept = square[axis] & sure; /* of others any that the grid has */
-            std::memcpy(&f.square[axis][first], &kept, sizeof kept);
-        }
-        lost |= (std::uint64_t)bits(~sure) << first;
-    }
+    lost |= find_squares(local, directions, count, &f);
     find_fast_tiles(local, whole, &f);
+    ask_for_groups(whole, &f);
     find_fast_cells(local, whole, &f);
+    find_fast_rows(whole, &f);
     for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) weigh_fast_tiles(first, &f);
     for (std::size_t k = 0; k < f.lit_count; ++k) weigh_light(local, f.lit[k], &f);
-    for (std::size_t first = 0; first < whole; first += kLanes) {
-        Vector pdf[2];
-        for (std::size_t half = 0; half < 2; ++half) {
-            const std::size_t lane = first + ACDF_WIDTH * half;
-            const FastBoxes box = narrowed(f.cells, lane);
-            Vector z[2];
-            pdf[half] = fast_density(local, f.cells, box, heights_of(local, box, z), lane);
-        }
-        const Floats told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
-        if (count - first >= kLanes) std::memcpy(out + first, &told, sizeof told);
-        else std::memcpy(out + first, &told, (count - first) * sizeof *out);
-    }
+    store_densities(local, f.cells, count, out);
     leave_alone(lost, count, alone);
 }
 

@@ -206,6 +206,28 @@ ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastCells& c, st
     return fast_density(local, c, box, height, at);
 }
 
+/* The draws of lanes whose tiles are drawn, but for those of a mask and others that are left to single calls. */
+template <class Alone>
+ACDF_LANE void end_draws(const AcdfLocal& local, FastDraws* d, std::uint64_t lost, const Alone& alone,
+                         std::size_t count, AcdfDirectionSample* out) {
+    const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
+    draw_cells(local, whole, d);
+    for (std::size_t first = 0; first < whole; first += kLanes) {
+        Drawn drawn;
+        Vector pdf[2];
+        Floats direction[3];
+        const std::size_t more = std::min(count - first, kLanes);
+        AcdfDirectionSample last[kLanes];
+        for (int half = 0; half < 2; ++half)
+            pdf[half] = begin_directions(local, d->cells, first + ACDF_WIDTH * (std::size_t)half, half, &drawn);
+        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, drawn, direction);
+        store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), more < kLanes ? last : out + first);
+        if (more < kLanes) std::memcpy(out + first, last, more * sizeof *out);
+        lost |= (std::uint64_t)refused << first;
+    }
+    leave_alone(lost, count, alone);
+}
+
 /* Draws of up to kBlock lanes; `at` and `alone` as draw_block of local_kernel.h has them. */
 template <class At, class Alone>
 ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone& alone, const double (*u)[2],
@@ -225,21 +247,7 @@ ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone
         lost |= (std::uint64_t)begin_draws(local, at(first, more, &room), v, (1u << more) - 1u, first, &d) << first;
     }
     draw_tiles(local, whole, &d);
-    draw_cells(local, whole, &d);
-    for (std::size_t first = 0; first < whole; first += kLanes) {
-        Drawn drawn;
-        Vector pdf[2];
-        Floats direction[3];
-        const std::size_t more = std::min(count - first, kLanes);
-        AcdfDirectionSample last[kLanes];
-        for (int half = 0; half < 2; ++half)
-            pdf[half] = begin_directions(local, d.cells, first + ACDF_WIDTH * (std::size_t)half, half, &drawn);
-        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, drawn, direction);
-        store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), more < kLanes ? last : out + first);
-        if (more < kLanes) std::memcpy(out + first, last, more * sizeof *out);
-        lost |= (std::uint64_t)refused << first;
-    }
-    leave_alone(lost, count, alone);
+    end_draws(local, &d, lost, alone, count, out);
 }
 
 // ---- all of an array -------------------------------------------------------------------------------------------

@@ -243,7 +243,7 @@ void expect_single_calls(const AnySampler& sampler, const typename AnySampler::P
 }
 
 TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
-    int together = 0, by_vectors = 0, in_groups = 0;
+    int together = 0, by_vectors = 0, in_groups = 0, by_fast_vectors = 0;
     for (const acdf::Instructions most : each_instructions)
         for (const bool tilts : {false, true})
             each_point(
@@ -256,6 +256,7 @@ TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
                     in_groups += has_groups(point);
                     const bool in_parts = has_cut(point) && point.cut.count > 1;
                     together += in_parts && point.light.mix.count == ACDF_CUT_WAVE_ROWS;
+                    by_fast_vectors += has_groups(point) && light.vectors;
                     by_vectors += in_parts && point.light.codes[0] && acdf_cut_by_vectors(&light, &point.light);
                     for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{16}, rng() % 70})
                         expect_single_calls(sampler, point, count, rng);
@@ -264,6 +265,7 @@ TEST(Product, SeveralSamplesAreThoseOfSingleCalls) {
     EXPECT_GT(in_groups, 150);
 #if defined(__x86_64__)
     EXPECT_EQ(by_vectors > 50, __builtin_cpu_supports("avx2") != 0);
+    EXPECT_EQ(by_fast_vectors > 50, __builtin_cpu_supports("avx2") != 0);
 #endif
 }
 
