@@ -89,7 +89,7 @@ ACDF_METHOD ProductSample lobe_about(const AnyLobe& lobe, const typename AnyLobe
     return lobe.sample(point, u0, u1);
 }
 
-/// Sample i of `drawn`, at most 8, that look for a lobe: the points of Hammersley, moved off the borders.
+/// Sample i of `drawn`, at most 4, that look for a lobe: the points of Hammersley, moved off the borders.
 template <class AnyLobe>
 ACDF_METHOD ProductSample guide(const AnyLobe& lobe, const typename AnyLobe::Point& point, int i,
                                 int drawn) noexcept {

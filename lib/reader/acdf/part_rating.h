@@ -12,7 +12,7 @@ namespace acdf {
 
 /// Samples of a lobe's own sampler that lie above the horizon, where the light's positions are counted.
 struct LobeGuides {
-    static constexpr int most = 8;
+    static constexpr int most = 4;
     std::uint32_t square[2][most] = {};
     float value[most], pdf[most];
     int drawn = 0, count = 0; ///< how many were asked for, and are above the horizon

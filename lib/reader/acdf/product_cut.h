@@ -41,7 +41,7 @@ private:
 template <class AnyLobe>
 ACDF_METHOD void CutRating<AnyLobe>::draw_guides() noexcept {
     float world[LobeGuides::most][3], light[LobeGuides::most];
-    guides_ = of_.draw_guides(of_.parts < 32 ? 4 : 8, world);
+    of_.draw_guides(of_.parts < 12 ? 2 : 4, world, guides_);
     acdf_cut_pdf_wave(&of_.light, &of_.at, &cut_, world, static_cast<std::size_t>(guides_.count), light);
     guides_.weigh(light);
 }
@@ -49,16 +49,17 @@ ACDF_METHOD void CutRating<AnyLobe>::draw_guides() noexcept {
 /// The lobe at the hearts of some parts.
 template <class AnyLobe>
 ACDF_METHOD void CutRating<AnyLobe>::look(int count, const int* parts) noexcept {
-    float wi[at_once][3], value[at_once], pdf[at_once];
+    float wi[at_once][3], pdf[at_once];
     for (int i = 0; i < count; ++i) {
         float world[3];
         ratings_[parts[i]].tile = acdf_cut_heart(&of_.light, &of_.at, &cut_, parts[i], world);
         of_.above_surface(world, wi[i]);
     }
-    of_.look(count, wi, value, pdf);
+    lobe_pdfs(of_.lobe, of_.lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
     for (int i = 0; i < count; ++i) {
-        ratings_[parts[i]].value = value[i];
-        ratings_[parts[i]].pdf = pdf[i];
+        PartRating& rating = ratings_[parts[i]];
+        rating.value = of_.bounded(of_.lobe.value(of_.lobe_at, wi[i], pdf[i]));
+        rating.pdf = of_.bounded(pdf[i]);
     }
 }
 

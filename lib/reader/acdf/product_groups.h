@@ -100,7 +100,7 @@ template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::draw_guides() noexcept {
     const AcdfGrid grid = acdf_environment_grid(&of_.light.environment);
     float world[LobeGuides::most][3], light[LobeGuides::most];
-    guides_ = of_.draw_guides(4, world);
+    of_.draw_guides(4, world, guides_);
     for (int i = 0; i < guides_.count; ++i) {
         const std::uint32_t square[2] = {guides_.square[0][i], guides_.square[1][i]};
         AcdfRange range[2];

@@ -22,8 +22,8 @@ struct PointOfLobe {
 
     ACDF_METHOD static float bounded(float x) noexcept { return x < most_value ? x > 0.0f ? x : 0.0f : most_value; }
 
-    /// A direction in the surface's frame, or the one above the horizon that is next to it: a part whose middle lies
-    /// below has light above, if it has any.
+    /// A direction in the surface's frame, or the one above the horizon that is next to it: a part whose middle
+    /// lies below has light above, if it has any.
     ACDF_METHOD void above_surface(const float world[3], float wi[3]) const noexcept {
         constexpr float least = 0.02f;
         frame.to_local(world, wi);
@@ -42,10 +42,10 @@ struct PointOfLobe {
         }
     }
 
-    /// Samples of the lobe's own sampler, without weights; their directions into `world`.
-    ACDF_METHOD LobeGuides draw_guides(int drawn, float (*world)[3]) const noexcept {
+    /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their
+    /// place: what is written in pieces and copied at once would be waited for.
+    ACDF_METHOD void draw_guides(int drawn, float (*world)[3], LobeGuides& out) const noexcept {
         const AcdfGrid grid = acdf_environment_grid(&light.environment);
-        LobeGuides out;
         out.drawn = drawn;
         for (int i = 0; i < drawn; ++i) {
             const ProductSample s = guide(lobe, lobe_at, i, drawn);
@@ -61,7 +61,6 @@ struct PointOfLobe {
             if (value > out.brightest) out.brightest = value;
             ++out.count;
         }
-        return out;
     }
 };
 
