@@ -6,6 +6,7 @@
 #include <acdf/cut.h>
 #include <acdf/method.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace acdf {
@@ -90,7 +91,7 @@ ACDF_METHOD Real sum_by_eight(const Real* x, int count) noexcept {
 /// sampler: the more the lobe changes within parts, and the less the light within the lobe. 1, and nothing is
 /// given, where parts have no light or reflect none. `Most`: of parts; `least_share`: what that sampler gets at
 /// least; `parts` tell what light is in one, and its rating.
-template <int Most, class Real, class Parts>
+template <std::size_t Most, class Real, class Parts>
 ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least_share, const Parts& parts,
                                Real* left) noexcept {
     // What the value may be elsewhere in a part, beside what was seen: a little of what is around it and of the
@@ -149,7 +150,8 @@ struct CutParts {
 /// Gives all parts of a cut their probabilities, and returns the share of the lobe's own sampler, as weigh_parts.
 ACDF_METHOD inline double weigh_cut(AcdfCut& cut, const LobeGuides& guides, const PartRating* ratings) noexcept {
     double left[ACDF_CUT_MAX_PARTS];
-    const double share = weigh_parts<ACDF_CUT_MAX_PARTS>(cut.count, guides, 0.03, CutParts{cut, ratings}, left);
+    const double share =
+        weigh_parts<std::size_t{ACDF_CUT_MAX_PARTS}>(cut.count, guides, 0.03, CutParts{cut, ratings}, left);
     for (int i = 0; share < 1.0 && i < cut.count; ++i) cut.part[i].probability = left[i];
     return share;
 }

@@ -36,12 +36,19 @@ private:
     /// Of the lobe's own sampler: neighbours tell less than parents do, and least where no group is open.
     static constexpr double least_share = 0.1, of_few = 0.3;
     static constexpr int few_parts = 16;
+    /// Where the lobe is looked at: directions in the surface's frame, each of a part.
+    struct Looks {
+        int count = 0;
+        std::uint16_t part[most_parts];
+        float wi[most_parts][3];
+    };
+
     ACDF_METHOD int add(int number, int entry, float light, float solid_angle) noexcept;
     ACDF_METHOD void measure() noexcept;
     ACDF_METHOD void draw_guides() noexcept;
     ACDF_METHOD std::uint32_t nearest_row() const noexcept;
     ACDF_METHOD void look_at_much() noexcept;
-    ACDF_METHOD void look(int count, const std::uint16_t* parts, const float (*directions)[3]) noexcept;
+    ACDF_METHOD void look(const Looks& looks) noexcept;
     ACDF_METHOD void rate(int first, int end) noexcept;
     ACDF_METHOD void rate_guide(int part, int guide) noexcept;
     ACDF_METHOD void rate_groups() noexcept;
@@ -126,35 +133,34 @@ ACDF_METHOD std::uint32_t GroupRating<AnyLobe>::nearest_row() const noexcept {
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
     const std::uint8_t* hearts = acdf_local_group_hearts(of_.light.tables, nearest_row(), of_.light.fast.ends);
-    std::uint16_t much[most_parts];
-    float wi[most_parts][3];
+    Looks much;
     int count = 0;
     for (int i = 0, end = count_; i < end; ++i) {
-        much[count] = static_cast<std::uint16_t>(i);
+        much.part[count] = static_cast<std::uint16_t>(i);
         count += light_in_[i] > least_light;
     }
+    much.count = count;
     for (int k = 0; k < count; ++k) {
-        const int part = much[k];
+        const int part = much.part[k];
         if (part < lights_) {
-            of_.above_surface(of_.light.lights[entry_[part]].direction, wi[k]);
+            of_.above_surface(of_.light.lights[entry_[part]].direction, much.wi[k]);
         } else {
             const std::uint32_t group = group_of(part);
-            of_.above_surface(acdf_local_middle(of_.light.tables, ACDF_FAST_GROUP * group + hearts[group]), wi[k]);
+            of_.above_surface(acdf_local_middle(of_.light.tables, ACDF_FAST_GROUP * group + hearts[group]),
+                              much.wi[k]);
         }
     }
-    look(count, much, wi);
+    look(much);
     for (int i = lights_ + 1; i < count_; ++i) value_[i] = light_in_[i] > least_light ? value_[i] : value_[i - 1];
 }
 
-/// The lobe in directions, each of a part.
 template <class AnyLobe>
-ACDF_METHOD void GroupRating<AnyLobe>::look(int count, const std::uint16_t* parts,
-                                            const float (*directions)[3]) noexcept {
+ACDF_METHOD void GroupRating<AnyLobe>::look(const Looks& looks) noexcept {
     float value[most_parts], pdf[most_parts];
-    of_.look(count, directions, value, pdf);
-    for (int i = 0; i < count; ++i) {
-        value_[parts[i]] = value[i];
-        pdf_[parts[i]] = pdf[i];
+    of_.look(looks.count, looks.wi, value, pdf);
+    for (int i = 0; i < looks.count; ++i) {
+        value_[looks.part[i]] = value[i];
+        pdf_[looks.part[i]] = pdf[i];
     }
 }
 
@@ -241,9 +247,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::choose() noexcept {
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::open_chosen() noexcept {
     const std::uint32_t last = of_.light.blend.tiles->tile_count - 1;
-    std::uint16_t seen[most - most_parts];
-    float wi[most - most_parts][3];
-    int count = 0;
+    Looks tiles;
     for (int k = 0; k < open_; ++k) {
         const std::uint32_t group = group_of(opened_[k]), begin = ACDF_FAST_GROUP * group;
         const AcdfFastGroup mixture = acdf_fast_find_group(&of_.at.fast, group);
@@ -257,12 +261,12 @@ ACDF_METHOD void GroupRating<AnyLobe>::open_chosen() noexcept {
             light_in_[all_] = static_cast<float>(masses[i]) * unit;
             solid_angle_[all_] = middle[3];
             value_[all_] = pdf_[all_] = 0.0f;
-            of_.above_surface(middle, wi[count]);
-            seen[count] = static_cast<std::uint16_t>(all_);
-            count += masses[i] > 0;
+            of_.above_surface(middle, tiles.wi[tiles.count]);
+            tiles.part[tiles.count] = static_cast<std::uint16_t>(all_);
+            tiles.count += masses[i] > 0;
         }
     }
-    look(count, seen, wi);
+    look(tiles);
     for (int k = 0; k < open_; ++k) rate_tiles(opened_[k], count_ + group_size * k);
 }
 
@@ -311,8 +315,8 @@ ACDF_METHOD double GroupRating<AnyLobe>::make(AcdfFastCut& cut) noexcept {
     rate_groups();
     choose();
     open_chosen();
-    const double share =
-        weigh_parts<most>(all_, guides_, of_.parts < few_parts ? of_few : least_share, *this, probability);
+    const double share = weigh_parts<std::size_t{most}>(all_, guides_, of_.parts < few_parts ? of_few : least_share,
+                                                        *this, probability);
     if (share < 1.0) finish(cut, probability);
     return share;
 }
