@@ -27,9 +27,9 @@ ROWS
 
 # row NAME ARGUMENT...: the sum over all probes
 row() {
-    local name=$1 light
+    local name=$1
     shift
-    for light in "${lights[@]}"; do "$build/tests/bench/product_checks" "$light" "$@" || true; done |
+    { printf '%s\0' "${lights[@]}" | xargs -0 -I LIGHT -P "$(nproc)" "$build/tests/bench/product_checks" LIGHT "$@" || true; } |
         awk -F'|' -v name="$name" '{ pairs += $2; if ($3 > worst) worst = $3; pdf += $4; support += $5; mean += $6 }
             END { printf "| %s | %d | %.1g | %d | %d | %d |\n", name, pairs, worst, pdf, support, mean }'
 }

@@ -5,7 +5,8 @@
 // what the file's environment says, the BRDF its own sampler's density over the cosine. Columns: pairs; how far the
 // density of the cut is from integrating to 1, by summation over the squares of the grid, for a few pairs; samples
 // whose density pdf() tells otherwise; samples and random directions with light and BRDF but without density; pairs
-// whose mean is farther than 4 standard errors from that of another sampler, half light and half BRDF.
+// whose mean is farther than 4 standard errors, and 0.3 % for lobes that change within a square, from summation
+// over the squares of the light's grid.
 #include "measure/samplers/ggx_lobe.h"
 
 #include <acdf/product.h>
@@ -16,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <random>
+#include <vector>
 
 namespace {
 
@@ -85,13 +87,83 @@ bool has_parts(const Point& point) {
            (point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0);
 }
 
+/// The light's grid: of each square that has light its middle.
+struct Squares {
+    struct Square {
+        std::uint32_t at[2];
+        float direction[3], light; ///< what is in it
+    };
+    AcdfGrid grid;
+    std::vector<Square> lit;
+
+    explicit Squares(const AcdfLocal& local) : grid(acdf_environment_grid(&local.environment)) {
+        for (std::uint32_t y = 0; y < grid.rows; ++y)
+            for (std::uint32_t x = 0; x < grid.columns; ++x) {
+                Square square = {{x, y}, {}, 0.0f};
+                const AcdfRange range[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
+                place(square, 0.5, 0.5, square.direction);
+                square.light =
+                    static_cast<float>(double{acdf_environment_pdf(&local.environment, square.direction)} *
+                                       acdf_grid_solid_angle(&grid, range));
+                if (square.light > 0.0f) lit.push_back(square);
+            }
+    }
+    /// A direction in a square, at fractions of it of equal solid angle.
+    void place(const Square& square, double u, double v, float out[3]) const {
+        const AcdfRange range[2] = {{square.at[0], square.at[0] + 1, 0.0}, {square.at[1], square.at[1] + 1, 0.0}};
+        const double fractions[2] = {u, v};
+        const AcdfDirectionSample at = acdf_grid_place(&grid, range, fractions, 1.0);
+        std::copy_n(at.direction, 3, out);
+    }
+};
+
+/// Light times the lobe's density, by summation: finer where the lobe is narrow, and at the horizon.
+template <class AnyLobe>
+double summed(const Squares& squares, const AnyLobe& lobe, const typename AnyLobe::Point& point,
+              const SurfaceFrame& frame) {
+    constexpr int fine = 4;
+    constexpr std::size_t block = 256;
+    constexpr float horizon = 0.02f, narrow = 1.0f;
+    const Squares::Square* square[block];
+    float wi[block][3], pdf[block];
+    std::size_t count = 0;
+    double sum = 0.0;
+    const auto finer = [&](const Squares::Square& of) {
+        double mean = 0.0;
+        for (int k = 0; k < fine * fine; ++k) {
+            float world[3], at[3];
+            squares.place(of, (k % fine + 0.5) / fine, (k / fine + 0.5) / fine, world);
+            frame.to_local(world, at);
+            if (at[2] > 0.0f) mean += double{lobe.pdf(point, at)} / (fine * fine);
+        }
+        return mean;
+    };
+    const auto add_block = [&] {
+        lobe_pdfs(lobe, point, wi, count, pdf, 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool coarse = wi[i][2] > horizon && pdf[i] < narrow;
+            sum += double{square[i]->light} * (coarse ? double{pdf[i]} : finer(*square[i]));
+        }
+        count = 0;
+    };
+    for (const Squares::Square& one : squares.lit) {
+        frame.to_local(one.direction, wi[count]);
+        square[count] = &one;
+        count += wi[count][2] > -horizon;
+        if (count == block) add_block();
+    }
+    add_block();
+    return sum;
+}
+
 template <class AnyLobe>
 Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
     constexpr int draws = 4000, sums = 4;
-    const ProductSampler<AnyLobe> sampler(light, lobe, ProductOptions{64});
+    const Squares squares(light);
     Random random;
     Counts out;
     for (int i = 0; i < pairs; ++i) {
+        const ProductSampler<AnyLobe> sampler(light, lobe, ProductOptions{i % 2 ? 64 : 8});
         float normal[3], local_wo[3], wo[3], wi[3];
         random.normal(i, normal);
         const SurfaceFrame frame = surface_frame(normal);
@@ -105,34 +177,37 @@ Counts check(const AcdfLocal& light, const AnyLobe& lobe, int pairs) {
                        ? double{acdf_environment_pdf(&light.environment, d)} * double{lobe.pdf(point.lobe, wi)}
                        : 0.0;
         };
-        Mean ours, other;
-        for (int k = 0; k < draws; ++k) {
+        Mean ours;
+        const auto draw = [&](Mean& mean) {
             const ProductSample s = sampler.sample(point, random(), random());
             out.disagree += s.pdf > 0.0f && sampler.pdf(point, s.direction) != s.pdf;
-            ours.add(s.pdf > 0.0f ? reflected(s.direction) / double{s.pdf} : 0.0);
-            const bool first = random.bits() % 2 != 0;
+            mean.add(s.pdf > 0.0f ? reflected(s.direction) / double{s.pdf} : 0.0);
+        };
+        for (int k = 0; k < draws; ++k) {
+            draw(ours);
+            float any[3];
+            random.direction(2.0 * random() - 1.0, any);
+            out.violations += reflected(any) > 0.0 && !(sampler.pdf(point, any) > 0.0f);
+            const bool first = random.bits() % 2 != 0; // what the light or the lobe alone draw
             ProductSample t = first ? acdf_local_sample_at(&light, &point.light, random(), random())
                                     : lobe.sample(point.lobe, random(), random());
-            if (!first && t.pdf > 0.0f) {
+            if (!(t.pdf > 0.0f)) continue;
+            if (!first) {
                 float world[3];
                 frame.to_world(t.direction, world);
                 std::copy_n(world, 3, t.direction);
             }
-            if (!(t.pdf > 0.0f)) {
-                other.add(0.0);
-                continue;
-            }
-            frame.to_local(t.direction, wi);
-            const double density = 0.5 * double{acdf_local_pdf_at(&light, &point.light, t.direction)} +
-                                   0.5 * double{lobe.pdf(point.lobe, wi)};
-            const double f = reflected(t.direction);
-            other.add(density > 0.0 ? f / density : 0.0);
-            random.direction(2.0 * random() - 1.0, wo);
-            out.violations += f > 0.0 && !(sampler.pdf(point, t.direction) > 0.0f);
-            out.violations += reflected(wo) > 0.0 && !(sampler.pdf(point, wo) > 0.0f);
+            out.violations += reflected(t.direction) > 0.0 && !(sampler.pdf(point, t.direction) > 0.0f);
         }
-        const double error = std::sqrt(ours.error2() + other.error2());
-        out.beyond += std::fabs(ours.value() - other.value()) > 4.0 * error;
+        const double exact = summed(squares, lobe, point.lobe, frame);
+        const auto is_beyond = [&](const Mean& mean) {
+            return std::fabs(mean.value() - exact) > 4.0 * std::sqrt(mean.error2()) + 0.003 * exact;
+        };
+        if (is_beyond(ours)) { // by chance once in 16,000, and more often where few samples are most of the mean
+            Mean again;
+            for (int k = 0; k < 20 * draws; ++k) draw(again);
+            out.beyond += is_beyond(again);
+        }
         if (i < sums && has_parts(point))
             out.worst_integral = std::max(out.worst_integral, std::fabs(cut_integral(light, point) - 1.0));
     }
