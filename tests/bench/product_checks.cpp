@@ -117,11 +117,12 @@ struct Squares {
     }
 };
 
-/// Light times the lobe's density, by summation: finer where the lobe is narrow, and at the horizon.
+/// Light times the lobe's density, by summation: finer where the lobe is narrow, at the horizon, and where much of
+/// the light is.
 template <class AnyLobe>
 double summed(const Squares& squares, const AnyLobe& lobe, const typename AnyLobe::Point& point,
               const SurfaceFrame& frame) {
-    constexpr int fine = 4;
+    constexpr float much = 1e-3f; // of all light, where borders of the lobe's cells matter
     constexpr std::size_t block = 256;
     constexpr float horizon = 0.02f, narrow = 1.0f;
     const Squares::Square* square[block];
@@ -129,6 +130,7 @@ double summed(const Squares& squares, const AnyLobe& lobe, const typename AnyLob
     std::size_t count = 0;
     double sum = 0.0;
     const auto finer = [&](const Squares::Square& of) {
+        const int fine = of.light > much ? 32 : 4;
         double mean = 0.0;
         for (int k = 0; k < fine * fine; ++k) {
             float world[3], at[3];
@@ -141,7 +143,7 @@ double summed(const Squares& squares, const AnyLobe& lobe, const typename AnyLob
     const auto add_block = [&] {
         lobe_pdfs(lobe, point, wi, count, pdf, 0);
         for (std::size_t i = 0; i < count; ++i) {
-            const bool coarse = wi[i][2] > horizon && pdf[i] < narrow;
+            const bool coarse = wi[i][2] > horizon && pdf[i] < narrow && square[i]->light < much;
             sum += double{square[i]->light} * (coarse ? double{pdf[i]} : finer(*square[i]));
         }
         count = 0;
