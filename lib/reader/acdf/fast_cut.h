@@ -80,17 +80,10 @@ ACDF_FN void acdf_fast_tile_masses(const AcdfFastMixture* mix, const AcdfFastGro
     int32_t before = 0;
     uint32_t i;
 #ifdef ACDF_SSE2
-    const __m128i zero = _mm_setzero_si128();
-    const __m128i weight01 = _mm_shuffle_epi32(group->weight, 0), weight2 = _mm_shuffle_epi32(group->weight, 0x55);
     __m128i low[3], high[3], sum[4];
     int k;
-    for (k = 0; k < 3; ++k) {
-        const __m128i bytes = _mm_loadu_si128((const __m128i*)(const void*)(mix->tile[k] + first));
-        low[k] = _mm_unpacklo_epi8(bytes, zero);
-        high[k] = _mm_unpackhi_epi8(bytes, zero);
-    }
-    acdf_fast_mixed(low, weight01, weight2, sum);
-    acdf_fast_mixed(high, weight01, weight2, sum + 2);
+    acdf_fast_tile_rows(mix, first, low, high);
+    acdf_fast_mixed_sixteen(low, high, group->weight, sum);
     for (k = 0; k < 4; ++k) _mm_storeu_si128((__m128i*)(void*)(out + 4 * k), sum[k]);
 #else
     for (i = 0; i < ACDF_FAST_GROUP; ++i) out[i] = acdf_fast_tile_begin(mix, group, first, i + 1);
@@ -124,12 +117,10 @@ ACDF_FN void acdf_fast_cut_finish(AcdfFastCut* cut, const float* share) {
 /* The first of sixteen ends that is above x, which is below the last one. */
 ACDF_INLINE uint32_t acdf_fast_cut_search(const int32_t* end, double x) {
 #ifdef ACDF_SSE2
-    const __m128i at = acdf_fast_floor(x), *four = (const __m128i*)(const void*)end;
-    const __m128i low =
-        _mm_packs_epi32(_mm_cmpgt_epi32(_mm_loadu_si128(four), at), _mm_cmpgt_epi32(_mm_loadu_si128(four + 1), at));
-    const __m128i high = _mm_packs_epi32(_mm_cmpgt_epi32(_mm_loadu_si128(four + 2), at),
-                                         _mm_cmpgt_epi32(_mm_loadu_si128(four + 3), at));
-    return acdf_lowest_bit((uint32_t)_mm_movemask_epi8(_mm_packs_epi16(low, high)));
+    __m128i ends[4];
+    int k;
+    for (k = 0; k < 4; ++k) ends[k] = _mm_loadu_si128((const __m128i*)(const void*)(end + 4 * k));
+    return acdf_lowest_bit(acdf_fast_above(ends, acdf_fast_floor(x)));
 #else
     const int32_t at = (int32_t)x;
     uint32_t i = 0;
@@ -156,24 +147,29 @@ ACDF_INLINE AcdfFastPart acdf_fast_cut_part(const int32_t* end, uint32_t i) {
 ACDF_INLINE uint32_t acdf_fast_cut_draw_tile(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t number,
                                              double* u, AcdfFastShare* share) {
     const uint32_t first = ACDF_FAST_GROUP * number, list = cut->open[number];
+    AcdfFastTile tile;
+    double whole, y;
     if (list > 0) {
         const int32_t* end = cut->tile[list - 1];
-        const double whole = (double)end[ACDF_FAST_GROUP - 1], y = acdf_fast_scaled(u[1], whole);
-        const uint32_t i = acdf_fast_cut_search(end, y);
-        const AcdfFastPart tile = acdf_fast_cut_part(end, i);
-        u[1] = (y - tile.below) / tile.mass;
-        share->of *= tile.mass;
-        share->all *= whole;
-        return first + i;
+        uint32_t i;
+        AcdfFastPart part;
+        whole = (double)end[ACDF_FAST_GROUP - 1];
+        y = acdf_fast_scaled(u[1], whole);
+        i = acdf_fast_cut_search(end, y);
+        part = acdf_fast_cut_part(end, i);
+        tile.number = first + i;
+        tile.mass = part.mass;
+        tile.below = part.below;
     } else {
         const AcdfFastGroup group = acdf_fast_find_group(&point->fast, number);
-        const double whole = 255.0 * group.whole, y = acdf_fast_scaled(u[1], whole);
-        const AcdfFastTile tile = acdf_fast_tile_of(&point->fast, &group, first, y);
-        u[1] = (y - tile.below) / tile.mass;
-        share->of *= tile.mass;
-        share->all *= whole;
-        return tile.number;
+        whole = 255.0 * group.whole;
+        y = acdf_fast_scaled(u[1], whole);
+        tile = acdf_fast_tile_of(&point->fast, &group, first, y);
     }
+    u[1] = (y - tile.below) / tile.mass;
+    share->of *= tile.mass;
+    share->all *= whole;
+    return tile.number;
 }
 
 /* The share of a tile of a group, of the group's. */
@@ -256,10 +252,7 @@ ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, con
     cells = acdf_local_fast_record(local, tile, range);
     share.of *= acdf_fast_draw_cell(&cells, left, range);
     share.all *= ACDF_FAST_STEPS;
-    if (!acdf_local_place_by_tables(local, &grid, range, left, out.direction))
-        out = acdf_grid_place(&grid, range, left, 1.0);
-    out.pdf = acdf_local_fast_density(local, &grid, range, &share);
-    return out;
+    return acdf_local_fast_place(local, &grid, range, left, &share);
 }
 
 #ifdef __cplusplus

@@ -108,15 +108,26 @@ ACDF_INLINE void acdf_fast_mixed(const __m128i end[3], __m128i weight01, __m128i
                            _mm_madd_epi16(_mm_unpackhi_epi16(end[2], zero), weight2));
 }
 
+/* Bit i: whether number i of sixteen is above x. */
+ACDF_INLINE uint32_t acdf_fast_above(const __m128i number[4], __m128i x) {
+    return (uint32_t)_mm_movemask_epi8(
+        _mm_packs_epi16(_mm_packs_epi32(_mm_cmpgt_epi32(number[0], x), _mm_cmpgt_epi32(number[1], x)),
+                        _mm_packs_epi32(_mm_cmpgt_epi32(number[2], x), _mm_cmpgt_epi32(number[3], x))));
+}
+
+/* Sixteen mixed ends; weights of 16 bits, as acdf_fast_mix has them. */
+ACDF_INLINE void acdf_fast_mixed_sixteen(const __m128i low[3], const __m128i high[3], __m128i weight,
+                                         __m128i out[4]) {
+    const __m128i pair01 = _mm_shuffle_epi32(weight, 0), pair2 = _mm_shuffle_epi32(weight, 0x55);
+    acdf_fast_mixed(low, pair01, pair2, out);
+    acdf_fast_mixed(high, pair01, pair2, out + 2);
+}
+
 /* Bit i: whether number i of sixteen mixed ends is above x. */
 ACDF_INLINE uint32_t acdf_fast_sixteen(const __m128i low[3], const __m128i high[3], __m128i weight, __m128i x,
                                        __m128i sum[4]) {
-    const __m128i pair01 = _mm_shuffle_epi32(weight, 0), pair2 = _mm_shuffle_epi32(weight, 0x55);
-    acdf_fast_mixed(low, pair01, pair2, sum);
-    acdf_fast_mixed(high, pair01, pair2, sum + 2);
-    return (uint32_t)_mm_movemask_epi8(
-        _mm_packs_epi16(_mm_packs_epi32(_mm_cmpgt_epi32(sum[0], x), _mm_cmpgt_epi32(sum[1], x)),
-                        _mm_packs_epi32(_mm_cmpgt_epi32(sum[2], x), _mm_cmpgt_epi32(sum[3], x))));
+    acdf_fast_mixed_sixteen(low, high, weight, sum);
+    return acdf_fast_above(sum, x);
 }
 
 /* The first of mixed ends that is above x, in lists as long as a multiple of 16, from number `first` on, which is
@@ -142,20 +153,26 @@ ACDF_INLINE uint32_t acdf_fast_group_of(const AcdfFast* fast, const AcdfFastMixt
     return acdf_fast_search(mix->group, first, weight, at);
 }
 
-/* The same among the tiles of a group, which begin at `first`. */
-ACDF_INLINE AcdfFastTile acdf_fast_tile_of(const AcdfFastMixture* mix, const AcdfFastGroup* group, uint32_t first,
-                                           double y) {
+/* The ends of the tiles of a group, which begin at `first`, in each row. */
+ACDF_INLINE void acdf_fast_tile_rows(const AcdfFastMixture* mix, uint32_t first, __m128i low[3], __m128i high[3]) {
     const __m128i zero = _mm_setzero_si128();
-    __m128i low[3], high[3], sum[4];
-    AcdfFastTile out;
-    int32_t ends[20];
-    uint32_t i;
     int k;
     for (k = 0; k < 3; ++k) {
         const __m128i bytes = _mm_loadu_si128((const __m128i*)(const void*)(mix->tile[k] + first));
         low[k] = _mm_unpacklo_epi8(bytes, zero);
         high[k] = _mm_unpackhi_epi8(bytes, zero);
     }
+}
+
+/* The same among the tiles of a group, which begin at `first`. */
+ACDF_INLINE AcdfFastTile acdf_fast_tile_of(const AcdfFastMixture* mix, const AcdfFastGroup* group, uint32_t first,
+                                           double y) {
+    __m128i low[3], high[3], sum[4];
+    AcdfFastTile out;
+    int32_t ends[20];
+    uint32_t i;
+    int k;
+    acdf_fast_tile_rows(mix, first, low, high);
     i = acdf_lowest_bit(acdf_fast_sixteen(low, high, group->weight, acdf_fast_floor(y), sum));
     ends[3] = 0;
     for (k = 0; k < 4; ++k) _mm_storeu_si128((__m128i*)(void*)(ends + 4 + 4 * k), sum[k]);

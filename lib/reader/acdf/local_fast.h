@@ -134,19 +134,26 @@ ACDF_INLINE float acdf_local_fast_density(const AcdfLocal* local, const AcdfGrid
     return (float)(pdf > least ? pdf : least);
 }
 
+/* The direction that what is left of the random numbers picks in a cell of such a probability. */
+ACDF_INLINE AcdfDirectionSample acdf_local_fast_place(const AcdfLocal* local, const AcdfGrid* grid,
+                                                      const AcdfRange range[2], const double u[2],
+                                                      const AcdfFastShare* share) {
+    AcdfDirectionSample out;
+    if (!acdf_local_place_by_tables(local, grid, range, u, out.direction))
+        out = acdf_grid_place(grid, range, u, 1.0);
+    out.pdf = acdf_local_fast_density(local, grid, range, share);
+    return out;
+}
+
 /* acdf_local_row_sample of this shape. */
 ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                        double* u) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     AcdfFastShare share;
-    AcdfDirectionSample out;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     share = acdf_local_fast_draw(local, point, u, range);
-    if (!acdf_local_place_by_tables(local, &grid, range, u, out.direction))
-        out = acdf_grid_place(&grid, range, u, 1.0);
-    out.pdf = acdf_local_fast_density(local, &grid, range, &share);
-    return out;
+    return acdf_local_fast_place(local, &grid, range, u, &share);
 }
 
 #ifdef __cplusplus

@@ -50,7 +50,8 @@ typedef struct AcdfLocalTables {
     uint32_t corners;       /* AcdfCornerRecord, in two squares of (2 n + 1)^2, north and south, of x + n and
                                (y + n) (2 n + 1); 0: the octahedron is too large, or there is none */
     uint32_t lights;        /* AcdfLightPair, one two lights */
-    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and its solid angle */
+    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and of the fast shape its
+                               solid angle, else 0 */
     uint32_t hearts;        /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
                                from it by the brighter halves; 0: there is no room */
     uint32_t octahedral;    /* whether cells lie on the octahedral square */

@@ -49,18 +49,16 @@ ACDF_METHOD void CutRating<AnyLobe>::draw_guides() noexcept {
 /// The lobe at the hearts of some parts.
 template <class AnyLobe>
 ACDF_METHOD void CutRating<AnyLobe>::look(int count, const int* parts) noexcept {
-    float wi[at_once][3], pdf[at_once];
+    float wi[at_once][3];
     for (int i = 0; i < count; ++i) {
         float world[3];
         ratings_[parts[i]].tile = acdf_cut_heart(&of_.light, &of_.at, &cut_, parts[i], world);
         of_.above_surface(world, wi[i]);
     }
-    lobe_pdfs(of_.lobe, of_.lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
-    for (int i = 0; i < count; ++i) {
-        PartRating& rating = ratings_[parts[i]];
-        rating.value = of_.bounded(of_.lobe.value(of_.lobe_at, wi[i], pdf[i]));
-        rating.pdf = of_.bounded(pdf[i]);
-    }
+    of_.template look<std::size_t{at_once}>(count, wi, [&](int i, float value, float pdf) {
+        ratings_[parts[i]].value = value;
+        ratings_[parts[i]].pdf = pdf;
+    });
 }
 
 /// Divides a part; all is known of its halves then but the lobe at the heart of one of them.

@@ -156,12 +156,10 @@ ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
 
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::look(const Looks& looks) noexcept {
-    float value[most_parts], pdf[most_parts];
-    of_.look(looks.count, looks.wi, value, pdf);
-    for (int i = 0; i < looks.count; ++i) {
-        value_[looks.part[i]] = value[i];
-        pdf_[looks.part[i]] = pdf[i];
-    }
+    of_.template look<std::size_t{most_parts}>(looks.count, looks.wi, [&](int i, float value, float pdf) {
+        value_[looks.part[i]] = value;
+        pdf_[looks.part[i]] = pdf;
+    });
 }
 
 /// Mean and mass of parts, from what was seen there.

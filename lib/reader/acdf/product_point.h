@@ -33,13 +33,13 @@ struct PointOfLobe {
         for (int k = 0; k < 3; ++k) wi[k] *= scale;
     }
 
-    /// The lobe's value and density in directions above the surface, in its frame.
-    ACDF_METHOD void look(int count, const float (*wi)[3], float* value, float* pdf) const noexcept {
+    /// The lobe's value and density in directions above the surface, in its frame, at most `Most`: told(i, value,
+    /// density) of each.
+    template <std::size_t Most, class Told>
+    ACDF_METHOD void look(int count, const float (*wi)[3], const Told& told) const noexcept {
+        float pdf[Most];
         lobe_pdfs(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
-        for (int i = 0; i < count; ++i) {
-            value[i] = bounded(lobe.value(lobe_at, wi[i], pdf[i]));
-            pdf[i] = bounded(pdf[i]);
-        }
+        for (int i = 0; i < count; ++i) told(i, bounded(lobe.value(lobe_at, wi[i], pdf[i])), bounded(pdf[i]));
     }
 
     /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their

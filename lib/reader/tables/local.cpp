@@ -194,16 +194,17 @@ void place_upper(const AcdfLocal& local, std::uint16_t* out) {
     }
 }
 
-// Of each tile the direction of its middle, and its solid angle.
+// Of each tile the direction of its middle, and of the fast shape its solid angle.
 void place_middles(const AcdfLocal& local, const AcdfLocalTables& tables, float* out) {
+    const AcdfGrid grid = acdf_environment_grid(&local.environment);
     for (u32 tile = 0; tile < local.blend.tiles->tile_count; ++tile, out += 4) {
         const AcdfTileRecord& record = *acdf_local_tile(&tables, tile);
         const u32 box[2][2] = {{record.high[0], record.low[0]}, {record.high[1], record.low[1]}};
         acdf_cut_middle(&local, box, out);
+        if (!local.fast.grid) continue; // products divide the small shape by the solid angles of its splits
         AcdfRange range[2];
         acdf_tile_range(&record, range);
         range[0].tilt = range[1].tilt = 0.0;
-        const AcdfGrid grid = acdf_environment_grid(&local.environment);
         out[3] = static_cast<float>(acdf_grid_solid_angle(&grid, range));
     }
 }

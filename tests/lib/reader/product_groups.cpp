@@ -1,6 +1,5 @@
 // What cuts of the fast shape are made of (acdf/fast_cut.h), beside plain sums over the rows.
-#include "tests/lib/reader/local_fast_random.h"
-#include "tests/lib/reader/local_loaded.h"
+#include "tests/lib/reader/product_points.h"
 
 #include <acdf/fast_cut.h>
 
@@ -12,16 +11,9 @@
 #include <vector>
 
 using namespace acdf_test;
+using namespace acdf_test::products;
 
 namespace {
-
-double fraction(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
-
-std::array<float, 3> some_direction(std::mt19937_64& rng) {
-    const double z = 2.0 * fraction(rng) - 1.0, phi = 2.0 * M_PI * fraction(rng), sine = std::sqrt(1.0 - z * z);
-    return {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)),
-            static_cast<float>(z)};
-}
 
 template <class Visit>
 void each_cut_file(const Visit& visit) {
@@ -75,7 +67,7 @@ TEST(FastCut, MassesAreWhatDensitiesFind) {
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 20; ++i) {
             AcdfLocalPoint point;
-            acdf_local_at(&light, some_direction(rng).data(), &point);
+            acdf_local_at(&light, random_normal(rng).v, &point);
             if (point.what != ACDF_LOCAL_FAST || point.mix.count == 0) continue;
             std::int32_t masses[ACDF_FAST_CUT_GROUPS], tiles[ACDF_FAST_GROUP];
             acdf_fast_group_masses(&light.fast, &point.fast, masses);
@@ -105,8 +97,8 @@ TEST(FastCut, EndsAreSharesInSteps) {
         cut.lights = 16;
         cut.count = 16 * (2 + static_cast<std::uint32_t>(rng() % (ACDF_FAST_CUT_PARTS / 16 - 1)));
         for (std::uint32_t i = 0; i < cut.count; ++i) {
-            share[i] = rng() % 4 == 0 ? static_cast<float>(std::ldexp(fraction(rng), -static_cast<int>(rng() % 60)))
-                                      : 0.0f;
+            share[i] =
+                rng() % 4 == 0 ? static_cast<float>(std::ldexp(unit(rng), -static_cast<int>(rng() % 60))) : 0.0f;
             sum += double{share[i]};
         }
         for (float& x : share) x = static_cast<float>(double{x} / sum);
@@ -118,7 +110,7 @@ TEST(FastCut, EndsAreSharesInSteps) {
             ASSERT_NEAR(part.mass, double{share[i]} * 0x1p29, 1.0 + double{share[i]} * 64.0);
         }
         for (int i = 0; i < 200; ++i) { // the first end above any number
-            const double x = std::floor(fraction(rng) * cut.whole);
+            const double x = std::floor(unit(rng) * cut.whole);
             std::uint32_t block = 0;
             for (; !(cut.upper[block + 15] > x); block += 16) ASSERT_LT(block, std::uint32_t{ACDF_FAST_CUT_UPPER});
             block += acdf_fast_cut_search(cut.upper + block, x);
