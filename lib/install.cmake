@@ -16,6 +16,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/block_grids.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_about.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_half.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_pair.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_tables.h

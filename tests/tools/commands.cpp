@@ -371,6 +371,9 @@ TEST_F(Commands, PdfFindsColumnsByName) {
     EXPECT_EQ(named.out, plain.out);
     const Result csv = run_acdf({"pdf", sky, "--csv"}, "0.6 -0.8 0\n");
     EXPECT_EQ(csv.out.rfind("x,y,z,pdf\n0.600000024,-0.800000012,0,", 0), 0u) << csv.out;
+    const std::string mark = "\xEF\xBB\xBF"; // before numbers, and before a header
+    EXPECT_EQ(run_acdf({"pdf", sky, "--csv"}, mark + "0.6 -0.8 0\n").out, csv.out);
+    EXPECT_EQ(run_acdf({"pdf", sky, "--csv"}, mark + "x,y,z\r\n0.6,-0.8,0\r\n").out, csv.out);
 }
 
 TEST_F(Commands, PdfRefusesMalformedLinesByNumber) {

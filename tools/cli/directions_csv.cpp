@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <numeric>
+#include <string_view>
 #include <vector>
 
 namespace acdf::tools {
@@ -68,7 +69,10 @@ std::string PointParser::expected() const {
 }
 
 std::optional<std::vector<double>> PointParser::parse(const std::string& line) {
-    const std::string text = trimmed(line.substr(0, line.find('#')));
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf"; // as spreadsheets write it
+    const bool marked = !header_ && !point_ && line.compare(0, byte_order_mark.size(), byte_order_mark) == 0;
+    const std::size_t begin = marked ? byte_order_mark.size() : 0;
+    const std::string text = trimmed(line.substr(begin, line.find('#') - begin));
     if (text.empty()) return std::nullopt;
     const std::vector<std::string> fields = fields_of(text);
     if (!header_ && !point_ && read_header(fields)) return std::nullopt;

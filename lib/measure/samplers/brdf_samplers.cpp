@@ -54,16 +54,12 @@ BrdfSample GgxSampler::sample(const double wo[3], const double u[2]) const {
     return out;
 }
 
-double GgxSampler::pdf(const double wo[3], const double wi[3]) const {
-    if (!(wo[2] > 0.0 && wi[2] > 0.0)) return 0.0;
-    double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
-    const double length = std::sqrt(dot_product(h, h));
-    const double x = h[0] / (length * alpha_x_), y = h[1] / (length * alpha_y_), z = h[2] / length;
-    const double s = x * x + y * y + z * z;
-    const double d = 1.0 / (ACDF_PI * alpha_x_ * alpha_y_ * s * s);
+double GgxSampler::scale(const double wo[3]) const {
+    if (!(wo[2] > 0.0)) return 0.0;
     const double stretched =
         std::sqrt(alpha_x_ * alpha_x_ * wo[0] * wo[0] + alpha_y_ * alpha_y_ * wo[1] * wo[1] + wo[2] * wo[2]);
-    return d / (2.0 * (wo[2] + stretched)); // D G1 / (4 cos), G1 = 2 cos / (cos + stretched)
+    // 1 / (pi alpha_x alpha_y) of D, and G1 / (4 cos), G1 = 2 cos / (cos + stretched)
+    return 1.0 / (2.0 * ACDF_PI * alpha_x_ * alpha_y_ * (wo[2] + stretched));
 }
 
 GgxFit best_ggx(const compress::Reflected& reflected, const std::vector<compress::View>& views,

@@ -30,7 +30,18 @@ public:
     GgxSampler(double alpha_x, double alpha_y) : alpha_x_(alpha_x), alpha_y_(alpha_y) {}
 
     BrdfSample sample(const double wo[3], const double u[2]) const; ///< u in [0, 1)
-    double pdf(const double wo[3], const double wi[3]) const;
+    double pdf(const double wo[3], const double wi[3]) const { return pdf(wo, scale(wo), wi); }
+    /// What all densities of a view are multiplied by; 0 below the surface.
+    double scale(const double wo[3]) const;
+    /// The same for a view whose scale is known: D(wh) by the half-vector as it is long, |wh|^4 of what the
+    /// ellipsoid makes of it, so that there is no root.
+    double pdf(const double wo[3], double scale, const double wi[3]) const {
+        const double h[3] = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
+        const double x = h[0] / alpha_x_, y = h[1] / alpha_y_;
+        const double length2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+        const double part = length2 / (x * x + y * y + h[2] * h[2]);
+        return scale > 0.0 && wi[2] > 0.0 ? scale * part * part : 0.0;
+    }
     static constexpr std::size_t bytes() { return 2 * sizeof(double); }
     double alpha() const { return alpha_x_; }
 

@@ -14,20 +14,21 @@ namespace acdf::measure {
 class GgxLobe {
 public:
     struct Point {
-        double wo[3];
+        double wo[3], scale;
     };
 
     explicit GgxLobe(double alpha) : ggx_(alpha) {}
     GgxLobe(double alpha_x, double alpha_y) : ggx_(alpha_x, alpha_y) {}
 
-    static bool at(const float wo[3], Point& point) {
+    bool at(const float wo[3], Point& point) const {
         std::copy_n(wo, 3, point.wo);
+        point.scale = ggx_.scale(point.wo);
         return wo[2] > 0.0f;
     }
     static float value(const Point&, const float wi[3], float pdf) { return pdf / std::max(0.02f, wi[2]); }
     float pdf(const Point& point, const float wi[3]) const {
         const double w[3] = {wi[0], wi[1], wi[2]};
-        return static_cast<float>(ggx_.pdf(point.wo, w));
+        return static_cast<float>(ggx_.pdf(point.wo, point.scale, w));
     }
     ProductSample sample(const Point& point, double u0, double u1) const {
         const double u[2] = {below_one(u0), below_one(u1)};

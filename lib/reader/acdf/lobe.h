@@ -2,7 +2,7 @@
 // freestanding. For kernels define ACDF_METHOD, for example as __host__ __device__.
 #pragma once
 
-#include <acdf/brdf.h>
+#include <acdf/brdf_about.h>
 #include <acdf/method.h>
 
 #include <cstddef>
@@ -63,6 +63,11 @@ public:
     ACDF_METHOD void pdfs(const Point& point, const float (*wi)[3], std::size_t count, float* out) const noexcept {
         acdf_brdf_view_pdfs(&data_, &point, wi, count, out);
     }
+    /// About those, in less time. Lobes need not have this.
+    ACDF_METHOD void pdfs_about(const Point& point, const float (*wi)[3], std::size_t count,
+                                float* out) const noexcept {
+        acdf_brdf_view_pdfs_about(&data_, &point, wi, count, out);
+    }
     /// `sample` of u[i] into out[i], i < count. Lobes need not have this.
     ACDF_METHOD void samples(const Point& point, const double (*u)[2], std::size_t count,
                              ProductSample* out) const noexcept {
@@ -108,6 +113,19 @@ template <class AnyLobe>
 ACDF_METHOD void lobe_pdfs(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
                            std::size_t count, float* out, long) noexcept {
     for (std::size_t i = 0; i < count; ++i) out[i] = lobe.pdf(point, wi[i]);
+}
+
+/// What a lobe is looked at with in parts: `pdfs_about` where it has that, else as lobe_pdfs.
+template <class AnyLobe>
+ACDF_METHOD auto lobe_pdfs_about(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
+                                 std::size_t count, float* out, int) noexcept
+    -> decltype(lobe.pdfs_about(point, wi, count, out)) {
+    lobe.pdfs_about(point, wi, count, out);
+}
+template <class AnyLobe>
+ACDF_METHOD void lobe_pdfs_about(const AnyLobe& lobe, const typename AnyLobe::Point& point, const float (*wi)[3],
+                                 std::size_t count, float* out, long) noexcept {
+    lobe_pdfs(lobe, point, wi, count, out, 0);
 }
 
 /// Several samples: `samples` where it has that, else `sample`.

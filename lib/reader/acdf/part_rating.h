@@ -76,21 +76,33 @@ struct PartRating {
     }
 };
 
-/// A sum by eight others, which need not wait for each other.
+/// Numbers are added up by as many others, which do not wait for each other: four vectors.
 template <class Real>
-ACDF_METHOD Real sum_by_eight(const Real* x, int count) noexcept {
-    Real sum[8] = {};
-    int i = 0;
-    for (; i + 8 <= count; i += 8)
-        for (int k = 0; k < 8; ++k) sum[k] += x[i + k];
-    for (; i < count; ++i) sum[0] += x[i];
-    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+constexpr std::size_t side_by_side = 64 / sizeof(Real);
+/// As many as there is to be room for.
+template <class Real>
+constexpr std::size_t room_for(std::size_t count) noexcept {
+    return (count + side_by_side<Real> - 1) / side_by_side<Real> * side_by_side<Real>;
+}
+
+/// A sum of numbers; those behind them, where there is room, become 0.
+template <class Real>
+ACDF_METHOD Real padded_sum(Real* x, int count) noexcept {
+    constexpr std::size_t side = side_by_side<Real>, half = side / 2;
+    const std::size_t numbers = static_cast<std::size_t>(count), all = room_for<Real>(numbers);
+    Real sum[side] = {};
+    for (std::size_t i = numbers; i < all; ++i) x[i] = 0;
+    for (std::size_t i = 0; i < all; i += side)
+        for (std::size_t k = 0; k < side; ++k) sum[k] += x[i + k];
+    for (std::size_t k = 0; k < half; ++k) sum[k] += sum[k + half];
+    for (std::size_t k = 4; k < half; ++k) sum[k - 4] += sum[k];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
 /// Gives all parts their probabilities, into `left`. Returns the share of samples that is left to the lobe's own
 /// sampler: the more the lobe changes within parts, and the less the light within the lobe. 1, and nothing is
-/// given, where parts have no light or reflect none. `Most`: of parts; `least_share`: what that sampler gets at
-/// least; `parts` tell what light is in one, and its rating.
+/// given, where parts have no light or reflect none. `Most`: of parts, for which `left` has room; `least_share`:
+/// what that sampler gets at least; `parts` tell what light is in one, and its rating.
 template <std::size_t Most, class Real, class Parts>
 ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least_share, const Parts& parts,
                                Real* left) noexcept {
@@ -100,15 +112,16 @@ ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least
     constexpr double most_share = 0.8;
     // How much of what the lobe's own sampler gives is left out of the parts, and what they keep at least.
     constexpr double left_out = 0.8, kept = 0.1;
-    Real wanted[Most], lobe[Most], above[Most];
+    constexpr std::size_t room = room_for<Real>(Most);
+    Real wanted[room], lobe[room], above[room];
     for (int i = 0; i < count; ++i) {
         wanted[i] = parts.light(i);
         lobe[i] = wanted[i] * Real(parts.mean(i));
         above[i] = lobe[i] * Real(parts.spread(i));
     }
-    const Real light = sum_by_eight(wanted, count), reflected = sum_by_eight(lobe, count);
+    const Real light = padded_sum(wanted, count), reflected = padded_sum(lobe, count);
     if (!(light > 0 && reflected > 0)) return 1.0;
-    const double mean = double{reflected} / double{light}, spread = double{sum_by_eight(above, count)};
+    const double mean = double{reflected} / double{light}, spread = double{padded_sum(above, count)};
     const double share = acdf_clamp(4.0 * (spread / double{reflected}) / (1.0 + 2.0 * guides.variance(mean)),
                                     least_share, most_share);
     const Real least = anywhere * Real(mean), given = Real(left_out * share),
@@ -118,7 +131,7 @@ ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least
         wanted[i] = parts.light(i) * (Real(parts.mean(i)) + around * Real(parts.around(i)) + least);
         lobe[i] = given * Real(parts.mass(i));
     }
-    const Real whole = sum_by_eight(wanted, count);
+    const Real whole = padded_sum(wanted, count);
     for (int i = 0; i < count; ++i) wanted[i] /= whole;
     // Raised until what is left of them after the lobe's share adds up to the rest.
     Real scale = 1;
@@ -129,7 +142,7 @@ ACDF_METHOD double weigh_parts(int count, const LobeGuides& guides, double least
             above[i] = over > floor ? wanted[i] : Real(0);
         }
         if (pass == 3) break;
-        scale += (rest - sum_by_eight(left, count)) / (Real(0.05) + sum_by_eight(above, count));
+        scale += (rest - padded_sum(left, count)) / (Real(0.05) + padded_sum(above, count));
         if (!(scale > Real(0.5))) scale = Real(0.5);
     }
     return share;
@@ -149,7 +162,7 @@ struct CutParts {
 
 /// Gives all parts of a cut their probabilities, and returns the share of the lobe's own sampler, as weigh_parts.
 ACDF_METHOD inline double weigh_cut(AcdfCut& cut, const LobeGuides& guides, const PartRating* ratings) noexcept {
-    double left[ACDF_CUT_MAX_PARTS];
+    double left[room_for<double>(ACDF_CUT_MAX_PARTS)];
     const double share =
         weigh_parts<std::size_t{ACDF_CUT_MAX_PARTS}>(cut.count, guides, 0.03, CutParts{cut, ratings}, left);
     for (int i = 0; share < 1.0 && i < cut.count; ++i) cut.part[i].probability = left[i];

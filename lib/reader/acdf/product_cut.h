@@ -41,7 +41,7 @@ private:
 template <class AnyLobe>
 ACDF_METHOD void CutRating<AnyLobe>::draw_guides() noexcept {
     float world[LobeGuides::most][3], light[LobeGuides::most];
-    of_.draw_guides(of_.parts < 12 ? 2 : 4, world, guides_);
+    of_.draw_guides(world, guides_);
     acdf_cut_pdf_wave(&of_.light, &of_.at, &cut_, world, static_cast<std::size_t>(guides_.count), light);
     guides_.weigh(light);
 }
@@ -55,7 +55,7 @@ ACDF_METHOD void CutRating<AnyLobe>::look(int count, const int* parts) noexcept 
         ratings_[parts[i]].tile = acdf_cut_heart(&of_.light, &of_.at, &cut_, parts[i], world);
         of_.above_surface(world, wi[i]);
     }
-    of_.template look<std::size_t{at_once}>(count, wi, [&](int i, float value, float pdf) {
+    of_.template look<std::size_t{at_once}>(count, of_.parts >= 24, wi, [&](int i, float value, float pdf) {
         ratings_[parts[i]].value = value;
         ratings_[parts[i]].pdf = pdf;
     });

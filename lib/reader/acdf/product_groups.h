@@ -77,7 +77,6 @@ template <class AnyLobe>
 ACDF_METHOD int GroupRating<AnyLobe>::add(int number, int entry, float light, float solid_angle) noexcept {
     light_in_[number] = light;
     solid_angle_[number] = solid_angle;
-    value_[number] = pdf_[number] = 0.0f;
     entry_[number] = static_cast<std::uint16_t>(entry);
     part_of_[entry] = static_cast<std::uint16_t>(number);
     return number + (light > 0.0f);
@@ -99,6 +98,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::measure() noexcept {
     lights_ = ++count;
     for (int i = 0; i < ends; ++i)
         count = add(count, first_entry_ + i, static_cast<float>(masses[i]) * unit, angles[i]);
+    for (int i = 0; i < count; ++i) value_[i] = pdf_[i] = 0.0f;
     all_ = count_ = count;
 }
 
@@ -107,7 +107,7 @@ template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::draw_guides() noexcept {
     const AcdfGrid grid = acdf_environment_grid(&of_.light.environment);
     float world[LobeGuides::most][3], light[LobeGuides::most];
-    of_.draw_guides(4, world, guides_);
+    of_.draw_guides(world, guides_);
     for (int i = 0; i < guides_.count; ++i) {
         const std::uint32_t square[2] = {guides_.square[0][i], guides_.square[1][i]};
         AcdfRange range[2];
@@ -156,7 +156,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::look_at_much() noexcept {
 
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::look(const Looks& looks) noexcept {
-    of_.template look<std::size_t{most_parts}>(looks.count, looks.wi, [&](int i, float value, float pdf) {
+    of_.template look<std::size_t{most_parts}>(looks.count, true, looks.wi, [&](int i, float value, float pdf) {
         value_[looks.part[i]] = value;
         pdf_[looks.part[i]] = pdf;
     });
@@ -219,7 +219,7 @@ template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::choose() noexcept {
     const int wanted = (of_.parts - 8) / parts_per_open,
               room = wanted < ACDF_FAST_CUT_OPEN ? wanted : ACDF_FAST_CUT_OPEN;
-    float square[ACDF_FAST_CUT_GROUPS], reflected[ACDF_FAST_CUT_GROUPS], best[ACDF_FAST_CUT_OPEN];
+    float square[ACDF_FAST_CUT_GROUPS], reflected[room_for<float>(ACDF_FAST_CUT_GROUPS)], best[ACDF_FAST_CUT_OPEN];
     const int groups = count_ - lights_;
     if (room <= 0) return;
     for (int i = 0; i < groups; ++i) {
@@ -227,7 +227,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::choose() noexcept {
         reflected[i] = light_in_[part] * (mean_[part] + 0.3f * around_[part]);
         square[i] = reflected[i] * reflected[i] * solid_angle_[part];
     }
-    const float least = least_reflected * sum_by_eight(reflected, groups);
+    const float least = least_reflected * padded_sum(reflected, groups);
     for (int i = 0; i < groups; ++i) square[i] = reflected[i] > least ? square[i] : 0.0f;
     for (int i = 0; i < groups; ++i) {
         if (!(square[i] > (open_ < room ? 0.0f : best[room - 1]))) continue;
@@ -290,23 +290,24 @@ ACDF_METHOD void GroupRating<AnyLobe>::finish(AcdfFastCut& cut, float* probabili
     cut.count = cut.lights + of_.light.fast.ends;
     for (int k = 0; k < open_; ++k) {
         float* tile = probability + count_ + group_size * k;
-        const float inside = sum_by_eight(tile, group_size);
+        const float inside = padded_sum(tile, group_size);
         if (!(inside > 0.0f)) continue;
         probability[opened_[k]] = inside;
         for (int i = 0; i < group_size; ++i) tile[i] /= inside;
         acdf_fast_cut_ends(tile, group_size, cut.tile[k]);
         cut.open[group_of(opened_[k])] = static_cast<std::uint8_t>(k + 1);
     }
-    const float sum = sum_by_eight(probability, count_);
+    const float sum = padded_sum(probability, count_); // and no more of tiles
     if (!(sum > 0.0f)) return;
+    const float scale = 1.0f / sum;
     for (std::uint32_t i = 0; i < cut.count; ++i) share[i] = 0.0f;
-    for (int i = 0; i < count_; ++i) share[entry_[i]] = probability[i] / sum;
+    for (int i = 0; i < count_; ++i) share[entry_[i]] = probability[i] * scale;
     acdf_fast_cut_finish(&cut, share);
 }
 
 template <class AnyLobe>
 ACDF_METHOD double GroupRating<AnyLobe>::make(AcdfFastCut& cut) noexcept {
-    float probability[most];
+    float probability[room_for<float>(most)];
     measure();
     draw_guides();
     look_at_much();

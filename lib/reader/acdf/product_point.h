@@ -34,18 +34,20 @@ struct PointOfLobe {
     }
 
     /// The lobe's value and density in directions above the surface, in its frame, at most `Most`: told(i, value,
-    /// density) of each.
+    /// density) of each. `many`: about those, as is worth while for more than a few.
     template <std::size_t Most, class Told>
-    ACDF_METHOD void look(int count, const float (*wi)[3], const Told& told) const noexcept {
+    ACDF_METHOD void look(int count, bool many, const float (*wi)[3], const Told& told) const noexcept {
         float pdf[Most];
-        lobe_pdfs(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
+        if (many) lobe_pdfs_about(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
+        else lobe_pdfs(lobe, lobe_at, wi, static_cast<std::size_t>(count), pdf, 0);
         for (int i = 0; i < count; ++i) told(i, bounded(lobe.value(lobe_at, wi[i], pdf[i])), bounded(pdf[i]));
     }
 
     /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their
     /// place: what is written in pieces and copied at once would be waited for.
-    ACDF_METHOD void draw_guides(int drawn, float (*world)[3], LobeGuides& out) const noexcept {
+    ACDF_METHOD void draw_guides(float (*world)[3], LobeGuides& out) const noexcept {
         const AcdfGrid grid = acdf_environment_grid(&light.environment);
+        const int drawn = parts < 12 ? 2 : LobeGuides::most;
         out.drawn = drawn;
         for (int i = 0; i < drawn; ++i) {
             const ProductSample s = guide(lobe, lobe_at, i, drawn);
