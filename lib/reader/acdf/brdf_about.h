@@ -17,6 +17,7 @@ typedef struct AcdfBrdfAbout {
     float half[3][ACDF_ABOUT_MOST];
     float length[ACDF_ABOUT_MOST], dot[ACDF_ABOUT_MOST]; /* of wo + wi, as AcdfBrdfPlace has them */
     int32_t step[2][ACDF_ABOUT_MOST];                    /* of the guides of borders */
+    int32_t column[ACDF_ABOUT_MOST];                     /* of the grid of squares */
     float share[ACDF_ABOUT_MOST], area[ACDF_ABOUT_MOST]; /* of the cell */
 } AcdfBrdfAbout;
 
@@ -24,18 +25,19 @@ typedef struct AcdfBrdfAbout {
 ACDF_INLINE void acdf_about_halves(const AcdfBrdfView* view, const float (*wi)[3], uint32_t count,
                                    AcdfBrdfAbout* a) {
     const float wo[3] = {(float)view->wo[0], (float)view->wo[1], (float)view->wo[2]};
+    const uint32_t all = (count + 3u) & ~3u; /* roots are drawn four at a time */
     uint32_t i;
     int k;
     for (i = 0; i < count; ++i)
         for (k = 0; k < 3; ++k) a->half[k][i] = wo[k] + wi[i][k];
-    for (; i % 4 != 0; ++i) /* four at a time */
+    for (; i < all; ++i)
         for (k = 0; k < 3; ++k) a->half[k][i] = wo[k];
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < all; ++i) {
         const float x = a->half[0][i], y = a->half[1][i], z = a->half[2][i];
         a->length[i] = x * x + y * y + z * z;
         a->dot[i] = fabsf(wo[0] * x + wo[1] * y + wo[2] * z);
     }
-    for (i = 0; i < count; i += 4) {
+    for (i = 0; i < all; i += 4) {
 #ifdef ACDF_SSE2
         _mm_storeu_ps(a->length + i, _mm_sqrt_ps(_mm_loadu_ps(a->length + i)));
 #else
@@ -45,11 +47,10 @@ ACDF_INLINE void acdf_about_halves(const AcdfBrdfView* view, const float (*wi)[3
     }
 }
 
-/* The step of a guide: the exponent of a position, and the first bits behind the point. */
-ACDF_INLINE int32_t acdf_about_step(float position, float last) {
+/* The step of a guide that holds a position: its exponent, and the first bits behind the point. */
+ACDF_INLINE int32_t acdf_about_step(float position) {
     int32_t bits;
-    position = position > 1.0f ? position : 1.0f; /* NaN, too */
-    position = position < last ? position : last;
+    position = position > 1.0f ? position : 1.0f;
     memcpy(&bits, &position, sizeof bits);
     return (bits >> (23 - ACDF_BORDER_STEP_BITS)) - (127 << ACDF_BORDER_STEP_BITS);
 }
@@ -84,13 +85,25 @@ ACDF_INLINE void acdf_about_places(const AcdfBrdf* brdf, const AcdfBrdfView* vie
         place[1][i] = rows * ((x * x + y * y) / (a->length[i] * (a->length[i] + fabsf(z))));
     }
     for (axis = 0; axis < 2; ++axis)
-        for (i = 0; i < count; ++i) a->step[axis][i] = acdf_about_step(place[axis][i], last[axis]);
+        for (i = 0; i < count; ++i) {
+            const float positive = place[axis][i] > 0.0f ? place[axis][i] : 0.0f; /* NaN, too */
+            const float position = positive < last[axis] ? positive : last[axis];
+            place[axis][i] = position;
+            a->step[axis][i] = acdf_about_step(position);
+        }
+    for (i = 0; i < count; ++i) a->column[i] = (int32_t)place[0][i];
+}
+
+/* How many borders lie at or below a position: of those behind the first one of its step, up to two. */
+ACDF_INLINE uint32_t acdf_about_borders(const int32_t* borders, uint32_t guided, int32_t position) {
+    return guided + (uint32_t)(borders[guided] <= position) + (uint32_t)(borders[guided + 1] <= position);
 }
 
 /* The cells there, and what the rows around the view give to them. */
 ACDF_INLINE void acdf_about_cells(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t count,
                                   AcdfBrdfAbout* a) {
     const AcdfBrdfTables* tables = brdf->tables;
+    const int32_t* borders = (const int32_t*)acdf_brdf_words(tables, tables->borders[0]);
     const uint16_t* guide0 = (const uint16_t*)acdf_brdf_words(tables, tables->border_guides[0]);
     const uint16_t* guide1 = (const uint16_t*)acdf_brdf_words(tables, tables->border_guides[1]);
     const uint16_t* grid = (const uint16_t*)acdf_brdf_words(tables, tables->grid);
@@ -98,17 +111,20 @@ ACDF_INLINE void acdf_about_cells(const AcdfBrdf* brdf, const AcdfBrdfView* view
     const double weight[2] = {sum > 0.0 ? view->pair[0] / sum : 0.0, sum > 0.0 ? view->pair[1] / sum : 0.0};
     uint32_t i;
     for (i = 0; i < count; ++i) {
-        const uint32_t cell = grid[guide1[a->step[1][i]] * tables->columns_between + guide0[a->step[0][i]]];
+        const uint32_t column = acdf_about_borders(borders, guide0[a->step[0][i]], a->column[i]);
+        const uint32_t row = guide1[a->step[1][i]];
+        const uint32_t cell = grid[row * tables->columns_between + column];
         const double* part = acdf_brdf_parts(tables, cell, view->lower);
         a->share[i] = (float)(weight[0] * part[0] + weight[1] * part[1]);
         a->area[i] = (float)acdf_brdf_area(tables, cell);
     }
 }
 
-/* About acdf_brdf_view_pdfs, in a fraction of the time: of cells that lie less than a sixteenth of their place, or
- * one position, before it. At most 1e30; 0 where there are none, never NaN. */
-ACDF_FN void acdf_brdf_view_pdfs_about(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3],
-                                       size_t count, float* out) {
+/* About acdf_brdf_view_pdfs, in a fraction of the time: of cells that lie less than a sixteenth of their height, or
+ * one position, before it. Azimuths are told better: beyond some of them nothing is reflected. At most 1e30; 0
+ * where there are none, never NaN. */
+ACDF_OUTLINE_ON_CPU void acdf_brdf_view_pdfs_about(const AcdfBrdf* brdf, const AcdfBrdfView* view,
+                                                   const float (*wi)[3], size_t count, float* out) {
     const float scale = (float)((double)brdf->columns * (double)brdf->rows / (8.0 * ACDF_PI));
     AcdfBrdfAbout a;
     size_t first, i;

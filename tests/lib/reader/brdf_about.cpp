@@ -22,15 +22,28 @@ double step_of(double position) {
     return std::ldexp(std::floor(16.0 * part) / 16.0, exponent - 1);
 }
 
-/// Steps of positions which are off by some; azimuths go round.
-std::vector<double> steps_near(double position, double reach, std::uint32_t resolution, bool round) {
-    const double whole = resolution;
-    std::vector<double> steps;
+/// A position of the cell that is taken to hold one: two borders of azimuths are looked at behind the step's first
+/// one.
+double taken_for(const AcdfBrdfTables* tables, int axis, double position) {
+    const double step = step_of(position);
+    if (axis == 1) return step;
+    const auto* borders = static_cast<const std::int32_t*>(acdf_brdf_words(tables, tables->borders[0]));
+    const std::uint32_t before = acdf_brdf_borders_below(tables, 0, step);
+    return acdf_brdf_borders_below(tables, 0, position) <= before + 2 ? position : borders[before + 1];
+}
+
+/// Those of positions which are off by some; azimuths go round.
+std::vector<double> taken_near(const AcdfBrdf& brdf, int axis, double position, double reach) {
+    const double whole = axis == 0 ? brdf.columns : brdf.rows;
+    std::vector<double> out;
+    const auto add = [&](double p) {
+        out.push_back(taken_for(brdf.tables, axis, std::clamp(p, 0.0, whole - 1.0)));
+    };
     for (const double p : {position - reach, position, position + reach}) {
-        steps.push_back(step_of(std::clamp(p, 0.0, whole - 1.0)));
-        if (round) steps.push_back(step_of(std::clamp(p < 0.0 ? p + whole : p - whole, 0.0, whole - 1.0)));
+        add(p);
+        if (axis == 0 && !acdf_brdf_mirrored(&brdf)) add(p < 0.0 ? p + whole : p - whole);
     }
-    return steps;
+    return out;
 }
 
 /// Whether a density is that of a cell near a direction: as near as floats tell half-vectors.
@@ -40,10 +53,8 @@ bool is_near(const AcdfBrdf& brdf, const AcdfBrdfView& view, const float wi[3], 
     if (!acdf_brdf_half(&view, wi, half, &place) || place.length < 1e-3) return true; // none, or lost in rounding
     acdf_brdf_place(&brdf, &view, wi, &place, &sign);
     const double turn = 3e-5 + 1e-6 / std::hypot(half[0], half[1]);
-    const auto columns =
-        steps_near(place.position[0], turn * brdf.columns, brdf.columns, !acdf_brdf_mirrored(&brdf));
-    for (const double column : columns)
-        for (const double row : steps_near(place.position[1], turn * place.position[1], brdf.rows, false)) {
+    for (const double column : taken_near(brdf, 0, place.position[0], turn * brdf.columns))
+        for (const double row : taken_near(brdf, 1, place.position[1], turn * place.position[1])) {
             const double position[2] = {column, row};
             const std::uint32_t cell = acdf_brdf_find_cell(brdf.tables, position);
             const float there = acdf_brdf_pair_found(&brdf, &view, cell, &place);
