@@ -61,18 +61,22 @@ ACDF_INLINE float acdf_about_last(uint32_t resolution) {
     return last > 1.0f ? last : 1.0f;
 }
 
+ACDF_INLINE float acdf_about_bounded(float position, float last) {
+    const float positive = position > 0.0f ? position : 0.0f; /* NaN, too */
+    return positive < last ? positive : last;
+}
+
 /* Azimuths and heights, as acdf_brdf_position has them. The arc tangent is that of Abramowitz and Stegun, 4.4.49:
  * within 1e-5. */
 ACDF_INLINE void acdf_about_places(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t count,
                                    AcdfBrdfAbout* a) {
     const float turn0 = (float)view->turn[0], turn1 = (float)view->turn[1];
     const float columns = (float)brdf->columns, rows = (float)brdf->rows;
-    const float last[2] = {acdf_about_last(brdf->columns), acdf_about_last(brdf->rows)};
+    const float last0 = acdf_about_last(brdf->columns), last1 = acdf_about_last(brdf->rows);
     const int mirrored = acdf_brdf_mirrored(brdf);
     const float origin = mirrored ? 0.0f : 0.5f, even = mirrored ? 1.0f : 0.0f, odd = mirrored ? 0.0f : 0.5f;
     float place[2][ACDF_ABOUT_MOST];
     uint32_t i;
-    int axis;
     for (i = 0; i < count; ++i) {
         const float x = a->half[0][i], y = a->half[1][i], z = a->half[2][i], below = copysignf(1.0f, z);
         const float hx = below * (turn0 * x + turn1 * y), hy = below * (turn0 * y - turn1 * x);
@@ -84,14 +88,12 @@ ACDF_INLINE void acdf_about_places(const AcdfBrdf* brdf, const AcdfBrdfView* vie
         place[0][i] = columns * (origin + phi * (even + copysignf(odd, hy)));
         place[1][i] = rows * ((x * x + y * y) / (a->length[i] * (a->length[i] + fabsf(z))));
     }
-    for (axis = 0; axis < 2; ++axis)
-        for (i = 0; i < count; ++i) {
-            const float positive = place[axis][i] > 0.0f ? place[axis][i] : 0.0f; /* NaN, too */
-            const float position = positive < last[axis] ? positive : last[axis];
-            place[axis][i] = position;
-            a->step[axis][i] = acdf_about_step(position);
-        }
-    for (i = 0; i < count; ++i) a->column[i] = (int32_t)place[0][i];
+    for (i = 0; i < count; ++i) {
+        const float position = acdf_about_bounded(place[0][i], last0);
+        a->step[0][i] = acdf_about_step(position);
+        a->column[i] = (int32_t)position;
+    }
+    for (i = 0; i < count; ++i) a->step[1][i] = acdf_about_step(acdf_about_bounded(place[1][i], last1));
 }
 
 /* How many borders lie at or below a position: of those behind the first one of its step, up to two. */
