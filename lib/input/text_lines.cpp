@@ -1,9 +1,10 @@
 #include "input/text_lines.h"
 
 #include "input/error.h"
+#include "reader/utf8.h"
 
 #include <charconv>
-#include <cstring>
+#include <string_view>
 
 namespace acdf::input {
 namespace {
@@ -31,10 +32,10 @@ void for_each_line(const std::string& path, const std::string& what,
         if (read == 0) break;
         if (file.fail())
             throw input_error(path, "line " + std::to_string(line.number) + " is longer than any " + what);
-        line.begin = text;
-        line.end = text + read - (file.eof() ? 0 : 1);
-        if (line.number == 1 && read >= 3 && std::memcmp(text, "\xEF\xBB\xBF", 3) == 0)
-            line.begin += 3; // byte order mark
+        std::string_view content(text, read - (file.eof() ? 0 : 1));
+        if (line.number == 1) content = without_byte_order_mark(content);
+        line.begin = content.data();
+        line.end = content.data() + content.size();
         take(line);
     }
     if (file.bad()) throw input_error(path, "it cannot be read");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace acdf {
 
@@ -28,6 +29,12 @@ inline bool is_utf8(const std::uint8_t* s, std::uint64_t size) {
         at += length;
     }
     return true;
+}
+
+// A text's beginning may have a mark that it is UTF-8, as spreadsheets write it.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    return text.substr(text.substr(0, mark.size()) == mark ? mark.size() : 0);
 }
 
 } // namespace acdf

@@ -125,8 +125,7 @@ const JobKind* find_kind(std::string_view name) {
 }
 
 Manifest parse_manifest(std::string_view text) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (text.substr(0, byte_order_mark.size()) == byte_order_mark) text.remove_prefix(byte_order_mark.size());
+    text = without_byte_order_mark(text);
     Manifest manifest;
     for (std::size_t number = 1; !text.empty(); ++number) {
         const std::string_view line = take_line(text);

@@ -1,5 +1,6 @@
 #include "tools/cli/directions_csv.h"
 
+#include "reader/utf8.h"
 #include "tools/commands.h"
 
 #include <algorithm>
@@ -69,10 +70,8 @@ std::string PointParser::expected() const {
 }
 
 std::optional<std::vector<double>> PointParser::parse(const std::string& line) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf"; // as spreadsheets write it
-    const bool marked = !header_ && !point_ && line.compare(0, byte_order_mark.size(), byte_order_mark) == 0;
-    const std::size_t begin = marked ? byte_order_mark.size() : 0;
-    const std::string text = trimmed(line.substr(begin, line.find('#') - begin));
+    const std::string_view content = header_ || point_ ? std::string_view(line) : without_byte_order_mark(line);
+    const std::string text = trimmed(std::string(content.substr(0, content.find('#'))));
     if (text.empty()) return std::nullopt;
     const std::vector<std::string> fields = fields_of(text);
     if (!header_ && !point_ && read_header(fields)) return std::nullopt;
