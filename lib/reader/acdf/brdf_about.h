@@ -66,8 +66,8 @@ ACDF_INLINE float acdf_about_bounded(float position, float last) {
     return positive < last ? positive : last;
 }
 
-/* Azimuths and heights, as acdf_brdf_position has them. The arc tangent is that of Abramowitz and Stegun, 4.4.49:
- * within 1e-5. */
+/* Azimuths and heights, as acdf_brdf_position has them. The arc tangent is that of Abramowitz and Stegun, 4.4.47,
+ * over pi: within 1e-5. */
 ACDF_INLINE void acdf_about_places(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t count,
                                    AcdfBrdfAbout* a) {
     const float turn0 = (float)view->turn[0], turn1 = (float)view->turn[1];
@@ -82,7 +82,8 @@ ACDF_INLINE void acdf_about_places(const AcdfBrdf* brdf, const AcdfBrdfView* vie
         const float hx = below * (turn0 * x + turn1 * y), hy = below * (turn0 * y - turn1 * x);
         const float ax = fabsf(hx), ay = fabsf(hy), high = ax > ay ? ax : ay, low = ax < ay ? ax : ay;
         const float t = low / (high + 1e-30f), t2 = t * t;
-        const float arc = t * (0.31827f + t2 * (-0.10512f + t2 * (0.057306f + t2 * (-0.027099f + t2 * 0.006632f))));
+        const float arc =
+            t * (0.318267f + t2 * (-0.105138f + t2 * (0.057341f + t2 * (-0.027099f + t2 * 0.006632f))));
         const float quarter = 0.25f + copysignf(1.0f, ax - ay) * (arc - 0.25f);
         const float phi = 0.5f + copysignf(1.0f, hx) * (quarter - 0.5f);
         place[0][i] = columns * (origin + phi * (even + copysignf(odd, hy)));
