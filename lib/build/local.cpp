@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -22,7 +21,8 @@ using compress::Goal;
 using compress::NormalBins;
 
 constexpr std::uint32_t kTestNormals = 256;
-constexpr int kMostGrowths = 3; // of the number of tiles
+constexpr int kMostGrowths = 3;       // of the number of tiles
+constexpr std::uint64_t kSlack = 256; // bytes by which files of nearly the same size differ
 
 compress::Description description_of(const compress::Target& target, const Source& source, const LocalOptions& o,
                                      const NormalBins& bins, const LocalAccuracy& accuracy) {
@@ -116,6 +116,8 @@ std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
     return options.places.local_bytes > 0 ? options.places.local_bytes : budget / kLocalPart;
 }
 
+std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
+
 /// A size is too small.
 struct OutOfReach : std::runtime_error {
     std::uint64_t least;
@@ -134,8 +136,16 @@ std::uint64_t bytes_of_bins(const compress::Target& target, const Source& source
     nothing.shares.assign(bins.normals.size(), 0.0f);
     nothing.tree.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
     if (options.company) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
-    const LocalDraft draft = shared_draft(nothing, target, source, options, bins);
-    return compress::store(draft.tree, draft.description).size();
+    return bytes_of(shared_draft(nothing, target, source, options, bins));
+}
+
+/// Of a file that has these bins, two tiles, and as little in them as can be.
+std::uint64_t least_bytes(const compress::Target& target, const Source& source, const LocalOptions& options,
+                          const NormalBins& bins, compress::LocalSize size) {
+    size.tiles = 2;
+    size.inside_bytes = 64;
+    const compress::LocalFit fit = compress::fit_local(target, bins, size, {}, options.company);
+    return bytes_of(shared_draft(fit, target, source, options, bins)) + kSlack;
 }
 
 /// The file in which what is there without places has `local` bytes.
@@ -164,7 +174,7 @@ void add_places(LocalDraft& draft, const compress::Target& target, const LocalOp
                                                                progress(0.2 + 0.7 * share, "looking from places");
                                                        }))
         draft.description.chunks.push_back(std::move(chunk));
-    const std::uint64_t made = compress::store(draft.tree, draft.description).size();
+    const std::uint64_t made = bytes_of(draft);
     if (made > budget) throw OutOfReach(budget, made); // a single cell, or a map of portals, is more than is left
 }
 
@@ -187,17 +197,17 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
                   std::uint64_t whole_budget, double max_weight, const Progress& progress) {
     const std::uint64_t budget = local_budget(options, whole_budget);
     const NormalBins bins = bins_for(options, double(budget));
-    if (const std::uint64_t least = bytes_of_bins(target, source, options, bins); least > budget)
-        throw OutOfReach(whole_budget, whole_of(options, least));
     compress::LocalSize size = size_for(options, bins, double(budget));
     if (max_weight > 0.0) size.max_weight = max_weight;
+    if (bytes_of_bins(target, source, options, bins) > budget)
+        throw OutOfReach(whole_budget, whole_of(options, least_bytes(target, source, options, bins, size)));
     std::optional<compress::LocalFitter> fitter; // of so many tiles
     std::optional<Local> grown;                  // the best of those that left bytes
     for (int tries = 0, growths = 0;; ++tries) {
         if (!fitter) fitter.emplace(target, bins, size, fitting(progress), options.company);
         compress::LocalFit fit = fitter->outlined(size.inside_bytes);
         LocalDraft draft = shared_draft(fit, target, source, options, bins);
-        const std::uint64_t bytes = compress::store(draft.tree, draft.description).size();
+        const std::uint64_t bytes = bytes_of(draft);
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
         const auto completed = [&] {
@@ -243,7 +253,7 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
             return fill_compressed(budget, build);
         } catch (const OutOfReach& plain) { // compressed, the least may be small enough
             Local made = build(plain.least);
-            if (made.bytes.size() > budget) throw OutOfReach(budget, made.bytes.size());
+            if (made.bytes.size() > budget) throw OutOfReach(budget, made.bytes.size() + kSlack);
             return made;
         }
     });

@@ -254,6 +254,8 @@ TEST_F(Hostile, ASourceThatAFileDoesNotStandForIsRefused) {
     write(square, 70, 16);
     ASSERT_EQ(run_acdf({"env", square, "--projection", "octahedral", "-o", file, "-q", "-f"}).code, 0);
     EXPECT_EQ(run_acdf({"measure", file, "--against", square, "--projection", "octahedral"}).code, 0);
+    EXPECT_EQ(run_acdf({"measure", file, "--against", square}).code, 0); // the file says so
+    EXPECT_NE(run_acdf({"measure", file, "--against", here}).err.find("latlong (2:1 shape)"), std::string::npos);
     const Result otherwise = run_acdf({"measure", file, "--against", square, "--projection", "angular", "-q"});
     EXPECT_EQ(otherwise.code, 1); // the same file, but read as another one
     EXPECT_NE(otherwise.err.find("as it is read here"), std::string::npos) << otherwise.err;

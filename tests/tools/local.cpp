@@ -189,6 +189,21 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--shape", "fast", "--normals", "8x4"}, "--no-sharing");
 }
 
+TEST_F(LocalCommand, TheLeastSizeThatIsToldCanBeHad) {
+    const std::string told = "the least that can be had is about ";
+    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+             {}, {"--normals", "20"}, {"--shape", "fast"}, {"--with", "cosine"}, {"--compress", "zlib"}}) {
+        std::vector<std::string> words{"local", probe, "-o", output, "-q", "--force"};
+        words.insert(words.end(), options.begin(), options.end());
+        words.insert(words.end(), {"--budget", "600"});
+        const Result refused = run_acdf(words);
+        const std::size_t at = refused.err.find(told);
+        ASSERT_NE(at, std::string::npos) << refused.err;
+        words.back() = std::to_string(std::stoul(refused.err.substr(at + told.size())));
+        EXPECT_EQ(run_acdf(words).code, 0) << words.back() << " bytes";
+    }
+}
+
 TEST_F(LocalCommand, GoalsOutOfReachAreToldAndLeaveNothing) {
     for (const std::vector<std::string>& goal : std::vector<std::vector<std::string>>{
              {"--budget", "1kB"}, {"--target-variance", "1e-7", "--normals", "2"}}) {

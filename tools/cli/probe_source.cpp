@@ -3,6 +3,7 @@
 #include "tools/cli/source_check.h"
 
 #include "build/errors.h"
+#include "input/sha256.h"
 #include "tools/commands.h"
 
 #include <algorithm>
@@ -124,8 +125,26 @@ builder::TargetOptions stored_options(const File& file) {
     return out;
 }
 
+namespace {
+
+/// The projection that had to be told when a file was made of that very source; else `automatic`.
+input::Projection projection_as_made(const File& file, const std::string& source) {
+    using Projection = input::Projection;
+    const Text text = file.metadata("fit.options");
+    const std::string options = std::string(text.data, text.size) + " ";
+    for (const Projection told : {Projection::latlong, Projection::angular, Projection::mirrorball,
+                                  Projection::cube_cross, Projection::octahedral})
+        if (options.find(std::string("--projection ") + input::to_string(told) + " ") != std::string::npos)
+            return made_from_another(file, input::file_sha256(source)) ? Projection::automatic : told;
+    return Projection::automatic;
+}
+
+} // namespace
+
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
-                          const input::ProbeOptions& options, bool quiet) {
+                          const input::ProbeOptions& given, bool quiet) {
+    input::ProbeOptions options = given;
+    if (options.projection == input::Projection::automatic) options.projection = projection_as_made(file, source);
     const build::Domain grid{static_cast<AcdfParameterization>(file.description().parameterization),
                              file.axis(0).resolution, file.axis(1).resolution};
     ProbeTarget out =

@@ -206,12 +206,22 @@ void fill(Target& target, const std::vector<float>& density, double nu) {
     });
 }
 
+/// The same light times a power of two, so that the brightest texel has from 1/2 to 1: what is computed from it is
+/// in the range of floats. Densities do not change.
+Target in_range(Target target) {
+    target.mean_square = 0.0;
+    target.peaks.clear();
+    int exponent = 0;
+    std::frexp(*std::max_element(target.values.begin(), target.values.end()), &exponent);
+    for (float& value : target.values) value = std::ldexp(value, -exponent);
+    return target;
+}
+
 } // namespace
 
-Target company_target(const Target& target, const NormalBins& normals, const Company& company) {
+Target company_target(const Target& given, const NormalBins& normals, const Company& company) {
+    const Target target = in_range(given);
     Target out = target;
-    out.mean_square = 0.0;
-    out.peaks.clear();
     std::vector<float> density(target.values.size(), 1.0f);
     if (company.kind == ACDF_COMPANY_MEAN) {
         fill(out, density, 2.0 * (1.0 - company.share()) * integral(target) / (4.0 * ACDF_PI));

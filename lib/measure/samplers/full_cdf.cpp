@@ -3,6 +3,7 @@
 #include "compress/sum.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace acdf::measure {
@@ -36,13 +37,17 @@ double invert(const float* cdf, std::size_t n, float u) {
 FullCdf::FullCdf(const compress::Target& target)
     : columns_(target.columns), rows_(target.rows), function_(target.values), row_integral_(target.rows),
       conditional_(std::size_t{target.rows} * (target.columns + 1)), marginal_(target.rows + 1) {
+    // Times a power of two, which is exact, sums of rows are in the range of floats whatever the light is.
+    int exponent = 0;
+    if (!target.values.empty())
+        std::frexp(*std::max_element(target.values.begin(), target.values.end()), &exponent);
     for (std::size_t r = 0; r < rows_; ++r) {
         const float* row = target.row(static_cast<std::uint32_t>(r));
-        const auto mass = [&](std::size_t c) { return row[c] * target.column_measure[c]; };
+        const auto mass = [&](std::size_t c) { return std::ldexp(row[c] * target.column_measure[c], -exponent); };
         row_integral_[r] = static_cast<float>(make_cdf(columns_, mass, conditional_.data() + r * (columns_ + 1)));
     }
-    total_ = make_cdf(
-        rows_, [&](std::size_t r) { return row_integral_[r] * target.row_measure[r]; }, marginal_.data());
+    const auto mass = [&](std::size_t r) { return row_integral_[r] * target.row_measure[r]; };
+    total_ = std::ldexp(make_cdf(rows_, mass, marginal_.data()), exponent);
 }
 
 FullCdf::Draw FullCdf::sample(float u0, float u1) const {

@@ -74,11 +74,14 @@ TEST(FullCdf, FillsATexelEvenly) {
     EXPECT_GT(acdf_test::chi_square(observed, std::vector<double>(33 * 33, 1.0 / (33 * 33))).p_value, 0.001);
 }
 
-TEST(FullCdf, LightBelowWhatFloatsHoldIsNeverDrawn) {
-    const Target faint = acdf_test::texel_target(
-        32, 16, [](std::uint32_t c, std::uint32_t r) { return c == 3 && r == 3 ? 1.4e-45 : 0.0; });
-    EXPECT_EQ(FullCdf(faint).pdf(3, 3), 0.0);
-    EXPECT_EQ(acdf::measure::full_cdf_relative_variance(faint), INFINITY);
+TEST(FullCdf, LightAtTheEndsOfFloatsIsDrawnAsAnyOther) {
+    for (const double light : {1.4e-45, 1e-40, 1.0, 3.4e38}) {
+        const Target one = acdf_test::texel_target(
+            32, 16, [&](std::uint32_t c, std::uint32_t r) { return c == 3 && r == 3 ? light : 0.0; });
+        EXPECT_NEAR(FullCdf(one).pdf(3, 3) * one.row_measure[3] * one.column_measure[3], 1.0, 1e-6) << light;
+        const Target all = acdf_test::texel_target(32, 16, [&](std::uint32_t, std::uint32_t) { return light; });
+        EXPECT_NEAR(acdf::measure::full_cdf_relative_variance(all), 0.0, 1e-10) << light;
+    }
 }
 
 TEST(FullCdf, SizeIsEightBytesATexel) {
