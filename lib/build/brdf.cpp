@@ -41,11 +41,11 @@ compress::Chunk views_chunk(const compress::BrdfFit& fit, float diffuse_share) {
 }
 
 BrdfAccuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Reflected& reflected,
-                           const std::vector<compress::View>& views) {
+                           const std::vector<compress::View>& views, Sides sides) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
-    BrdfAccuracy out = summary(measure_views(file, reflected, views));
+    BrdfAccuracy out = summary(measure_views(file, reflected, views, sides));
     out.cells = brdf_cells(file);
     return out;
 }
@@ -89,6 +89,10 @@ compress::Reflected reflected_light(const Brdf& brdf, AcdfChannels channels,
         const double light = brightness(rgb, channels, weights);
         return light < kLeastReflected ? 0.0 : std::max(0.0, wi[2]) * light;
     };
+}
+
+Sides sides(const Brdf& brdf) {
+    return brdf.isotropic && brdf.mirror && brdf.asymmetry == 0.0 ? Sides::alike : Sides::any;
 }
 
 std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFileOptions& options,
@@ -162,8 +166,8 @@ BrdfDraft draft(const Task& task, const compress::Goal& goal, double max_weight,
 BrdfFile finish(const Task& task, const BrdfDraft& draft, const Progress& progress) {
     if (progress) progress(0.8, "measuring");
     BrdfFile out;
-    out.accuracy =
-        measure_bytes(draft.bytes, task.reflected, random_views(task.options.measured_views, task.brdf.isotropic));
+    out.accuracy = measure_bytes(draft.bytes, task.reflected,
+                                 random_views(task.options.measured_views, task.brdf.isotropic), sides(task.brdf));
     out.bytes = brdf_bytes(draft.fit, task.options, metadata(task.brdf, task.options, out.accuracy));
     out.theta_views = static_cast<std::uint32_t>(draft.fit.nodes.size());
     out.phi_views = draft.fit.phi_views;

@@ -43,6 +43,9 @@ struct BrdfFile {
 compress::Reflected reflected_light(const Brdf& brdf, AcdfChannels channels,
                                     const compress::ChannelWeights& weights);
 
+/// Whether what it reflects to either side of a view is known to be the same.
+Sides sides(const Brdf& brdf);
+
 /// The file of a fit, with zeros for what is not known yet.
 std::vector<std::uint8_t> brdf_bytes(const compress::BrdfFit& fit, const BrdfFileOptions& options,
                                      const compress::Metadata& metadata);

@@ -117,7 +117,8 @@ void measure_brdf(const std::string& path, const File& file, const std::string& 
                                {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]});
     const std::vector<compress::View> views = build::random_views(view_count, brdf->isotropic);
     try {
-        build::BrdfAccuracy accuracy = build::summary(build::measure_views(file, reflected, views));
+        build::BrdfAccuracy accuracy =
+            build::summary(build::measure_views(file, reflected, views, build::sides(*brdf)));
         accuracy.cells = build::brdf_cells(file);
         const Rivals r = rivals(reflected, *brdf, views);
         if (json) std::fputs(json_text(report(path, file, source, accuracy, r)).c_str(), stdout);

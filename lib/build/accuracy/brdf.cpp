@@ -33,7 +33,8 @@ double hashed(std::uint32_t x) {
 /// What the relative variance of a view is made from.
 class VarianceSums {
 public:
-    void add(double f, double p, double measure, double cosine) {
+    /// `places`: how many there are of this kind, `measure` of them all.
+    void add(double f, double p, double measure, double cosine, std::uint32_t places = 1) {
         if (cosine <= 0.0) {
             below_.add(p * measure);
             return;
@@ -42,7 +43,7 @@ public:
         albedo_.add(f * measure);
         if (!(f > 0.0)) return;
         if (p > 0.0) second_.add(f * f / p * measure);
-        else ++violations_;
+        else violations_ += places;
     }
     ViewAccuracy result() const {
         ViewAccuracy out;
@@ -66,8 +67,8 @@ private:
 /// All sums of one view.
 class ViewSums {
 public:
-    void add(double f, double p, double measure, double cosine) {
-        variance_.add(f, p, measure, cosine);
+    void add(double f, double p, double measure, double cosine, std::uint32_t places = 1) {
+        variance_.add(f, p, measure, cosine, places);
         if (cosine <= 0.0) return;
         square_p_.add(p * p * measure);
         cross_.add(p * f * measure);
@@ -98,13 +99,13 @@ void rounded(const double direction[3], float out[3]) {
     acdf_as_given(given, out);
 }
 
-/// Half-vectors around the view's azimuth; theta_h in steps of its square root. Calls visit(wi, measure) for each,
-/// row by row.
+/// Half-vectors around the view's azimuth, the first `visited` of each row of `columns`; theta_h in steps of its
+/// square root. Calls visit(wi, measure) for each, row by row.
 template <typename Visit>
-void for_each_half_vector(const compress::View& view, const double wo[3], std::uint32_t columns, std::uint32_t rows,
-                          const Visit& visit) {
+void for_some_half_vectors(const compress::View& view, const double wo[3], std::uint32_t columns,
+                           std::uint32_t visited, std::uint32_t rows, const Visit& visit) {
     std::vector<std::array<double, 2>> azimuth;
-    for (std::uint32_t c = 0; c < columns; ++c) {
+    for (std::uint32_t c = 0; c < visited; ++c) {
         const double phi = view.phi + 2.0 * ACDF_PI * (c + 0.5) / columns;
         azimuth.push_back({std::cos(phi), std::sin(phi)});
     }
@@ -113,13 +114,19 @@ void for_each_half_vector(const compress::View& view, const double wo[3], std::u
         const double sine = std::sin(theta(r + 0.5)), hz = std::cos(theta(r + 0.5));
         const double low = std::sin(0.5 * theta(r)), high = std::sin(0.5 * theta(r + 1.0));
         const double measure = 2.0 * (high * high - low * low) * 2.0 * ACDF_PI / columns;
-        for (std::uint32_t c = 0; c < columns; ++c) {
+        for (std::uint32_t c = 0; c < visited; ++c) {
             const double h[3] = {sine * azimuth[c][0], sine * azimuth[c][1], hz};
             const double dot = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
             const double wi[3] = {2.0 * dot * h[0] - wo[0], 2.0 * dot * h[1] - wo[1], 2.0 * dot * h[2] - wo[2]};
             visit(wi, measure * 4.0 * std::abs(dot));
         }
     }
+}
+
+template <typename Visit>
+void for_each_half_vector(const compress::View& view, const double wo[3], std::uint32_t columns, std::uint32_t rows,
+                          const Visit& visit) {
+    for_some_half_vectors(view, wo, columns, columns, rows, visit);
 }
 
 /// The densities of a file, bit for bit those of its BrdfView: of several directions at once, by vectors where they
@@ -137,6 +144,8 @@ public:
         else acdf_brdf_view_pdfs(&brdf_, &view, wi, count, out);
     }
     const AcdfBrdf& brdf() const { return brdf_; }
+    /// Whether both sides of all views have the same densities.
+    bool mirrored() const { return acdf_brdf_mirrored(&brdf_) && brdf_.views->phi_count == 1; }
 
 private:
     AcdfBrdf brdf_;
@@ -200,30 +209,34 @@ std::vector<double> relative_variances(const std::vector<ViewDensity>& densities
 }
 
 std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflected& reflected,
-                                        const std::vector<compress::View>& views, std::uint32_t columns,
-                                        std::uint32_t rows) {
+                                        const std::vector<compress::View>& views, Sides sides,
+                                        std::uint32_t columns, std::uint32_t rows) {
     struct Place {
         double wi[3], measure;
     };
     const StoredDensities stored(file);
+    // The last one visited is its own mirror image where columns are odd.
+    const std::uint32_t visited = sides == Sides::alike && stored.mirrored() ? (columns + 1) / 2 : columns;
+    const auto images = [&](std::uint32_t c) { return visited == columns || 2 * c + 1 == columns ? 1u : 2u; };
     std::vector<ViewAccuracy> out(views.size());
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
-        const auto o = std::make_unique<float[][3]>(columns), i = std::make_unique<float[][3]>(columns);
-        for (std::uint32_t c = 0; c < columns; ++c) rounded(wo, o[c]);
+        const auto o = std::make_unique<float[][3]>(visited), i = std::make_unique<float[][3]>(visited);
+        for (std::uint32_t c = 0; c < visited; ++c) rounded(wo, o[c]);
         AcdfBrdfView view; // looked up once
         const bool seen = acdf_brdf_view(&stored.brdf(), o[0], &view) != 0;
         ViewSums sums;
         std::vector<Place> row;
-        std::vector<float> p(columns, 0.0f);
-        for_each_half_vector(views[v], wo, columns, rows, [&](const double wi[3], double measure) {
+        std::vector<float> p(visited, 0.0f);
+        for_some_half_vectors(views[v], wo, columns, visited, rows, [&](const double wi[3], double measure) {
             rounded(wi, i[row.size()]);
             row.push_back({{wi[0], wi[1], wi[2]}, measure});
-            if (row.size() < columns) return;
-            if (seen) stored.of(view, o.get(), i.get(), columns, p.data());
-            for (std::uint32_t c = 0; c < columns; ++c)
-                sums.add(light_above(reflected, wo, row[c].wi), double{p[c]}, row[c].measure, row[c].wi[2]);
+            if (row.size() < visited) return;
+            if (seen) stored.of(view, o.get(), i.get(), visited, p.data());
+            for (std::uint32_t c = 0; c < visited; ++c)
+                sums.add(light_above(reflected, wo, row[c].wi), double{p[c]}, images(c) * row[c].measure,
+                         row[c].wi[2], images(c));
             row.clear();
         });
         out[v] = sums.result();

@@ -48,10 +48,14 @@ std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compre
                                         const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                         std::uint32_t rows = 601);
 
+/// `alike`: what is reflected to either side of each view is the same, as by all isotropic BRDFs with a mirror
+/// symmetry. Sums over files that have it, too, are then over one side.
+enum class Sides { any, alike };
+
 /// The same of a BRDF file.
 std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflected& reflected,
-                                        const std::vector<compress::View>& views, std::uint32_t columns = 251,
-                                        std::uint32_t rows = 601);
+                                        const std::vector<compress::View>& views, Sides sides = Sides::any,
+                                        std::uint32_t columns = 251, std::uint32_t rows = 601);
 
 /// summary(measure_views(density, ...)).relative_variance of several densities, which throws alike: what is
 /// reflected is looked up once for all of them.

@@ -293,6 +293,9 @@ struct Brdf {
     std::function<void(const double wo[3], const double wi[3], double rgb[3])> evaluate;
     bool isotropic = true; ///< rho depends on the difference of azimuths alone: views are stored for theta_o only
     bool mirrored = true;  ///< and not on its sign: half of each density. Neither is checked; false is always right
+    /// Where `mirrored` holds but for noise, as of measurements: the mean difference of both sides over their mean,
+    /// for one. Unless it is 0, accuracy is summed over both sides.
+    double asymmetry = 0.0;
 };
 
 /// Numbers that the caller holds, in 1 to 6 axes of at least 1 each. Strides in bytes, one an axis, of any sign;

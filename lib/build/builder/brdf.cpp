@@ -20,6 +20,7 @@ public:
     Callable(const builder::Brdf& brdf, const Source& source) : evaluate_(brdf.evaluate) {
         isotropic = brdf.isotropic;
         mirror = brdf.isotropic && brdf.mirrored;
+        asymmetry = brdf.asymmetry;
         name = source.name;
         sha256 = source.sha256;
     }
@@ -50,6 +51,7 @@ Brdf described(const build::Brdf& brdf) {
     out.evaluate = [&brdf](const double wo[3], const double wi[3], double rgb[3]) { brdf.evaluate(wo, wi, rgb); };
     out.isotropic = brdf.isotropic;
     out.mirrored = brdf.mirror;
+    out.asymmetry = brdf.asymmetry;
     return out;
 }
 

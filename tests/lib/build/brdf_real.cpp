@@ -15,7 +15,8 @@ TEST_P(MerlFile, at64KiBBeatsTheFullTable) {
     NEEDS(GetParam());
     const MadeBrdf& brdf = real_brdf(GetParam(), 64);
     const auto views = acdf::build::random_views(24, true);
-    const auto ours = acdf::build::summary(acdf::build::measure_views(brdf.file, brdf.reflected, views, 201, 350));
+    const auto ours = acdf::build::summary(
+        acdf::build::measure_views(brdf.file, brdf.reflected, views, acdf::build::Sides::any, 201, 350));
     const acdf::measure::TabulatedBrdf table(brdf.reflected, true, acdf::measure::BrdfTableKind::mean);
     const auto theirs = acdf::build::summary(
         acdf::build::measure_views([&](const double wo[3], const double wi[3]) { return table.pdf(wo, wi); },
@@ -42,7 +43,8 @@ TEST_P(RglFile, beatsItsAuthorsSampler) {
     const auto& rgl = dynamic_cast<const acdf::input::RglBrdf&>(*brdf.source);
     const acdf::measure::RglSampler sampler(rgl);
     const auto views = acdf::build::random_views(16, true, std::cos(75.0 * 3.14159265358979 / 180.0), 0.996);
-    const auto ours = acdf::build::summary(acdf::build::measure_views(brdf.file, brdf.reflected, views, 201, 350));
+    const auto ours = acdf::build::summary(
+        acdf::build::measure_views(brdf.file, brdf.reflected, views, acdf::build::Sides::any, 201, 350));
     const auto theirs = acdf::build::summary(acdf::build::with_lost_samples(
         acdf::build::measure_views([&](const double wo[3], const double wi[3]) { return sampler.pdf(wo, wi); },
                                    brdf.reflected, views, 201, 350)));

@@ -36,8 +36,9 @@ acdf::build::BrdfFileOptions few_views(double max_weight) {
 
 /// Over views and half-vectors that neither the fit nor the file's own figures know of.
 acdf::build::BrdfAccuracy elsewhere(const MadeBrdf& brdf, std::uint32_t views) {
-    const auto measured = acdf::build::measure_views(brdf.file, brdf.reflected,
-                                                     acdf::build::random_views(views, true, 0.03, 1.0), 101, 233);
+    const auto measured =
+        acdf::build::measure_views(brdf.file, brdf.reflected, acdf::build::random_views(views, true, 0.03, 1.0),
+                                   acdf::build::Sides::any, 101, 233);
     return acdf::build::summary(measured);
 }
 

@@ -8,6 +8,7 @@
 #include <random>
 
 using namespace acdf_test;
+using acdf::build::Sides;
 using acdf::compress::View;
 
 namespace {
@@ -125,7 +126,7 @@ TEST_P(BrdfDensity, coversTheLightAndIntegratesTo1) {
     const MadeBrdf& brdf = made(GetParam());
     std::vector<View> views = acdf::build::random_views(6, brdf.source->isotropic);
     for (const double cosine : {1.0, 0.5, 0.1, 0.03, 1e-3, 1e-5}) views.push_back(view_of(cosine));
-    for (const auto& v : acdf::build::measure_views(brdf.file, brdf.reflected, views, 301, 500)) {
+    for (const auto& v : acdf::build::measure_views(brdf.file, brdf.reflected, views, Sides::any, 301, 500)) {
         EXPECT_EQ(v.support_violations, 0u) << v.view.cosine();
         EXPECT_NEAR(v.integral, 1.0, 4e-3) << v.view.cosine();
         EXPECT_LE(v.share_above_horizon, 1.0) << v.view.cosine();
@@ -133,10 +134,30 @@ TEST_P(BrdfDensity, coversTheLightAndIntegratesTo1) {
     }
 }
 
+// For an odd number of columns and an even one: a column may be its own mirror image.
+TEST_P(BrdfDensity, onOneSideIsThatOnBothWhereBothAreAlike) {
+    const MadeBrdf& brdf = made(GetParam());
+    const Sides sides = acdf::build::sides(*brdf.source);
+    EXPECT_EQ(sides == Sides::alike, brdf.source->isotropic && brdf.source->mirror);
+    const auto views = acdf::build::random_views(5, brdf.source->isotropic);
+    for (const std::uint32_t columns : {51u, 52u}) {
+        const auto one = acdf::build::measure_views(brdf.file, brdf.reflected, views, sides, columns, 90),
+                   both = acdf::build::measure_views(brdf.file, brdf.reflected, views, Sides::any, columns, 90);
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            EXPECT_NEAR(one[v].relative_variance, both[v].relative_variance, 1e-6 * both[v].relative_variance);
+            EXPECT_NEAR(one[v].square_error, both[v].square_error, 1e-6 * both[v].square_error);
+            EXPECT_NEAR(one[v].kl_divergence, both[v].kl_divergence, 1e-6 * both[v].kl_divergence);
+            EXPECT_NEAR(one[v].max_weight, both[v].max_weight, 1e-6 * both[v].max_weight);
+            EXPECT_NEAR(one[v].integral, both[v].integral, 1e-9);
+            EXPECT_EQ(one[v].support_violations, both[v].support_violations);
+        }
+    }
+}
+
 TEST_P(BrdfDensity, tellsTheAlbedo) {
     const MadeBrdf& brdf = made(GetParam());
     const auto views = acdf::build::random_views(6, brdf.source->isotropic);
-    for (const auto& v : acdf::build::measure_views(brdf.file, brdf.reflected, views, 201, 400)) {
+    for (const auto& v : acdf::build::measure_views(brdf.file, brdf.reflected, views, Sides::any, 201, 400)) {
         const double told = brdf.view().albedo(at_angles(v.view.cosine(), v.view.phi).data());
         EXPECT_NEAR(told, v.albedo, (GetParam() == anisotropic ? 0.1 : 0.03) * v.albedo) << v.view.cosine();
     }
