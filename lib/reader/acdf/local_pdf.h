@@ -240,7 +240,14 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_pdf(const AcdfLocal* local, const float
     if (point.what == ACDF_LOCAL_NOTHING) return 0.0f;
     return acdf_local_density(local, &point, direction, acdf_local_spot_pdf(local, &point, direction, &spot));
 }
-/* And of the fast shape. */
+/* And of any file, by a point as others have it. */
+ACDF_OUTLINE_ON_CPU float acdf_local_any_new_pdf(const AcdfLocal* local, const float normal[3],
+                                                 const float direction[3]) {
+    AcdfLocalPoint point;
+    acdf_local_at(local, normal, &point);
+    return acdf_local_pdf_at(local, &point, direction);
+}
+/* And of the fast shape, whose point nobody else sees: what is in registers stays there. */
 ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const float normal[3],
                                                   const float direction[3]) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
@@ -248,27 +255,25 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
     AcdfLocalPoint point;
     AcdfRange range[2];
     AcdfFastShare share;
-    const int valid = acdf_local_square(&grid, direction, square);
-    if (!valid) square[0] = square[1] = 0;
+    if (!acdf_local_square(&grid, direction, square) || local->cosine_share != 0.0)
+        return acdf_local_any_new_pdf(local, normal, direction);
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     tile = acdf_local_fast_tile(local, square, range);
     ACDF_PREFETCH(acdf_local_tile(local->tables, tile));
-    point.windows.count = 0;
-    point.place.count = 0;
-    if (acdf_local_begin_fast(local, normal, 0, &point)) acdf_local_fast_sum(local, 0, &point);
-    if (!acdf_local_only_fast(local, &point)) return acdf_local_any_pdf_at(local, &point, direction);
-    if (!valid) return 0.0f;
+    acdf_local_no_rows(normal, &point);
+    if (!local->tables->corners || !acdf_local_fast_corners(local, point.surface, 0, &point))
+        return acdf_local_any_new_pdf(local, normal, direction);
+    acdf_local_fast_sum(local, 0, &point);
+    if (point.what != ACDF_LOCAL_FAST) return 0.0f;
     share = acdf_local_fast_find(local, &point, tile, square, range);
     return acdf_local_fast_density(local, &grid, range, &share);
 }
 /* In any. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {
-    AcdfLocalPoint point;
     if (local->tables)
         return local->fast.grid ? acdf_local_new_fast_pdf(local, normal, direction)
                                 : acdf_local_new_pdf(local, normal, direction);
-    acdf_local_at(local, normal, &point);
-    return acdf_local_pdf_at(local, &point, direction);
+    return acdf_local_any_new_pdf(local, normal, direction);
 }
 
 #ifdef __cplusplus
