@@ -5,33 +5,45 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kNoCurve = 0xFFFFFFFFu, kUnknown = 0xFFFFFFFFu;
+constexpr std::uint32_t kUnknown = 0xFFFFFFFFu;
 
 } // namespace
 
-/// What rounding to each width does to a curve, once it has been asked for.
-struct TreeSizer::Roundings {
-    Rounding of[3];
-    bool known[3] = {};
-};
+SizedCurves sized_curves(const PruneNodes& nodes, const std::vector<std::uint32_t>& begins, const Pruned& pruned) {
+    const std::vector<double> cost = shares_below(nodes, pruned);
+    const Outline outlined = outline(nodes, pruned, cost);
+    SizedCurves out;
+    out.curves.resize(outlined.curves.size());
+    out.probability.reserve(outlined.segments.size());
+    for (std::uint32_t c = 0; c < out.curves.size(); ++c) {
+        const Outline::Curve& from = outlined.curves[c];
+        SizedCurve& curve = out.curves[c];
+        curve.part = from.part;
+        curve.shape.segments = from.count;
+        curve.first_segment = static_cast<std::uint32_t>(out.probability.size());
+        for (auto segment = outlined.begin(from); segment != outlined.end(from); ++segment) {
+            const double p = segment_probability(cost, from.part, segment->part);
+            out.probability.push_back(p);
+            curve.lit += p > 0.0;
+            if (segment->child < 0) continue;
+            const auto child = static_cast<std::uint32_t>(segment->child);
+            curve.last_child = curve.shape.link_code == 0 ? child : std::max(curve.last_child, child);
+            curve.shape.link_code = 1;
+            out.curves[child].parent = c;
+            out.curves[child].of_parent = p;
+        }
+        if (from.count > 1) // the first of the parts that it is divided into begins where it does
+            curve.shape.position_code =
+                position_code(begins[(outlined.end(from) - 1)->part], begins[nodes[from.part].first_child], true);
+    }
+    return out;
+}
 
 struct SizedTree::Curves {
-    struct Curve {
-        CurveShape shape;  ///< all but the widths
-        double reach;      ///< how often sampling comes to it, summed over the bins
-        std::uint32_t lit; ///< probabilities above 0
-        std::uint32_t first_segment;
-        std::uint32_t last_child; ///< the curve below it that lies farthest away, or kNoCurve
-        std::uint32_t roundings;  ///< of the sizer's
-    };
     std::vector<std::vector<std::uint8_t>> divided; ///< for each bin
-    std::vector<Curve> curves;
-    std::vector<double> probability; ///< of all segments
-
-    std::vector<double> probabilities(const Curve& curve) const {
-        const auto first = probability.begin() + std::ptrdiff_t(curve.first_segment);
-        return {first, first + std::ptrdiff_t(curve.shape.segments)};
-    }
+    SizedCurves all;                                ///< children numbered through all bins, parents are not
+    std::vector<double> reach;                      ///< how often sampling comes to each, summed over the bins
+    std::vector<std::uint32_t> roundings;           ///< of each, the sizer's
 };
 
 /// What is known of the curves of a bin, by their parts.
@@ -71,47 +83,34 @@ std::uint32_t TreeSizer::add_roundings() {
 
 std::shared_ptr<const SizedTree::Curves> TreeSizer::curves_of(const std::vector<PrunedBin>& bins) {
     auto out = std::make_shared<SizedTree::Curves>();
+    const double root = 1.0 / double(bins.size());
     for (std::size_t b = 0; b < bins.size(); ++b) {
-        const std::size_t base = out->curves.size(), first = out->probability.size();
+        const auto base = static_cast<std::uint32_t>(out->all.curves.size()),
+                   first = static_cast<std::uint32_t>(out->all.probability.size());
         const PruneNodes& nodes = *bins[b].nodes;
         out->divided.push_back(bins[b].pruned->divided);
         if (nodes.empty()) { // a curve of one segment, never entered
-            out->curves.push_back(
-                {{}, 1.0 / double(bins.size()), 1, static_cast<std::uint32_t>(first), kNoCurve, add_roundings()});
-            out->probability.push_back(1.0);
+            SizedCurve& curve = out->all.curves.emplace_back();
+            curve.lit = 1;
+            curve.first_segment = first;
+            out->all.probability.push_back(1.0);
+            out->reach.push_back(root);
+            out->roundings.push_back(add_roundings());
             continue;
         }
         Bin& bin = bins_[b];
         bin.drop_changed(nodes, *bins[b].pruned);
-        const std::vector<double> cost = shares_below(nodes, *bins[b].pruned);
-        const Outline outlined = outline(nodes, *bins[b].pruned, cost);
-        out->curves.resize(base + outlined.curves.size());
-        out->probability.resize(first + outlined.segments.size());
-        out->curves[base].reach = 1.0 / double(bins.size());
-        double* probability = out->probability.data() + first;
-        for (std::size_t c = 0; c < outlined.curves.size(); ++c) {
-            const Outline::Curve& from = outlined.curves[c];
-            SizedTree::Curves::Curve& curve = out->curves[base + c];
-            curve.shape.segments = from.count;
-            curve.lit = 0;
-            curve.first_segment = static_cast<std::uint32_t>(probability - out->probability.data());
-            curve.last_child = kNoCurve;
-            for (auto segment = outlined.begin(from); segment != outlined.end(from); ++segment) {
-                const double p = segment_probability(cost, from.part, segment->part);
-                *probability++ = p;
-                curve.lit += p > 0.0;
-                if (segment->child < 0) continue;
-                const auto child = static_cast<std::uint32_t>(base + std::size_t(segment->child));
-                curve.last_child = curve.last_child == kNoCurve ? child : std::max(curve.last_child, child);
-                curve.shape.link_code = 1;
-                out->curves[child].reach = curve.reach * p;
-            }
-            if (from.count > 1) // the first of the parts that it is divided into begins where it does
-                curve.shape.position_code = position_code((*bins[b].begins)[(outlined.end(from) - 1)->part],
-                                                          (*bins[b].begins)[nodes[from.part].first_child], true);
-            std::uint32_t& roundings = bin.roundings[from.part];
+        const SizedCurves own = sized_curves(nodes, *bins[b].begins, *bins[b].pruned);
+        out->all.probability.insert(out->all.probability.end(), own.probability.begin(), own.probability.end());
+        for (SizedCurve curve : own.curves) {
+            const bool is_root = curve.parent == SizedCurve::none;
+            out->reach.push_back(is_root ? root : out->reach[base + curve.parent] * curve.of_parent);
+            curve.first_segment += first;
+            if (curve.shape.link_code > 0) curve.last_child += base;
+            std::uint32_t& roundings = bin.roundings[curve.part];
             if (roundings == kUnknown) roundings = add_roundings();
-            curve.roundings = roundings;
+            out->roundings.push_back(roundings);
+            out->all.curves.push_back(curve);
         }
     }
     return out;
@@ -128,22 +127,21 @@ SizedTree TreeSizer::tree(const std::vector<PrunedBin>& bins, double price,
             out.curves = other->curves;
     }
     if (!out.curves) out.curves = curves_of(bins);
-    out.widths.reserve(out.curves->curves.size());
-    for (const SizedTree::Curves::Curve& curve : out.curves->curves) {
-        Roundings& roundings = roundings_[curve.roundings];
+    const SizedTree::Curves& curves = *out.curves;
+    out.widths.reserve(curves.all.curves.size());
+    for (std::size_t i = 0; i < curves.all.curves.size(); ++i) {
+        const SizedCurve& curve = curves.all.curves[i];
         const auto rounding = [&](std::uint32_t code) {
-            if (!roundings.known[code]) roundings.of[code] = rounding_to(out.curves->probabilities(curve), code);
-            roundings.known[code] = true;
-            return roundings.of[code];
+            return roundings_[curves.roundings[i]].to(code, curves.all, curve);
         };
         out.widths.push_back(static_cast<std::uint8_t>(
-            best_width(curve.shape.segments - 1, curve.lit, curve.reach, price, most_ratio_, rounding)));
+            best_width(curve.shape.segments - 1, curve.lit, curves.reach[i], price, most_ratio_, rounding)));
     }
     return out;
 }
 
 std::uint64_t TreeSizer::bytes(const SizedTree& tree) const {
-    const std::vector<SizedTree::Curves::Curve>& curves = tree.curves->curves;
+    const std::vector<SizedCurve>& curves = tree.curves->all.curves;
     std::vector<CurveShape> shapes;
     shapes.reserve(curves.size());
     for (std::size_t i = 0; i < curves.size(); ++i) {

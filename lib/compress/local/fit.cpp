@@ -9,6 +9,7 @@
 #include "compress/local/tile_curves.h"
 #include "compress/local/tile_grids.h"
 #include "compress/local/tile_light.h"
+#include "compress/local/tile_size.h"
 
 #include <acdf/local.h>
 
@@ -154,34 +155,28 @@ LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const Loc
 /// The curves at the lowest price at which they take at most `bytes`.
 LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {
     const double any = std::numeric_limits<double>::infinity(), most_ratio = size_.max_weight < any ? 1.01 : any;
+    const auto byte_price = [](double price) { return 2.0 * price; };
     const auto at = [&](double price) {
         Curves out;
         out.cascade = std::make_unique<TileCascade>(tiles_, *tile_curves_, price);
-        out.tree = encode_tree(out.cascade->cascade, 2.0 * price, most_ratio);
+        out.tree = encode_tree(out.cascade->cascade, byte_price(price), most_ratio);
         return out;
     };
+    TileSizer sizer(tiles_, *tile_curves_, most_ratio);
+    const auto too_large = [&](double price) { return sizer.bytes(price, byte_price(price)) > bytes; };
     constexpr double cheapest = 1e-14; // of the sum of costs: rounding, no gain
-    double price = 1e-4;
-    Curves best;
-    for (;; price *= 0.25) {
-        tile_curves_->refine(price);
-        best = at(price);
-        if (best.tree.bytes.size() > bytes || price < cheapest) break;
+    double low = 1e-4, high = 1.0;
+    for (;; low *= 0.25) {
+        tile_curves_->refine(low);
+        sizer.forget();
+        if (too_large(low)) break;
+        if (low < cheapest) return at(low);
     }
-    if (best.tree.bytes.size() <= bytes) return best;
-    double low = price, high = 1.0;
-    best = at(high);
     for (int step = 0; step < 24; ++step) {
         const double middle = std::sqrt(low * high);
-        Curves candidate = at(middle);
-        if (candidate.tree.bytes.size() > bytes) {
-            low = middle;
-        } else {
-            high = middle;
-            best = std::move(candidate);
-        }
+        (too_large(middle) ? low : high) = middle;
     }
-    return best;
+    return at(high);
 }
 
 /// What serves normals whose bins are not stored: none, and one cell will do.

@@ -36,13 +36,19 @@ Pruned TileCurves::pruned(std::size_t tile, double price) const {
     return prune(nodes_[tile], own);
 }
 
+double TileCurves::cost(std::size_t tile, const Pruned& pruned) const {
+    const Filling* filling = partition(tile).grid().filling;
+    double out = 0.0;
+    for_each_cell(partition(tile).parts(), pruned, [&](const Part& part) { out += part.moments.share(filling); });
+    return out;
+}
+
 TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double price)
     : tile_curve(tiles.tiles.size(), -1), tiles_(tiles), curves_(curves), pruned_(tiles.tiles.size()),
       cost_(tiles.tiles.size(), 0.0), split_cost_(tiles.splits.size()) {
     tbb::parallel_for(std::size_t{0}, tiles.tiles.size(), [&](std::size_t t) {
         pruned_[t] = curves.pruned(t, price);
-        const Filling* filling = curves.partition(t).grid().filling;
-        for_each_cell(t, [&](const Part& part) { cost_[t] += part.moments.share(filling); });
+        cost_[t] = curves.cost(t, pruned_[t]);
     });
     for (std::size_t s = tiles.splits.size(); s-- > 0;)
         split_cost_[s] = child_cost(tiles.splits[s].child[0]) + child_cost(tiles.splits[s].child[1]);

@@ -12,6 +12,14 @@
 
 namespace acdf::compress {
 
+/// Calls `visit(part)` for each cell below part i of a partition that is pruned.
+template <class Visit>
+void for_each_cell(const std::vector<Part>& parts, const Pruned& pruned, const Visit& visit, std::size_t i = 0) {
+    if (!pruned.divided[i]) return visit(parts[i]);
+    for (std::uint32_t k = 0; k < parts[i].children; ++k)
+        for_each_cell(parts, pruned, visit, parts[i].first_child + k);
+}
+
 /// A partition of each tile, grown once and pruned at any price.
 class TileCurves {
 public:
@@ -27,6 +35,8 @@ public:
     /// Grows the partitions until divisions that pay at `price` a byte are in them.
     void refine(double price);
     Pruned pruned(std::size_t tile, double price) const;
+    /// The sum of the shares of the cells of a tile.
+    double cost(std::size_t tile, const Pruned& pruned) const;
 
 private:
     void look_at(std::size_t tile);
@@ -54,16 +64,10 @@ public:
     /// Calls `visit(part)` for each cell of a tile.
     template <class Visit>
     void for_each_cell(std::size_t tile, const Visit& visit) const {
-        for_each_cell_below(tile, 0, visit);
+        compress::for_each_cell(curves_.partition(tile).parts(), pruned_[tile], visit);
     }
 
 private:
-    template <class Visit>
-    void for_each_cell_below(std::size_t tile, std::size_t i, const Visit& visit) const {
-        const Part& part = curves_.partition(tile).parts()[i];
-        if (!pruned_[tile].divided[i]) return visit(part);
-        for (std::uint32_t k = 0; k < part.children; ++k) for_each_cell_below(tile, part.first_child + k, visit);
-    }
     double child_cost(std::uint32_t child) const {
         return child & TileTree::tile ? cost_[child & ~TileTree::tile] : split_cost_[child];
     }
