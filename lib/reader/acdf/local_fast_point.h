@@ -32,23 +32,21 @@ ACDF_INLINE int acdf_local_fast_corners(const AcdfLocal* local, const float norm
 }
 
 /* acdf_local_begin of files of the fast shape. */
-ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3], const int draws,
-                                  AcdfLocalPoint* out) {
+ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
     int i;
     acdf_local_no_rows(normal, out);
-    if (local->tables && local->tables->corners && acdf_local_fast_corners(local, out->surface, draws, out))
-        return 1;
+    if (local->tables && local->tables->corners && acdf_local_fast_corners(local, out->surface, 1, out)) return 1;
     if (!acdf_local_bins(local, out->surface, &bins)) return 0;
     for (i = 0; i < bins.count; ++i) {
         const AcdfBin* bin = &local->bins[bins.bin[i]];
         const double share = bins.weight[i] * (double)bin->share;
         if (bin->root == ACDF_NO_ROOT) return acdf_local_whole(local, out);
-        if (share > 0.0) acdf_local_fast_row(local, bin->root, share, draws, out);
+        if (share > 0.0) acdf_local_fast_row(local, bin->root, share, 1, out);
     }
     for (i = out->mix.count; i < ACDF_FAST_ROWS; ++i) {
         out->mix.weight[i] = 0.0;
-        acdf_fast_set_row(&local->fast, &out->fast, i, 0, draws);
+        acdf_fast_set_row(&local->fast, &out->fast, i, 0, 1);
     }
     acdf_local_normal(local, out->surface, out);
     acdf_fast_mix(out->mix.weight, out->mix.count, &out->fast);

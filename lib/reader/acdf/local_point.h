@@ -112,7 +112,7 @@ ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLo
     out->windows.count = 0;
     if (local->fast.grid) {
         out->place.count = 0;
-        if (acdf_local_begin_fast(local, normal, 1, out)) acdf_local_fast_sum(local, 1, out);
+        if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, 1, out);
         return;
     }
     acdf_local_nowhere(&out->place);
