@@ -1,6 +1,8 @@
 // Any bytes: loading must neither crash nor read outside them, `validate` must agree with it, and whatever is
 // accepted must give good samples. The mutator keeps layout and CRCs right most of the time, so that the
 // checks behind them are reached.
+#include "tests/fuzz/fuzz_random.h"
+#include "tests/fuzz/require.h"
 #include "tests/fuzz/sample_file.h"
 #include "tests/lib/reader/builder.h"
 

@@ -1,0 +1,189 @@
+#include "tests/fuzz/sample_file.h"
+
+#include "tests/fuzz/require.h"
+#include "tests/fuzz/sample_waves.h"
+
+#include <acdf/acdf.h>
+#include <acdf/shader_tables.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace acdf_test {
+namespace {
+
+bool is_unit(const float v[3]) {
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k) square += double{v[k]} * v[k];
+    return std::fabs(square - 1.0) < 2e-6;
+}
+bool is_density(double pdf) { return pdf >= 0.0 && std::isfinite(pdf); }
+bool in_unit_square(const double u[2]) { return u[0] >= 0.0 && u[0] <= 1.0 && u[1] >= 0.0 && u[1] <= 1.0; }
+
+void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
+    require(view.total() > 0.0);
+    for (int n = 0; n < samples_a_file; ++n) {
+        const acdf::DirectionSample s = view.sample(random.any_u(), random.any_u());
+        require(is_unit(s.direction) && s.pdf > 0.0f && std::isfinite(s.pdf));
+        require(view.pdf(s.direction) > 0.0f); // of tilted curves it may differ by rounding
+        double u[2];
+        require(view.invert(s.direction, u) && in_unit_square(u));
+        float any[3];
+        random.any_vector(any);
+        require(is_density(static_cast<double>(view.pdf(any))));
+        random.unit_vector(any, false);
+        require(view.invert(any, u) == (view.pdf(any) > 0.0f));
+    }
+    wavefront_is_the_view(view, random);
+}
+
+void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        float normal[3], any[3];
+        random.any_vector(normal);
+        random.any_vector(any);
+        const double u0 = random.any_u(), u1 = random.any_u();
+        const acdf::DirectionSample s = view.sample(normal, u0, u1);
+        require(is_density(static_cast<double>(s.pdf)) && is_density(view.irradiance(normal)));
+        require(is_density(static_cast<double>(view.pdf(normal, any))));
+        const AcdfLocalPoint point = view.at(normal);
+        const acdf::DirectionSample again = view.sample(point, u0, u1);
+        require(again.pdf == s.pdf && view.pdf(point, any) == view.pdf(normal, any));
+        (void)view.stored(normal);
+        float position[3];
+        random.any_vector(position);
+        if (n % 2 == 1 && view.has_places()) // else hardly any lies in the cells
+            for (int k = 0; k < 3; ++k) {
+                const AcdfPlaces& cells = *view.data().places.header;
+                position[k] = static_cast<float>(double{cells.low[k]} +
+                                                 (double{cells.high[k]} - double{cells.low[k]}) * random.uniform());
+            }
+        const AcdfLocalPoint placed = view.at(position, normal);
+        const acdf::DirectionSample seen = view.sample(placed, u0, u1);
+        require(is_density(static_cast<double>(seen.pdf)) &&
+                is_density(static_cast<double>(view.pdf(placed, any))));
+        require(seen.pdf == 0.0f || (is_unit(seen.direction) && view.pdf(placed, seen.direction) > 0.0f));
+        if (s.pdf == 0.0f) continue;
+        require(is_unit(s.direction) && view.pdf(normal, s.direction) > 0.0f);
+    }
+    wavefront_is_the_view(view, random);
+    product_at_once_is_the_product(view, random);
+    sample_everything(view.environment(), random);
+}
+
+void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        float wo[3], any[3];
+        if (n % 4 == 3) random.any_vector(wo);
+        else random.unit_vector(wo, true);
+        random.any_vector(any);
+        const acdf::DirectionSample s = view.sample(wo, random.any_u(), random.any_u());
+        require(is_density(static_cast<double>(s.pdf)) && is_density(view.albedo(wo)));
+        require(s.pdf == 0.0f || is_unit(s.direction));
+        require(is_density(static_cast<double>(view.pdf(wo, any))));
+        require(is_density(static_cast<double>(view.pdf(wo, s.direction))));
+        double u[2];
+        if (view.invert(wo, s.direction, u)) require(in_unit_square(u));
+        if (view.invert(wo, any, u)) require(in_unit_square(u));
+    }
+    wavefront_is_the_view(view, random);
+}
+
+void sample_everything(const acdf::TableView& view, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        std::uint32_t index[ACDF_MAX_AXES] = {};
+        double u[ACDF_MAX_AXES], x[ACDF_MAX_AXES] = {}, back[ACDF_MAX_AXES];
+        for (std::uint32_t i = 0; i < view.indexed_count(); ++i)
+            index[i] = random.below(view.data().axes[i].resolution + 1);
+        for (double& v : u) v = random.any_u();
+        const double pdf = view.sample(index, u, x);
+        require(is_density(pdf) && (pdf > 0.0) == (view.share(index) > 0.0));
+        require(view.pdf(index, x) == pdf || pdf == 0.0);
+        require(view.invert(index, x, back) || pdf == 0.0);
+        require(is_density(view.pdf(index, u)));
+    }
+}
+
+/// The same bytes through the C interface: the same densities.
+void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, FuzzRandom& random) {
+    AcdfError error;
+    AcdfFile* c = acdf_from_memory(bytes, size, &error);
+    require(c && error.code == ACDF_OK && acdf_kind(c) == file.kind() && acdf_size(c) == size);
+    require(acdf_metadata_count(c) == file.metadata_count());
+    require(!acdf_axis(c, file.description().axis_count) && !acdf_bin(c, file.description().bin_count));
+    AcdfEnvironment environment;
+    AcdfLocal local;
+    AcdfBrdf brdf;
+    AcdfTable table;
+    const int views =
+        acdf_environment(c, &environment) + acdf_local(c, &local) + acdf_brdf(c, &brdf) + acdf_table(c, &table);
+    require(views == 1);
+    float v[3], wi[3];
+    random.unit_vector(v, true);
+    random.unit_vector(wi, false);
+    if (file.kind() == ACDF_KIND_ENVIRONMENT)
+        require(acdf_environment_pdf(&environment, wi) == file.environment().pdf(wi));
+    if (file.kind() == ACDF_KIND_LOCAL) require(acdf_local_pdf(&local, v, wi) == file.local().pdf(v, wi));
+    if (file.kind() == ACDF_KIND_BRDF) require(acdf_brdf_pdf(&brdf, v, wi) == file.brdf().pdf(v, wi));
+    acdf_close(c);
+}
+
+/// As shaders do. What is made for a BRDF answers as one, too, of the words of any other file.
+void sample_brdf_walk(const acdf::ShaderTables& tables, bool brdf, FuzzRandom& random) {
+    for (int n = 0; n < samples_a_file; ++n) {
+        float wo[3], any[3];
+        if (n % 4 == 3) random.any_vector(wo);
+        else random.unit_vector(wo, true);
+        random.any_vector(any);
+        const std::uint32_t* words = tables.words();
+        const AcdfShaderView view = acdf_brdf_view_of(words, wo[0], wo[1], wo[2]);
+        const auto n0 = static_cast<std::uint32_t>(random.next()), n1 = static_cast<std::uint32_t>(random.next());
+        const AcdfWalkSample s = acdf_brdf_walk_sample(words, view, n0, n1);
+        require(std::isfinite(acdf_brdf_walk_pdf(words, view, any[0], any[1], any[2])));
+        require(std::isfinite(s.pdf) && s.pdf >= 0.0f && (brdf || s.pdf == 0.0f));
+        if (s.pdf == 0.0f) continue;
+        const float own = acdf_brdf_walk_pdf(words, view, s.x, s.y, s.z); // wi is as long as wo
+        require(own == s.pdf || (own == 0.0f && s.pdf < 1.2e-38f));
+    }
+}
+
+/// As shaders do, of whatever files have tables for them.
+void sample_walk(const acdf::File& file, FuzzRandom& random) {
+    acdf::ShaderTables tables;
+    if (!acdf::ShaderTables::make_walk(file, tables).ok()) return;
+    for (int n = 0; n < samples_a_file; ++n) {
+        float normal[3], any[3];
+        random.any_vector(normal);
+        random.any_vector(any);
+        const std::uint32_t* words = tables.words();
+        const AcdfShaderPoint point = acdf_point_at(words, normal[0], normal[1], normal[2]);
+        const auto n0 = static_cast<std::uint32_t>(random.next()), n1 = static_cast<std::uint32_t>(random.next());
+        const AcdfWalkSample s = acdf_walk_sample(words, point, n0, n1);
+        require(std::isfinite(acdf_walk_pdf(words, point, any[0], any[1], any[2])));
+        require(std::isfinite(s.pdf) && s.pdf >= 0.0f);
+        if (s.pdf == 0.0f) continue;
+        const float d[3] = {s.x, s.y, s.z};
+        require(is_unit(d) && acdf_walk_pdf(words, point, s.x, s.y, s.z) == s.pdf);
+    }
+    sample_brdf_walk(tables, file.kind() == ACDF_KIND_BRDF, random);
+}
+
+} // namespace
+
+void sample_everything(const acdf::File& file, const void* bytes, std::size_t size) {
+    FuzzRandom random(size);
+    acdf::Text key, value;
+    for (std::uint32_t i = 0; i < file.metadata_count() && i < 16; ++i) {
+        file.metadata(i, key, value);
+        require(key.size != 0 && (value.data || value.size == 0));
+    }
+    if (file.kind() == ACDF_KIND_ENVIRONMENT) sample_everything(file.environment(), random);
+    if (file.kind() == ACDF_KIND_LOCAL) sample_everything(file.local(), random);
+    if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), random);
+    if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), random);
+    if (file.header().header_crc % 4 == 1) sample_walk(file, random);
+    if (size % 8 == 0 && file.header().header_crc % 8 == 0) sample_in_c(bytes, size, file, random); // loads again
+}
+
+} // namespace acdf_test
