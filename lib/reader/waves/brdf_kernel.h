@@ -137,8 +137,6 @@ ACDF_LANE Vector share_of(const View& view, const Vector part[2]) {
     return (view.weight[0] * part[0] + view.weight[1] * part[1]) / (view.weight[0] + view.weight[1]);
 }
 
-ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1000)); }
-
 ACDF_LANE Cell cell_of(const WavefrontTable& t, const Walk& s) {
     Cell out;
     for (int axis = 0; axis < 2; ++axis) {
@@ -215,9 +213,6 @@ ACDF_LANE Integer inside(const Cell& cell, const Vector position[2], const Vecto
 
 // ---- samples ---------------------------------------------------------------------------------------------------
 
-ACDF_LANE Vector unit_interval(Vector u) {
-    return select((u > 0.0) & (u <= 0x1.fffffffffffffp1023), select(u < 1.0, u, all(1.0)), all(0.0));
-}
 ACDF_LANE Vector clamp(Vector x, double low, double high) {
     return select(x < low, all(low), select(x > high, all(high), x));
 }

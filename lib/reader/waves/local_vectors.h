@@ -195,11 +195,5 @@ ACDF_LANE Vector whole_part(Vector x) { // of x in [0, 2^31)
     return (Vector)_mm256_round_pd((__m256d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
 #endif
 }
-/* acdf_unit_interval, acdf_positive. */
-ACDF_LANE Vector unit_interval(Vector u) {
-    const Vector kept = select((absolute(u) <= 0x1.fffffffffffffp1023) & (u > 0.0), u, all(0.0));
-    return select(kept < 1.0, kept, all(1.0));
-}
-ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1000)); }
 
 } // namespace

@@ -139,6 +139,11 @@ ACDF_LANE Vector select(Integer mask, Vector yes, Vector no) { return mask ? yes
 ACDF_LANE Integer select(Integer mask, Integer yes, Integer no) { return mask ? yes : no; }
 ACDF_LANE Vector all(double x) { return Vector{} + x; }
 ACDF_LANE Vector absolute(Vector x) { return (Vector)((Integer)x & 0x7FFFFFFFFFFFFFFF); }
+/* acdf_unit_interval, acdf_positive. */
+ACDF_LANE Vector unit_interval(Vector u) {
+    return select((u > 0.0) & (u <= 0x1.fffffffffffffp1023), select(u < 1.0, u, all(1.0)), all(0.0));
+}
+ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1000)); }
 ACDF_LANE Vector one_if(Integer mask) { return (Vector)(mask & 0x3FF0000000000000); }
 /* Loads the four bytes behind each, too. */
 ACDF_LANE Integer gathered_words(const std::uint32_t* base, Integer index) {
