@@ -45,6 +45,11 @@ public:
         v[1] = static_cast<float>(r * std::sin(phi));
         v[2] = static_cast<float>(z);
     }
+    /// Number n of many: each fourth may be no direction.
+    void mostly_unit_vector(int n, float v[3], bool upper) {
+        if (n % 4 == 3) any_vector(v);
+        else unit_vector(v, upper);
+    }
 
 private:
     std::uint64_t state_;

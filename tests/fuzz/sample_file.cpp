@@ -75,8 +75,7 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
 void sample_everything(const acdf::BrdfView& view, FuzzRandom& random) {
     for (int n = 0; n < samples_a_file; ++n) {
         float wo[3], any[3];
-        if (n % 4 == 3) random.any_vector(wo);
-        else random.unit_vector(wo, true);
+        random.mostly_unit_vector(n, wo, true);
         random.any_vector(any);
         const acdf::DirectionSample s = view.sample(wo, random.any_u(), random.any_u());
         require(is_density(static_cast<double>(s.pdf)) && is_density(view.albedo(wo)));
@@ -133,8 +132,7 @@ void sample_in_c(const void* bytes, std::size_t size, const acdf::File& file, Fu
 void sample_brdf_walk(const acdf::ShaderTables& tables, bool brdf, FuzzRandom& random) {
     for (int n = 0; n < samples_a_file; ++n) {
         float wo[3], any[3];
-        if (n % 4 == 3) random.any_vector(wo);
-        else random.unit_vector(wo, true);
+        random.mostly_unit_vector(n, wo, true);
         random.any_vector(any);
         const std::uint32_t* words = tables.words();
         const AcdfShaderView view = acdf_brdf_view_of(words, wo[0], wo[1], wo[2]);

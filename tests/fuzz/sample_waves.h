@@ -24,8 +24,7 @@ struct FuzzWave {
     /// ones lie.
     FuzzWave(FuzzRandom& random, bool upper) {
         for (int n = 0; n < samples_a_file; ++n) {
-            if (n % 4 == 3) random.any_vector(first[n]);
-            else random.unit_vector(first[n], upper);
+            random.mostly_unit_vector(n, first[n], upper);
             if (n % 2 == 0) random.any_vector(second[n]);
             else random.unit_vector(second[n], false);
             for (double& v : u[n]) v = random.any_u();
