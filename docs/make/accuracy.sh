@@ -28,7 +28,7 @@ e1() {
     echo "|---|---|---|---|---|---|"
     while IFS='|' read -r text options; do
         # shellcheck disable=SC2086
-        line=$("$acdf" env "$probe" --projection angular -o "$results/e1.acdf" --force --quiet --json $options |
+        line=$("$acdf" env "$probe" --projection angular --domain latlong -o "$results/e1.acdf" --force --quiet --json $options |
             jq -r "$jq_lib"' " \(.bytes) | \(.cells) | \(.relative_variance|sig) | \(.kl_divergence|sig) | \(.max_weight|sig) |"')
         echo "| $text |$line"
     done <<'ROWS'
@@ -154,8 +154,8 @@ company_draws() { ACDF=$acdf "$root/docs/make/company_tables.sh" "$data" 12x9 24
 # ---- rivals on the light itself -----------------------------------------------------------------------------------
 
 rivals() {
-    "$acdf" sweep "$data/probes/grace_probe.hdr" --projection angular -o "$results/sweep" --force --quiet --json > "$results/sweep.json"
-    echo "\`acdf sweep DATA/probes/grace_probe.hdr --projection angular -o out\`:"
+    "$acdf" sweep "$data/probes/noon_grass_1k.hdr" -o "$results/sweep" --force --quiet --json > "$results/sweep.json"
+    echo "\`acdf sweep DATA/probes/noon_grass_1k.hdr -o out\`:"
     echo
     echo "| system | memory | relative variance | time of a sample, of the full CDF's | ns a pdf |"
     echo "|---|---|---|---|---|"

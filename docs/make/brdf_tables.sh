@@ -2,7 +2,7 @@
 # Makes the BRDF table of docs/accuracy.md from a folder of BRDFs: docs/make/brdf_tables.sh BRDFS [ACDF]
 set -euo pipefail
 brdfs=$1
-acdf=${2:-build/tools/acdf}
+acdf=${2:-build/release/tools/acdf}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Makes the tables of local files in docs/accuracy.md from a folder of probes: docs/make/local_tables.sh PROBES [ACDF]
-# TABLES="sizes rivals bins shape paper cosine" chooses among them.
+# TABLES="sizes rivals bins tiles paper" chooses among them.
 set -euo pipefail
 probes=$1
-acdf=${2:-build/tools/acdf}
+acdf=${2:-build/release/tools/acdf}
 tables=${TABLES:-sizes rivals bins tiles paper}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -29,8 +29,7 @@ row() { # LABEL ARGUMENTS...: relative variances for each set of options in `col
     printf ' |\n'
 }
 
-six=(city.exr sunset.exr studio.exr courtyard.exr noon_grass_1k.hdr grace_probe.hdr)
-projection() { [ "$1" = grace_probe.hdr ] && echo "--projection angular" || true; }
+six=(city.exr sunset.exr studio.exr courtyard.exr noon_grass_1k.hdr venice_sunset_1k.hdr)
 
 fits() {
     echo "| probe | uniform | cdf | cdf, eq. 4 as printed | cdf, 16 gradient knots | pdf | variance, cascade | variance, tree |"
@@ -45,8 +44,7 @@ sizes() {
     echo "|---|---|---|---|---|---|---|"
     columns=("--budget 4KiB" "--budget 16KiB" "--budget 64KiB" "--budget 256KiB" "--budget 64KiB --max-weight 3"
         "--budget 64KiB --compress zlib")
-    # shellcheck disable=SC2046
-    for probe in "${six[@]}"; do row "${probe%.*}" "$probes/$probe" $(projection "$probe"); done
+    for probe in "${six[@]}"; do row "${probe%.*}" "$probes/$probe"; done
 }
 
 # One row for each option of `acdf env`: what it does to a file of one probe. Seconds are of the processor, over all
@@ -106,15 +104,13 @@ ratio() {
     echo "| probe | cdf over 16 KiB | cdf over 64 KiB |"
     echo "|---|---|---|"
     for probe in "${six[@]}"; do
-        # shellcheck disable=SC2046
         for knots in 16 23 32 45 64 90 128 181 256 362 512; do
-            echo "$(field bytes "$probes/$probe" $(projection "$probe") --fit cdf --knots "${knots}x$knots")" \
-                "$(field relative_variance "$probes/$probe" $(projection "$probe") --fit cdf --knots "${knots}x$knots")"
+            echo "$(field bytes "$probes/$probe" --fit cdf --knots "${knots}x$knots")" \
+                "$(field relative_variance "$probes/$probe" --fit cdf --knots "${knots}x$knots")"
         done >"$work/points"
         line="| ${probe%.*}"
         for size in 16 64; do
-            # shellcheck disable=SC2046
-            goal=$(field relative_variance "$probes/$probe" $(projection "$probe") --budget "${size}KiB")
+            goal=$(field relative_variance "$probes/$probe" --budget "${size}KiB")
             line+=" | $(awk -v goal="$goal" -v size=$((size * 1024)) '
                 $2 <= goal && NR > 1 && !done { share = log(v / goal) / log(v / $2)
                     printf "%.2f", b / size * exp(share * log($1 / b)); done = 1 }
@@ -131,8 +127,7 @@ layouts() {
     [ -x "$layouts" ] || return 0
     for size in 16KiB 64KiB; do
         for probe in "${six[@]}"; do
-            # shellcheck disable=SC2046
-            "$acdf" env "$probes/$probe" $(projection "$probe") --budget "$size" --quiet --json \
+            "$acdf" env "$probes/$probe" --budget "$size" --quiet --json \
                 -o "$work/${probe%.*}_$size.acdf" >"$work/report"
         done
     done

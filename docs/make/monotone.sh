@@ -4,7 +4,7 @@
 # PROBES and BRDFS are patterns of names. Exits with 1 if there are such steps.
 set -euo pipefail
 data=$1
-acdf=${2:-build/tools/acdf}
+acdf=${2:-build/release/tools/acdf}
 tables=${TABLES:-brdf local}
 brdf_sizes=${BRDF_SIZES:-16 32 64 128 200 256 512} # KiB
 local_sizes=${LOCAL_SIZES:-64 128 256 512 1024 1536 2048 4096}

@@ -20,7 +20,9 @@ inline CLI::Option* add_json(CLI::App& command, bool& json) {
 }
 
 inline CLI::Option* add_quiet(CLI::App& command, bool& quiet) {
-    return command.add_flag("-q,--quiet", quiet, "Say nothing on stderr but errors: no progress bar, no remarks")
+    return command
+        .add_flag("-q,--quiet", quiet,
+                  "No progress bar, no remarks, no summary of what was made: only errors, and what was asked for")
         ->group("Output");
 }
 

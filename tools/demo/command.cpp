@@ -105,7 +105,8 @@ void run(const DemoArguments& options) {
 
 void add_demo(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<DemoArguments>();
-    CLI::App& command = *program.add_subcommand("demo", "Run everything below on built-in probes, or on yours");
+    CLI::App& command =
+        *program.add_subcommand("demo", "Make, show and measure files of built-in probes, or of yours");
     command.add_option("PROBE", options->probes, "Environment maps to use in place of the built-in ones")
         ->type_name("")
         ->group("Input");

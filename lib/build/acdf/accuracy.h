@@ -11,7 +11,8 @@ namespace acdf::builder {
 struct EnvironmentAccuracy {
     /// Variance of one sample of the estimator f/p, over (integral of f)^2. Infinite with a support violation.
     double relative_variance = 0.0;
-    /// What p* has: 0 but for several channels, which no density can fit at once, and for a filter, within texels.
+    /// What p* has: 0 but for several channels, which no density can fit at once, and within texels for a filter,
+    /// and where the map was resampled to another grid.
     double least_variance = 0.0;
     double rms_pdf_error = 0.0;           ///< sqrt of the mean over the sphere of (p - p*)^2, sr^-1
     double kl_divergence = 0.0;           ///< integral of p* ln(p*/p), nats

@@ -128,7 +128,7 @@ def build_local(
     max_weight: of the samples of all normals that accuracy is measured for.
     cosine_share: of samples that are drawn around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
-    shape: "small", the least noise for its bytes, or "fast", which is drawn from several times as fast. Fast files share
+    shape: "small", the least noise for its bytes, or "fast", a draw from which takes two thirds of the time. Fast files share
         tiles, and have neither max_weight nor a company.
     """
     return open(_acdf.build_local(image, _options({k: v for k, v in locals().items() if k != "image"})))

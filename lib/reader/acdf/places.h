@@ -203,7 +203,7 @@ ACDF_INLINE uint32_t acdf_place_find_rows(const AcdfPlaceTable* table, const Acd
                                           const int places, uint32_t node, const uint32_t* square, AcdfRange* range,
                                           double* probability) {
     double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
-    int i, lit = rows > 0;
+    int i, lit = rows > 0 && acdf_mixture_sum(mix) > 0.0; /* not within a light's own tile */
     for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &blend->splits[node];

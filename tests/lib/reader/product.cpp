@@ -29,8 +29,8 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
         each_point(tilts, [&](const LoadedLocal&, const TestLobe&, const Sampler& sampler,
                               const Sampler::Point& point, const std::string& name, std::mt19937_64& rng) {
             for (int i = 0; i < 200; ++i) {
-                const double u0 = rng() % 8 == 0 ? edges[rng() % 10] : unit(rng);
-                const double u1 = rng() % 8 == 0 ? edges[rng() % 10] : unit(rng);
+                const double u0 = rng() % 8 == 0 ? edges[rng() % 10] : uniform(rng);
+                const double u1 = rng() % 8 == 0 ? edges[rng() % 10] : uniform(rng);
                 const acdf::ProductSample s = sampler.sample(point, u0, u1);
                 ASSERT_TRUE(std::isfinite(s.pdf) && s.pdf >= 0.0f) << name;
                 ++all;
@@ -41,6 +41,32 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
             }
         });
     EXPECT_GT(drawn, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
+}
+
+// Where a part is a light's own tile, no row of places gives it anything.
+TEST(Product, DensityIsThatOfTheSamplesAtPlaces) {
+    int drawn = 0, of_lights = 0;
+    for (const LocalSpec& spec : {placed_local(), regional_local(), windowed_local()}) {
+        const LoadedLocal loaded(spec);
+        std::mt19937_64 rng(3);
+        for (int i = 0; i < 200; ++i) {
+            const float position[3] = {static_cast<float>(3.0 * uniform(rng)),
+                                       static_cast<float>(3.0 * uniform(rng) - 1.0),
+                                       static_cast<float>(1.0 + 3.0 * uniform(rng))};
+            const acdf::SurfaceFrame frame = acdf::surface_frame(random_normal(rng).v);
+            const Sampler sampler(loaded.light(), TestLobe{widths[i % 3]});
+            const Sampler::Point point = sampler.at(position, frame, random_view(rng, frame).v);
+            for (int k = 0; k < 100; ++k) {
+                const acdf::ProductSample s = sampler.sample(point, uniform(rng), uniform(rng));
+                if (s.pdf == 0.0f) continue;
+                ++drawn;
+                of_lights += s.pdf > 20.0f;
+                ASSERT_EQ(sampler.pdf(point, s.direction), s.pdf) << i;
+            }
+        }
+    }
+    EXPECT_GT(drawn, 30000);
+    EXPECT_GT(of_lights, 0);
 }
 
 // A point is made in memory that holds anything: nothing is read of it that was not written.
@@ -59,7 +85,7 @@ TEST(Product, PointsAreTheSameInAnyMemory) {
                 const Sampler::Point& point = *new (memory) Sampler::Point(sampler.at(frame, wo.v));
                 std::mt19937_64 numbers(7);
                 for (int i = 0; i < 100; ++i) {
-                    const double u0 = unit(numbers), u1 = unit(numbers);
+                    const double u0 = uniform(numbers), u1 = uniform(numbers);
                     drawn[byte].push_back(sampler.sample(point, u0, u1));
                     drawn[byte].push_back({{}, sampler.pdf(point, random_normal(numbers).v)});
                 }
@@ -82,7 +108,7 @@ void expect_single_calls(const AnySampler& sampler, const typename AnySampler::P
     float directions[70][3], pdfs[71];
     ASSERT_LE(count, 70u);
     for (auto& pair : u)
-        for (double& x : pair) x = rng() % 8 == 0 ? edges[rng() % std::size(edges)] : unit(rng);
+        for (double& x : pair) x = rng() % 8 == 0 ? edges[rng() % std::size(edges)] : uniform(rng);
     std::memset(out, 0x55, sizeof out);
     std::memset(pdfs, 0x55, sizeof pdfs);
     sampler.sample(point, count, u, out);
@@ -197,7 +223,7 @@ TEST(Product, NothingIsLeftOut) {
     each_point(true, [&](const LoadedLocal&, const TestLobe& lobe, const Sampler& sampler,
                          const Sampler::Point& point, const std::string& name, std::mt19937_64& rng) {
         for (int i = 0; i < 100; ++i) {
-            const acdf::ProductSample s = lobe.sample(point.lobe, unit(rng), unit(rng));
+            const acdf::ProductSample s = lobe.sample(point.lobe, uniform(rng), uniform(rng));
             float world[3], wi[3];
             point.frame.to_world(s.direction, world);
             point.frame.to_local(world, wi); // as it was rounded
@@ -205,7 +231,7 @@ TEST(Product, NothingIsLeftOut) {
         }
         const float below[3] = {-point.frame.normal[0], -point.frame.normal[1], -point.frame.normal[2]};
         const Sampler::Point unseen = sampler.at(point.frame, below);
-        ASSERT_EQ(sampler.sample(unseen, unit(rng), unit(rng)).pdf, 0.0f);
+        ASSERT_EQ(sampler.sample(unseen, uniform(rng), uniform(rng)).pdf, 0.0f);
         ASSERT_EQ(sampler.pdf(unseen, point.frame.normal), 0.0f);
         const float bad[][3] = {{NAN, 0.0f, 1.0f}, {0.0f, 0.0f, 2.0f}, {0.0f, 0.0f, 0.0f}};
         for (const auto& d : bad) ASSERT_TRUE(std::isfinite(sampler.pdf(point, d))) << name;
@@ -227,7 +253,7 @@ TEST(Product, HemispheresWithoutLightAreTheLobes) {
         const Sampler::Point point = sampler.at(frame, frame.normal);
         if (!loaded.file.local().stored(frame.normal) && point.light.what == ACDF_LOCAL_TREE) continue;
         ASSERT_EQ(point.share, 1.0);
-        const acdf::ProductSample s = sampler.sample(point, unit(rng), unit(rng));
+        const acdf::ProductSample s = sampler.sample(point, uniform(rng), uniform(rng));
         float wi[3];
         frame.to_local(s.direction, wi);
         ASSERT_EQ(s.pdf, lobe.pdf(point.lobe, wi));
@@ -268,7 +294,7 @@ TEST(Product, InCIsTheSame) {
             const Sampler::Point point = sampler.at(frame, wo.v);
             AcdfProductPoint c_point;
             acdf_product_lobe_at(&light, &c_lobe, 32, axes, wo.v, &c_point);
-            const double u0 = unit(rng), u1 = unit(rng);
+            const double u0 = uniform(rng), u1 = uniform(rng);
             const AcdfDirectionSample a = sampler.sample(point, u0, u1),
                                       b = acdf_product_lobe_sample(&light, &c_lobe, &c_point, u0, u1);
             for (int k = 0; k < 3; ++k) ASSERT_EQ(a.direction[k], b.direction[k]);
