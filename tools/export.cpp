@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -108,10 +109,16 @@ Exported make_tables(const ExportArguments& options, const LoadedFile& loaded) {
     return exported;
 }
 
+bool one_file(const std::string& a, const std::string& b) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    return a == b || fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+}
+
 void run(const ExportArguments& options) {
     if (options.output == "-" && options.tables == "-")
         throw CLI::ValidationError("--tables", "stdout takes one of the two; name a file with -o or --tables");
-    if (!options.tables.empty() && options.tables == options.output)
+    if (!options.tables.empty() && options.tables != "-" && one_file(options.tables, options.output))
         throw Failure(options.tables + ": is named for both, the text and the tables; name two files");
     Output output(options.output, options.force, {options.file});
     std::optional<Output> words;

@@ -106,6 +106,9 @@ TEST_F(Export, RefusesWithOneLine) {
     expect_failure({"export", file, "--target", "c", "-o", file, "-f"}, 1, file);
     expect_failure({"export", file, "--target", "c", "--tables", file, "-f"}, 1, file);
     expect_failure({"export", file, "--target", "c", "-o", text, "--tables", text}, 1, "both");
+    const std::filesystem::path same =
+        std::filesystem::path(text).parent_path() / "." / std::filesystem::path(text).filename();
+    expect_failure({"export", file, "--target", "c", "-o", text, "--tables", same.string()}, 1, "both");
     write_text(tables, "mine");
     expect_failure({"export", file, "--target", "c", "--tables", tables, "-o", text}, 1, "--force");
     EXPECT_EQ(read_text(tables), "mine");

@@ -65,7 +65,8 @@ std::string picture_sentence(const Sweep& sweep, const Recommended& recommended)
 std::string picture_rule(const Sweep& sweep) {
     const Visibility& v = sweep.visibility;
     std::string text =
-        "Rule: the smallest file tried whose noise on a diffuse surface is at most 5 % above the least of "
+        "Rule: the smallest file tried, or one of up to a quarter more bytes with less noise, whose noise on a "
+        "diffuse surface is at most 5 % above the least of "
         "all files, or at most " +
         percent(v.threshold) + " at " + spp_text(v) +
         ", in each of four situations: nothing hidden and behind the sphere and the wall of the demo "

@@ -9,6 +9,7 @@ Loops run without the interpreter's lock, so several threads may draw at once.
 from __future__ import annotations
 
 import os
+import secrets
 from typing import Any, Dict, NamedTuple, Optional, Union
 
 import numpy as np
@@ -87,14 +88,14 @@ class File:
 
     def save(self, path: Path) -> None:
         """Writes the file to `path`. Raises OSError."""
-        temporary = f"{os.fspath(path)}.{os.getpid()}.part"
+        temporary = f"{os.fsdecode(path)}.{secrets.token_hex(4)}.part"
+        out = _builtin_open(temporary, "xb")
         try:
-            with _builtin_open(temporary, "wb") as out:
+            with out:
                 out.write(self.to_bytes())
             os.replace(temporary, path)
         except BaseException:
-            if os.path.exists(temporary):
-                os.unlink(temporary)
+            os.unlink(temporary)
             raise
 
     def __repr__(self) -> str:
@@ -165,7 +166,7 @@ class Brdf(File):
     reflects, times the cosine.
 
     The leading shape of `wo` begins that of `u` or `wi`, as for normals. Arrays of some thousands are drawn by vector
-    instructions, bit for bit the same, with tables of about twelve times the file.
+    instructions, bit for bit the same, with tables of about four times the file.
     """
 
     def sample(self, wo: Any, u: Any, *, out: Optional[Samples] = None) -> Samples:
@@ -236,7 +237,7 @@ def open(source: Union[Path, bytes, bytearray, memoryview], *, tables: bool = Tr
         path = os.fspath(source)
         if not os.path.exists(path):
             raise FileNotFoundError(2, os.strerror(2), path)
-        handle = _acdf.open_path(path, tables)
+        handle = _acdf.open_path(os.fsencode(path), tables)
     return _KINDS[handle.describe()["kind"]](handle)
 
 

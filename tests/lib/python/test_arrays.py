@@ -1,5 +1,6 @@
 """Draws and densities of arrays: shapes, types, memory, threads."""
 
+import concurrent.futures
 import glob
 import os
 import pickle
@@ -241,6 +242,22 @@ class Files(unittest.TestCase):
             self.assertEqual(os.listdir(folder), ["sky.acdf"])
             with self.assertRaises(OSError):
                 sky.save(os.path.join(folder, "none", "sky.acdf"))
+
+    def test_several_threads_save_to_one_path(self):
+        files = [acdf.open(golden(name)) for name in ("zlib", "local")]
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "any.acdf")
+            with concurrent.futures.ThreadPoolExecutor(8) as pool:
+                for done in [pool.submit(files[i % 2].save, path) for i in range(200)]:
+                    done.result()
+            self.assertIn(acdf.open(path).to_bytes(), [file.to_bytes() for file in files])
+            self.assertEqual(os.listdir(folder), ["any.acdf"])
+
+    def test_names_may_be_any_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, os.fsdecode(b"sky\xff.acdf"))
+            acdf.open(golden("zlib")).save(path)
+            self.assertEqual(acdf.open(path).kind, "environment")
 
 
 if __name__ == "__main__":
