@@ -245,7 +245,7 @@ void add_measurement_options(CLI::App& command, RenderArguments& options) {
     command
         .add_option("--seeds", options.comparison.render.seeds,
                     "Independent pictures of each sampler: what variances and their confidence come from")
-        ->check(CLI::Range(2, 4096))
+        ->check(CLI::Range(3, 4096))
         ->option_text("N [16]")
         ->group("Measurement");
     const std::map<std::string, std::vector<measure::Numbers>> sequences{

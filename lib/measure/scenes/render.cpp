@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <numeric>
 
 namespace acdf::measure {
 namespace {
@@ -83,6 +85,12 @@ std::vector<double> Rendering::noise(const std::vector<double>& scale) const {
             if (scale[i] > 0.0) sum.add(deviation_square[begin + i] / scale[i]);
         out.push_back(sum.value() / static_cast<double>(scale.size()));
     }
+    // Deviations from a mean that they made themselves differ less than independent ones: of two seeds they are
+    // equal. Those of normal estimates have (seeds - 2) / (seeds - 1) of the variance.
+    const double seeds = static_cast<double>(out.size()),
+                 mean = std::accumulate(out.begin(), out.end(), 0.0) / seeds;
+    for (double& of_seed : out)
+        of_seed = std::max(0.0, mean + (of_seed - mean) * std::sqrt((seeds - 1.0) / (seeds - 2.0)));
     return out;
 }
 

@@ -29,7 +29,7 @@ struct Rendering {
     Tally tally;                          ///< of all points and seeds
 
     /// Mean relative variance as each seed tells it, `scale` as noise_scale gives it; the mean over seeds is that
-    /// of the pictures.
+    /// of the pictures, and their spread that of independent ones. Of three seeds at least.
     std::vector<double> noise(const std::vector<double>& scale) const;
 };
 

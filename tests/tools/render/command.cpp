@@ -159,7 +159,7 @@ TEST_F(RenderCommand, SaysWhatIsWrong) {
     };
     refused({"--sampler", "nonsense"}, 2, "is none of full-cdf");
     refused({"--size", "8"}, 2, "--size");
-    refused({"--seeds", "1"}, 2, "--seeds");
+    refused({"--seeds", "2"}, 2, "--seeds");
     refused({"--sampler", "mis(full-cdf,cosine)", "--samples", "1"}, 1, "at least 2 samples");
     refused({"--sampler", "file:none.acdf"}, 1, "none.acdf");
     refused({"--sampler", "tiles:64x64"}, 1, "tiles:64x64");

@@ -12,6 +12,8 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <numeric>
+#include <random>
 
 namespace acdf::measure {
 namespace {
@@ -141,6 +143,36 @@ TEST(RenderStatistics, RatiosLieInTheirIntervalsAsOftenAsPromised) {
     EXPECT_NEAR(mean / double{trials}, 0.95, 0.02);
     EXPECT_NEAR(ratio / double{trials}, 0.955, 0.02); // Student's t of the fewer degrees errs to the safe side
     EXPECT_NEAR(both / double{trials}, 0.955, 0.02);
+}
+
+// What seeds tell of noise differs as independent figures do, few as they may be.
+TEST(RenderStatistics, NoiseOfSeedsDiffersAsMuchAsItsMean) {
+    constexpr std::size_t points = 40, trials = 4000;
+    std::mt19937_64 random(8);
+    std::normal_distribution<double> estimate;
+    for (const std::size_t seeds : {3u, 5u}) {
+        double told = 0.0, sum = 0.0, square = 0.0;
+        for (std::size_t t = 0; t < trials; ++t) {
+            Rendering made;
+            made.deviation_square.resize(seeds * points);
+            for (std::size_t i = 0; i < points; ++i) {
+                std::vector<double> x(seeds);
+                for (double& value : x) value = estimate(random);
+                const double mean = std::accumulate(x.begin(), x.end(), 0.0) / double(seeds);
+                for (std::size_t s = 0; s < seeds; ++s)
+                    made.deviation_square[s * points + i] =
+                        (x[s] - mean) * (x[s] - mean) * double(seeds) / (double(seeds) - 1.0);
+            }
+            const std::vector<double> noise = made.noise(std::vector<double>(points, 1.0));
+            const double mean = std::accumulate(noise.begin(), noise.end(), 0.0) / double(seeds);
+            for (const double value : noise)
+                told += (value - mean) * (value - mean) / (double(seeds) - 1.0) / double(seeds) / trials;
+            sum += mean / trials;
+            square += mean * mean / trials;
+        }
+        EXPECT_NEAR(sum, 1.0, 0.01);
+        EXPECT_NEAR(told, square - sum * sum, 0.1 * told) << seeds;
+    }
 }
 
 TEST(RenderStatistics, RatiosToNothingAreUnknown) {
