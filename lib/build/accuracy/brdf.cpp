@@ -118,7 +118,8 @@ void for_some_half_vectors(const compress::View& view, const double wo[3], std::
             const double h[3] = {sine * azimuth[c][0], sine * azimuth[c][1], hz};
             const double dot = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
             const double wi[3] = {2.0 * dot * h[0] - wo[0], 2.0 * dot * h[1] - wo[1], 2.0 * dot * h[2] - wo[2]};
-            visit(wi, measure * 4.0 * std::abs(dot));
+            // Nearly opposite to wo, which is below the surface, rounding wi decides on the half-vector.
+            visit(wi, std::abs(dot) < 2e-3 ? 0.0 : measure * 4.0 * std::abs(dot));
         }
     }
 }

@@ -13,7 +13,8 @@ using acdf::compress::View;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using acdf_test::Direction;
+
 constexpr double kCosines[] = {1.0, 0.5, 0.1, 1e-3};
 
 enum Form { isotropic, anisotropic, lopsided, floored, separate, forms };
@@ -132,6 +133,15 @@ TEST_P(BrdfDensity, coversTheLightAndIntegratesTo1) {
         EXPECT_LE(v.share_above_horizon, 1.0) << v.view.cosine();
         EXPECT_GT(v.share_above_horizon, v.view.cosine() > 0.05 ? 0.98 : 0.8) << v.view.cosine();
     }
+}
+
+// Nearly opposite to this view lies a direction whose half-vector floats have at right angles to both: its density
+// has no bound.
+TEST(BrdfDensities, areMeasuredNextToTheOppositeOfTheView) {
+    const MadeBrdf& brdf = made(anisotropic);
+    const View view = acdf::build::random_views(500, false).at(335);
+    const auto measured = acdf::build::measure_views(brdf.file, brdf.reflected, {view}, Sides::any);
+    EXPECT_NEAR(measured.front().integral, 1.0, 4e-3);
 }
 
 // For an odd number of columns and an even one: a column may be its own mirror image.
