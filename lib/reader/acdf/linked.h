@@ -1,7 +1,8 @@
 /* Draws and densities as symbols of the library, singly and in arrays: for what cannot compile the inline functions
  * of acdf/sample.h, local.h, brdf.h and table.h, such as Python, Rust, Julia or C#. All arguments are numbers and
- * pointers to them. Each gives what the inline function gives, bit for bit; all are thread-safe, and but for
- * acdf_brdf_waves allocate nothing.
+ * pointers to them. Each gives what the inline function gives, bit for bit, where that is compiled with
+ * -ffp-contract=off as the library is (else directions may differ in the last bit on processors that fuse products
+ * and sums: gcc's -march=native); all are thread-safe, and but for acdf_brdf_waves allocate nothing.
  *
  * Arrays are packed: two doubles u in [0, 1] a sample, three floats a direction, normal or view (unit vectors;
  * normals of any length > 0), a float a density (sr^-1). They may not overlap. Results have `count` items. Where

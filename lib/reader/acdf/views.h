@@ -66,7 +66,8 @@ public:
     ACDF_METHOD DirectionSample sample(const float normal[3], double u0, double u1) const noexcept {
         return acdf_local_sample(&data_, normal, u0, u1);
     }
-    /// Density in sr^-1 of a unit direction for a normal; exactly that of `sample` for what it returned.
+    /// Density in sr^-1 of a unit direction for a normal; exactly that of `sample` for what it returned, but for
+    /// rounding where cells are tilted (`--fit pdf`; SPEC.md §6.10).
     ACDF_METHOD float pdf(const float normal[3], const float direction[3]) const noexcept {
         return acdf_local_pdf(&data_, normal, direction);
     }

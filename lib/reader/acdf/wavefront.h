@@ -20,9 +20,9 @@ struct WavefrontTable;
 /// What instructions serve; with `none` it is the loop over BrdfView.
 enum class Instructions : int { none = 0, avx2 = 1, avx512 = 2 };
 
-/// The directions and densities of an EnvironmentView, bit for bit, in a fraction of the time. A few words by
-/// value, no memory of its own; valid while the File lives. All functions are const, thread-safe, allocate and
-/// throw nothing.
+/// The directions and densities of an EnvironmentView, bit for bit (see acdf/linked.h), in a fraction of the time.
+/// A few words by value, no memory of its own; valid while the File lives. All functions are const, thread-safe,
+/// allocate and throw nothing.
 class EnvironmentWavefront {
 public:
     EnvironmentWavefront() noexcept = default;
@@ -43,9 +43,9 @@ private:
     Instructions instructions_ = Instructions::none;
 };
 
-/// The directions and densities of a LocalEnvironmentView, bit for bit, in a fraction of the time. A few words by
-/// value, no memory of its own; valid while the File lives. All functions are const, thread-safe, allocate and
-/// throw nothing.
+/// The directions and densities of a LocalEnvironmentView, bit for bit (see acdf/linked.h), in a fraction of the
+/// time. A few words by value, no memory of its own; valid while the File lives. All functions are const,
+/// thread-safe, allocate and throw nothing.
 class LocalWavefront {
 public:
     LocalWavefront() noexcept = default;

@@ -45,7 +45,8 @@ const Rule rules[] = {
     {3012, error, ErrorCode::limit_exceeded, "inflate-limit",
      "The compressed chunks, but for unknown ones, inflate to no more than the reader's limit."},
     {3013, error, malformed, "chunk-kind",
-     "TILE and ROWS come only in files of kinds 2 and 3, LOCL, PLAC and PORT only in those of kind 2, VIEW only in "
+     "TILE and ROWS come only in files of kinds 2 and 3, LOCL, SUMS, GRID, PLAC and PORT only in those of kind 2, "
+     "VIEW only in "
      "those of kind 3, COMP in all but those."},
     {3014, error, malformed, "chunk-type", "The type of a chunk is four printable ASCII characters."},
 
@@ -194,7 +195,8 @@ const Rule rules[] = {
     {9004, error, malformed, "table-steps",
      "The ends of a table's axis are at most 2^100 in magnitude; a step of it is at least 2^-100, and at least "
      "2^-40 of the larger end."},
-    {9005, error, malformed, "table-shares", "The shares of a table's bins add up to 1 within 2^-20."},
+    {9005, error, malformed, "table-shares",
+     "The shares of a table's bins, added up in their order, differ from 1 by no more than 2^-20."},
     {9006, error, malformed, "table-weights", "The `channels` of a table are 0 and its channel weights 1, 0, 0."},
 };
 const std::size_t rule_count = sizeof rules / sizeof rules[0];
