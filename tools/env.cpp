@@ -170,9 +170,9 @@ nlohmann::ordered_json EnvConversion::report(const ProbeTarget& loaded, const bu
         {"cells", a.cells},
         {"total", a.total},
         {"relative_variance", a.relative_variance},
-        {"least_variance", a.least_variance},
-        {"rms_pdf_error", a.rms_pdf_error},
-        {"kl_divergence", a.kl_divergence},
+        {"least_variance", known_json(!a.combined, a.least_variance)},
+        {"rms_pdf_error", known_json(!a.combined, a.rms_pdf_error)},
+        {"kl_divergence", known_json(!a.combined, a.kl_divergence)},
         {"max_weight", a.max_weight},
         {"support_violations", a.support_violations}};
     if (a.combined) out["combined"] = true; // of the file and its company

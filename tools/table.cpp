@@ -122,7 +122,7 @@ nlohmann::ordered_json report(const TableArguments& options, const input::NpyArr
         {"relative_variance", a.relative_variance},
         {"relative_variance_median", a.median},
         {"relative_variance_worst", a.worst},
-        {"kl_divergence", a.kl_divergence},
+        {"kl_divergence", known_json(!a.combined, a.kl_divergence)},
         {"max_weight", a.max_weight},
         {"support_violations", a.support_violations}};
     if (a.combined) out["combined"] = true; // of the file and its company

@@ -31,10 +31,12 @@ compress::Metadata metadata(const Source& source, const EnvironmentOptions& opti
                            {"source.name", source.name},
                            {"source.sha256", source.sha256},
                            {"source.projection", source.projection},
-                           {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)},
-                           {"accuracy.rms_pdf_error", accuracy_text(accuracy.rms_pdf_error)},
-                           {"accuracy.kl_divergence", accuracy_text(accuracy.kl_divergence)},
-                           {"accuracy.max_weight", accuracy_text(accuracy.max_weight)}};
+                           {"accuracy.relative_variance", accuracy_text(accuracy.relative_variance)}};
+    if (!options.company) { // the density of a file for a company is not to be near the light's
+        out.push_back({"accuracy.rms_pdf_error", accuracy_text(accuracy.rms_pdf_error)});
+        out.push_back({"accuracy.kl_divergence", accuracy_text(accuracy.kl_divergence)});
+    }
+    out.push_back({"accuracy.max_weight", accuracy_text(accuracy.max_weight)});
     if (tried) out.push_back({"fit.order", to_string(*tried)});
     return out;
 }

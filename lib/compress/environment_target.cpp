@@ -212,6 +212,7 @@ Target EnvironmentTarget::moments() {
     const bool bilinear = options_.filter == ACDF_FILTER_BILINEAR;
     target.values.resize(std::size_t{columns_} * rows_);
     if (bilinear) target.peaks.resize(target.values.size());
+    target.means.assign(planes_, std::vector<float>(target.values.size()));
     std::vector<std::array<double, kChannels>> row_total(rows_);
     tbb::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
         std::vector<TexelMoments> moments(columns_);
@@ -221,6 +222,7 @@ Target EnvironmentTarget::moments() {
             Sum sum;
             for (std::uint32_t c = 0; c < columns_; ++c) {
                 sum.add(moments[c].mean * target.column_measure[c]);
+                target.means[plane][std::size_t{r} * columns_ + c] = static_cast<float>(moments[c].mean);
                 square[c] += moments[c].square;
                 peak[c] = std::max(peak[c], moments[c].peak);
             }

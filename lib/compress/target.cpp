@@ -65,6 +65,14 @@ double integral(const Target& target) {
     return total.value();
 }
 
+const Target& looked_up(const Target& target, Target& other) {
+    if (target.peaks.empty()) return target;
+    other = target;
+    other.peaks = {};
+    other.means = {};
+    return other;
+}
+
 double least_second_moment(const Target& target) {
     const double g = integral(target);
     return target.mean_square > 0.0 ? g * g / target.mean_square : 1.0;

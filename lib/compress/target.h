@@ -3,6 +3,9 @@
 
 #include <acdf/layout.h>
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -21,8 +24,10 @@ class Filling;
 struct Target {
     std::uint32_t columns = 0;
     std::uint32_t rows = 0;
-    std::vector<float> values;          ///< g >= 0, finite
-    std::vector<float> peaks;           ///< largest f in each texel; empty: as `values`
+    std::vector<float> values; ///< g >= 0, finite
+    std::vector<float> peaks;  ///< largest f in each texel; empty: as `values`
+    /// Mean of f over each texel, of each channel that counts; empty: g is f.
+    std::vector<std::vector<float>> means;
     std::vector<double> column_measure; ///< one a column, > 0
     std::vector<double> row_measure;    ///< one a row, > 0
     std::uint32_t column_axis = 0;      ///< axis numbers in the file
@@ -106,5 +111,32 @@ double integral(const Target& target);
 
 /// E[(f/p)^2] of the best density that is constant on texels, over `mean_square`: at least 1, and 1 where g is f.
 double least_second_moment(const Target& target);
+
+/// A map whose lookup is g itself, for samplers that know no other: `target`, or one that is made in `other`.
+const Target& looked_up(const Target& target, Target& other);
+
+/// Sums of one integrand, of each channel that counts.
+class ChannelSums {
+public:
+    void add(const double* of, std::size_t count, double factor) {
+        for (std::size_t k = 0; k < count; ++k) sums_[k] += factor * of[k];
+    }
+    void add(const ChannelSums& other) { add(other.sums_.data(), sums_.size(), 1.0); }
+    /// The root of the sum of their squares: what noise is compared with.
+    double length() const { return std::hypot(sums_[0], sums_[1], sums_[2]); }
+
+private:
+    std::array<double, 3> sums_{};
+};
+
+/// The means of f over texel `i`, in `out` where f differs from g; how many there are.
+inline std::size_t means_of(const Target& target, std::size_t i, double out[3]) {
+    if (target.means.empty()) {
+        out[0] = double{target.values[i]};
+        return 1;
+    }
+    for (std::size_t k = 0; k < target.means.size(); ++k) out[k] = double{target.means[k][i]};
+    return target.means.size();
+}
 
 } // namespace acdf::compress

@@ -18,6 +18,10 @@ inline void direction_of(double phi, double z, float direction[3]) {
     direction[2] = static_cast<float>(z);
 }
 
+inline double dot(const float a[3], const float b[3]) {
+    return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
+}
+
 /// In [0, 1), the same with every standard library.
 inline double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 

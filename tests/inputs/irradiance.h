@@ -15,9 +15,6 @@
 
 namespace acdf_test {
 
-inline double dot(const float a[3], const float b[3]) {
-    return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
-}
 inline double length(const float a[3]) { return std::sqrt(dot(a, a)); }
 
 /// An angle, with what is asked of it again and again.

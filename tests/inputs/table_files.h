@@ -86,11 +86,11 @@ inline input::NpyArray noisy_array(const ShapeVector& shape, std::uint64_t seed,
 }
 
 /// A file in memory, ready to be sampled.
-struct Loaded {
+struct LoadedTable {
     std::vector<std::uint8_t> bytes;
     File file;
 
-    explicit Loaded(std::vector<std::uint8_t> data) : bytes(std::move(data)) {
+    explicit LoadedTable(std::vector<std::uint8_t> data) : bytes(std::move(data)) {
         const Status status = File::from_memory(bytes.data(), bytes.size(), file);
         if (!status.ok()) throw std::runtime_error(status.message);
     }

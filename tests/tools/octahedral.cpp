@@ -130,6 +130,14 @@ TEST_F(OctahedralCommand, LocalFilesLieOnItToo) {
     EXPECT_EQ(plot.code, 0) << plot.err;
 }
 
+// A projection that was told when a file was made is known, of rivals too.
+TEST_F(OctahedralCommand, LocalRivalsOfOtherMapsNeedNoProjection) {
+    const json report = made(disc, {"--projection", "angular", "--budget", "40kB"}, "local");
+    const json told = measured(disc, {"--rivals"});
+    EXPECT_EQ(told["relative_variance"], report["relative_variance"]);
+    EXPECT_GT(told["rivals"]["full_cdf"]["relative_variance"], 1.0);
+}
+
 // Files and rivals are compared on the map's own texels.
 TEST_F(OctahedralCommand, SweepsDrawItsTexels) {
     for (const char* kind : {"env", "local"}) {

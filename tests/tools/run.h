@@ -1,6 +1,7 @@
 // Runs the acdf program as a user would, and makes small files for it to work on.
 #pragma once
 
+#include "tests/inputs/folder.h"
 #include "tests/inputs/places.h"
 
 #include "compress/store/store.h"
@@ -24,39 +25,6 @@
 extern char** environ;
 
 namespace acdf::test {
-
-inline std::string read_text(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-inline void write_text(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-}
-
-/// A folder of its own for each test, removed at its end.
-class Folder {
-public:
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "acdf-test-XXXXXX").string();
-        if (mkdtemp(name.data())) path_ = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-    std::size_t entries() const {
-        const std::filesystem::directory_iterator begin(path_), end;
-        return static_cast<std::size_t>(std::distance(begin, end));
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 struct Result {
     int code = -1; ///< exit code; 128 + signal where one ended it

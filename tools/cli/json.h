@@ -12,4 +12,9 @@ inline std::string json_text(const nlohmann::ordered_json& json) {
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+/// A number that is known; else null.
+inline nlohmann::ordered_json known_json(bool known, double number) {
+    return known ? nlohmann::ordered_json(number) : nlohmann::ordered_json();
+}
+
 } // namespace acdf::tools

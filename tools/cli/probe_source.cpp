@@ -139,18 +139,28 @@ input::Projection projection_as_made(const File& file, const std::string& source
     return Projection::automatic;
 }
 
+input::ProbeOptions options_as_made(input::ProbeOptions options, const File& file, const std::string& source) {
+    if (options.projection == input::Projection::automatic) options.projection = projection_as_made(file, source);
+    return options;
+}
+
 } // namespace
 
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
                           const input::ProbeOptions& given, bool quiet) {
-    input::ProbeOptions options = given;
-    if (options.projection == input::Projection::automatic) options.projection = projection_as_made(file, source);
+    const input::ProbeOptions options = options_as_made(given, file, source);
     const build::Domain grid{static_cast<AcdfParameterization>(file.description().parameterization),
                              file.axis(0).resolution, file.axis(1).resolution};
     ProbeTarget out =
         load(source, options, builder::TargetRows(stored_options(file), {}, grid), notes_of(source, quiet));
     if (!quiet) tell_of_another(path, file, source, out.probe.source_sha256);
     return out;
+}
+
+ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& given) {
+    input::ProbeOptions options = options_as_made(given, file, source);
+    options.domain = input::Domain::latlong;
+    return load_target(source, options, stored_options(file), notes_of(source, true));
 }
 
 std::string resampling_warning(const ProbeTarget& target, double least_variance, double relative_variance) {

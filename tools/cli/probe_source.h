@@ -52,6 +52,9 @@ builder::TargetOptions stored_options(const File& file);
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
                           const input::ProbeOptions& options, bool quiet);
 
+/// The same on a lat-long grid, whatever the file's.
+ProbeTarget latlong_target(const File& file, const std::string& source, const input::ProbeOptions& options);
+
 /// One line where resampling is the larger part of a file's variance; else empty.
 std::string resampling_warning(const ProbeTarget& target, double least_variance, double relative_variance);
 

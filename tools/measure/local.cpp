@@ -5,6 +5,7 @@
 #include "tools/cli/source_check.h"
 
 #include "build/accuracy/cells.h"
+#include "build/accuracy/fine_texels.h"
 #include "build/accuracy/local.h"
 #include "build/local.h"
 #include "measure/samplers/light_samplers.h"
@@ -37,11 +38,22 @@ struct Rival {
 
 constexpr std::uint32_t kCandidates = 32;
 
+/// Of a map; `columns` and `rows` tiles.
+struct LocalRivals {
+    measure::LocalFullCdf full;
+    measure::Resampling resampling;
+    measure::TilingOnTheFly tiling;
+    measure::CosineHemisphere cosine;
+
+    LocalRivals(const compress::Target& target, std::uint32_t columns, std::uint32_t rows)
+        : full(target), resampling(target, kCandidates), tiling(target, columns, rows), cosine(target) {}
+};
+
+/// Their noise is summed as that of the file is.
 std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<build::Normal>& normals) {
-    const measure::LocalFullCdf full(target);
-    const measure::Resampling resampling(target, kCandidates);
-    const measure::TilingOnTheFly tiling(target, std::min(32u, target.columns), std::min(16u, target.rows));
-    const measure::CosineHemisphere cosine(target);
+    const std::uint32_t columns = std::min(32u, target.columns), rows = std::min(16u, target.rows);
+    const build::FineTexels texels(target);
+    const LocalRivals made(target, columns, rows), summed(texels.target(), columns, rows);
     const auto mean = [&](const std::function<double(const float*)>& variance) {
         std::vector<double> each(normals.size());
         tbb::parallel_for(std::size_t{0}, normals.size(),
@@ -53,10 +65,10 @@ std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<b
     const auto of = [&](const auto& rival) {
         return mean([&rival](const float* n) { return rival.relative_variance(n); });
     };
-    return {{"full_cdf", "full-resolution CDF", of(full), full.bytes()},
-            {"resampling_32", "resampling 32 candidates", of(resampling), resampling.bytes()},
-            {"tiling_512", "512 tiles x cosine on the fly", of(tiling), tiling.bytes()},
-            {"cosine", "cosine hemisphere", of(cosine), cosine.bytes()}};
+    return {{"full_cdf", "full-resolution CDF", of(summed.full), made.full.bytes()},
+            {"resampling_32", "resampling 32 candidates", of(summed.resampling), made.resampling.bytes()},
+            {"tiling_512", "512 tiles x cosine on the fly", of(summed.tiling), made.tiling.bytes()},
+            {"cosine", "cosine hemisphere", of(summed.cosine), made.cosine.bytes()}};
 }
 
 std::uint64_t count_cells(const File& file) {
@@ -85,11 +97,6 @@ struct PlacesAccuracy {
     double normals_alone = 0.0; ///< of the same file, its places not told apart
     std::uint64_t support_violations = 0;
 };
-
-/// A lat-long map that the source is resampled to.
-builder::Target latlong_target(const LocalMeasureOptions& options, const File& file) {
-    return probe_target(options.source, load_probe(options.source, options.input, true), stored_options(file));
-}
 
 PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& options,
                               const compress::Target& target) {
@@ -196,13 +203,14 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
         build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     std::vector<Rival> rivals;
     PlacesAccuracy places;
-    // Rivals draw texels, of the source itself or of what it is resampled to; points of meshes see lat-long ones.
-    const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
-    const bool other_texels = source.resampled, other_light = source.resampled || square;
-    builder::Target latlong;
-    if ((options.rivals && other_texels) || (mesh && other_light)) latlong = latlong_target(options, file);
-    if (options.rivals) rivals = rivals_of(builder::grid_of(other_texels ? latlong : source.target), normals);
-    if (mesh) places = measure_places(file, options, builder::grid_of(other_light ? latlong : source.target));
+    compress::Target map;
+    if (options.rivals) rivals = rivals_of(compress::looked_up(builder::grid_of(source.target), map), normals);
+    if (mesh) { // whose points see lat-long texels
+        const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
+        const builder::Target light =
+            square ? latlong_target(file, options.source, options.input).target : source.target;
+        places = measure_places(file, options, compress::looked_up(builder::grid_of(light), map));
+    }
     if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals, places)).c_str(), stdout);
     else print_text(file, options, accuracy, rivals, places);
     require_support(options.file, file, options.source, source.probe.source_sha256,

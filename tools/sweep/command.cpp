@@ -81,6 +81,9 @@ void check_options(SweepArguments& options, SweepKind kind) {
             if (options.given(option)) throw CLI::ValidationError(option, "is for environment maps");
     if ((kind == SweepKind::places) != options.scene.given())
         throw CLI::ValidationError("--scene", "is for --kind places, and that needs one");
+    if (kind == SweepKind::places && options.input.domain == input::Domain::octahedral)
+        throw CLI::ValidationError("--domain",
+                                   "is latlong with --kind places: points of a mesh see lat-long texels");
     options.scene.check(*options.command);
     const builder::TargetOptions& target = options.sweep.target;
     if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
@@ -92,8 +95,9 @@ void check_options(SweepArguments& options, SweepKind kind) {
     options.sweep.visibility.threshold /= 100.0; // it is given in per cent
 }
 
-/// What has to be said again to the subcommand that makes a file.
-std::string command_of(const SweepArguments& options, SweepKind kind) {
+/// What has to be said again to the subcommand that makes a file; `on_latlong_grid`: that grid, which the probe has
+/// not.
+std::string command_of(const SweepArguments& options, SweepKind kind, bool on_latlong_grid) {
     const char* subcommand = kind == SweepKind::places ? "local" : to_string(kind);
     std::string text = std::string("acdf ") + subcommand + " " + shell_word(options.source);
     const auto add = [&](const char* option, const std::string& value) {
@@ -102,9 +106,11 @@ std::string command_of(const SweepArguments& options, SweepKind kind) {
     add("--projection", options.input.projection == input::Projection::automatic
                             ? "auto"
                             : input::to_string(options.input.projection));
-    add("--domain", options.input.domain == input::Domain::latlong      ? "latlong"
-                    : options.input.domain == input::Domain::octahedral ? "octahedral"
-                                                                        : "source");
+    if (on_latlong_grid) text += " --domain latlong";
+    else
+        add("--domain", options.input.domain == input::Domain::latlong      ? "latlong"
+                        : options.input.domain == input::Domain::octahedral ? "octahedral"
+                                                                            : "source");
     add("--bad-pixels", options.input.bad_pixels == build::BadPixels::clamp   ? "clamp"
                         : options.input.bad_pixels == build::BadPixels::error ? "error"
                                                                               : "zero");
@@ -121,18 +127,13 @@ std::string output_of(const std::string& source, SweepKind kind) {
     return stem + (kind == SweepKind::local ? ".local.acdf" : kind == SweepKind::places ? ".places.acdf" : ".acdf");
 }
 
-/// The probe without its pixels, and its target.
-std::pair<input::Probe, builder::Target> sweep_target(const SweepArguments& options, SweepKind kind) {
-    if (kind != SweepKind::places && options.input.domain != input::Domain::latlong) {
-        ProbeTarget own =
-            load_target(options.source, options.input, options.sweep.target, [](const std::string&) {});
-        if (!own.resampled && builder::grid_of(own.target).parameterization == ACDF_PARAM_OCTAHEDRAL)
-            return {std::move(own.probe), std::move(own.target)};
-    }
-    input::Probe probe = load_probe(options.source, options.input, options.quiet);
-    builder::Target target = probe_target(options.source, probe, options.sweep.target);
-    probe.rgb = {};
-    return {std::move(probe), std::move(target)};
+/// What files are made of, as the subcommand does that makes one; points of meshes see lat-long texels.
+ProbeTarget sweep_target(const SweepArguments& options, SweepKind kind) {
+    input::ProbeOptions input = options.input;
+    if (kind == SweepKind::places) input.domain = input::Domain::latlong;
+    return load_target(options.source, input, options.sweep.target, [&](const std::string& text) {
+        if (!options.quiet) say(options.source + ": " + text);
+    });
 }
 
 SweptMesh swept_mesh(const SweepArguments& options) {
@@ -153,26 +154,35 @@ SweptMesh swept_mesh(const SweepArguments& options) {
 }
 
 Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress& progress) {
-    // The samplers to compare with draw texels: of a lat-long map or of an octahedral one, on a mesh of a lat-long
-    // one.
-    const auto [probe, target] = sweep_target(options, kind);
+    const ProbeTarget swept = sweep_target(options, kind);
+    const input::Probe& probe = swept.probe;
+    const builder::Target& target = swept.target;
     const builder::Source source = source_of(probe, options.input);
     const bool square = builder::grid_of(target).parameterization == ACDF_PARAM_OCTAHEDRAL;
     Sweep sweep = kind == SweepKind::places
                       ? sweep_places(target, source, swept_mesh(options), options.sweep, progress)
                   : kind == SweepKind::local ? sweep_local(target, source, options.sweep, progress)
                                              : sweep_environment(target, source, options.sweep, progress);
+    sweep.command = command_of(options, kind, kind == SweepKind::places && swept.resampled);
     sweep.description =
         std::to_string(probe.width) + " x " + std::to_string(probe.height) + (square ? " octahedral" : " lat-long");
-    if (probe.projection != input::Projection::latlong && !square)
-        sweep.description += ", resampled from " + std::to_string(probe.source_width) + " x " +
-                             std::to_string(probe.source_height) + " " + input::to_string(probe.projection);
+    if (!swept.resampled) return sweep;
+    sweep.description += ", resampled from " + std::to_string(probe.source_width) + " x " +
+                         std::to_string(probe.source_height) + " " + input::to_string(probe.projection);
+    char least[240];
+    std::snprintf(
+        least, sizeof least,
+        "the probe was resampled: no density that is constant on %d x %d texels has less than %.3g, of the light "
+        "itself; points and rivals take these texels for what is looked up",
+        probe.width, probe.height, compress::least_second_moment(builder::grid_of(target)) - 1.0);
+    sweep.notes.push_back(least);
     return sweep;
 }
 
 Sweep sweep_reflection(SweepArguments& options, const build::Progress& progress) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(options.source);
     Sweep sweep = sweep_brdf(*brdf, options.sweep, progress);
+    sweep.command = command_of(options, SweepKind::brdf, false);
     sweep.description = brdf->isotropic ? "isotropic BRDF" : "anisotropic BRDF";
     sweep.notes.insert(sweep.notes.end(), brdf->notes.begin(), brdf->notes.end());
     return sweep;
@@ -184,7 +194,6 @@ Sweep make_sweep(SweepArguments& options, SweepKind kind) {
         Sweep sweep = kind == SweepKind::brdf ? sweep_reflection(options, bar.callback())
                                               : sweep_probe(options, kind, bar.callback());
         sweep.source = options.source;
-        sweep.command = command_of(options, kind);
         sweep.output = output_of(options.source, kind);
         return sweep;
     } catch (const std::invalid_argument& error) {

@@ -96,7 +96,8 @@ void add_situations(const compress::Target& target, const measure::LightSampler&
 
 Sweep sweep_environment(const builder::Target& fitted, const builder::Source& source, const SweepOptions& options,
                         const build::Progress& progress) {
-    const compress::Target& target = builder::grid_of(fitted);
+    compress::Target map;
+    const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
     Sweep sweep;
     sweep.kind = SweepKind::environment;
     take_options(sweep, options);

@@ -120,7 +120,8 @@ void add_sobol(const compress::Target& target, const std::vector<build::Normal>&
 
 Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, const SweepOptions& options,
                   const build::Progress& progress) {
-    const compress::Target& target = builder::grid_of(fitted);
+    compress::Target map;
+    const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
     Sweep sweep;
     sweep.kind = SweepKind::local;
     take_options(sweep, options);

@@ -53,7 +53,8 @@ void measure_on(const measure::MeshStage& stage, std::vector<Candidate>& candida
 
 Sweep sweep_places(const builder::Target& fitted, const builder::Source& source, const SweptMesh& mesh,
                    const SweepOptions& options, const build::Progress& progress) {
-    const compress::Target& target = builder::grid_of(fitted);
+    compress::Target map;
+    const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
     Sweep sweep;
     sweep.kind = SweepKind::places;
     take_options(sweep, options);

@@ -19,12 +19,12 @@ using measure::LightSampler;
 using measure::PointSampler;
 using measure::ShadingPoint;
 
-/// What a density makes of the light itself.
+/// What a density makes of the light itself, as build::measure_environment has it.
 struct LightAccuracy {
     double relative_variance = 0.0, max_weight = 0.0, rms = 0.0;
 };
 LightAccuracy light_accuracy(const Target& target, const std::vector<float>& density) {
-    compress::Sum total, second, error;
+    compress::Sum second, error;
     double peak = 0.0;
     bool violated = false;
     const double flux = compress::integral(target);
@@ -39,10 +39,9 @@ LightAccuracy light_accuracy(const Target& target, const std::vector<float>& den
                 peak = std::max(peak, f / p);
             }
             error.add((p - f / flux) * (p - f / flux) * measure);
-            total.add(f * measure);
         }
     LightAccuracy out;
-    out.relative_variance = second.value() / (total.value() * total.value()) - 1.0;
+    out.relative_variance = second.value() / (target.mean_square > 0.0 ? target.mean_square : flux * flux) - 1.0;
     // Densities are floats, and so are CDFs: what they round is no variance worth telling.
     if (out.relative_variance < 1e-9) out.relative_variance = 0.0;
     out.max_weight = peak / flux;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/sum.h"
+#include "compress/target.h"
 
 #include <acdf/layout.h>
 
@@ -18,14 +19,16 @@ inline double recommendable_share(std::size_t k) {
     return (double(k) + 1.0) / (double(recommendable_shares) + 1.0);
 }
 
-/// Sums over texels of one integrand f, for densities p of the file and b of its company. Of N samples a `share` is
+/// Sums over texels of an integrand f, for densities p of the file and b of its company. Of N samples a `share` is
 /// drawn from the file, the others from the company.
 class Combination {
 public:
     Combination(double share, AcdfHeuristic heuristic) : share_(share), power_(heuristic == ACDF_HEURISTIC_POWER) {}
 
     /// A texel of measure `omega`.
-    void add(double f, double omega, double p, double b) {
+    void add(double f, double omega, double p, double b) { add(f, &f, 1, omega, p, b); }
+    /// The same of several channels: f is their root mean square in the texel, `means` what they are on average.
+    void add(double f, const double* means, std::size_t channels, double omega, double p, double b) {
         if (!(f > 0.0)) return;
         const double ours = share_ * p, theirs = (1.0 - share_) * b, most = std::max(ours, theirs);
         if (!(most > 0.0)) {
@@ -39,20 +42,25 @@ public:
         const double ratio = f / most * f * omega;
         second_ += ratio * ((x > 0.0 ? weight_ours * weight_ours / x : 0.0) +
                             (y > 0.0 ? weight_theirs * weight_theirs / y : 0.0));
-        ours_ += weight_ours * f * omega;
-        theirs_ += weight_theirs * f * omega;
+        ours_.add(means, channels, weight_ours * omega);
+        theirs_.add(means, channels, weight_theirs * omega);
         largest_ = std::max(largest_, f / most / all * (power_ ? std::max(x, y) : 1.0));
     }
     /// Adds the sums of other texels.
     void add(const Combination& other) {
         second_ += other.second_;
-        ours_ += other.ours_;
-        theirs_ += other.theirs_;
+        ours_.add(other.ours_);
+        theirs_.add(other.theirs_);
         largest_ = std::max(largest_, other.largest_);
         violations_ += other.violations_;
     }
 
-    double integral() const { return ours_ + theirs_; }
+    /// Of several channels the root of the sum of their squares.
+    double integral() const {
+        compress::ChannelSums all = ours_;
+        all.add(theirs_);
+        return all.length();
+    }
     std::uint64_t violations() const { return violations_; }
     double max_weight() const { return integral() > 0.0 ? largest_ / integral() : 0.0; }
     /// N times the variance of an estimate of N samples, over the square of the integral: comparable with that of
@@ -60,15 +68,17 @@ public:
     double relative_variance() const {
         if (violations_ > 0) return std::numeric_limits<double>::infinity();
         const double e = integral();
-        const double means = (share_ > 0.0 ? ours_ / e * (ours_ / e) / share_ : 0.0) +
-                             (share_ < 1.0 ? theirs_ / e * (theirs_ / e) / (1.0 - share_) : 0.0);
+        const double ours = ours_.length() / e, theirs = theirs_.length() / e;
+        const double means =
+            (share_ > 0.0 ? ours * ours / share_ : 0.0) + (share_ < 1.0 ? theirs * theirs / (1.0 - share_) : 0.0);
         return std::max(0.0, second_ / e / e - means);
     }
 
 private:
     double share_;
     bool power_;
-    double second_ = 0.0, ours_ = 0.0, theirs_ = 0.0, largest_ = 0.0;
+    double second_ = 0.0, largest_ = 0.0;
+    compress::ChannelSums ours_, theirs_;
     std::uint64_t violations_ = 0;
 };
 

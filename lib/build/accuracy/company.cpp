@@ -2,6 +2,7 @@
 
 #include "build/accuracy/cells.h"
 #include "build/accuracy/combination.h"
+#include "build/accuracy/fine_texels.h"
 #include "build/accuracy/texel_cosines.h"
 
 #include <tbb/parallel_for.h>
@@ -15,7 +16,8 @@ namespace {
 constexpr std::size_t kGuess = 8; // every so manieth normal guesses which it is
 
 /// sr^-1, of each texel.
-std::vector<double> densities(const File& file, const compress::Target& target) {
+std::vector<double> densities(const File& file, const FineTexels& texels) {
+    const compress::Target& target = texels.target();
     std::vector<double> out(std::size_t{target.columns} * target.rows);
     const AcdfEnvironment environment = file.environment().data();
     const AcdfGrid grid = acdf_environment_grid(&environment);
@@ -23,8 +25,9 @@ std::vector<double> densities(const File& file, const compress::Target& target) 
         if (cell.range[0].tilt != 0.0 || cell.range[1].tilt != 0.0)
             throw std::invalid_argument("tilted curves beside a company");
         const double p = cell.probability / acdf_grid_solid_angle(&grid, cell.range);
-        for (std::uint32_t r = cell.range[1].low; r < cell.range[1].high; ++r)
-            for (std::uint32_t c = cell.range[0].low; c < cell.range[0].high; ++c)
+        const std::array<AcdfRange, 2> range = texels.box(cell.range);
+        for (std::uint32_t r = range[1].low; r < range[1].high; ++r)
+            for (std::uint32_t c = range[0].low; c < range[0].high; ++c)
                 out[std::size_t{r} * target.columns + c] = p;
     });
     return out;
@@ -33,14 +36,21 @@ std::vector<double> densities(const File& file, const compress::Target& target) 
 class Measure {
 public:
     Measure(const File& file, const compress::Target& target)
-        : company_(*file.company()), target_(target), density_(densities(file, target)), cosines_(target) {}
+        : company_(*file.company()), texels_(target), target_(texels_.target()), density_(densities(file, texels_)),
+          cosines_(target_) {}
 
     Combination of(const Normal& n) const {
         const Combination none{double{company_.share}, static_cast<AcdfHeuristic>(company_.heuristic)};
         Combination out = none;
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
             Combination row = none;
-            for_each_lit(n, r, [&](double f, double omega, double p, double b) { row.add(f, omega, p, b); });
+            for_each_lit(n, r, [&](double f, double omega, double p, double b, std::size_t i) {
+                double means[3];
+                const std::size_t channels = compress::means_of(target_, i, means);
+                const double cosine = ACDF_PI * b;
+                for (std::size_t k = 0; k < channels; ++k) means[k] *= cosine;
+                row.add(f, means, channels, omega, p, b);
+            });
             out.add(row);
         }
         return out;
@@ -54,7 +64,7 @@ public:
         for (std::size_t k = 0; k < Count; ++k) share[k] = recommendable_share(first + k);
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
             std::array<double, Count> row{};
-            for_each_lit(n, r, [&](double f, double omega, double p, double b) {
+            for_each_lit(n, r, [&](double f, double omega, double p, double b, std::size_t) {
                 for (std::size_t k = 0; k < Count; ++k)
                     row[k] += f / (share[k] * p + (1.0 - share[k]) * b) * f * omega;
             });
@@ -66,7 +76,7 @@ public:
     double irradiance(const Normal& n) const {
         double sum = 0.0;
         for (std::uint32_t r = 0; r < target_.rows; ++r)
-            for_each_lit(n, r, [&](double f, double omega, double, double) { sum += f * omega; });
+            for_each_lit(n, r, [&](double f, double omega, double, double, std::size_t) { sum += f * omega; });
         return sum;
     }
 
@@ -79,11 +89,12 @@ private:
             const std::size_t i = std::size_t{r} * target_.columns + c;
             const double f = double{target_.values[i]} * cosine;
             if (f > 0.0)
-                visit(f, target_.row_measure[r] * target_.column_measure[c], density_[i], cosine / ACDF_PI);
+                visit(f, target_.row_measure[r] * target_.column_measure[c], density_[i], cosine / ACDF_PI, i);
         });
     }
 
     const AcdfCompany& company_;
+    const FineTexels texels_;
     const compress::Target& target_;
     std::vector<double> density_;
     TexelCosines cosines_;

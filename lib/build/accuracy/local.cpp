@@ -2,6 +2,7 @@
 
 #include "build/accuracy/cells.h"
 #include "build/accuracy/combination.h"
+#include "build/accuracy/fine_texels.h"
 #include "build/accuracy/step_means.h"
 #include "build/accuracy/texel_cosines.h"
 #include "compress/sum.h"
@@ -37,8 +38,9 @@ struct TilePicture {
 class LocalMeasure {
 public:
     LocalMeasure(const File& file, const Target& target)
-        : file_(file), target_(target), local_(file.local().data()), cosines_(target), boxes_(tile_boxes(file)) {
-        const std::size_t texels = std::size_t{target.columns} * target.rows;
+        : file_(file), texels_(target), target_(texels_.target()), local_(file.local().data()), cosines_(target_),
+          boxes_(tile_boxes(file)) {
+        const std::size_t texels = std::size_t{target_.columns} * target_.rows;
         if (local_.blend.tiles) {
             shared_ = {std::vector<std::uint32_t>(texels), std::vector<double>(texels), {}, 0};
             for (std::uint32_t t = 0; t < boxes_.size(); ++t)
@@ -46,8 +48,8 @@ public:
                                    [&](const Cell& cell) { fill(cell.range, cell.probability, t, shared_); });
         }
         Sum total;
-        for (std::uint32_t r = 0; r < target.rows; ++r)
-            for (std::uint32_t c = 0; c < target.columns; ++c) total.add(target.row(r)[c] * solid_angle(r, c));
+        for (std::uint32_t r = 0; r < target_.rows; ++r)
+            for (std::uint32_t c = 0; c < target_.columns; ++c) total.add(target_.row(r)[c] * solid_angle(r, c));
         total_ = total.value();
     }
 
@@ -68,9 +70,10 @@ private:
         return target_.row_measure[r] * target_.column_measure[c];
     }
 
-    void fill(const AcdfRange* range, double probability, std::uint32_t tile, TilePicture& out) const {
+    void fill(const AcdfRange* cell, double probability, std::uint32_t tile, TilePicture& out) const {
         const AcdfGrid grid = acdf_environment_grid(&local_.environment);
-        const double omega = acdf_grid_solid_angle(&grid, range);
+        const double omega = acdf_grid_solid_angle(&grid, cell);
+        const std::array<AcdfRange, 2> range = texels_.box(cell);
         for (std::uint32_t r = range[1].low; r < range[1].high; ++r) {
             const std::size_t row = std::size_t{r} * target_.columns;
             std::fill(out.density.begin() + std::ptrdiff_t(row + range[0].low),
@@ -78,7 +81,7 @@ private:
             std::fill(out.tile.begin() + std::ptrdiff_t(row + range[0].low),
                       out.tile.begin() + std::ptrdiff_t(row + range[0].high), tile);
         }
-        if (range[0].tilt != 0.0 || range[1].tilt != 0.0) tilt(range, out);
+        if (range[0].tilt != 0.0 || range[1].tilt != 0.0) tilt(range.data(), out);
     }
 
     void tilt(const AcdfRange* range, TilePicture& out) const {
@@ -141,6 +144,7 @@ private:
     NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
         NormalAccuracy out;
         Sum flux, second, first_above, light, light_second;
+        compress::ChannelSums irradiance; // of channels, where f is not g
         const bool drawn = !tile.empty(), alone = !local_.company;
         const double share = drawn ? double{local_.cosine_share} : 0.0;
         for (double& probability : tile) probability *= 1.0 - share;
@@ -148,6 +152,7 @@ private:
         Combination both = no_combination(), rival = both;
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
             const std::size_t row = std::size_t{r} * target_.columns;
+            compress::ChannelSums row_irradiance;
             double row_flux = 0.0, row_second = 0.0, row_above = 0.0, row_light = 0.0, row_light_second = 0.0;
             cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
                 const double light_p = drawn ? tile[picture.tile[row + c]] * picture.density[row + c] : 0.0;
@@ -157,28 +162,37 @@ private:
                 if (!(g > 0.0)) return;
                 const double f = g * cosine;
                 row_flux += f * omega;
+                double means[3];
+                std::size_t channels = 0;
+                if (!alone || !target_.means.empty()) {
+                    channels = compress::means_of(target_, row + c, means);
+                    row_irradiance.add(means, channels, cosine * omega);
+                }
                 row_light += g * omega;
                 row_light_second += f * cosine * omega;
                 if (!alone) {
-                    both.add(f, omega, p, cosine / ACDF_PI);
-                    rival.add(f, omega, g / total_, cosine / ACDF_PI);
+                    for (std::size_t k = 0; k < channels; ++k) means[k] *= cosine;
+                    both.add(f, means, channels, omega, p, cosine / ACDF_PI);
+                    rival.add(f, means, channels, omega, g / total_, cosine / ACDF_PI);
                     return;
                 }
                 if (!(p > 0.0)) {
                     ++out.support_violations;
                     return;
                 }
+                const double most = cosine * (target_.peaks.empty() ? g : double{target_.peaks[row + c]});
                 if (!sloped) {
                     row_second += f / p * f * omega;
-                    largest = std::max(largest, f / p);
+                    largest = std::max(largest, most / p);
                     return;
                 }
                 // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
                 const Slope slope = picture.slope[row + c];
                 row_second += f / (light_p * static_cast<double>(slope.harmonic) + rest) * f * omega;
-                largest = std::max(largest, f / (light_p * static_cast<double>(slope.smallest) + rest));
+                largest = std::max(largest, most / (light_p * static_cast<double>(slope.smallest) + rest));
             });
             flux.add(row_flux);
+            irradiance.add(row_irradiance);
             second.add(row_second);
             first_above.add(row_above);
             light.add(row_light);
@@ -187,12 +201,13 @@ private:
         const double e = flux.value();
         if (!(e > 0.0)) return {};
         out.irradiance = e;
+        const double mean = target_.means.empty() ? e : irradiance.length();
         out.relative_variance = out.support_violations > 0 ? std::numeric_limits<double>::infinity()
-                                                           : std::max(0.0, second.value() / e / e - 1.0);
+                                                           : std::max(0.0, second.value() / mean / mean - 1.0);
         // What is drawn around the normal lies above its horizon, all of it.
         out.share_above_horizon = drawn ? std::min(first_above.value() + share, 1.0) : 0.0;
-        out.max_weight = largest / e;
-        out.relative_variance_full_cdf = std::max(0.0, total_ / e * (light_second.value() / e) - 1.0);
+        out.max_weight = largest / mean;
+        out.relative_variance_full_cdf = std::max(0.0, total_ / mean * (light_second.value() / mean) - 1.0);
         out.share_above_horizon_full_cdf = light.value() / total_;
         if (alone) return out;
         out.relative_variance = both.relative_variance();
@@ -209,6 +224,7 @@ private:
     }
 
     const File& file_;
+    const FineTexels texels_;
     const Target& target_;
     const AcdfLocal local_;
     TexelCosines cosines_;

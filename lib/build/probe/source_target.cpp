@@ -45,6 +45,7 @@ public:
         const std::size_t texels = std::size_t{domain_.columns} * domain_.rows;
         target_.values.assign(texels, 0.0f);
         target_.peaks.assign(texels, 0.0f);
+        target_.means.assign(source_.planes(), std::vector<float>(texels, 0.0f));
         tbb::parallel_for(std::uint32_t{0}, domain_.rows, [&](std::uint32_t row) { cover(row); });
         const double error = scale_what_is_covered();
         std::vector<std::array<double, 3>> flux(domain_.rows);
@@ -165,6 +166,8 @@ private:
         const double own = target_.row_measure[row] * target_.column_measure[column], g = target_.values[i];
         target_.values[i] = compress::positive_float(std::sqrt(g * g + sum.energy / own));
         target_.peaks[i] = std::max(target_.peaks[i], compress::positive_float(sum.peak));
+        for (std::size_t plane = 0; plane < target_.means.size(); ++plane)
+            target_.means[plane][i] += static_cast<float>(sum.flux[plane] / own);
     }
 
     /// Slivers at the rim of a disc may have been missed by all: each goes where its middle points.

@@ -63,6 +63,11 @@ inline const Directions& ninths() {
     return all;
 }
 
+inline const Directions& sixteenths() {
+    static const Directions all(4);
+    return all;
+}
+
 /// The texel of a direction.
 inline std::size_t texel_of(const float d[3]) {
     const double phi = std::atan2(double{d[1]}, double{d[0]}),
@@ -180,21 +185,24 @@ inline double weight(double own, double other, AcdfHeuristic heuristic) {
 }
 
 /// N times the variance of N samples over the squared integral: for each sampler the variance of what one of its
-/// samples adds, texel by texel. `density(texel)` is ours. -1: it sees no light.
+/// samples adds, part of a texel by part. `density(texel)` is ours. -1: it sees no light.
 template <class Density>
 double slow_variance(const Probe& probe, const Vector& n, double share, AcdfHeuristic heuristic,
                      const Density& density) {
     double mean[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
-    const Directions& all = middles();
-    for (std::size_t texel = 0; texel < all.direction.size(); ++texel) {
-        const double cosine = dot(n, all.direction[texel].data()), f = double{probe.radiance[texel]} * cosine;
+    const Directions& all = sixteenths();
+    double ours = 0.0;
+    for (std::size_t part = 0, asked = all.direction.size(); part < all.direction.size(); ++part) {
+        const std::size_t texel = part / 16;
+        const double cosine = dot(n, all.direction[part].data()), f = double{probe.radiance[texel]} * cosine;
         if (!(f > 0.0)) continue;
-        const double p[2] = {density(texel), cosine / kPi}, a[2] = {share * p[0], (1.0 - share) * p[1]};
+        if (texel != asked) ours = density(asked = texel);
+        const double p[2] = {ours, cosine / kPi}, a[2] = {share * p[0], (1.0 - share) * p[1]};
         for (int i = 0; i < 2; ++i) {
             if (!(p[i] > 0.0)) continue;
             const double x = f * weight(a[i], a[1 - i], heuristic);
-            mean[i] += p[i] * all.omega[texel] * x;
-            square[i] += p[i] * all.omega[texel] * x * x;
+            mean[i] += p[i] * all.omega[part] * x;
+            square[i] += p[i] * all.omega[part] * x * x;
         }
     }
     const double e = share * mean[0] + (1.0 - share) * mean[1];

@@ -22,18 +22,18 @@ using builder::PlacePoint;
 
 constexpr int kColumns = 96, kRows = 48;
 
-struct Vec {
+struct Offset {
     double x, y, z;
 };
 
-Vec direction_of(double column, double row) {
+Offset direction_of(double column, double row) {
     const double theta = kPi * row / kRows, phi = kPi - 2.0 * kPi * column / kColumns;
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
 double radiance(int column, int row) {
     if (column >= 40 && column < 42 && row == 12) return 900.0; // a sun, 45 degrees above +x
-    const Vec d = direction_of(column + 0.5, row + 0.5);
+    const Offset d = direction_of(column + 0.5, row + 0.5);
     return d.z < 0.0 ? 0.05 : 0.3 + d.z + 0.5 * ((column * 7 + row * 13) % 11) / 11.0 + (d.x > 0.7 ? 4.0 : 0.0);
 }
 
@@ -129,7 +129,7 @@ Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const Pl
     double square = 0.0;
     for (int r = 0; r < kRows; ++r)
         for (int c = 0; c < kColumns; ++c) {
-            const Vec w = direction_of(c + 0.5, r + 0.5);
+            const Offset w = direction_of(c + 0.5, r + 0.5);
             const float d[3] = {float(w.x), float(w.y), float(w.z)};
             const double cosine =
                 w.x * double{point.normal[0]} + w.y * double{point.normal[1]} + w.z * double{point.normal[2]};
@@ -154,7 +154,7 @@ double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const
                  phi = std::atan2(double{s.direction[1]}, double{s.direction[0]});
     const int r = std::min(int(theta / kPi * kRows), kRows - 1),
               c = std::min(int((kPi - phi) / (2.0 * kPi) * kColumns), kColumns - 1);
-    const Vec w = direction_of(c + 0.5, r + 0.5);
+    const Offset w = direction_of(c + 0.5, r + 0.5);
     const float d[3] = {float(w.x), float(w.y), float(w.z)};
     const double cosine =
         w.x * double{point.normal[0]} + w.y * double{point.normal[1]} + w.z * double{point.normal[2]};

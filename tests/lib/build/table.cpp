@@ -14,12 +14,9 @@ namespace {
 
 using namespace acdf;
 using namespace acdf::test;
-using build::Table;
-using build::TableOptions;
-using compress::Goal;
 
-TableOptions with_cells(std::uint32_t cells, std::uint32_t indexed = 0) {
-    TableOptions options;
+build::TableOptions with_cells(std::uint32_t cells, std::uint32_t indexed = 0) {
+    build::TableOptions options;
     options.cells = cells;
     options.indexed = indexed;
     return options;
@@ -118,7 +115,7 @@ TEST(TableFit, OneAxisIsNearTheOptimalPartition) {
                 EXPECT_GE(found.cells, cells - cells / 8);
             }
             // Rounding the probabilities is worth its bytes, but never more than the size itself.
-            const Table table = table_of(arrays[k], with_cells(cells));
+            const build::Table table = table_of(arrays[k], with_cells(cells));
             EXPECT_LE(table.accuracy.relative_variance, 1.5 * found.variance);
             EXPECT_EQ(table.accuracy.cells, found.cells);
         }
@@ -129,15 +126,15 @@ TEST(TableFit, MeasuresWhatBruteForceFinds) {
                                      ShapeVector{5, 6, 4, 7}, ShapeVector{3, 4, 3, 4, 3, 4}}) {
         SCOPED_TRACE(shape.size());
         const input::NpyArray array = noisy_array(shape, 7 + shape.size());
-        TableOptions options = with_cells(60);
+        build::TableOptions options = with_cells(60);
         for (std::size_t k = 0; k < shape.size(); ++k) options.ranges.emplace_back(1.0, -0.5 * double(k));
-        const Table table = table_of(array, options);
-        const Loaded loaded(table.bytes);
+        const build::Table table = table_of(array, options);
+        const LoadedTable loaded(table.bytes);
         const double brute = brute_variance(loaded.file.table(), nullptr, array.values.data(), shape);
         EXPECT_NEAR(table.accuracy.relative_variance, brute, 1e-9 * (1.0 + brute));
         EXPECT_EQ(table.accuracy.support_violations, 0u);
         EXPECT_LE(table.accuracy.cells, 60u);
-        EXPECT_LT(brute, brute_variance(Loaded(table_of(array, with_cells(10)).bytes).file.table(), nullptr,
+        EXPECT_LT(brute, brute_variance(LoadedTable(table_of(array, with_cells(10)).bytes).file.table(), nullptr,
                                         array.values.data(), shape));
         EXPECT_GE(table.accuracy.max_weight, 1.0);
     }
@@ -158,7 +155,7 @@ TEST(TableFit, TwoAxesAreFittedAsAnEnvironmentIs) {
         compress::FitOptions fit;
         fit.goal.cells = cells;
         const compress::EncodedTree expected = compress::fit(target, fit).tree;
-        const Loaded loaded(table_of(array, with_cells(cells)).bytes);
+        const LoadedTable loaded(table_of(array, with_cells(cells)).bytes);
         ASSERT_EQ(loaded.file.tree_units() * 2u, expected.bytes.size());
         EXPECT_TRUE(std::equal(expected.bytes.begin(), expected.bytes.end(), loaded.file.tree()));
     }
@@ -167,9 +164,9 @@ TEST(TableFit, TwoAxesAreFittedAsAnEnvironmentIs) {
 TEST(TableFit, ThreeAxesIntegrateToOneAndSamplesFollowTheTable) {
     const ShapeVector shape{7, 6, 5};
     const input::NpyArray array = noisy_array(shape, 4);
-    TableOptions options = with_cells(1000000); // as many as there are numbers
+    build::TableOptions options = with_cells(1000000); // as many as there are numbers
     options.ranges = {{0, 2}, {-1, 1}, {5, 4}};
-    const Loaded loaded(table_of(array, options).bytes);
+    const LoadedTable loaded(table_of(array, options).bytes);
     const TableView view = loaded.file.table();
     double total = 0.0;
     for (const float f : array.values) total += double{f};
@@ -209,11 +206,11 @@ TEST(TableFit, IndexedBins) {
         const double x = at[2] - 4.0 * at[0], y = at[3] - 3.0 * at[1];
         return (1.0 + at[0] + 10.0 * at[1]) * std::exp(-0.05 * (x * x + y * y));
     });
-    TableOptions options = with_cells(40, 2);
+    build::TableOptions options = with_cells(40, 2);
     options.names = {"i", "j", "x", "y"};
     options.ranges = {{0, 1}, {0, 1}, {-1, 1}, {0, 3}};
-    const Table table = table_of(array, options);
-    const Loaded loaded(table.bytes);
+    const build::Table table = table_of(array, options);
+    const LoadedTable loaded(table.bytes);
     const TableView view = loaded.file.table();
     EXPECT_EQ(loaded.file.description().bin_count, 6u);
     EXPECT_EQ(table.accuracy.lit_bins, 5u);
@@ -245,9 +242,9 @@ TEST(TableFit, IndexedBins) {
 }
 
 TEST(TableFit, BinsOfOneCell) {
-    const Table table = table_of(
+    const build::Table table = table_of(
         array_of({5, 7}, [](const ShapeVector& at) { return at[0] == 2 ? 0.0 : 1.0 + at[0]; }), with_cells(8, 1));
-    const Loaded loaded(table.bytes);
+    const LoadedTable loaded(table.bytes);
     for (std::uint32_t i = 0; i < 5; ++i) {
         const double x = 3.5;
         EXPECT_NEAR(loaded.file.table().pdf(&i, &x), i == 2 ? 0.0 : 1.0 / 7.0, 1e-12);
@@ -259,8 +256,8 @@ TEST(TableFit, FaintBinsCanBeDrawn) {
     const input::NpyArray array = array_of({2, 4}, [](const ShapeVector& at) {
         return at[0] == 0 ? 3e38 : at[1] == 2 ? 1e-42 : 0.0;
     });
-    const Table table = table_of(array, with_cells(8, 1));
-    const Loaded loaded(table.bytes);
+    const build::Table table = table_of(array, with_cells(8, 1));
+    const LoadedTable loaded(table.bytes);
     const std::uint32_t index = 1;
     const double u = 0.5;
     double x = 0.0;
@@ -271,20 +268,20 @@ TEST(TableFit, FaintBinsCanBeDrawn) {
 
 TEST(TableFit, GoalsAreMet) {
     const input::NpyArray array = noisy_array({20, 20, 20}, 5);
-    TableOptions options;
-    options.fit.goal.kind = Goal::Kind::budget;
+    build::TableOptions options;
+    options.fit.goal.kind = compress::Goal::Kind::budget;
     options.fit.goal.budget = 8000;
-    const Table small = table_of(array, options);
+    const build::Table small = table_of(array, options);
     EXPECT_LE(small.bytes.size(), 8000u);
     EXPECT_GE(small.bytes.size(), 7700u);
-    options.fit.goal.kind = Goal::Kind::variance;
+    options.fit.goal.kind = compress::Goal::Kind::variance;
     options.fit.goal.variance = 0.05;
-    const Table accurate = table_of(array, options);
+    const build::Table accurate = table_of(array, options);
     EXPECT_LE(accurate.accuracy.relative_variance, 0.05);
     EXPECT_GE(accurate.accuracy.relative_variance, 0.045);
     options.fit.goal.variance = 1e-12;
     EXPECT_THROW(table_of(array, options), std::runtime_error);
-    TableOptions light = with_cells(1500);
+    build::TableOptions light = with_cells(1500);
     light.fit.max_weight = 3.0;
     EXPECT_LE(table_of(array, light).accuracy.max_weight, 3.0);
     EXPECT_GT(table_of(array, with_cells(1500)).accuracy.max_weight, 3.0);
@@ -303,13 +300,13 @@ TEST(TableFit, TheSameBytesForAnyNumberOfThreads) {
 
 TEST(TableFit, ScaledDoublesKeepTheirTotal) {
     input::NpyArray array = noisy_array({30}, 2);
-    const double total = Loaded(table_of(array, with_cells(10)).bytes).file.table().total();
+    const double total = LoadedTable(table_of(array, with_cells(10)).bytes).file.table().total();
     array.scale = 0x1p300;
-    const Loaded scaled(table_of(array, with_cells(10)).bytes);
+    const LoadedTable scaled(table_of(array, with_cells(10)).bytes);
     EXPECT_NEAR(scaled.file.table().total() / (total * 0x1p300), 1.0, 1e-12);
 }
 
-void expect_refused(const input::NpyArray& array, const TableOptions& options, const char* why) {
+void expect_refused(const input::NpyArray& array, const build::TableOptions& options, const char* why) {
     try {
         table_of(array, options);
         ADD_FAILURE() << "accepted, though " << why;
@@ -321,7 +318,7 @@ void expect_refused(const input::NpyArray& array, const TableOptions& options, c
 TEST(TableFit, OptionsThatDoNotFit) {
     const input::NpyArray array = noisy_array({4, 5}, 1);
     expect_refused(array, with_cells(5, 2), "one at least is sampled");
-    TableOptions options;
+    build::TableOptions options;
     options.names = {"a"};
     expect_refused(array, options, "1 names");
     options.names = {"a", "a"};

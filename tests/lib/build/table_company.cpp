@@ -98,7 +98,7 @@ TEST(TableCompany, IsMeasuredAsASlowReferenceDoesAndNearTheBestThereIs) {
             build::TableOptions options = beside(other, heuristic, light);
             options.cells = kPoints;
             const build::Table made = table_of(array, options);
-            const Loaded loaded(made.bytes);
+            const LoadedTable loaded(made.bytes);
             const double share = light / (light + 1.0);
             EXPECT_TRUE(loaded.file.table().needs_company());
             EXPECT_EQ(made.accuracy.support_violations, 0u);
@@ -117,10 +117,10 @@ TEST(TableCompany, IsMeasuredAsASlowReferenceDoesAndNearTheBestThereIs) {
 
 TEST(TableCompany, HasLessNoiseThanAFileThatIsMadeToBeUsedAlone) {
     const input::NpyArray array = noisy_array({kBins, kX, kY}, 5, 0.1), other = smooth();
-    const Loaded with(table_of(array, beside(other, ACDF_HEURISTIC_BALANCE, 1.0)).bytes);
+    const LoadedTable with(table_of(array, beside(other, ACDF_HEURISTIC_BALANCE, 1.0)).bytes);
     build::TableOptions options = beside(other, ACDF_HEURISTIC_BALANCE, 1.0);
     options.company = {};
-    const Loaded alone(table_of(array, options).bytes);
+    const LoadedTable alone(table_of(array, options).bytes);
     for (std::uint32_t bin = 0; bin + 1 < kBins; ++bin) {
         const BesideOther ours(with.file, array, other, bin), theirs(alone.file, array, other, bin);
         EXPECT_LT(ours.variance(0.5, ACDF_HEURISTIC_BALANCE), 0.9 * theirs.variance(0.5, ACDF_HEURISTIC_BALANCE));
@@ -135,7 +135,7 @@ TEST(TableCompany, HasLessNoiseThanAFileThatIsMadeToBeUsedAlone) {
 
 TEST(TableCompany, SamplesFollowTheDensity) {
     const input::NpyArray array = noisy_array({kBins, kX, kY}, 5, 0.1), other = smooth();
-    const Loaded loaded(table_of(array, beside(other, ACDF_HEURISTIC_BALANCE, 1.0)).bytes);
+    const LoadedTable loaded(table_of(array, beside(other, ACDF_HEURISTIC_BALANCE, 1.0)).bytes);
     std::mt19937_64 random(11);
     for (std::uint32_t bin = 0; bin < kBins; ++bin) {
         const BesideOther at(loaded.file, array, other, bin);

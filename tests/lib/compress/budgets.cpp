@@ -66,7 +66,7 @@ protected:
 std::vector<compress::Target> Budgets::targets_;
 std::map<std::pair<std::size_t, std::uint64_t>, Made> Budgets::made_;
 
-std::vector<std::uint8_t> file_of(const compress::EncodedTree& tree, const compress::Target& target) {
+std::vector<std::uint8_t> usual_file(const compress::EncodedTree& tree, const compress::Target& target) {
     compress::Description description = compress::environment_description(target.columns, target.rows);
     description.total = target.total;
     description.metadata = {{"about.as.long.as.usual", std::string(500, ' ')}};
@@ -85,9 +85,9 @@ std::vector<std::uint8_t> within(const compress::Target& target, std::uint64_t b
     options.goal.kind = compress::Goal::Kind::budget;
     options.goal.budget = budget;
     options.file_size = [&](const compress::EncodedTree& tree) {
-        return std::uint64_t{file_of(tree, target).size()};
+        return std::uint64_t{usual_file(tree, target).size()};
     };
-    return file_of(compress::fit(target, options).tree, target);
+    return usual_file(compress::fit(target, options).tree, target);
 }
 
 /// The file of a probe within a budget; each is made once.
@@ -129,7 +129,7 @@ Point paper_fit(const compress::Target& target, std::uint32_t knots) {
     options.column_segments = options.row_segments = knots;
     for (compress::Order order : {compress::Order::phi, compress::Order::z}) {
         options.order = order;
-        const std::vector<std::uint8_t> bytes = file_of(compress::fit(target, options).tree, target);
+        const std::vector<std::uint8_t> bytes = usual_file(compress::fit(target, options).tree, target);
         const double variance = measured(bytes, target).relative_variance;
         if (variance < best.variance) best = {double(bytes.size()), variance};
     }
@@ -164,7 +164,7 @@ TEST_F(Budgets, ATargetVarianceIsReachedAndNotMissedByMuch) {
             options.goal.kind = compress::Goal::Kind::variance;
             options.goal.variance = goal;
             const double variance =
-                measured(file_of(compress::fit(target, options).tree, target), target).relative_variance;
+                measured(usual_file(compress::fit(target, options).tree, target), target).relative_variance;
             EXPECT_LE(variance, goal * (1.0 + 1e-9));
             EXPECT_GE(variance, 0.97 * goal);
         }
@@ -178,7 +178,8 @@ TEST_F(Budgets, WeightsStayBelowTheBound) {
             options.max_weight = bound;
             options.goal.kind = compress::Goal::Kind::variance;
             options.goal.variance = 0.05;
-            const build::Accuracy accuracy = measured(file_of(compress::fit(target, options).tree, target), target);
+            const build::Accuracy accuracy =
+                measured(usual_file(compress::fit(target, options).tree, target), target);
             EXPECT_LE(accuracy.max_weight, bound * (1.0 + 1e-6));
             EXPECT_LE(accuracy.relative_variance, 0.05);
         }

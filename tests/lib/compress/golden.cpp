@@ -1,4 +1,5 @@
 // The frozen files of every version: format/make_golden.cpp makes those of the present one.
+#include "tests/inputs/directions.h"
 #include "tests/inputs/places.h"
 #include "tests/lib/reader/golden_numbers.h"
 #include <acdf/reader.h>
@@ -96,7 +97,8 @@ struct HandMade {
     double pdf; ///< probability over (difference of phi x difference of cos theta)
 };
 
-const double kPi = 3.14159265358979324, kHalf = std::sqrt(0.5);
+using acdf_test::kPi;
+const double kHalf = std::sqrt(0.5);
 const double kSin22 = std::sin(kPi / 8), kCos22 = std::cos(kPi / 8);
 
 // one_texel: phi falls from pi/2 (column 2 of 8) to pi/4, theta grows from pi/4 (row 1 of 4) to pi/2.

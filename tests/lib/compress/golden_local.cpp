@@ -11,7 +11,7 @@
 
 namespace {
 
-const std::string kGolden = ACDF_TEST_DIR "/golden/v1.0/";
+const std::string kGoldenLocal = ACDF_TEST_DIR "/golden/v1.0/";
 
 class GoldenLocal : public acdf_test::GoldenDraws {};
 
@@ -19,7 +19,7 @@ TEST_P(GoldenLocal, DrawsTheSameSamples) {
     acdf::LoadOptions options; // as SPEC.md says it, to the last bit
     options.tables = false;
     acdf::File walked;
-    ASSERT_TRUE(acdf::File::open((kGolden + GetParam() + ".acdf").c_str(), walked, options).ok());
+    ASSERT_TRUE(acdf::File::open((kGoldenLocal + GetParam() + ".acdf").c_str(), walked, options).ok());
     for (const acdf_test::GoldenDraw& line : lines_) {
         const auto s = walked.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
@@ -53,8 +53,8 @@ INSTANTIATE_TEST_SUITE_P(V1_0, GoldenLocal,
 
 TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {
     acdf::File local, grid;
-    ASSERT_TRUE(acdf::File::open((kGolden + "local.acdf").c_str(), local).ok());
-    ASSERT_TRUE(acdf::File::open((kGolden + "local_grid.acdf").c_str(), grid).ok());
+    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local.acdf").c_str(), local).ok());
+    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid).ok());
     EXPECT_EQ(local.local().data().subdivisions, 2u);
     EXPECT_EQ(local.local().data().light_count, 1u);
     EXPECT_EQ(local.local().data().cosine_share, 0.25);
@@ -67,7 +67,7 @@ TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {
 // Frame of normals, by hand: theta from +z, the first column of phi begins at -x and turns towards +y.
 TEST(GoldenLocalFrame, NormalsFindTheirBins) {
     acdf::File grid;
-    ASSERT_TRUE(acdf::File::open((kGolden + "local_grid.acdf").c_str(), grid).ok());
+    ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid).ok());
     const auto view = grid.local();
     const float left[3] = {-0.5f, 1.0f, 0.1f}, front[3] = {1.0f, 0.0f, 0.1f}, right[3] = {-0.5f, -1.0f, 0.1f};
     EXPECT_DOUBLE_EQ(view.irradiance(left), 3.0 * 0.125);

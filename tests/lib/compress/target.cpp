@@ -1,4 +1,6 @@
 // Targets for channels and filters: against brute force, and what a mismatch with the renderer's lookup costs.
+#include "tests/inputs/directions.h"
+
 #include "build/accuracy/environment.h"
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
@@ -13,9 +15,9 @@
 namespace {
 
 using namespace acdf;
+using acdf_test::kPi;
 
 constexpr std::uint32_t kColumns = 12, kRows = 7;
-constexpr double kPi = 3.14159265358979323846;
 
 std::vector<float> noisy_map() {
     std::mt19937 random(3);
@@ -50,18 +52,20 @@ TEST(Target, BilinearIsTheRootMeanSquareOverTheTexel) {
     double total = 0.0;
     for (std::uint32_t r = 0; r < kRows; ++r)
         for (std::uint32_t c = 0; c < kColumns; ++c) {
-            double square = 0.0, weight = 0.0, peak = 0.0;
+            double square = 0.0, weight = 0.0, peak = 0.0, mean = 0.0;
             for (int j = 0; j < n; ++j)
                 for (int i = 0; i < n; ++i) {
                     const double y = r + (j + 0.5) / n, f = bilinear(rgb, 0, c + (i + 0.5) / n, y);
                     const double w = std::sin(kPi * y / kRows);
                     square += w * f * f;
+                    mean += w * f;
                     weight += w;
                     peak = std::max(peak, f);
                     total += f * w * (2.0 * kPi / kColumns / n) * (kPi / kRows / n);
                 }
             const std::size_t at = std::size_t{r} * kColumns + c;
             EXPECT_NEAR(target.values[at], std::sqrt(square / weight), 2e-3 * std::sqrt(square / weight) + 1e-6);
+            EXPECT_NEAR(target.means.at(0)[at], mean / weight, 2e-3 * mean / weight + 1e-6);
             EXPECT_GE(target.peaks[at], peak - 1e-5);
             EXPECT_LE(target.peaks[at], peak + 0.3);
         }
@@ -77,8 +81,10 @@ TEST(Target, SeparateChannelsAreTheRootOfTheSumOfSquares) {
     for (std::size_t i = 0; i < target.values.size(); ++i) {
         const double r = rgb[3 * i], g = rgb[3 * i + 1], b = rgb[3 * i + 2];
         EXPECT_FLOAT_EQ(target.values[i], static_cast<float>(std::sqrt(r * r + g * g + b * b)));
-        for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t k = 0; k < 3; ++k) {
             sums[k] += rgb[3 * i + k] * target.row_measure[i / kColumns] * target.column_measure[i % kColumns];
+            EXPECT_EQ(target.means.at(k)[i], rgb[3 * i + k]);
+        }
     }
     EXPECT_NEAR(target.mean_square, sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2],
                 1e-9 * target.mean_square);

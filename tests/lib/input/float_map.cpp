@@ -52,7 +52,7 @@ std::vector<float> read_part(const images::ImageReader& reader, const std::strin
 
 TEST(FloatMap, IsWhatOpenImageIOReads) {
     const Folder folder;
-    const std::string path = folder.file("a.pfm");
+    const std::string path = folder / "a.pfm";
     write_float_map(path, kWidth, kHeight, texels());
     ASSERT_TRUE(is_float_map(path));
     images::Header ours, theirs;
@@ -72,8 +72,8 @@ TEST(FloatMap, IsWhatOpenImageIOReads) {
 TEST(FloatMap, IsReadAsAProbe) {
     const Folder folder;
     const Pixels sky = latlong_sky(32);
-    write_float_map(folder.file("a.pfm"), sky.width, sky.height, sky.rgb);
-    const input::Probe probe = input::read_probe(folder.file("a.pfm"));
+    write_float_map(folder / "a.pfm", sky.width, sky.height, sky.rgb);
+    const input::Probe probe = input::read_probe(folder / "a.pfm");
     EXPECT_EQ(probe.rgb, sky.rgb);
     EXPECT_TRUE(probe.warnings.empty());
 }
@@ -118,24 +118,24 @@ std::vector<float> read_all(const images::ImageReader& reader, const std::string
 
 TEST(FloatMap, ChannelsScalesAndOrdersOfBytesAreReadAsByOpenImageIO) {
     const Folder folder;
-    const std::string path = folder.file("a.pfm");
+    const std::string path = folder / "a.pfm";
     for (const Form& form : kForms) {
         SCOPED_TRACE(std::string(form.type) + " " + form.scale);
-        write_bytes(path, map_of(form, "\n"));
+        write_text(path, map_of(form, "\n"));
         images::Header ours, theirs;
         const std::vector<float> numbers = read_all(images::float_map_reader(), path, ours);
         EXPECT_EQ(numbers, read_all(images::module().reader, path, theirs));
         EXPECT_EQ(ours.channels, theirs.channels);
-        write_bytes(path, map_of(form, "\r\n")); // of which OpenImageIO takes the last byte for a pixel's first
+        write_text(path, map_of(form, "\r\n")); // of which OpenImageIO takes the last byte for a pixel's first
         EXPECT_EQ(numbers, read_all(images::float_map_reader(), path, ours));
     }
 }
 
 TEST(FloatMap, WhatIsUnusualIsLeftToOpenImageIO) {
     const Folder folder;
-    const std::string path = folder.file("a.pfm"), pixels(12 * 8, '\x3F');
+    const std::string path = folder / "a.pfm", pixels(12 * 8, '\x3F');
     const auto is_ours = [&](const std::string& header, const std::string& rest) {
-        write_bytes(path, header + rest);
+        write_text(path, header + rest);
         return is_float_map(path);
     };
     for (const char* usual :
@@ -152,8 +152,8 @@ TEST(FloatMap, WhatIsUnusualIsLeftToOpenImageIO) {
           "PF\n4 2\n-1.0", "PF", ""})
         EXPECT_FALSE(is_ours(other, pixels)) << other;
     EXPECT_FALSE(is_ours("PF\n4 2\n-1.0\n", pixels.substr(1)));
-    EXPECT_FALSE(is_float_map(folder.file("missing.pfm")));
-    EXPECT_FALSE(is_float_map(folder.file("")));
+    EXPECT_FALSE(is_float_map(folder / "missing.pfm"));
+    EXPECT_FALSE(is_float_map(folder / ""));
 }
 
 } // namespace

@@ -115,7 +115,7 @@ ImageSpec usual_spec(int channels, TypeDesc type = TypeDesc::HALF) {
 class UsualImages : public testing::Test {
 protected:
     Folder folder;
-    std::string exr = folder.file("a.exr"), hdr = folder.file("a.hdr");
+    std::string exr = folder / "a.exr", hdr = folder / "a.hdr";
 
     void write(const ImageSpec& spec) {
         write_image(exr, spec, usual_texels(spec.nchannels));
@@ -127,7 +127,7 @@ protected:
     }
     /// Damages a file and compares, again and again.
     void damage(const std::string& path, std::size_t header, unsigned seed) {
-        const std::string good = read_bytes(path), bad = folder.file("bad");
+        const std::string good = read_text(path), bad = folder / "bad";
         std::mt19937 random(seed);
         int refused = 0;
         const int times = acdf_test::kSanitized ? 40 : 200;
@@ -137,7 +137,7 @@ protected:
             if (i % 8 == 7) bytes.resize(random() % bytes.size());
             else if (i % 2) bytes[header + random() % (bytes.size() - header)] = static_cast<char>(random());
             else bytes[random() % header] = static_cast<char>(random());
-            write_bytes(bad, bytes);
+            write_text(bad, bytes);
             const Read ours = read_file(bad);
             refused += !ours.opened || !ours.done;
             if (!claims_too_much(ours, bytes)) expect_same(ours, read_with(images::module().reader, bad));
@@ -189,13 +189,13 @@ TEST_F(UsualImages, UnusualOpenExrIsLeftToOpenImageIO) {
     for (const ImageSpec* spec : {&border, &gamma, &space}) {
         write(*spec);
         EXPECT_TRUE(is_taken(exr));
-        std::string bytes = read_bytes(exr);
+        std::string bytes = read_text(exr);
         bytes.replace(bytes.find("abcd:"), 4, "oiio");
-        write_bytes(exr, bytes);
+        write_text(exr, bytes);
         EXPECT_FALSE(is_taken(exr));
         expect_same(read_file(exr), read_with(images::module().reader, exr));
     }
-    write_bytes(exr, "no image");
+    write_text(exr, "no image");
     EXPECT_FALSE(is_taken(exr));
     expect_same(read_file(exr), read_with(images::module().reader, exr));
 }
@@ -205,7 +205,7 @@ TEST_F(UsualImages, Radiance) {
     ASSERT_TRUE(is_taken(hdr));
     const Read theirs = read_with(images::module().reader, hdr);
     expect_same(read_file(hdr), theirs);
-    const std::string bytes = read_bytes(hdr);
+    const std::string bytes = read_text(hdr);
     const std::string pixels = bytes.substr(bytes.find("+X 32\n") + 6), size = "-Y 16 +X 32\n";
     const std::string format = "FORMAT=32-bit_rle_rgbe\n";
     for (const std::string& head : {"#?RADIANCE\n" + format + "\n",
@@ -213,7 +213,7 @@ TEST_F(UsualImages, Radiance) {
                                     "#?RADIANCE\n" + format + "EXPOSURE=          1.0000000000000\n\n",
                                     "#?RADIANCE\nrpict -av 0 0 0 -x=1\n\tpfilt -1\nnormpat\nSOFTWARE=hand\n" +
                                         format + "VIEW= -vtv -vp 1 2 3\n# " + std::string(150, 'x') + "\n\n"}) {
-        write_bytes(hdr, head + size + pixels + "behind");
+        write_text(hdr, head + size + pixels + "behind");
         EXPECT_TRUE(is_taken(hdr)) << head;
         expect_same(read_file(hdr), theirs);
     }
@@ -229,7 +229,7 @@ TEST_F(UsualImages, Radiance) {
 
 TEST_F(UsualImages, UnusualRadianceIsLeftToOpenImageIO) {
     write_image(hdr, usual_spec(3, TypeDesc::FLOAT), usual_texels(3));
-    const std::string bytes = read_bytes(hdr), pixels = bytes.substr(bytes.find("+X 32\n") + 6);
+    const std::string bytes = read_text(hdr), pixels = bytes.substr(bytes.find("+X 32\n") + 6);
     const std::string begin = "#?RADIANCE\n", format = "FORMAT=32-bit_rle_rgbe\n", size = "-Y 16 +X 32\n";
     for (const std::string& head : {"#?RGBE\n" + format + "\n" + size,
                                     begin + format + "GAMMA=2.2\n\n" + size,
@@ -251,14 +251,14 @@ TEST_F(UsualImages, UnusualRadianceIsLeftToOpenImageIO) {
                                     begin + format + "\r\n" + size,
                                     format + "\n" + size,
                                     begin + format}) {
-        write_bytes(hdr, head + pixels);
+        write_text(hdr, head + pixels);
         EXPECT_FALSE(is_taken(hdr)) << head;
         expect_same(read_file(hdr), read_with(images::module().reader, hdr));
     }
     // Rows that are not encoded.
-    write_bytes(hdr, begin + format + "\n" + size + std::string(4 * kImageWidth * kImageHeight, '\x51'));
+    write_text(hdr, begin + format + "\n" + size + std::string(4 * kImageWidth * kImageHeight, '\x51'));
     expect_same(read_file(hdr), read_with(images::module().reader, hdr));
-    EXPECT_FALSE(is_taken(folder.file("")));
+    EXPECT_FALSE(is_taken(folder / ""));
 }
 
 /// A picture of whole pixels, one after the other; where n > 1, n times.
@@ -299,24 +299,24 @@ WholePixels older_picture() {
 // nothing is encoded.
 TEST_F(UsualImages, OlderRadiance) {
     const WholePixels picture = older_picture();
-    write_bytes(hdr, picture.written(false));
+    write_text(hdr, picture.written(false));
     EXPECT_FALSE(is_taken(hdr));
     const Read plain = read_with(images::module().reader, hdr);
     ASSERT_TRUE(plain.opened && plain.done);
     expect_same(read_file(hdr), plain);
     const std::string encoded = picture.written(true);
-    write_bytes(hdr, encoded);
+    write_text(hdr, encoded);
     ASSERT_TRUE(is_taken(hdr));
     EXPECT_FALSE(read_with(images::module().reader, hdr).done);
     expect_same(read_file(hdr), plain);
     // Cut short anywhere, or with runs of nothing or beyond the row.
     for (std::size_t size = picture.head().size(); size < encoded.size(); ++size) {
-        write_bytes(hdr, encoded.substr(0, size));
+        write_text(hdr, encoded.substr(0, size));
         EXPECT_FALSE(read_file(hdr).done) << size;
     }
     for (const std::string& run :
          {std::string("\1\1\1\1"), "\x80\0\0\x80\1\1\1\xff\1\1\1\1"s, "\x80\0\0\x80\1\1\1\0\1\1\1\0\1\1\1\1"s}) {
-        write_bytes(hdr, picture.head() + run + encoded.substr(picture.head().size()));
+        write_text(hdr, picture.head() + run + encoded.substr(picture.head().size()));
         EXPECT_FALSE(read_file(hdr).done);
     }
 }
@@ -333,7 +333,7 @@ TEST_F(UsualImages, DamagedOpenExr) {
 
 TEST_F(UsualImages, AttributesOfOpenExrBeyondTheFile) {
     write(usual_spec(3));
-    const std::string good = read_bytes(exr);
+    const std::string good = read_text(exr);
     for (const std::string& attribute :
          {"channels\0chlist\0"s, "compression\0compression\0"s, "lineOrder\0lineOrder\0"s}) {
         std::string bytes = good;
@@ -342,7 +342,7 @@ TEST_F(UsualImages, AttributesOfOpenExrBeyondTheFile) {
         const std::size_t size = at + attribute.size(), left = bytes.size() - size - 4;
         const auto claim = [&](std::size_t claimed) {
             for (std::size_t i = 0; i < 4; ++i) bytes[size + i] = static_cast<char>(claimed >> (8 * i));
-            write_bytes(exr, bytes);
+            write_text(exr, bytes);
             return read_file(exr);
         };
         const Read one_more = claim(left + 1), most = claim(0x7FFFFFFF);
@@ -363,7 +363,7 @@ TEST_F(UsualImages, HeadersOfPartsOfOpenExrBeyondTheFile) {
     const std::string begin = "\x76\x2F\x31\x01\x02\x10\0\0"s, name = "name\0string\0\1\0\0\0a"s;
     const std::string too_large = "name\0string\0\0\0\0\x10"s;
     const auto refused = [&](const std::string& bytes) {
-        write_bytes(exr, bytes);
+        write_text(exr, bytes);
         return claims_too_much(read_file(exr), bytes);
     };
     EXPECT_TRUE(refused(begin + name + "\0"s + too_large));

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "input/probe/probe.h"
+#include "tests/inputs/folder.h"
 #include "tests/lib/build/probe/projection_reference.h"
-#include "tests/lib/input/folder.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

@@ -53,7 +53,7 @@ Picture picture(int width, int height, int channels, double noise) {
 class WrittenImages : public testing::Test {
 protected:
     Folder folder;
-    std::string png = folder.file("a.png"), exr = folder.file("a.exr");
+    std::string png = folder / "a.png", exr = folder / "a.exr";
     std::vector<Note> notes{{"Software", "acdf"}, {"Description", "h\xC3\xB6lzern, 10 sr^-1"}};
 
     void expect_kept(const Picture& rgb) {

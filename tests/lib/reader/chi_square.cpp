@@ -47,7 +47,7 @@ TEST(EnvironmentView, samplesFollowTheDensity) {
         std::vector<double> count(4 * cells.size(), 0.0);
         std::mt19937_64 rng(seed);
         for (int n = 0; n < samples; ++n) {
-            const auto s = env->view.sample(unit(rng), unit(rng));
+            const auto s = env->view.sample(uniform(rng), uniform(rng));
             const double d[3] = {s.direction[0], s.direction[1], s.direction[2]};
             double square[2], t[2];
             ASSERT_TRUE(reference.square_of(d, square));

@@ -13,7 +13,7 @@ namespace {
 TEST(ElementaryFunctions, matchTheLibrary) {
     std::mt19937_64 rng(1);
     for (int n = 0; n < 200000; ++n) {
-        const double x = 4 * unit(rng) - 2, y = 4 * unit(rng) - 2;
+        const double x = 4 * uniform(rng) - 2, y = 4 * uniform(rng) - 2;
         const double scale = std::ldexp(1.0, static_cast<int>(rng() % 60) - 50);
         double sine, cosine;
         acdf_sincospi(x / 2, &sine, &cosine);

@@ -10,7 +10,7 @@
 
 namespace {
 
-const std::string kGolden = ACDF_TEST_DIR "/golden/v1.0/";
+const std::string kGoldenBrdfs = ACDF_TEST_DIR "/golden/v1.0/";
 
 class GoldenBrdf : public acdf_test::GoldenDraws {};
 
@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(V1_0, GoldenBrdf,
 TEST(GoldenBrdfContents, EachFileHasWhatItIsFor) {
     const auto opened = [](const char* name) {
         acdf::File file;
-        EXPECT_TRUE(acdf::File::open((kGolden + name + ".acdf").c_str(), file).ok());
+        EXPECT_TRUE(acdf::File::open((kGoldenBrdfs + name + ".acdf").c_str(), file).ok());
         return file;
     };
     const acdf::File brdf = opened("brdf"), mirrored = opened("brdf_mirrored"), turned = opened("brdf_anisotropic"),

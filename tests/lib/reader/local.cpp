@@ -1,4 +1,5 @@
 // acdf/local.h against a decoder written from the specification, on files of which no fit would think.
+#include "tests/inputs/directions.h"
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
@@ -36,26 +37,25 @@ LocalSpec random_local(std::uint32_t seed, bool tilts) {
     return spec;
 }
 
-double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
-
-struct Normal {
+struct AnyNormal {
     float n[3];
     Local::Vector exact() const { return {double{n[0]}, double{n[1]}, double{n[2]}}; }
 };
 
 // Anywhere, of any length, and where bins meet: on the axes, on edges of the octahedron, in its corners.
-Normal random_normal(std::mt19937_64& rng) {
+AnyNormal any_normal(std::mt19937_64& rng) {
     const auto step = [&] { return static_cast<float>(static_cast<int>(rng() % 7) - 3); };
     switch (rng() % 4) {
     case 0: {
-        Normal n{{step(), step(), step()}};
+        AnyNormal n{{step(), step(), step()}};
         if (n.n[0] == 0.0f && n.n[1] == 0.0f && n.n[2] == 0.0f) n.n[rng() % 3] = 1.0f;
         return n;
     }
     case 1:
-        return {{static_cast<float>(unit(rng) - 0.5), 0.0f, static_cast<float>(unit(rng) - 0.5)}};
+        return {{static_cast<float>(uniform(rng) - 0.5), 0.0f, static_cast<float>(uniform(rng) - 0.5)}};
     default: {
-        const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), length = std::exp(20 * unit(rng) - 10);
+        const double z = 2 * uniform(rng) - 1, phi = 2 * M_PI * uniform(rng),
+                     length = std::exp(20 * uniform(rng) - 10);
         const double sine = std::sqrt(1 - z * z);
         return {{static_cast<float>(length * sine * std::cos(phi)),
                  static_cast<float>(length * sine * std::sin(phi)), static_cast<float>(length * z)}};
@@ -71,8 +71,8 @@ TEST(LocalView, agreesWithTheSlowDecoder) {
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 400; ++i) {
             SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
-            const Normal normal = random_normal(rng);
-            const double u0 = unit(rng), u1 = unit(rng), sigma = reference.sigma;
+            const AnyNormal normal = any_normal(rng);
+            const double u0 = uniform(rng), u1 = uniform(rng), sigma = reference.sigma;
             const Local::Source source = reference.source(normal.exact());
             const acdf::DirectionSample s = view.sample(normal.n, u0, u1);
             const double d[3] = {s.direction[0], s.direction[1], s.direction[2]};
@@ -90,8 +90,8 @@ TEST(LocalView, agreesWithTheSlowDecoder) {
             ASSERT_NEAR(s.pdf / pdf, 1.0, 1e-5);
         }
         for (int i = 0; i < 400; ++i) { // directions anywhere, dark ones too
-            const Normal normal = random_normal(rng);
-            const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), sine = std::sqrt(1 - z * z);
+            const AnyNormal normal = any_normal(rng);
+            const double z = 2 * uniform(rng) - 1, phi = 2 * M_PI * uniform(rng), sine = std::sqrt(1 - z * z);
             const float rounded[3] = {static_cast<float>(sine * std::cos(phi)),
                                       static_cast<float>(sine * std::sin(phi)), static_cast<float>(z)};
             float f[3];
@@ -110,9 +110,9 @@ TEST(LocalView, pdfOfASampleIsExact) {
         const acdf::LocalEnvironmentView view = loaded.view();
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 2000; ++i) {
-            const Normal n = random_normal(rng);
-            const double u0 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
-            const double u1 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
+            const AnyNormal n = any_normal(rng);
+            const double u0 = rng() % 8 == 0 ? edges[rng() % 7] : uniform(rng);
+            const double u1 = rng() % 8 == 0 ? edges[rng() % 7] : uniform(rng);
             const acdf::DirectionSample s = view.sample(n.n, u0, u1);
             ASSERT_TRUE(std::isfinite(s.pdf));
             if (s.pdf == 0.0f) continue;
@@ -142,7 +142,7 @@ TEST(NormalBins, cornersAddUpToTheNormal) {
         ASSERT_EQ(numbered, corners.size());
         std::mt19937_64 rng(n);
         for (int i = 0; i < 3000; ++i) {
-            const Normal normal = random_normal(rng);
+            const AnyNormal normal = any_normal(rng);
             AcdfNormalBins bins;
             ASSERT_TRUE(acdf_octahedral_bins(n, normal.n, &bins));
             ASSERT_GE(bins.count, 1);
@@ -224,7 +224,7 @@ TEST(LocalView, whatIsStoredIsTold) {
     EXPECT_EQ(shared.view().irradiance(back), shared.file.description().total);
     std::mt19937_64 rng(1);
     for (int i = 0; i < 200; ++i) { // there it is the environment itself
-        const double u0 = unit(rng), u1 = unit(rng);
+        const double u0 = uniform(rng), u1 = uniform(rng);
         const auto a = shared.view().sample(back, u0, u1), b = shared.view().environment().sample(u0, u1);
         EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
     }
@@ -289,8 +289,8 @@ TEST(LocalView, compiledAsCIsTheSame) {
         const LoadedLocal loaded(random_local(seed, true));
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 300; ++i) {
-            const Normal n = random_normal(rng);
-            const double u0 = unit(rng), u1 = unit(rng);
+            const AnyNormal n = any_normal(rng);
+            const double u0 = uniform(rng), u1 = uniform(rng);
             const auto a = loaded.view().sample(n.n, u0, u1);
             AcdfDirectionSample b;
             acdf_c_local_sample(&loaded.view().data(), n.n, u0, u1, &b);

@@ -1,5 +1,6 @@
 // acdf/local_fast.h against a decoder written from the specification, on files of which no fit would think; with
 // runtime tables and without, by products, moved and as C.
+#include "tests/inputs/directions.h"
 #include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_reference.h"
@@ -18,22 +19,14 @@ namespace {
 
 using acdf_reference::Local;
 
-constexpr std::uint32_t file_count = 160;
+constexpr std::uint32_t kFastFiles = 160;
 
-double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
-
-std::array<float, 3> random_direction(std::mt19937_64& rng) {
-    const double z = 2 * unit(rng) - 1, phi = 2 * pi * unit(rng), sine = std::sqrt(1 - z * z);
-    return {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)),
-            static_cast<float>(z)};
-}
-
-std::array<float, 3> random_normal(std::mt19937_64& rng) {
+Normal normal_of_any_length(std::mt19937_64& rng) {
     if (rng() % 4 == 0) {
-        const std::array<float, 3> n = edge_normal(rng);
-        return n[0] == 0.0f && n[1] == 0.0f && n[2] == 0.0f ? std::array<float, 3>{0.0f, 0.0f, 1.0f} : n;
+        const Normal n = edge_normal(rng);
+        return n[0] == 0.0f && n[1] == 0.0f && n[2] == 0.0f ? Normal{0.0f, 0.0f, 1.0f} : n;
     }
-    std::array<float, 3> n = random_direction(rng);
+    Normal n = random_direction(rng);
     for (float& x : n) x *= static_cast<float>(std::exp(3.0 * double(rng() % 5) - 6.0));
     return n;
 }
@@ -52,7 +45,7 @@ struct FastFile {
 
 TEST(FastShape, AgreesWithTheSlowDecoder) {
     int drawn = 0, groups = 0;
-    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+    for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
         const FastFile loaded(random_fast(seed), seed % 3 != 0);
         const Local reference(loaded.bytes);
         const acdf::LocalEnvironmentView view = loaded.file.local();
@@ -61,9 +54,9 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 200; ++i) {
             SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
-            const std::array<float, 3> normal = random_normal(rng);
+            const Normal normal = normal_of_any_length(rng);
             const Local::Vector n = {double{normal[0]}, double{normal[1]}, double{normal[2]}};
-            const double u0 = unit(rng), u1 = unit(rng), sigma = reference.sigma;
+            const double u0 = uniform(rng), u1 = uniform(rng), sigma = reference.sigma;
             const Local::Source source = reference.source(n);
             const acdf::DirectionSample s = view.sample(normal.data(), u0, u1);
             ASSERT_EQ(s.pdf > 0.0f, source.what != Local::Source::nothing);
@@ -77,7 +70,7 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
                 ASSERT_NEAR(s.pdf / pdf, 1.0, 1e-5);
                 ++drawn;
             }
-            const std::array<float, 3> any = random_direction(rng);
+            const Normal any = random_direction(rng);
             float f[3];
             acdf_as_given(any.data(), f);
             const double expected = reference.pdf(n, {double{f[0]}, double{f[1]}, double{f[2]}});
@@ -91,14 +84,14 @@ TEST(FastShape, AgreesWithTheSlowDecoder) {
 // To the bit, for random numbers of every kind; and nothing with energy is out of reach.
 TEST(FastShape, PdfOfASampleIsExact) {
     const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000};
-    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+    for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
         const FastFile with(random_fast(seed), true), without(random_fast(seed), false);
         const acdf::LocalEnvironmentView view = with.file.local(), plain = without.file.local();
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 600; ++i) {
-            const std::array<float, 3> n = random_normal(rng);
-            const double u0 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
-            const double u1 = rng() % 8 == 0 ? edges[rng() % 7] : unit(rng);
+            const Normal n = normal_of_any_length(rng);
+            const double u0 = rng() % 8 == 0 ? edges[rng() % 7] : uniform(rng);
+            const double u1 = rng() % 8 == 0 ? edges[rng() % 7] : uniform(rng);
             const acdf::DirectionSample s = view.sample(n.data(), u0, u1), t = plain.sample(n.data(), u0, u1);
             ASSERT_TRUE(std::isfinite(s.pdf));
             ASSERT_EQ(s.pdf > 0.0f, t.pdf > 0.0f);
@@ -127,7 +120,7 @@ TEST(FastShape, IntegratesToOne) {
             const AcdfGrid grid = acdf_environment_grid(&view.data().environment);
             std::mt19937_64 rng(seed);
             for (int i = 0; i < 6; ++i) {
-                const std::array<float, 3> normal = random_normal(rng);
+                const Normal normal = normal_of_any_length(rng);
                 const AcdfLocalPoint point = view.at(normal.data());
                 if (point.what != ACDF_LOCAL_FAST) continue;
                 double sum = 0.0;
@@ -182,7 +175,7 @@ std::uint32_t walked_from(const AcdfLocal& local, std::uint32_t node, const std:
 // Of each square of the grid: tables find the tile, or a split on the way to it, and both happen.
 TEST(FastShape, TablesFindTheTilesOfSquares) {
     int at_once = 0, walked = 0;
-    for (std::uint32_t seed = 0; seed < file_count; ++seed) {
+    for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
         const FastFile loaded(random_fast(seed), true);
         const AcdfLocal local = loaded.file.local().data();
         ASSERT_NE(local.tables, nullptr);
@@ -246,8 +239,8 @@ TEST(FastShape, IsTheSameInC) {
         const acdf::LocalEnvironmentView view = loaded.file.local();
         std::mt19937_64 rng(seed);
         for (int i = 0; i < 100; ++i) {
-            const std::array<float, 3> normal = random_normal(rng);
-            const double u0 = unit(rng), u1 = unit(rng);
+            const Normal normal = normal_of_any_length(rng);
+            const double u0 = uniform(rng), u1 = uniform(rng);
             const acdf::DirectionSample one = view.sample(normal.data(), u0, u1);
             AcdfDirectionSample c;
             acdf_c_local_sample(&view.data(), normal.data(), u0, u1, &c);

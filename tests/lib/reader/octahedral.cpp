@@ -1,16 +1,13 @@
 // The equal-area octahedral square against pbrt-v4's published functions, and against what a map of equal areas is.
+#include "tests/inputs/directions.h"
+
 #include <acdf/octahedral.h>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
-
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+using acdf_test::kPi, acdf_test::uniform;
 
 /// EqualAreaSquareToSphere of pbrt-v4, src/pbrt/util/math.cpp, in double precision: its frame is ours with x
 /// reversed.

@@ -98,7 +98,7 @@ TEST(FastCut, EndsAreSharesInSteps) {
         cut.count = 16 * (2 + static_cast<std::uint32_t>(rng() % (ACDF_FAST_CUT_PARTS / 16 - 1)));
         for (std::uint32_t i = 0; i < cut.count; ++i) {
             share[i] =
-                rng() % 4 == 0 ? static_cast<float>(std::ldexp(unit(rng), -static_cast<int>(rng() % 60))) : 0.0f;
+                rng() % 4 == 0 ? static_cast<float>(std::ldexp(uniform(rng), -static_cast<int>(rng() % 60))) : 0.0f;
             sum += double{share[i]};
         }
         for (float& x : share) x = static_cast<float>(double{x} / sum);
@@ -110,7 +110,7 @@ TEST(FastCut, EndsAreSharesInSteps) {
             ASSERT_NEAR(part.mass, double{share[i]} * 0x1p29, 1.0 + double{share[i]} * 64.0);
         }
         for (int i = 0; i < 200; ++i) { // the first end above any number
-            const double x = std::floor(unit(rng) * cut.whole);
+            const double x = std::floor(uniform(rng) * cut.whole);
             std::uint32_t block = 0;
             for (; !(cut.upper[block + 15] > x); block += 16) ASSERT_LT(block, std::uint32_t{ACDF_FAST_CUT_UPPER});
             block += acdf_fast_cut_search(cut.upper + block, x);

@@ -1,6 +1,7 @@
 // Random lights of both shapes, lobes and shading points for tests of products.
 #pragma once
 
+#include "tests/inputs/directions.h"
 #include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
@@ -45,8 +46,6 @@ inline LocalSpec random_light(std::uint32_t seed, bool tilts) {
     return seed % 4 == 3 ? random_fast_local(seed / 4) : random_local(seed, tilts);
 }
 
-inline double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
-
 struct Vector {
     float v[3];
 };
@@ -63,13 +62,13 @@ inline Vector random_normal(std::mt19937_64& rng) {
         const double x = step(), y = step(), z = step();
         return x == 0.0 && y == 0.0 && z == 0.0 ? unit_vector(0, 0, -1) : unit_vector(x, y, z);
     }
-    const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), sine = std::sqrt(1 - z * z);
+    const double z = 2 * uniform(rng) - 1, phi = 2 * M_PI * uniform(rng), sine = std::sqrt(1 - z * z);
     return unit_vector(sine * std::cos(phi), sine * std::sin(phi), z);
 }
 
 // Towards the viewer, often at grazing angles.
 inline Vector random_view(std::mt19937_64& rng, const acdf::SurfaceFrame& frame) {
-    const double z = rng() % 3 == 0 ? 1e-4 + 0.01 * unit(rng) : unit(rng), phi = 2 * M_PI * unit(rng);
+    const double z = rng() % 3 == 0 ? 1e-4 + 0.01 * uniform(rng) : uniform(rng), phi = 2 * M_PI * uniform(rng);
     const Vector local = unit_vector(std::sqrt(1 - z * z) * std::cos(phi), std::sqrt(1 - z * z) * std::sin(phi), z);
     Vector world;
     frame.to_world(local.v, world.v);

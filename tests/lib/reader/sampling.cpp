@@ -56,7 +56,7 @@ TEST(EnvironmentView, agreesWithTheSlowDecoder) {
         const double rounded_in_floats = spec.octahedral ? 4e-7 : 2e-7; // by tables
         std::mt19937_64 rng(seed);
         for (int n = 0; n < 300; ++n) {
-            const double u0 = unit(rng), u1 = unit(rng);
+            const double u0 = uniform(rng), u1 = uniform(rng);
             const auto a = env->view.sample(u0, u1);
             const auto b = reference.sample(u0, u1);
             for (int i = 0; i < 3; ++i)
@@ -64,7 +64,7 @@ TEST(EnvironmentView, agreesWithTheSlowDecoder) {
             ASSERT_NEAR(a.pdf / b.pdf, 1.0, 1e-6) << seed << ' ' << n;
         }
         for (int n = 0; n < 300; ++n) { // directions anywhere, dark ones too
-            const double z = 2 * unit(rng) - 1, phi = 2 * M_PI * unit(rng), sine = std::sqrt(1 - z * z);
+            const double z = 2 * uniform(rng) - 1, phi = 2 * M_PI * uniform(rng), sine = std::sqrt(1 - z * z);
             const float f[3] = {rounded(sine * std::cos(phi)), rounded(sine * std::sin(phi)), rounded(z)};
             const double d[3] = {f[0], f[1], f[2]};
             const double expected = reference.pdf(d);
@@ -92,7 +92,7 @@ TEST(Tree, cellsAreThoseOfTheSlowDecoder) {
         const AcdfEnvironment& data = env->view.data();
         std::mt19937_64 rng(seed);
         for (int n = 0; n < 300; ++n) {
-            const double u[2] = {unit(rng), unit(rng)};
+            const double u[2] = {uniform(rng), uniform(rng)};
             double left[2] = {u[0], u[1]};
             AcdfRange range[2] = {{0, options.columns, 0.0}, {0, options.rows, 0.0}};
             const double p = acdf_tree_sample(data.tree, data.root, left, range);
@@ -135,7 +135,7 @@ TEST(EnvironmentView, compiledAsCIsTheSame) {
     const auto env = loaded(RandomTree(3, options_of(3)).make());
     std::mt19937_64 rng(3);
     for (int n = 0; n < 1000; ++n) {
-        const double u0 = unit(rng), u1 = unit(rng);
+        const double u0 = uniform(rng), u1 = uniform(rng);
         const auto a = env->view.sample(u0, u1);
         AcdfDirectionSample b;
         acdf_c_sample(&env->view.data(), u0, u1, &b);
@@ -147,7 +147,7 @@ TEST(EnvironmentView, compiledAsCIsTheSame) {
 void expect_equal_pdf(const acdf::EnvironmentView& view, int count, std::uint32_t seed) {
     std::mt19937_64 rng(seed);
     for (int n = 0; n < count; ++n) {
-        const auto s = view.sample(unit(rng), unit(rng));
+        const auto s = view.sample(uniform(rng), uniform(rng));
         ASSERT_EQ(view.pdf(s.direction), s.pdf) << "seed " << seed << ", sample " << n;
         const float length = std::sqrt(s.direction[0] * s.direction[0] + s.direction[1] * s.direction[1] +
                                        s.direction[2] * s.direction[2]);
@@ -212,7 +212,7 @@ TEST(EnvironmentView, pdfOfATiltedSampleAgrees) {
         const auto env = loaded(RandomTree(seed, options_of(seed)).make());
         std::mt19937_64 rng(seed);
         for (int n = 0; n < 1000; ++n) {
-            const auto s = env->view.sample(unit(rng), unit(rng));
+            const auto s = env->view.sample(uniform(rng), uniform(rng));
             // Where a density falls to 2^-15 of its mean across a cell of one step of 1024, rounding moves it.
             ASSERT_NEAR(env->view.pdf(s.direction) / s.pdf, 1.0, 2e-2) << seed << ' ' << n;
         }
@@ -226,7 +226,7 @@ TEST(EnvironmentView, invertGivesTheRandomNumbersBack) {
         const auto env = loaded(RandomTree(seed, options).make());
         std::mt19937_64 rng(seed);
         for (int n = 0; n < 300; ++n) {
-            const auto s = env->view.sample(unit(rng), unit(rng));
+            const auto s = env->view.sample(uniform(rng), uniform(rng));
             double u[2];
             ASSERT_TRUE(env->view.invert(s.direction, u));
             for (double v : u) ASSERT_TRUE(v >= 0.0 && v <= 1.0) << v;

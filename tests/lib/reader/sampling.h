@@ -1,6 +1,7 @@
 // Files of random trees, for the tests of draws and densities.
 #pragma once
 
+#include "tests/inputs/directions.h"
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/random.h"
 
@@ -41,7 +42,5 @@ inline float rounded(double x) {
     volatile float stored = static_cast<float>(x);
     return stored;
 }
-
-inline double unit(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
 
 } // namespace acdf_test

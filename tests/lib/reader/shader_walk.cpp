@@ -1,5 +1,6 @@
 // Walks for shaders beside the reader's: each draw has the density that both tell of its direction, draws are the
 // reader's, and so are densities, but for the rounding of floats and directions next to a border.
+#include "tests/inputs/directions.h"
 #include "tests/lib/reader/golden_files.h"
 #include "tests/lib/reader/local_builder.h"
 #include "tests/lib/reader/local_random.h"
@@ -24,8 +25,6 @@ using namespace acdf_test;
 constexpr double kNear = 1e-5, kRounded = 1e-3;
 
 using Vector = std::array<float, 3>;
-
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 Vector towards(double phi, double z) {
     const double sine = std::sqrt((1.0 - z) * (1.0 + z));

@@ -87,7 +87,7 @@ TEST(TableView, OneAxisByHand) {
     compress::Cascade cascade;
     cascade.curves.push_back({0, {2}, {0.25, 0.75}, {}, {}});
     cascade.roots = {0};
-    const Loaded loaded(table_file(cascade, {axis("x", 10, 10.0, 20.0)}));
+    const LoadedTable loaded(table_file(cascade, {axis("x", 10, 10.0, 20.0)}));
     const TableView view = loaded.file.table();
     EXPECT_EQ(view.sampled_count(), 1u);
     EXPECT_EQ(view.indexed_count(), 0u);
@@ -112,7 +112,7 @@ TEST(TableView, TheCInterfaceGivesTheSame) {
     AcdfEnvironment none;
     ASSERT_EQ(acdf_table(handle.get(), &table), 1);
     EXPECT_EQ(acdf_environment(handle.get(), &none), 0);
-    const Loaded loaded(bytes);
+    const LoadedTable loaded(bytes);
     const double u[2] = {0.25, 0.75};
     double x[2], y[2];
     EXPECT_EQ(acdf_table_sample(&table, nullptr, u, x), loaded.file.table().sample(nullptr, u, y));
@@ -153,7 +153,7 @@ TEST(TableView, PdfIsExactlyThatOfTheSampleAndInvertLeadsBack) {
             for (const auto& a : space.axes) resolution.push_back(std::min(a.resolution, 1000u));
             compress::Cascade cascade;
             RandomTree(seed, resolution, 0, seed % 2).add_bin(cascade);
-            const Loaded loaded(table_file(cascade, space.axes));
+            const LoadedTable loaded(table_file(cascade, space.axes));
             const TableView view = loaded.file.table();
             std::mt19937_64 random(seed);
             for (int n = 0; n < 2000; ++n) {
@@ -181,10 +181,11 @@ TEST(TableView, OutOfRangeAndBadNumbersAreSafe) {
     for (int bin = 0; bin < 6; ++bin) tree.add_bin(cascade);
     std::vector<float> shares(6, 0.2f);
     shares[4] = 0.0f; // index 1, 1: nothing there
-    const Loaded loaded(table_file(cascade,
-                                   {axis("i", 2, 0, 2, ACDF_AXIS_INDEXED), axis("j", 3, 0, 3, ACDF_AXIS_INDEXED),
-                                    axis("x", 6, 0, 1), axis("y", 7, 0, 1)},
-                                   shares));
+    const LoadedTable loaded(
+        table_file(cascade,
+                   {axis("i", 2, 0, 2, ACDF_AXIS_INDEXED), axis("j", 3, 0, 3, ACDF_AXIS_INDEXED),
+                    axis("x", 6, 0, 1), axis("y", 7, 0, 1)},
+                   shares));
     const TableView view = loaded.file.table();
     EXPECT_EQ(view.indexed_count(), 2u);
     const double bad[] = {NAN, -1.0, 2.0, INFINITY, -INFINITY, 1e308, 0.5};
@@ -238,7 +239,7 @@ TEST(TableView, BinsAreRowMajor) {
         cascade.roots.push_back(bin);
         cascade.curves.push_back(curve);
     }
-    const Loaded loaded(table_file(
+    const LoadedTable loaded(table_file(
         cascade,
         {axis("i", 3, 0, 3, ACDF_AXIS_INDEXED), axis("j", 4, 0, 4, ACDF_AXIS_INDEXED), axis("x", 12, 0, 12)},
         std::vector<float>(12, 1.0f / 12)));
@@ -281,7 +282,7 @@ TEST(TableView, DensityIntegratesToOneAndSamplesFollowIt) {
             axes.push_back(axis("x" + std::to_string(k), shape[k], 1.0 - double(k), -2.0 * double(k)));
         compress::Cascade cascade;
         RandomTree(seed, shape, 0, seed % 2).add_bin(cascade);
-        const Loaded loaded(table_file(cascade, axes));
+        const LoadedTable loaded(table_file(cascade, axes));
         const TableView view = loaded.file.table();
         const std::vector<double> expected = box_probabilities(view, shape);
         double sum = 0.0;

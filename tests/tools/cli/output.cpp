@@ -1,6 +1,6 @@
 // Outputs are whole or not there, and never replace anything unasked.
 #include "tests/inputs/float_map.h"
-#include "tests/tools/run.h"
+#include "tests/tools/disk/files.h"
 
 #include "tools/cli/output.h"
 #include "tools/commands.h"
@@ -25,8 +25,6 @@ std::string message_of(const std::function<void()>& action) {
     }
     return "";
 }
-
-const std::vector<std::uint8_t> old_bytes = {'o', 'l', 'd'}, new_bytes = {'n', 'e', 'w', '!'};
 
 class Outputs : public testing::Test {
 protected:

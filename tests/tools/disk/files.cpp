@@ -15,8 +15,6 @@ using acdf::tools::write_output;
 
 namespace {
 
-const std::vector<std::uint8_t> old_bytes = {'o', 'l', 'd'}, new_bytes = {'n', 'e', 'w', '!'};
-
 class Disk : public testing::Test {
 protected:
     void SetUp() override { write_bytes(sky, small_environment()); }

@@ -13,6 +13,8 @@
 
 namespace acdf::test {
 
+const std::vector<std::uint8_t> old_bytes = {'o', 'l', 'd'}, new_bytes = {'n', 'e', 'w', '!'};
+
 /// Runs `action` in a child process, which _exits with what it returns; the exit code, or 128 + signal.
 inline int in_child(const std::function<int()>& action) {
     const pid_t pid = fork();

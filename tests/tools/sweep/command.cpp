@@ -6,6 +6,7 @@
 
 #include <regex>
 #include <set>
+#include <tuple>
 
 namespace acdf::test {
 namespace {
@@ -56,6 +57,37 @@ TEST(SweepCommand, TheCommandMakesTheRecommendedFile) {
     EXPECT_EQ(read_text(file).size(), row["bytes"]);
     const double variance = nlohmann::json::parse(made.out)["relative_variance"];
     EXPECT_NEAR(variance, row["relative_variance"], 1e-8 * variance);
+}
+
+// Of probes that lie on no grid, or on another one than their own: the file is the one that is made, and so is its
+// noise.
+TEST(SweepCommand, ResampledProbesAreMeasuredAsFilesOfThemAre) {
+    const Folder folder;
+    std::vector<float> rgb(48 * 48 * 3);
+    for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<float>(1 + (i / 3 * 37) % 523);
+    const std::string disc = folder / "disc.pfm", grid = tiny_probe(folder), file = folder / "made.acdf";
+    write_rgb(disc, 48, 48, rgb);
+    for (const auto& [source, option, value] :
+         {std::tuple{disc, "--projection", "angular"}, std::tuple{grid, "--domain", "octahedral"}}) {
+        ASSERT_EQ(sweep(source, folder / "out", {option, value, "--force"}).code, 0) << value;
+        const auto json = nlohmann::json::parse(read_text(folder / "out/sweep.json"));
+        const std::string words = source + " " + option + " " + value + " --budget 1500 -o ";
+        EXPECT_EQ(json["recommendation"]["command"],
+                  "acdf env " + words + (source == disc ? "disc" : "tiny") + ".acdf");
+        const Result made = run_acdf(
+            {"env", source, option, value, "--budget", "1500", "-o", file, "--json", "--quiet", "--force"});
+        ASSERT_EQ(made.code, 0) << made.err;
+        const auto report = nlohmann::json::parse(made.out);
+        const double variance = report["relative_variance"], least = report["least_variance"];
+        const auto& row = json["rows"][json["recommendation"]["row"].get<std::size_t>()];
+        EXPECT_EQ(row["bytes"], read_text(file).size());
+        EXPECT_NEAR(row["relative_variance"], variance, 1e-8 * variance);
+        EXPECT_GT(least, 1e-3);
+        for (const auto& other : json["rows"]) {
+            if (other["system"] != "full_cdf") continue;
+            EXPECT_NEAR(other["relative_variance"], least, 1e-5);
+        }
+    }
 }
 
 /// A roof over one half of a floor.

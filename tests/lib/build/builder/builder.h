@@ -19,6 +19,8 @@ namespace acdf::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 constexpr std::uint32_t kSkyWidth = 64, kSkyHeight = 32;
 
 /// Numbers of few bits, so that half floats hold them too: a gradient, a pattern and a sun.

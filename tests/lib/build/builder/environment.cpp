@@ -176,7 +176,7 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryProjection) {
         rgb[3 * (layout.height / 2 * layout.width + layout.width / 2)] = -1.0f;
         write_rgb(folder / "p.pfm", int(layout.width), int(layout.height), rgb);
         EnvironmentOptions options;
-        options.goal = Goal::of_budget(4000);
+        options.goal = builder::Goal::of_budget(4000);
         options.codec = ACDF_CODEC_ZLIB;
         options.target.filter = ACDF_FILTER_BILINEAR;
         options.source = {"p.pfm", input::file_sha256(folder / "p.pfm"), "",
@@ -209,12 +209,12 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
     };
     expect_same({}, {});
     EnvironmentOptions options;
-    options.goal = Goal::of_variance(0.02);
+    options.goal = builder::Goal::of_variance(0.02);
     options.fit.max_weight = 40.0;
     expect_same(options, {"--target-variance", "0.02", "--max-weight", "40"});
     options = {};
     options.fit.shape = Shape::cascade;
-    options.goal = Goal::of_cells(300);
+    options.goal = builder::Goal::of_cells(300);
     options.target.channels = {ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}};
     expect_same(options, {"--shape", "cascade", "--cells", "300", "--channel", "rgb"});
     options = {};
@@ -245,7 +245,7 @@ TEST(Builder, OneTargetMakesManyFiles) {
     target = Target();
     for (const std::uint64_t budget : {2000u, 4000u, 8000u}) {
         EnvironmentOptions options;
-        options.goal = Goal::of_budget(budget);
+        options.goal = builder::Goal::of_budget(budget);
         Environment made;
         ASSERT_TRUE(environment(copy, options, made).ok());
         EXPECT_LE(made.bytes.size(), budget);

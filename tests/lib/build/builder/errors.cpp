@@ -17,7 +17,6 @@ using builder::ErrorCode;
 using builder::Status;
 using namespace acdf::test;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 void expect_failed(const Status& status, ErrorCode code, const std::string& what = "") {

@@ -17,8 +17,6 @@ using builder::ErrorCode;
 using builder::Status;
 using namespace acdf::test;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// A file of 64 x 32 texels of a sky, as the program reads it.
 class SkyFile {
 public:

@@ -13,14 +13,14 @@ namespace {
 using namespace acdf::build;
 using namespace acdf::test;
 
-struct Case {
+struct SizedCase {
     const char* name;
     Map map;
     Reference reference;
     double largest_error; // of one texel against the sky: half a source texel times the sky's steepest slope
 };
 
-std::vector<Case> cases() {
+std::vector<SizedCase> sized_cases() {
     return {{"angular", {Layout::angular, 256, 256}, angular_reference, 0.06},
             // Around -x a mirror ball's texels are degrees wide.
             {"mirrorball", {Layout::mirrorball, 160, 160}, mirrorball_reference, 0.35},
@@ -33,7 +33,7 @@ std::vector<float> resampled(const Map& map, std::vector<float> rgb, int threads
     return resample_to_latlong(map, std::move(rgb), latlong_width(map), threads);
 }
 
-void expect_similar(const Case& c, const std::vector<float>& rgb, const Pixels& expected) {
+void expect_similar(const SizedCase& c, const std::vector<float>& rgb, const Pixels& expected) {
     ASSERT_EQ(rgb.size(), expected.rgb.size()) << c.name;
     double squares = 0.0, largest = 0.0;
     for (std::size_t i = 0; i < rgb.size(); ++i) {
@@ -47,7 +47,7 @@ void expect_similar(const Case& c, const std::vector<float>& rgb, const Pixels& 
 
 TEST(InputResample, ShowsTheSameSkyWithTheSameEnergy) {
     const Pixels expected = render_sky(latlong_reference, 256, 128), fine = render_sky(latlong_reference, 512, 256);
-    for (const Case& c : cases()) {
+    for (const SizedCase& c : sized_cases()) {
         ASSERT_EQ(latlong_width(c.map), 256) << c.name;
         const std::vector<float> rgb = resampled(c.map, render_sky(c.reference, c.map.width, c.map.height).rgb);
         expect_similar(c, rgb, expected);
@@ -62,7 +62,7 @@ TEST(InputResample, ShowsTheSameSkyWithTheSameEnergy) {
 TEST(InputResample, KeepsTheEnergyOfNoise) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> exponent(-3.0f, 4.0f);
-    for (const Case& c : cases()) {
+    for (const SizedCase& c : sized_cases()) {
         std::vector<float> rgb(3 * static_cast<std::size_t>(c.map.width * c.map.height));
         for (float& v : rgb) v = std::pow(10.0f, exponent(random));
         double expected = 0.0;
@@ -77,7 +77,7 @@ TEST(InputResample, KeepsTheEnergyOfNoise) {
 }
 
 // A texel that its layout shows whole, away from rims and face borders.
-bool random_texel(const Case& c, std::mt19937& random, int& x, int& y) {
+bool random_texel(const SizedCase& c, std::mt19937& random, int& x, int& y) {
     x = static_cast<int>(random() % static_cast<unsigned>(c.map.width));
     y = static_cast<int>(random() % static_cast<unsigned>(c.map.height));
     Vec d;
@@ -91,7 +91,7 @@ bool random_texel(const Case& c, std::mt19937& random, int& x, int& y) {
 // library, and each must stay where it was.
 TEST(InputResample, KeepsTheEnergyOfASingleTexel) {
     std::mt19937 random(9);
-    for (const Case& c : cases()) {
+    for (const SizedCase& c : sized_cases()) {
         const int width = latlong_width(c.map);
         for (int repeat = 0; repeat < 2; ++repeat) {
             std::vector<float> rgb(3 * static_cast<std::size_t>(c.map.width * c.map.height), 0.0f);
@@ -119,7 +119,7 @@ TEST(InputResample, KeepsTheEnergyOfASingleTexel) {
 }
 
 TEST(InputResample, ConstantStaysConstant) {
-    for (const Case& c : cases()) {
+    for (const SizedCase& c : sized_cases()) {
         std::vector<float> rgb(3 * static_cast<std::size_t>(c.map.width * c.map.height), 2.0f);
         double squares = 0.0;
         const std::vector<float> sphere = resampled(c.map, std::move(rgb));
@@ -132,7 +132,7 @@ TEST(InputResample, ConstantStaysConstant) {
 }
 
 TEST(InputResample, SameBytesWithAnyNumberOfThreads) {
-    for (Case c : cases()) {
+    for (SizedCase c : sized_cases()) {
         c.map.width /= 2;
         c.map.height /= 2;
         const Pixels sky = render_sky(c.reference, c.map.width, c.map.height);

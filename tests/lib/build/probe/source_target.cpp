@@ -7,6 +7,7 @@
 #include "compress/fit/fit.h"
 #include "compress/store/store.h"
 #include "compress/threads.h"
+#include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 
 #include <acdf/reader.h>
@@ -20,12 +21,11 @@
 namespace {
 
 using namespace acdf;
+using acdf_test::kPi;
 using acdf_test::kSanitized;
 using build::Direction;
 using build::Layout;
 using build::Map;
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct Named {
     const char* name;

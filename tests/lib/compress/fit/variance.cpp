@@ -21,7 +21,7 @@ using namespace acdf::compress;
 using acdf_test::CascadeCell;
 using acdf_test::cells_of;
 
-FitOptions variance(std::uint32_t cells, Shape shape = Shape::cascade, Order order = Order::z) {
+FitOptions variance_options(std::uint32_t cells, Shape shape = Shape::cascade, Order order = Order::z) {
     FitOptions options;
     options.fit = ACDF_FIT_VARIANCE;
     options.goal.cells = cells;
@@ -113,7 +113,8 @@ TEST(FitVariance, CascadeJoinsWhatTheSlowReferenceJoins) {
         SCOPED_TRACE(seed);
         const Target t = acdf_test::noise_target(13, 11, seed, 1.0);
         const std::size_t count = 10 + 7 * seed;
-        const auto cells = cells_of(fit_variance_cascade(t, variance(static_cast<std::uint32_t>(count))), t);
+        const auto cells =
+            cells_of(fit_variance_cascade(t, variance_options(static_cast<std::uint32_t>(count))), t);
         const Partition expected = slow_variance(t, count);
         ASSERT_EQ(cells.size(), expected.cells.size());
         EXPECT_NEAR(acdf_test::cost_sum(cells, t) / expected.cost, 1.0, 1e-12);
@@ -127,14 +128,14 @@ TEST(FitVariance, CascadeJoinsWhatTheSlowReferenceJoins) {
 
 TEST(FitVariance, RefusesAGoalOfNoCells) {
     const Target t = acdf_test::noise_target(8, 4, 2);
-    EXPECT_THROW(fit(t, variance(0)), std::invalid_argument);
-    EXPECT_THROW(fit(t, variance(0, Shape::tree)), std::invalid_argument);
+    EXPECT_THROW(fit(t, variance_options(0)), std::invalid_argument);
+    EXPECT_THROW(fit(t, variance_options(0, Shape::tree)), std::invalid_argument);
 }
 
 TEST(FitVariance, ProgressRisesAndEndsAtOne) {
     const Target t = acdf_test::noise_target(64, 40, 2);
     for (const Shape shape : {Shape::cascade, Shape::tree}) {
-        FitOptions options = variance(200, shape);
+        FitOptions options = variance_options(200, shape);
         double last = 0.0;
         options.progress = [&](double share) {
             EXPECT_GE(share, last);
@@ -150,7 +151,7 @@ TEST(FitVariance, CascadeKeepsTheBudgetAndUsesIt) {
     double before = INFINITY;
     for (const std::uint32_t budget : {1u, 2u, 3u, 7u, 8u, 50u, 333u, 1000u, 2560u, 100000u}) {
         SCOPED_TRACE(budget);
-        const auto cells = cells_of(fit_variance_cascade(t, variance(budget)), t);
+        const auto cells = cells_of(fit_variance_cascade(t, variance_options(budget)), t);
         EXPECT_LE(cells.size(), budget);
         EXPECT_GE(cells.size(), std::min<std::size_t>(budget, 64 * 32)); // band counts come in steps of sqrt(2)
         const double cost = acdf_test::cost_sum(cells, t);
@@ -164,7 +165,7 @@ TEST(FitVariance, CascadeKeepsTheBudgetAndUsesIt) {
 class VarianceOf : public ::testing::TestWithParam<std::tuple<Shape, Order>> {
 protected:
     FitOptions options(std::uint32_t cells) const {
-        return variance(cells, std::get<0>(GetParam()), std::get<1>(GetParam()));
+        return variance_options(cells, std::get<0>(GetParam()), std::get<1>(GetParam()));
     }
     std::vector<CascadeCell> cells(const Target& t, std::uint32_t count) const {
         return cells_of(fit(t, options(count)).cascade, t);

@@ -1,8 +1,8 @@
 // Opening BRDFs by name: what each file is told apart by, tables of numbers, and real measurements.
 #include "input/brdf/table.h"
+#include "tests/inputs/folder.h"
 #include "tests/inputs/places.h"
 #include "tests/lib/input/brdf/brdf.h"
-#include "tests/lib/input/folder.h"
 
 #include <filesystem>
 
@@ -19,7 +19,7 @@ using acdf::test::random_direction;
 using acdf::test::RglParts;
 using acdf::test::rho;
 using acdf::test::turned;
-using acdf::test::write_bytes;
+using acdf::test::write_text;
 
 std::string text_of(const Bytes& bytes) { return std::string(bytes.begin(), bytes.end()); }
 
@@ -90,16 +90,16 @@ std::string npy(const std::string& shape, const std::vector<float>& values) {
 
 TEST(InputBrdfNpy, FilesWithBadNumbers) {
     const Folder folder;
-    const std::string path = folder.file("a.npy");
-    write_bytes(path, npy("(1, 1, 2, 2)", {1.0f, -2.0f, -3.0f, 4.0f}));
+    const std::string path = folder / "a.npy";
+    write_text(path, npy("(1, 1, 2, 2)", {1.0f, -2.0f, -3.0f, 4.0f}));
     const auto brdf = open_brdf(path);
     EXPECT_EQ(brdf->notes, std::vector<std::string>{"2 of 4 numbers are negative and taken as 0"});
     EXPECT_EQ(brdf->name, "a.npy");
-    write_bytes(path, npy("(1, 1, 2, 2)", {1.0f, -2.0f, std::nanf(""), 4.0f}));
+    write_text(path, npy("(1, 1, 2, 2)", {1.0f, -2.0f, std::nanf(""), 4.0f}));
     EXPECT_REFUSED(open_brdf(path), "1 of its numbers are NaN or infinite");
-    write_bytes(path, npy("(2, 2)", {1.0f, 2.0f, 3.0f, 4.0f}));
+    write_text(path, npy("(2, 2)", {1.0f, 2.0f, 3.0f, 4.0f}));
     EXPECT_REFUSED(open_brdf(path), "2 axes");
-    write_bytes(path, npy("(1, 1, 2, 3)", {1.0f, 2.0f, 3.0f, 4.0f}));
+    write_text(path, npy("(1, 1, 2, 3)", {1.0f, 2.0f, 3.0f, 4.0f}));
     EXPECT_REFUSED(open_brdf(path), "cut short");
 }
 
@@ -108,30 +108,30 @@ TEST(InputBrdfFiles, AreToldByWhatTheyHold) {
     RglParts parts;
     parts.fill(1);
     for (const char* name : {"a.bsdf", "a.dat", "binary"}) {
-        write_bytes(folder.file(name), text_of(parts.bytes()));
-        const auto brdf = open_brdf(folder.file(name));
+        write_text(folder / name, text_of(parts.bytes()));
+        const auto brdf = open_brdf(folder / name);
         EXPECT_EQ(brdf->name, name);
         EXPECT_EQ(brdf->sha256.size(), 64u);
     }
     EXPECT_EQ(open_brdf("lambert")->sha256, "");
-    write_bytes(folder.file("text.binary"), "Dear sir,\nthis is not a BRDF.\n");
-    EXPECT_REFUSED(open_brdf(folder.file("text.binary")), "a MERL file has 90 x 90 x 180");
-    write_bytes(folder.file("text.bsdf"), "Dear sir");
-    EXPECT_REFUSED(open_brdf(folder.file("text.bsdf")), "no tensor file");
-    write_bytes(folder.file("text.npy"), "Dear sir");
-    EXPECT_REFUSED(open_brdf(folder.file("text.npy")), "text.npy");
-    write_bytes(folder.file("text.txt"), "Dear sir");
-    EXPECT_REFUSED(open_brdf(folder.file("text.txt")), "no BRDF file known here");
-    write_bytes(folder.file("a"), "\xab\x41\x43\x44\x46" + std::string(100, ' '));
-    EXPECT_REFUSED(open_brdf(folder.file("a")), "it is an .acdf file; give the BRDF");
-    write_bytes(folder.file("a"), "\x76\x2f\x31\x01" + std::string(100, ' '));
-    EXPECT_REFUSED(open_brdf(folder.file("a")), "OpenEXR image, which acdf env takes");
-    write_bytes(folder.file("a"), "#?RADIANCE\n");
-    EXPECT_REFUSED(open_brdf(folder.file("a")), "Radiance image, which acdf env takes");
-    write_bytes(folder.file("empty.bsdf"), "");
-    EXPECT_REFUSED(open_brdf(folder.file("empty.bsdf")), "empty");
-    EXPECT_REFUSED(open_brdf(folder.file("missing.bsdf")), "no such file");
-    EXPECT_REFUSED(open_brdf(folder.file("")), "folder");
+    write_text(folder / "text.binary", "Dear sir,\nthis is not a BRDF.\n");
+    EXPECT_REFUSED(open_brdf(folder / "text.binary"), "a MERL file has 90 x 90 x 180");
+    write_text(folder / "text.bsdf", "Dear sir");
+    EXPECT_REFUSED(open_brdf(folder / "text.bsdf"), "no tensor file");
+    write_text(folder / "text.npy", "Dear sir");
+    EXPECT_REFUSED(open_brdf(folder / "text.npy"), "text.npy");
+    write_text(folder / "text.txt", "Dear sir");
+    EXPECT_REFUSED(open_brdf(folder / "text.txt"), "no BRDF file known here");
+    write_text(folder / "a", "\xab\x41\x43\x44\x46" + std::string(100, ' '));
+    EXPECT_REFUSED(open_brdf(folder / "a"), "it is an .acdf file; give the BRDF");
+    write_text(folder / "a", "\x76\x2f\x31\x01" + std::string(100, ' '));
+    EXPECT_REFUSED(open_brdf(folder / "a"), "OpenEXR image, which acdf env takes");
+    write_text(folder / "a", "#?RADIANCE\n");
+    EXPECT_REFUSED(open_brdf(folder / "a"), "Radiance image, which acdf env takes");
+    write_text(folder / "empty.bsdf", "");
+    EXPECT_REFUSED(open_brdf(folder / "empty.bsdf"), "empty");
+    EXPECT_REFUSED(open_brdf(folder / "missing.bsdf"), "no such file");
+    EXPECT_REFUSED(open_brdf(folder / ""), "folder");
     EXPECT_REFUSED(open_brdf(""), "no such file");
     EXPECT_REFUSED(open_brdf("lamber"), "no model of this name");
 }

@@ -1,5 +1,5 @@
 // Lists of instances: the same as meshes that were written out where they stand, and what is no list.
-#include "tests/lib/input/folder.h"
+#include "tests/inputs/folder.h"
 
 #include "input/mesh/instances.h"
 #include "input/mesh/triangles.h"
@@ -36,30 +36,28 @@ std::array<double, 3> to_unit(std::array<double, 3> v) {
 
 TEST(Instances, AreReadInTheOrderOfTheirMeshes) {
     const Folder folder;
-    write_bytes(folder.file("a.instances"),
-                "# trees\n\n1 0 0 2,0 1 0 3,0 0 1 4 a tree.obj  \r\n"
-                "0 -1 0 0  1 0 0 0  0 0 2 0 rock.ply\n+2 0 0 0 0 2 0 0 0 0 2 0 a tree.obj");
-    const std::vector<Instances> read = read_instances(folder.file("a.instances"));
+    write_text(folder / "a.instances", "# trees\n\n1 0 0 2,0 1 0 3,0 0 1 4 a tree.obj  \r\n"
+                                       "0 -1 0 0  1 0 0 0  0 0 2 0 rock.ply\n+2 0 0 0 0 2 0 0 0 0 2 0 a tree.obj");
+    const std::vector<Instances> read = read_instances(folder / "a.instances");
     ASSERT_EQ(read.size(), 2u);
-    EXPECT_EQ(read[0].mesh, folder.file("a tree.obj"));
+    EXPECT_EQ(read[0].mesh, folder / "a tree.obj");
     ASSERT_EQ(read[0].places.size(), 2u);
     EXPECT_EQ(read[0].places[0].rows[1], (Row{0, 1, 0, 3}));
     EXPECT_EQ(read[0].places[1].rows[2], (Row{0, 0, 2, 0}));
     EXPECT_EQ(read[1].places.at(0).rows[0], (Row{0, -1, 0, 0}));
     EXPECT_NEAR(read[1].places.at(0).determinant(), 2.0, 1e-15);
-    EXPECT_EQ(
-        scene_files(folder.file("a.instances")),
-        (std::vector<std::string>{folder.file("a.instances"), folder.file("a tree.obj"), folder.file("rock.ply")}));
+    EXPECT_EQ(scene_files(folder / "a.instances"),
+              (std::vector<std::string>{folder / "a.instances", folder / "a tree.obj", folder / "rock.ply"}));
 }
 
 TEST(Instances, TrianglesStandWhereTheListTells) {
     const Folder folder;
-    write_bytes(folder.file("t.obj"), kTetrahedron);
-    write_bytes(folder.file("t.instances"), "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n"    // as it is
-                                            "0 -2 0 5 2 0 0 6 0 0 2 7 t.obj\n"   // turned, twice as large, moved
-                                            "-1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n"); // mirrored
-    const Triangles own = read_triangles(folder.file("t.obj"), UpAxis::z),
-                    all = read_triangles(folder.file("t.instances"), UpAxis::z);
+    write_text(folder / "t.obj", kTetrahedron);
+    write_text(folder / "t.instances", "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n"    // as it is
+                                       "0 -2 0 5 2 0 0 6 0 0 2 7 t.obj\n"   // turned, twice as large, moved
+                                       "-1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n"); // mirrored
+    const Triangles own = read_triangles(folder / "t.obj", UpAxis::z),
+                    all = read_triangles(folder / "t.instances", UpAxis::z);
     ASSERT_EQ(own.count(), 4u);
     ASSERT_EQ(all.count(), 12u);
     const std::array<double, 3> inside[3] = {{0.1, 0.2, 0.3}, {5.0 - 0.4, 6.2, 7.6}, {-0.1, 0.2, 0.3}};
@@ -82,10 +80,10 @@ TEST(Instances, TrianglesStandWhereTheListTells) {
 
 TEST(Instances, NormalsAreThoseOfMeshesWrittenOut) {
     const Folder folder;
-    write_bytes(folder.file("t.obj"), kTetrahedron);
-    write_bytes(folder.file("t.instances"), "1 0 0 0 0 1 0 0 0 0 0.5 9 t.obj\n0 0 1 0 1 0 0 0 0 1 0 0 t.obj\n"
-                                            "0 1 0 0 1 0 0 0 0 0 1 0 t.obj\n");
-    const SceneNormals scene = read_scene_normals(folder.file("t.instances"));
+    write_text(folder / "t.obj", kTetrahedron);
+    write_text(folder / "t.instances", "1 0 0 0 0 1 0 0 0 0 0.5 9 t.obj\n0 0 1 0 1 0 0 0 0 1 0 0 t.obj\n"
+                                       "0 1 0 0 1 0 0 0 0 0 1 0 t.obj\n");
+    const SceneNormals scene = read_scene_normals(folder / "t.instances");
     EXPECT_EQ(scene.kind, "list of instances");
     // The slanted face has the normal (1, 1/2, 1/3) and half the area of its edges' product, 7 / 2.
     EXPECT_NEAR(weight_near(scene, to_unit({1.0, 0.5, 1.0 / 1.5})), std::sqrt(9.0 + 2.25 + 4.0) / 2.0,
@@ -99,9 +97,9 @@ TEST(Instances, NormalsAreThoseOfMeshesWrittenOut) {
 
 TEST(Instances, NormalsOfCornersGoByTheInverseTransposed) {
     const Folder folder;
-    write_bytes(folder.file("s.obj"), kSmooth);
-    write_bytes(folder.file("s.instances"), "1 0 0 0 0 1 0 0 0 0 -4 0 s.obj\n");
-    const Triangles t = read_triangles(folder.file("s.instances"), UpAxis::z);
+    write_text(folder / "s.obj", kSmooth);
+    write_text(folder / "s.instances", "1 0 0 0 0 1 0 0 0 0 -4 0 s.obj\n");
+    const Triangles t = read_triangles(folder / "s.instances", UpAxis::z);
     ASSERT_EQ(t.count(), 1u);
     // Corners 2 and 3 have changed places, as the triangle is mirrored; all normals point down.
     const std::array<double, 3> wanted[3] = {{0, 0, -1}, to_unit({0, -0.6, -0.2}), to_unit({0.6, 0, -0.2})};
@@ -112,30 +110,30 @@ TEST(Instances, NormalsOfCornersGoByTheInverseTransposed) {
 
 TEST(Instances, SceneAxesTurnWhatStands) {
     const Folder folder;
-    write_bytes(folder.file("s.obj"), kSmooth);
-    write_bytes(folder.file("s.instances"), "1 0 0 1 0 1 0 2 0 0 1 3 s.obj\n");
-    EXPECT_EQ(read_triangles(folder.file("s.instances"), UpAxis::y).corners[0].position,
+    write_text(folder / "s.obj", kSmooth);
+    write_text(folder / "s.instances", "1 0 0 1 0 1 0 2 0 0 1 3 s.obj\n");
+    EXPECT_EQ(read_triangles(folder / "s.instances", UpAxis::y).corners[0].position,
               (std::array<float, 3>{3, 1, 2}));
 }
 
 TEST(Instances, DigestAndSizeAreOfAllFiles) {
     const Folder folder;
-    write_bytes(folder.file("t.obj"), kTetrahedron);
-    write_bytes(folder.file("t.instances"), "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n1 0 0 9 0 1 0 0 0 0 1 0 t.obj\n");
-    const std::string before = scene_sha256(folder.file("t.instances"));
+    write_text(folder / "t.obj", kTetrahedron);
+    write_text(folder / "t.instances", "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n1 0 0 9 0 1 0 0 0 0 1 0 t.obj\n");
+    const std::string before = scene_sha256(folder / "t.instances");
     EXPECT_EQ(before.size(), 64u);
-    EXPECT_EQ(before, scene_sha256(folder.file("t.instances")));
-    EXPECT_EQ(scene_bytes(folder.file("t.instances")), 2 * std::string(kTetrahedron).size());
-    EXPECT_EQ(scene_bytes(folder.file("t.obj")), std::string(kTetrahedron).size());
-    EXPECT_EQ(scene_bytes(folder.file("none.instances")), 0u);
-    write_bytes(folder.file("t.obj"), std::string(kTetrahedron) + "# changed\n");
-    EXPECT_NE(before, scene_sha256(folder.file("t.instances")));
+    EXPECT_EQ(before, scene_sha256(folder / "t.instances"));
+    EXPECT_EQ(scene_bytes(folder / "t.instances"), 2 * std::string(kTetrahedron).size());
+    EXPECT_EQ(scene_bytes(folder / "t.obj"), std::string(kTetrahedron).size());
+    EXPECT_EQ(scene_bytes(folder / "none.instances"), 0u);
+    write_text(folder / "t.obj", std::string(kTetrahedron) + "# changed\n");
+    EXPECT_NE(before, scene_sha256(folder / "t.instances"));
 }
 
 /// The message that a list is refused with; "" where it is read.
 std::string refusal_of(const Folder& folder, const std::string& text) {
-    const std::string path = folder.file("a.instances");
-    write_bytes(path, text);
+    const std::string path = folder / "a.instances";
+    write_text(path, text);
     try {
         read_scene_normals(path);
     } catch (const Error& error) {
@@ -147,8 +145,8 @@ std::string refusal_of(const Folder& folder, const std::string& text) {
 
 TEST(Instances, WhatIsNoList) {
     const Folder folder;
-    write_bytes(folder.file("t.obj"), kTetrahedron);
-    write_bytes(folder.file("other.instances"), "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n");
+    write_text(folder / "t.obj", kTetrahedron);
+    write_text(folder / "other.instances", "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n");
     const std::string whole = "1 0 0 0 0 1 0 0 0 0 1 0 t.obj\n";
     EXPECT_EQ(refusal_of(folder, whole), "");
     EXPECT_CONTAINS(refusal_of(folder, ""), "empty");

@@ -85,9 +85,9 @@ TEST(TriangleTrees, OfManyTrianglesInOnePlace) {
 
 TEST(MeshTriangles, ArePolygonsInFansTurnedWithYUp) {
     const Folder folder;
-    write_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4\n");
-    const Triangles z = read_triangles(folder.file("a.obj"), UpAxis::z),
-                    y = read_triangles(folder.file("a.obj"), UpAxis::y);
+    write_text(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4\n");
+    const Triangles z = read_triangles(folder / "a.obj", UpAxis::z),
+                    y = read_triangles(folder / "a.obj", UpAxis::y);
     ASSERT_EQ(z.count(), 2u);
     EXPECT_EQ(z.area(0) + z.area(1), 2.0);
     EXPECT_EQ(z.face_normal(0), (Point3{0, 0, 1}));
@@ -97,12 +97,11 @@ TEST(MeshTriangles, ArePolygonsInFansTurnedWithYUp) {
 
 TEST(MeshTriangles, OfCornersThatAreNoNumbersOrTooFarAwayAreLeftOut) {
     const Folder folder;
-    write_bytes(folder.file("a.obj"),
-                "v 0 0 0\nv 1 0 0\nv 1 2 0\nv nan 2 0\nv 0 3e38 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
-    EXPECT_EQ(read_triangles(folder.file("a.obj"), UpAxis::z).count(), 1u);
-    write_bytes(folder.file("b.obj"), "v -3e38 0 0\nv 3e38 0 0\nv 0 3e38 0\nf 1 2 3\n");
+    write_text(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 1 2 0\nv nan 2 0\nv 0 3e38 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
+    EXPECT_EQ(read_triangles(folder / "a.obj", UpAxis::z).count(), 1u);
+    write_text(folder / "b.obj", "v -3e38 0 0\nv 3e38 0 0\nv 0 3e38 0\nf 1 2 3\n");
     try {
-        read_triangles(folder.file("b.obj"), UpAxis::z);
+        read_triangles(folder / "b.obj", UpAxis::z);
         ADD_FAILURE() << "read";
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("b.obj: no triangle is in it whose corners"), std::string::npos)

@@ -37,14 +37,14 @@ std::string scene_refusal(const std::string& path) {
 }
 
 std::string refusal_of(const Folder& folder, const std::string& name, const std::string& bytes) {
-    write_bytes(folder.file(name), bytes);
-    return scene_refusal(folder.file(name));
+    write_text(folder / name, bytes);
+    return scene_refusal(folder / name);
 }
 
 TEST(SceneHostile, NoSceneAtAll) {
     const Folder folder;
-    EXPECT_CONTAINS(scene_refusal(folder.file("missing.obj")), "No such file");
-    EXPECT_CONTAINS(scene_refusal(folder.file("")), "folder");
+    EXPECT_CONTAINS(scene_refusal(folder / "missing.obj"), "No such file");
+    EXPECT_CONTAINS(scene_refusal(folder / ""), "folder");
     for (const char* name : {"a.obj", "a.ply", "a.exr", "a.txt"})
         EXPECT_CONTAINS(refusal_of(folder, name, ""), "empty");
     for (const char* name : {"a.obj", "a.ply", "a.exr", "a.txt", "a.fbx", "a"})
@@ -70,15 +70,15 @@ TEST(SceneHostile, NormalPasses) {
     const Folder folder;
     OIIO::ImageSpec spec(4, 2, 3, OIIO::TypeDesc::FLOAT);
     spec.channelnames = {"N.X", "N.Y", "N.Z"};
-    write_image(folder.file("black.exr"), spec, std::vector<float>(24, 0.0f));
-    EXPECT_CONTAINS(scene_refusal(folder.file("black.exr")), "no normals (8 are");
+    write_image(folder / "black.exr", spec, std::vector<float>(24, 0.0f));
+    EXPECT_CONTAINS(scene_refusal(folder / "black.exr"), "no normals (8 are");
     spec.channelnames = {"N.X", "N.Y", "depth"};
-    write_image(folder.file("two.exr"), spec, std::vector<float>(24, 1.0f));
-    EXPECT_CONTAINS(scene_refusal(folder.file("two.exr")), "N.Z");
+    write_image(folder / "two.exr", spec, std::vector<float>(24, 1.0f));
+    EXPECT_CONTAINS(scene_refusal(folder / "two.exr"), "N.Z");
     spec.channelnames = {"N.X", "N.Y", "N.Z"};
     spec.format = OIIO::TypeDesc::UINT32;
-    write_image(folder.file("integers.exr"), spec, std::vector<float>(24, 1.0f));
-    EXPECT_CONTAINS(scene_refusal(folder.file("integers.exr")), "integers");
+    write_image(folder / "integers.exr", spec, std::vector<float>(24, 1.0f));
+    EXPECT_CONTAINS(scene_refusal(folder / "integers.exr"), "integers");
 }
 
 TEST(SceneHostile, Meshes) {
@@ -148,8 +148,8 @@ std::vector<Sample> samples(const Folder& folder) {
     all.push_back({"binary.ply", binary});
     OIIO::ImageSpec spec(40, 30, 3, OIIO::TypeDesc::HALF);
     spec.channelnames = {"N.X", "N.Y", "N.Z"};
-    write_image(folder.file("n.exr"), spec, std::vector<float>(3600, 0.5f));
-    all.push_back({"n.exr", read_bytes(folder.file("n.exr"))});
+    write_image(folder / "n.exr", spec, std::vector<float>(3600, 0.5f));
+    all.push_back({"n.exr", read_text(folder / "n.exr")});
     all.push_back({"a.csv", "0,0,1\n1,0,0,2\n# end\n"});
     return all;
 }

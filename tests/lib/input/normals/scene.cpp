@@ -40,8 +40,8 @@ const char* const kBox = "# a box\nmtllib elsewhere.mtl\n"
 
 TEST(SceneNormals, FacesOfABoxByArea) {
     const Folder folder;
-    write_bytes(folder.file("box.obj"), kBox);
-    const SceneNormals scene = read_scene_normals(folder.file("box.obj"));
+    write_text(folder / "box.obj", kBox);
+    const SceneNormals scene = read_scene_normals(folder / "box.obj");
     EXPECT_EQ(scene.kind, "mesh");
     EXPECT_EQ(scene.skipped, 0u);
     EXPECT_EQ(scene.normals.size(), 6u);
@@ -55,28 +55,28 @@ TEST(SceneNormals, FacesOfABoxByArea) {
 
 TEST(SceneNormals, ConcavePolygon) {
     const Folder folder;
-    write_bytes(folder.file("l.obj"), "v 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 3 0 0\nv 3 1 0\nf 3 4 5 6 1 2\n");
-    const SceneNormals scene = read_scene_normals(folder.file("l.obj"));
+    write_text(folder / "l.obj", "v 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 3 0 0\nv 3 1 0\nf 3 4 5 6 1 2\n");
+    const SceneNormals scene = read_scene_normals(folder / "l.obj");
     EXPECT_EQ(scene.normals.size(), 1u);
     EXPECT_NEAR(weight_of(scene, 0, 0, 1), 4.0, 1e-6);
 }
 
 TEST(SceneNormals, YUpIsTurned) {
     const Folder folder;
-    write_bytes(folder.file("floor.OBJ"), "v 0 0 0\nv 0 0 4\nv 4 0 0\nf 1 2 3\n"   // +y, area 8
-                                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 4 5 6\n"   // +z, area 1/2
-                                          "v 0 0 0\nv 0 2 0\nv 0 0 1\nf 7 8 9\n"); // +x, area 1
-    const SceneNormals scene = read_scene_normals(folder.file("floor.OBJ"), {UpAxis::y, false});
+    write_text(folder / "floor.OBJ", "v 0 0 0\nv 0 0 4\nv 4 0 0\nf 1 2 3\n"   // +y, area 8
+                                     "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 4 5 6\n"   // +z, area 1/2
+                                     "v 0 0 0\nv 0 2 0\nv 0 0 1\nf 7 8 9\n"); // +x, area 1
+    const SceneNormals scene = read_scene_normals(folder / "floor.OBJ", {UpAxis::y, false});
     EXPECT_NEAR(weight_of(scene, 0, 0, 1), 8.0, 1e-6);
     EXPECT_NEAR(weight_of(scene, 1, 0, 0), 0.5, 1e-6);
     EXPECT_NEAR(weight_of(scene, 0, 1, 0), 1.0, 1e-6);
-    EXPECT_NEAR(weight_of(read_scene_normals(folder.file("floor.OBJ")), 0, 1, 0), 8.0, 1e-6);
+    EXPECT_NEAR(weight_of(read_scene_normals(folder / "floor.OBJ"), 0, 1, 0), 8.0, 1e-6);
 }
 
 TEST(SceneNormals, TrianglesWithoutAreaAreSkipped) {
     const Folder folder;
-    write_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\nf 1 1 1\n");
-    const SceneNormals scene = read_scene_normals(folder.file("a.obj"));
+    write_text(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\nf 1 1 1\n");
+    const SceneNormals scene = read_scene_normals(folder / "a.obj");
     EXPECT_NEAR(total_weight(scene), 0.5, 1e-9);
     EXPECT_EQ(scene.skipped, 2u);
 }
@@ -84,8 +84,8 @@ TEST(SceneNormals, TrianglesWithoutAreaAreSkipped) {
 // The normals of the vertices count, not the face's: one at x, two at z; 1/20 and 2/15 of the area 1/2 a point.
 TEST(SceneNormals, VertexNormalsAreInterpolated) {
     const Folder folder;
-    write_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 5 0 0\nvn 0 0 1\nf 1//1 2//2 3//2\n");
-    const SceneNormals scene = read_scene_normals(folder.file("a.obj"));
+    write_text(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 5 0 0\nvn 0 0 1\nf 1//1 2//2 3//2\n");
+    const SceneNormals scene = read_scene_normals(folder / "a.obj");
     expect_unit(scene);
     const double half = std::sqrt(0.5), fifth = std::sqrt(0.2);
     EXPECT_EQ(scene.normals.size(), 4u);
@@ -97,8 +97,8 @@ TEST(SceneNormals, VertexNormalsAreInterpolated) {
 
 TEST(SceneNormals, FaceNormalWhereAVertexHasNone) {
     const Folder folder;
-    write_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nvn 0 0 0\nf 1//1 2//1 3//2\n");
-    EXPECT_NEAR(weight_of(read_scene_normals(folder.file("a.obj")), 0, 0, 1), 0.5, 1e-6);
+    write_text(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nvn 0 0 0\nf 1//1 2//1 3//2\n");
+    EXPECT_NEAR(weight_of(read_scene_normals(folder / "a.obj"), 0, 0, 1), 0.5, 1e-6);
 }
 
 // A sphere of smooth normals: its normals are even over the sphere, whatever the triangles.
@@ -120,8 +120,8 @@ TEST(SceneNormals, SmoothSphere) {
             if (r < kRows)
                 faces += "f " + corner(r, c) + corner(r + 1, c) + corner(r + 1, c + 1) + corner(r, c + 1) + "\n";
         }
-    write_bytes(folder.file("sphere.obj"), text + faces);
-    const SceneNormals scene = read_scene_normals(folder.file("sphere.obj"));
+    write_text(folder / "sphere.obj", text + faces);
+    const SceneNormals scene = read_scene_normals(folder / "sphere.obj");
     const double total = total_weight(scene);
     EXPECT_NEAR(total / (4.0 * pi), 1.0, 0.005);
     double mean[3] = {0, 0, 0}, square[3] = {0, 0, 0};
@@ -145,9 +145,8 @@ const char* const kPositions = "property float x\nproperty float y\nproperty flo
 
 TEST(SceneNormals, AsciiAndBinaryPly) {
     const Folder folder;
-    write_bytes(folder.file("a.ply"),
-                ply_header("ascii", 4, kPositions, 1) + "0 0 0\n2 0 0\n2 3 0\n0 3 0\n4 0 1 2 3\n");
-    const SceneNormals quad = read_scene_normals(folder.file("a.ply"));
+    write_text(folder / "a.ply", ply_header("ascii", 4, kPositions, 1) + "0 0 0\n2 0 0\n2 3 0\n0 3 0\n4 0 1 2 3\n");
+    const SceneNormals quad = read_scene_normals(folder / "a.ply");
     EXPECT_EQ(quad.kind, "mesh");
     EXPECT_NEAR(weight_of(quad, 0, 0, 1), 6.0, 1e-6);
 
@@ -160,8 +159,8 @@ TEST(SceneNormals, AsciiAndBinaryPly) {
     const std::int32_t corners[3] = {0, 1, 2};
     bytes += '\x03';
     bytes.append(reinterpret_cast<const char*>(corners), sizeof corners);
-    write_bytes(folder.file("b.ply"), bytes);
-    const SceneNormals smooth = read_scene_normals(folder.file("b.ply"));
+    write_text(folder / "b.ply", bytes);
+    const SceneNormals smooth = read_scene_normals(folder / "b.ply");
     EXPECT_NEAR(weight_of(smooth, 0, -1, 0), 0.5, 1e-6);
     EXPECT_NEAR(total_weight(smooth), 0.5, 1e-6);
 }
@@ -195,8 +194,8 @@ TEST(SceneNormals, NormalPasses) {
         for (const bool tiled : {false, true}) {
             std::size_t first = 0;
             while (names[first][0] != 'N' && names[first][0] != 'n' && names[first][0] != 'V') ++first;
-            write_pass(folder.file("n.exr"), names, first, tiled);
-            const SceneNormals scene = read_scene_normals(folder.file("n.exr"));
+            write_pass(folder / "n.exr", names, first, tiled);
+            const SceneNormals scene = read_scene_normals(folder / "n.exr");
             EXPECT_EQ(scene.kind, "normal pass") << names[first];
             EXPECT_EQ(scene.normals.size(), 1u) << names[first];
             EXPECT_EQ(weight_of(scene, 0, 0.6, 0.8), 6.0) << names[first];
@@ -206,11 +205,11 @@ TEST(SceneNormals, NormalPasses) {
 
 TEST(SceneNormals, RgbOnlyWhereAsked) {
     const Folder folder;
-    write_pass(folder.file("n.exr"), {"R", "G", "B"}, 0);
-    EXPECT_EQ(weight_of(read_scene_normals(folder.file("n.exr"), {UpAxis::z, true}), 0, 0.6, 0.8), 6.0);
-    EXPECT_EQ(weight_of(read_scene_normals(folder.file("n.exr"), {UpAxis::y, true}), 0.8, 0, 0.6), 6.0);
+    write_pass(folder / "n.exr", {"R", "G", "B"}, 0);
+    EXPECT_EQ(weight_of(read_scene_normals(folder / "n.exr", {UpAxis::z, true}), 0, 0.6, 0.8), 6.0);
+    EXPECT_EQ(weight_of(read_scene_normals(folder / "n.exr", {UpAxis::y, true}), 0.8, 0, 0.6), 6.0);
     try {
-        read_scene_normals(folder.file("n.exr"));
+        read_scene_normals(folder / "n.exr");
         ADD_FAILURE();
     } catch (const Error& error) {
         EXPECT_CONTAINS(std::string(error.what()), "N.X");
@@ -226,8 +225,8 @@ TEST(SceneNormals, MorePixelsThanNormalsInMemory) {
         const float tilt = 1e-5f * static_cast<float>(i % 7);
         for (const float v : {tilt, -tilt, i < 512 * 100 ? 1.0f : -1.0f}) pixels.push_back(v);
     }
-    write_image(folder.file("n.exr"), spec, pixels);
-    const SceneNormals scene = read_scene_normals(folder.file("n.exr"));
+    write_image(folder / "n.exr", spec, pixels);
+    const SceneNormals scene = read_scene_normals(folder / "n.exr");
     EXPECT_LE(scene.normals.size(), 4u); // the lower pole lies on four corners of the map
     EXPECT_EQ(weight_of(scene, 0, 0, 1), 512.0 * 100.0);
     EXPECT_EQ(weight_of(scene, 0, 0, -1), 512.0 * 200.0);
@@ -235,10 +234,9 @@ TEST(SceneNormals, MorePixelsThanNormalsInMemory) {
 
 TEST(SceneNormals, Lists) {
     const Folder folder;
-    write_bytes(folder.file("a.txt"),
-                "\xEF\xBB\xBF# normals\n0 0 2\n\n  0,0,+1, 2.5 # up\r\n1e-200 0 0\n-1e300\t0 0 4\n"
-                "0 0 0\n nan 0 0\n0 1 0 0\n0 -3 0 1e-3");
-    const SceneNormals scene = read_scene_normals(folder.file("a.txt"));
+    write_text(folder / "a.txt", "\xEF\xBB\xBF# normals\n0 0 2\n\n  0,0,+1, 2.5 # up\r\n1e-200 0 0\n-1e300\t0 0 4\n"
+                                 "0 0 0\n nan 0 0\n0 1 0 0\n0 -3 0 1e-3");
+    const SceneNormals scene = read_scene_normals(folder / "a.txt");
     EXPECT_EQ(scene.kind, "list");
     EXPECT_EQ(scene.normals.size(), 4u);
     EXPECT_EQ(scene.skipped, 3u);
@@ -260,8 +258,8 @@ TEST(SceneNormals, AnyDirectionSurvives) {
         text += std::to_string(all.back().x) + " " + std::to_string(all.back().y) + " " +
                 std::to_string(all.back().z) + " " + std::to_string(i + 1) + "\n";
     }
-    write_bytes(folder.file("a.csv"), text);
-    const SceneNormals scene = read_scene_normals(folder.file("a.csv"));
+    write_text(folder / "a.csv", text);
+    const SceneNormals scene = read_scene_normals(folder / "a.csv");
     ASSERT_EQ(scene.normals.size(), all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         EXPECT_EQ(weight_of(scene, all[i].x, all[i].y, all[i].z), double(i + 1));

@@ -127,7 +127,7 @@ TEST(InputConventions, OpenExrsLibraryAgrees) {
 // The lat-long image that maketx --lightprobe makes of an angular map, at the resolution of ours.
 std::vector<float> maketx_lightprobe(const Folder& folder, const Pixels& ball) {
     const OIIO::ImageBuf buffer(rgb_spec(ball), const_cast<float*>(ball.rgb.data()));
-    const std::string path = folder.file("maketx.tx");
+    const std::string path = folder / "maketx.tx";
     EXPECT_TRUE(OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxEnvLatlFromLightProbe, buffer, path,
                                                  OIIO::ImageSpec()))
         << OIIO::geterror();
@@ -148,10 +148,10 @@ TEST(InputConventions, AngularMapsAreMaketxsLightProbes) {
             for (int x = 0; x < width; ++x) ball.at(patches[c][0] + x, patches[c][1] + y)[c] = 1.0f;
     const Folder folder;
     const std::vector<float> theirs = maketx_lightprobe(folder, ball);
-    write_rgb(folder.file("ball.exr"), ball);
+    write_rgb(folder / "ball.exr", ball);
     acdf::input::ProbeOptions options;
     options.projection = acdf::input::Projection::angular;
-    const acdf::input::Probe ours = acdf::input::read_probe(folder.file("ball.exr"), options);
+    const acdf::input::Probe ours = acdf::input::read_probe(folder / "ball.exr", options);
     ASSERT_EQ(ours.width, n);
     for (int c = 0; c < 3; ++c) {
         const Vec a = mean_direction(n, ours.rgb, c), b = mean_direction(n, theirs, c);

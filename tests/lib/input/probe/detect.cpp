@@ -25,15 +25,15 @@ void sign(Pixels& pixels) {
 }
 
 Probe read(const Folder& folder, const Pixels& pixels, Projection projection = Projection::automatic) {
-    write_rgb(folder.file("a.exr"), pixels);
+    write_rgb(folder / "a.exr", pixels);
     ProbeOptions options;
     options.projection = projection;
-    return read_probe(folder.file("a.exr"), options);
+    return read_probe(folder / "a.exr", options);
 }
 
 std::string refused(const Folder& folder, const Pixels& pixels, Projection projection = Projection::automatic) {
-    write_rgb(folder.file("a.exr"), pixels);
-    return refusal(folder.file("a.exr"), projection);
+    write_rgb(folder / "a.exr", pixels);
+    return refusal(folder / "a.exr", projection);
 }
 
 TEST(InputDetect, CrossesByShapeAndBlackCorners) {
@@ -127,11 +127,11 @@ TEST(InputDetect, AttributesWinOverShape) {
     const Pixels noise = uniform_noise(60, 32);
     OIIO::ImageSpec spec = rgb_spec(noise);
     spec.attribute("textureformat", "LatLong Environment");
-    write_image(folder.file("latlong.exr"), spec, noise.rgb);
-    EXPECT_EQ(read_probe(folder.file("latlong.exr")).projection, Projection::latlong);
+    write_image(folder / "latlong.exr", spec, noise.rgb);
+    EXPECT_EQ(read_probe(folder / "latlong.exr").projection, Projection::latlong);
     spec.attribute("textureformat", "CubeFace Environment");
-    write_image(folder.file("cube.exr"), spec, noise.rgb);
-    EXPECT_CONTAINS(refusal(folder.file("cube.exr")), "1:6");
+    write_image(folder / "cube.exr", spec, noise.rgb);
+    EXPECT_CONTAINS(refusal(folder / "cube.exr"), "1:6");
 }
 
 TEST(InputDetect, ReasonNamesTheOption) {

@@ -39,8 +39,8 @@ TEST(InputFiles, FormatsHoldTheSameSky) {
                  {"double.tif", OIIO::TypeDesc::DOUBLE, 0.0},
                  {"shared_exponent.hdr", OIIO::TypeDesc::FLOAT, 0.008}}; // 8 bits in the largest channel
     for (const auto& f : files) {
-        write_rgb(folder.file(f.name), sky, f.type);
-        const Probe probe = read_probe(folder.file(f.name));
+        write_rgb(folder / (f.name), sky, f.type);
+        const Probe probe = read_probe(folder / (f.name));
         expect_same(probe, sky, f.relative, f.name);
         EXPECT_EQ(probe.projection, Projection::latlong);
         EXPECT_EQ(probe.projection_reason, "2:1 shape");
@@ -60,8 +60,8 @@ TEST(InputFiles, CompressionAndTiles) {
             OIIO::ImageSpec spec = rgb_spec(sky);
             spec.attribute("compression", compression);
             if (tile) spec.tile_width = spec.tile_height = tile;
-            write_image(folder.file("a.exr"), spec, sky.rgb);
-            expect_same(read_probe(folder.file("a.exr")), sky, 0.0, compression);
+            write_image(folder / "a.exr", spec, sky.rgb);
+            expect_same(read_probe(folder / "a.exr"), sky, 0.0, compression);
         }
 }
 
@@ -92,8 +92,8 @@ TEST(InputFiles, Channels) {
                     pixels[i * n + static_cast<std::size_t>(layout.rgb[c])] = sky.rgb[3 * i + c];
                     if (n < 3) expected.rgb[3 * i + c] = sky.rgb[3 * i + 2];
                 }
-            write_image(folder.file(name), spec, pixels);
-            expect_same(read_probe(folder.file(name)), expected, 0.0,
+            write_image(folder / name, spec, pixels);
+            expect_same(read_probe(folder / name), expected, 0.0,
                         std::string(name) + " " + layout.names[0] + " " + std::to_string(n));
         }
 }
@@ -102,15 +102,15 @@ TEST(InputFiles, ChannelsThatAreNoColourAreRefused) {
     const Folder folder;
     OIIO::ImageSpec spec(8, 4, 3, OIIO::TypeDesc::FLOAT);
     spec.channelnames = {"N.x", "N.y", "N.z"};
-    write_image(folder.file("normals.exr"), spec, std::vector<float>(96, 1.0f));
-    const std::string text = refusal(folder.file("normals.exr"));
+    write_image(folder / "normals.exr", spec, std::vector<float>(96, 1.0f));
+    const std::string text = refusal(folder / "normals.exr");
     EXPECT_CONTAINS(text, "N.x, N.y, N.z");
     EXPECT_CONTAINS(text, "oiiotool");
     spec.nchannels = 1;
     for (const char* name : {"A", "Z"}) {
         spec.channelnames = {name};
-        write_image(folder.file("one.exr"), spec, std::vector<float>(32, 1.0f));
-        EXPECT_CONTAINS(refusal(folder.file("one.exr")), std::string("its channels are ") + name);
+        write_image(folder / "one.exr", spec, std::vector<float>(32, 1.0f));
+        EXPECT_CONTAINS(refusal(folder / "one.exr"), std::string("its channels are ") + name);
     }
 }
 
@@ -121,14 +121,14 @@ TEST(InputFiles, LayersAreTold) {
     std::vector<float> pixels;
     for (int i = 0; i < 32; ++i) pixels.insert(pixels.end(), {1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f});
     spec.channelnames = {"diffuse.R", "diffuse.G", "diffuse.B", "gloss.R", "gloss.G", "gloss.B"};
-    write_image(folder.file("layers.exr"), spec, pixels);
-    const Probe layered = read_probe(folder.file("layers.exr"));
+    write_image(folder / "layers.exr", spec, pixels);
+    const Probe layered = read_probe(folder / "layers.exr");
     EXPECT_EQ(layered.rgb[0], 1.0f);
     ASSERT_EQ(layered.warnings.size(), 1u);
     EXPECT_CONTAINS(layered.warnings[0], "of the layers diffuse, gloss, diffuse is read");
     spec.channelnames = {"diffuse.R", "diffuse.G", "diffuse.B", "R", "G", "B"};
-    write_image(folder.file("plain.exr"), spec, pixels);
-    const Probe plain = read_probe(folder.file("plain.exr"));
+    write_image(folder / "plain.exr", spec, pixels);
+    const Probe plain = read_probe(folder / "plain.exr");
     EXPECT_EQ(plain.rgb[0], 4.0f) << "R, G and B come before a layer, wherever they stand";
     EXPECT_TRUE(plain.warnings.empty());
 }
@@ -157,8 +157,8 @@ TEST(InputFiles, DataWindowIsPlacedInTheDisplayWindow) {
                 std::copy_n(sky.at(x, y), 3, pixels.data() + 3 * ((y - w.y) * w.width + x - w.x));
                 std::copy_n(sky.at(x, y), 3, expected.at(x, y));
             }
-        write_image(folder.file(w.name), spec, pixels);
-        const Probe probe = read_probe(folder.file(w.name));
+        write_image(folder / (w.name), spec, pixels);
+        const Probe probe = read_probe(folder / (w.name));
         expect_same(probe, expected, 0.0, w.name);
         ASSERT_EQ(probe.warnings.size(), w.warnings.size()) << w.name;
         for (std::size_t i = 0; i < w.warnings.size(); ++i) EXPECT_CONTAINS(probe.warnings[i], w.warnings[i]);
@@ -172,12 +172,12 @@ TEST(InputFiles, TexturesOfMaketx) {
     for (const char* name : {"sky.tx", "sky.exr"}) {
         OIIO::ImageSpec config;
         ASSERT_TRUE(
-            OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxEnvLatl, buffer, folder.file(name), config))
+            OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxEnvLatl, buffer, folder / name, config))
             << OIIO::geterror();
-        const auto in = OIIO::ImageInput::open(folder.file(name));
+        const auto in = OIIO::ImageInput::open(folder / name);
         ASSERT_TRUE(in && in->spec().tile_width > 0 && in->seek_subimage(0, 1))
             << name << " is not tiled and mipmapped";
-        const Probe probe = read_probe(folder.file(name));
+        const Probe probe = read_probe(folder / name);
         EXPECT_EQ(probe.width, 64);
         EXPECT_EQ(probe.projection, Projection::latlong);
         EXPECT_CONTAINS(probe.projection_reason, "the file says so");
@@ -210,8 +210,8 @@ TEST(InputFiles, OpenExrCubeMap) {
         }
     OIIO::ImageSpec spec = rgb_spec(cube);
     spec.attribute("textureformat", "CubeFace Environment");
-    write_image(folder.file("cube.exr"), spec, cube.rgb);
-    const Probe probe = read_probe(folder.file("cube.exr"));
+    write_image(folder / "cube.exr", spec, cube.rgb);
+    const Probe probe = read_probe(folder / "cube.exr");
     EXPECT_EQ(probe.projection, Projection::cube_cross);
     EXPECT_CONTAINS(probe.projection_reason, "envmap attribute");
     const Pixels expected = latlong_sky(256);
@@ -231,8 +231,8 @@ TEST(InputFiles, IntegersAreLinearizedAndWarnedOf) {
     const auto srgb = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
     for (const auto& [name, type] :
          {std::pair{"a.png", OIIO::TypeDesc::UINT8}, std::pair{"a.tif", OIIO::TypeDesc::UINT16}}) {
-        write_rgb(folder.file(name), ramp, type);
-        const Probe probe = read_probe(folder.file(name));
+        write_rgb(folder / name, ramp, type);
+        const Probe probe = read_probe(folder / name);
         for (std::size_t i = 0; i < ramp.rgb.size(); ++i)
             ASSERT_NEAR(probe.rgb[i], srgb(ramp.rgb[i]), 0.005) << name;
         ASSERT_EQ(probe.warnings.size(), 1u) << name;
@@ -241,8 +241,8 @@ TEST(InputFiles, IntegersAreLinearizedAndWarnedOf) {
     }
     OIIO::ImageSpec spec = rgb_spec(ramp, OIIO::TypeDesc::UINT16);
     spec.attribute("oiio:ColorSpace", "Linear");
-    write_image(folder.file("linear.png"), spec, ramp.rgb);
-    const Probe probe = read_probe(folder.file("linear.png"));
+    write_image(folder / "linear.png", spec, ramp.rgb);
+    const Probe probe = read_probe(folder / "linear.png");
     for (std::size_t i = 0; i < ramp.rgb.size(); ++i) ASSERT_NEAR(probe.rgb[i], ramp.rgb[i], 1e-4);
 }
 
@@ -250,12 +250,12 @@ TEST(InputFiles, AlphaIsIgnored) {
     const Folder folder;
     std::vector<float> rgba;
     for (std::size_t i = 0; i < 32 * 16; ++i) rgba.insert(rgba.end(), {0.5f, 0.5f, 0.5f, i < 256 ? 0.0f : 0.5f});
-    write_rgb(folder.file("plain.png"), {32, 16, std::vector<float>(32 * 16 * 3, 0.5f)}, OIIO::TypeDesc::UINT8);
+    write_rgb(folder / "plain.png", {32, 16, std::vector<float>(32 * 16 * 3, 0.5f)}, OIIO::TypeDesc::UINT8);
     OIIO::ImageSpec spec(32, 16, 4, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1); // what is written is not multiplied by it
     for (const char* name : {"a.png", "a.tif"}) {
-        write_image(folder.file(name), spec, rgba);
-        EXPECT_EQ(read_probe(folder.file(name)).rgb, read_probe(folder.file("plain.png")).rgb) << name;
+        write_image(folder / name, spec, rgba);
+        EXPECT_EQ(read_probe(folder / name).rgb, read_probe(folder / "plain.png").rgb) << name;
     }
 }
 
@@ -270,8 +270,8 @@ TEST(InputFiles, BadTexelsAreCountedAndZeroed) {
     sky.at(31, 15)[0] = -0.5f;
     sky.at(30, 15)[2] = -1e-30f;
     sky.at(29, 15)[2] = -0.0f; // zero is radiance
-    write_rgb(folder.file("bad.exr"), sky);
-    const Probe probe = read_probe(folder.file("bad.exr"));
+    write_rgb(folder / "bad.exr", sky);
+    const Probe probe = read_probe(folder / "bad.exr");
     EXPECT_EQ(probe.bad.nan, 1u);
     EXPECT_EQ(probe.bad.infinite, 2u);
     EXPECT_EQ(probe.bad.negative, 2u);
@@ -292,10 +292,10 @@ TEST(InputFiles, BadPixelsAreClampedOrRefusedWhereAsked) {
     sky.at(20, 3)[1] = -inf;
     sky.at(4, 5)[1] = nan;
     sky.at(31, 15)[2] = -0.5f;
-    write_rgb(folder.file("bad.exr"), sky);
+    write_rgb(folder / "bad.exr", sky);
     ProbeOptions options;
     options.bad_pixels = BadPixels::clamp;
-    const Probe probe = read_probe(folder.file("bad.exr"), options);
+    const Probe probe = read_probe(folder / "bad.exr", options);
     EXPECT_EQ(probe.bad.count(), 3u);
     for (std::size_t i = 0; i < sky.rgb.size(); ++i) {
         const float v = sky.rgb[i], expected = v == inf ? 900.0f : v >= 0.0f ? v : 0.0f;
@@ -303,26 +303,26 @@ TEST(InputFiles, BadPixelsAreClampedOrRefusedWhereAsked) {
     }
     options.bad_pixels = BadPixels::error;
     try {
-        read_probe(folder.file("bad.exr"), options);
+        read_probe(folder / "bad.exr", options);
         FAIL() << "accepted";
     } catch (const Error& error) {
         const std::string text = error.what();
         EXPECT_NE(text.find("1 NaN, 1 infinite and 1 negative texels, the first at 20,3"), std::string::npos)
             << text;
     }
-    write_rgb(folder.file("good.exr"), latlong_sky(32));
-    EXPECT_EQ(read_probe(folder.file("good.exr"), options).bad.count(), 0u);
+    write_rgb(folder / "good.exr", latlong_sky(32));
+    EXPECT_EQ(read_probe(folder / "good.exr", options).bad.count(), 0u);
 }
 
 TEST(InputFiles, BlackIsUniformWhereAsked) {
     const Folder folder;
     Pixels black = latlong_sky(16);
     std::fill(black.rgb.begin(), black.rgb.end(), 0.0f);
-    write_rgb(folder.file("black.exr"), black);
-    for (const float v : read_probe(folder.file("black.exr")).rgb) ASSERT_EQ(v, 0.0f);
+    write_rgb(folder / "black.exr", black);
+    for (const float v : read_probe(folder / "black.exr").rgb) ASSERT_EQ(v, 0.0f);
     ProbeOptions options;
     options.uniform_if_black = true;
-    const Probe probe = read_probe(folder.file("black.exr"), options);
+    const Probe probe = read_probe(folder / "black.exr", options);
     for (const float v : probe.rgb) ASSERT_EQ(v, std::numeric_limits<float>::min());
     EXPECT_EQ(probe.warnings.size(), 1u);
 }
@@ -331,10 +331,10 @@ TEST(InputFiles, BadTexelsOfTheSourceAreLocatedThereAlsoWhenResampled) {
     const Folder folder;
     Pixels ball = render_sky(angular_reference, 64, 64);
     ball.at(33, 40)[0] = std::numeric_limits<float>::quiet_NaN();
-    write_rgb(folder.file("ball.exr"), ball);
+    write_rgb(folder / "ball.exr", ball);
     ProbeOptions options;
     options.projection = Projection::angular;
-    const Probe probe = read_probe(folder.file("ball.exr"), options);
+    const Probe probe = read_probe(folder / "ball.exr", options);
     EXPECT_EQ(probe.bad.nan, 1u);
     EXPECT_EQ(probe.bad.x, 33);
     EXPECT_EQ(probe.bad.y, 40);
@@ -349,32 +349,32 @@ TEST(InputFiles, DeepIsRefusedPartsAreWarnedOf) {
     OIIO::ImageSpec specs[2] = {rgb_spec(sky), rgb_spec(sky)};
     const auto write_parts = [&] {
         const auto out = OIIO::ImageOutput::create("parts.exr");
-        ASSERT_TRUE(out->open(folder.file("parts.exr"), 2, specs)) << out->geterror();
+        ASSERT_TRUE(out->open(folder / "parts.exr", 2, specs)) << out->geterror();
         ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, sky.rgb.data()));
-        ASSERT_TRUE(out->open(folder.file("parts.exr"), specs[1], OIIO::ImageOutput::AppendSubimage));
+        ASSERT_TRUE(out->open(folder / "parts.exr", specs[1], OIIO::ImageOutput::AppendSubimage));
         const std::vector<float> other(sky.rgb.size(), 9.0f);
         ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, other.data()));
         ASSERT_TRUE(out->close());
     };
     write_parts();
-    const Probe probe = read_probe(folder.file("parts.exr"));
+    const Probe probe = read_probe(folder / "parts.exr");
     expect_same(probe, sky, 0.0, "first part");
     ASSERT_EQ(probe.warnings.size(), 1u);
     EXPECT_CONTAINS(probe.warnings[0], "parts");
     specs[0].channelnames = {"N.X", "N.Y", "N.Z"};
     write_parts();
-    EXPECT_CONTAINS(refusal(folder.file("parts.exr")), "the first of its parts are N.X, N.Y, N.Z");
+    EXPECT_CONTAINS(refusal(folder / "parts.exr"), "the first of its parts are N.X, N.Y, N.Z");
 
     OIIO::ImageSpec deep = rgb_spec(sky);
     deep.deep = true;
     {
         const auto out = OIIO::ImageOutput::create("deep.exr");
-        ASSERT_TRUE(out->open(folder.file("deep.exr"), deep)) << out->geterror();
+        ASSERT_TRUE(out->open(folder / "deep.exr", deep)) << out->geterror();
         OIIO::DeepData data(deep);
         ASSERT_TRUE(out->write_deep_image(data)) << out->geterror();
         ASSERT_TRUE(out->close());
     }
-    EXPECT_CONTAINS(refusal(folder.file("deep.exr")), "deep");
+    EXPECT_CONTAINS(refusal(folder / "deep.exr"), "deep");
 }
 
 TEST(InputFiles, TurnedImagesAreRefused) {
@@ -382,8 +382,8 @@ TEST(InputFiles, TurnedImagesAreRefused) {
     const Pixels sky = latlong_sky(16);
     OIIO::ImageSpec spec = rgb_spec(sky);
     spec.attribute("Orientation", 3);
-    write_image(folder.file("turned.tif"), spec, sky.rgb);
-    EXPECT_CONTAINS(refusal(folder.file("turned.tif")), "--reorient");
+    write_image(folder / "turned.tif", spec, sky.rgb);
+    EXPECT_CONTAINS(refusal(folder / "turned.tif"), "--reorient");
 }
 
 // FIPS 180-2: the digest of "abc" is known; of an image, that of its bytes, whatever it holds.
@@ -391,8 +391,8 @@ TEST(InputFiles, Sha256IsOfTheFilesBytes) {
     const Folder folder;
     // A plain PPM is text, so its digest can be had with any tool: printf ... | sha256sum
     const std::string ppm = "P3\n2 1\n255\n255 255 255 0 0 0\n";
-    write_bytes(folder.file("two.ppm"), ppm);
-    const Probe probe = read_probe(folder.file("two.ppm"));
+    write_text(folder / "two.ppm", ppm);
+    const Probe probe = read_probe(folder / "two.ppm");
     EXPECT_EQ(probe.source_sha256, "981d91bf6e5ded606784b30e2dd51109afe4138c9a95ff05187b1655efb236c9");
     EXPECT_EQ(probe.rgb, (std::vector<float>{1, 1, 1, 0, 0, 0}));
 }

@@ -15,6 +15,7 @@ namespace {
 using namespace acdf::measure;
 using acdf::compress::Target;
 using acdf_test::awkward_normals;
+using acdf_test::facing;
 using acdf_test::irradiance_targets;
 using acdf_test::NamedTarget;
 using acdf_test::Normal;
@@ -51,8 +52,6 @@ private:
     Normal n_;
     bool occluded_;
 };
-
-ShadingPoint facing(const Normal& n) { return acdf_test::shading_point(n.data(), n.data()); }
 
 struct Measured {
     acdf_test::MonteCarlo green;

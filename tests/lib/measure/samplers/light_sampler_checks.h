@@ -23,6 +23,8 @@ inline acdf::measure::ShadingPoint shading_point(const float n[3], const float w
     std::copy_n(wo, 3, point.wo);
     return point;
 }
+/// Seen from above.
+inline acdf::measure::ShadingPoint facing(const Normal& n) { return shading_point(n.data(), n.data()); }
 
 /// Bins of a lat-long grid, each summed over fine x fine directions evenly in phi and z; or of the octahedral
 /// square, evenly in u and v.

@@ -31,8 +31,6 @@ std::vector<NamedSampler> samplers_of(const Target& t) {
     return all;
 }
 
-ShadingPoint facing(const Normal& n) { return shading_point(n.data(), n.data()); }
-
 class TexelSamplers : public ::testing::TestWithParam<NamedTarget> {
 protected:
     const Target& target() const { return GetParam().target; }

@@ -15,10 +15,6 @@
 
 namespace acdf_test {
 
-inline double dot(const float* a, const float* b) {
-    return double{a[0]} * b[0] + double{a[1]} * b[1] + double{a[2]} * b[2];
-}
-
 inline std::vector<Normal> random_normals(int count, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::vector<Normal> out;

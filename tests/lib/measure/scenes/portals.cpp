@@ -164,7 +164,8 @@ TEST(Visibility, IsKnownAtCachePoints) {
     double seen = 0.0, hidden = 0.0;
     for (std::size_t i = 0; i < yard.points.size(); i += 40) {
         const ScenePoint& point = yard.points[i];
-        expect_samples_as_its_density(*with, point.shading(), {64, 32, 4}, "visibility", {4000, 1e-4, 0.0, 1e-4});
+        expect_samples_as_its_density(*with, point.shading(), SphereBins{64, 32, 4}, "visibility",
+                                      SamplerCheck{4000, 1e-4, 0.0, 1e-4});
         a->move_to(point.shading());
         b->move_to(point.shading());
         SphereBins{32, 16}.for_each([&](std::size_t, const float* w, double omega) {

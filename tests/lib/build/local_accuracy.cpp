@@ -1,0 +1,131 @@
+// What is measured of local files of several channels, for lookups that vary within texels, and of maps of few
+// texels is what samples have.
+#include "build/local.h"
+#include "tests/inputs/directions.h"
+#include "tests/inputs/synthetic.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace acdf;
+using acdf_test::kPi;
+using acdf_test::uniform;
+
+constexpr std::uint32_t kWide = 96, kHigh = 48;
+
+struct Lookup {
+    std::vector<float> rgb;
+    AcdfFilter filter;
+
+    double texel(std::size_t channel, double column, double row) const {
+        const auto r = static_cast<std::size_t>(std::clamp(row, 0.0, kHigh - 1.0));
+        const auto c = static_cast<std::size_t>(column + kWide) % kWide;
+        return double{rgb[(r * kWide + c) * 3 + channel]};
+    }
+    /// At a place in the map, in texels.
+    double operator()(std::size_t channel, double x, double y) const {
+        if (filter == ACDF_FILTER_NEAREST) return texel(channel, std::floor(x), std::floor(y));
+        const double c = std::floor(x - 0.5), r = std::floor(y - 0.5), s = x - 0.5 - c, t = y - 0.5 - r;
+        return (1 - t) * ((1 - s) * texel(channel, c, r) + s * texel(channel, c + 1, r)) +
+               t * ((1 - s) * texel(channel, c, r + 1) + s * texel(channel, c + 1, r + 1));
+    }
+};
+
+/// Of one sample of `channels`, by many.
+double drawn_variance(const LocalEnvironmentView& view, const build::Normal& normal, const Lookup& lookup,
+                      std::size_t channels, std::mt19937_64& random) {
+    constexpr int kCount = 400000;
+    double sum[3] = {}, square = 0.0;
+    for (int i = 0; i < kCount; ++i) {
+        const double u0 = uniform(random), u1 = uniform(random);
+        const DirectionSample s = view.sample(normal.data(), u0, u1);
+        const double x = kWide * (0.5 - std::atan2(double{s.direction[1]}, double{s.direction[0]}) / (2.0 * kPi)),
+                     y = kHigh * std::acos(double{s.direction[2]}) / kPi;
+        const double cosine = std::max(0.0, acdf_test::dot(normal.data(), s.direction));
+        for (std::size_t k = 0; k < channels; ++k) {
+            const double weight = lookup(k, x, y) * cosine / double{s.pdf};
+            sum[k] += weight / kCount;
+            square += weight * weight / kCount;
+        }
+    }
+    return square / (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) - 1.0;
+}
+
+TEST(LocalFiles, ChannelsAndFiltersCountAsSamplesTell) {
+    std::mt19937_64 random(4);
+    Lookup lookup{std::vector<float>(kWide * kHigh * 3), ACDF_FILTER_NEAREST};
+    for (float& value : lookup.rgb) value = static_cast<float>(uniform(random));
+    const build::Normal normal{0.36f, 0.48f, 0.8f};
+    for (const std::size_t channels : {1u, 3u})
+        for (const AcdfFilter filter : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR}) {
+            SCOPED_TRACE(std::to_string(channels) + (filter == ACDF_FILTER_NEAREST ? ", nearest" : ", bilinear"));
+            lookup.filter = filter;
+            compress::TargetOptions of;
+            of.filter = filter;
+            of.channels = channels == 3 ? ACDF_CHANNELS_SEPARATE : ACDF_CHANNELS_WEIGHTED;
+            of.weights =
+                channels == 3 ? compress::ChannelWeights{1.0, 1.0, 1.0} : compress::ChannelWeights{1.0, 0.0, 0.0};
+            const compress::Target target = compress::environment_target(lookup.rgb.data(), kWide, kHigh, of);
+            build::LocalOptions options;
+            options.goal.budget = 262144;
+            const build::Local local = build::build_local(target, {"probe.exr", "", "latlong", ""}, options);
+            File file;
+            ASSERT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+            const double drawn = drawn_variance(file.local(), normal, lookup, channels, random);
+            const build::NormalAccuracy measured = build::measure_normals(file, target, {normal}).front();
+            EXPECT_NEAR(measured.relative_variance, drawn, 0.03 * drawn);
+            EXPECT_GE(measured.max_weight, 1.0 + measured.relative_variance);
+        }
+}
+
+// The cosine varies within texels of ten degrees.
+TEST(LocalFiles, MapsOfFewTexelsCountAsSamplesTell) {
+    std::mt19937_64 random(6);
+    const compress::Target target =
+        acdf_test::texel_target(32, 16, [&](std::uint32_t, std::uint32_t) { return 0.1 + uniform(random); });
+    build::LocalOptions options;
+    options.goal.budget = 65536;
+    const build::Local local = build::build_local(target, {}, options);
+    File file;
+    ASSERT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+    const build::Normal normal{0.36f, 0.48f, 0.8f};
+    double sum = 0.0, square = 0.0;
+    constexpr int count = 1000000;
+    for (int i = 0; i < count; ++i) {
+        const double u0 = uniform(random), u1 = uniform(random);
+        const DirectionSample s = file.local().sample(normal.data(), u0, u1);
+        const double x = 32 * (0.5 - std::atan2(double{s.direction[1]}, double{s.direction[0]}) / (2.0 * kPi)),
+                     y = 16 * std::acos(double{s.direction[2]}) / kPi;
+        const double f = double{
+            target.row(std::min(static_cast<std::uint32_t>(y), 15u))[std::min(static_cast<std::uint32_t>(x), 31u)]};
+        const double weight = f * std::max(0.0, acdf_test::dot(normal.data(), s.direction)) / double{s.pdf};
+        sum += weight / count;
+        square += weight * weight / count;
+    }
+    const double drawn = square / (sum * sum) - 1.0;
+    EXPECT_NEAR(build::measure_normals(file, target, {normal}).front().relative_variance, drawn, 0.1 * drawn);
+}
+
+TEST(LocalFiles, NoVarianceIsBelowZero) { // where rounding alone is left
+    build::LocalOptions options;
+    options.goal.budget = 8192;
+    options.cosine_share = 0.99;
+    const compress::Target sky = acdf_test::texel_target(1, 1, [](std::uint32_t, std::uint32_t) { return 1.0; });
+    const build::Local local = build::build_local(sky, {}, options);
+    File file;
+    ASSERT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+    for (const build::NormalAccuracy& a :
+         build::measure_normals(file, sky, build::test_normals(options.scene, 64))) {
+        EXPECT_GE(a.relative_variance, 0.0);
+        EXPECT_LT(a.relative_variance, 0.01);
+        EXPECT_NEAR(a.relative_variance_full_cdf, 5.0 / 3.0, 1e-3); // E[cos^2] / E[cos]^2 - 1 over the sphere
+    }
+}
+
+} // namespace
