@@ -35,9 +35,9 @@ std::vector<double> densities(const File& file, const FineTexels& texels) {
 
 class Measure {
 public:
-    Measure(const File& file, const compress::Target& target)
-        : company_(*file.company()), texels_(target), target_(texels_.target()), density_(densities(file, texels_)),
-          cosines_(target_) {}
+    Measure(const File& file, const compress::Target& target, Texels texels)
+        : company_(*file.company()), texels_(target, texels), target_(texels_.target()),
+          density_(densities(file, texels_)), cosines_(target_) {}
 
     Combination of(const Normal& n) const {
         const Combination none{double{company_.share}, static_cast<AcdfHeuristic>(company_.heuristic)};
@@ -126,7 +126,7 @@ std::size_t least(const std::array<double, Count>& of) {
 
 CompanyAccuracy measure_beside_company(const File& file, const compress::Target& target,
                                        const std::vector<Normal>& normals) {
-    const Measure measure(file, target);
+    const Measure measure(file, target, Texels::divided);
     std::vector<Combination> of(normals.size(), Combination{0.5, ACDF_HEURISTIC_BALANCE});
     tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) { of[i] = measure.of(normals[i]); });
     CompanyAccuracy out;
@@ -143,7 +143,7 @@ CompanyAccuracy measure_beside_company(const File& file, const compress::Target&
 }
 
 double recommended_share(const File& file, const compress::Target& target, const std::vector<Normal>& normals) {
-    const Measure measure(file, target);
+    const Measure measure(file, target, Texels::own);
     std::vector<double> irradiance(normals.size());
     tbb::parallel_for(std::size_t{0}, normals.size(),
                       [&](std::size_t i) { irradiance[i] = measure.irradiance(normals[i]); });

@@ -13,10 +13,13 @@
 
 namespace acdf::build {
 
+enum class Texels { divided, own };
+
 /// A target, each texel of which is divided evenly where a map has fewer than 256 columns or 128 rows.
 class FineTexels {
 public:
-    explicit FineTexels(const compress::Target& coarse) : coarse_(coarse) {
+    explicit FineTexels(const compress::Target& coarse, Texels texels_of = Texels::divided) : coarse_(coarse) {
+        if (texels_of == Texels::own) return;
         const std::uint64_t texels = std::uint64_t{coarse.columns} * coarse.rows;
         parts_[0] = parts_of(coarse.columns, 256, texels);
         parts_[1] = parts_of(coarse.rows, 128, texels * parts_[0]);

@@ -95,7 +95,7 @@ TEST(Company, VarianceIsThatOfTheSlowReference) {
                 Vector n{};
                 const double z = 1.0 - 2.0 * acdf_test::uniform(engine);
                 acdf_test::direction_of(kPi * (2.0 * acdf_test::uniform(engine) - 1.0), z, n.data());
-                const double variance = slow_variance(probe, n, kind.company, made);
+                const double variance = slow_variance(probe, n, kind.company, made, sixteenths());
                 if (variance < 0.0) continue;
                 sum += variance;
                 lit += 1.0;

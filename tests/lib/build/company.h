@@ -185,15 +185,14 @@ inline double weight(double own, double other, AcdfHeuristic heuristic) {
 }
 
 /// N times the variance of N samples over the squared integral: for each sampler the variance of what one of its
-/// samples adds, part of a texel by part. `density(texel)` is ours. -1: it sees no light.
+/// samples adds, part of a texel by part of `all`. `density(texel)` is ours. -1: it sees no light.
 template <class Density>
 double slow_variance(const Probe& probe, const Vector& n, double share, AcdfHeuristic heuristic,
-                     const Density& density) {
+                     const Density& density, const Directions& all = middles()) {
     double mean[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
-    const Directions& all = sixteenths();
     double ours = 0.0;
     for (std::size_t part = 0, asked = all.direction.size(); part < all.direction.size(); ++part) {
-        const std::size_t texel = part / 16;
+        const std::size_t texel = part / (all.parts * all.parts);
         const double cosine = dot(n, all.direction[part].data()), f = double{probe.radiance[texel]} * cosine;
         if (!(f > 0.0)) continue;
         if (texel != asked) ours = density(asked = texel);
@@ -210,10 +209,11 @@ double slow_variance(const Probe& probe, const Vector& n, double share, AcdfHeur
     return (share * (square[0] - mean[0] * mean[0]) + (1.0 - share) * (square[1] - mean[1] * mean[1])) / (e * e);
 }
 
-inline double slow_variance(const Probe& probe, const Vector& n, const builder::Company& company,
-                            const Made& made) {
-    return slow_variance(probe, n, share_of(company), company.heuristic,
-                         [&](std::size_t texel) { return made.pdf(n, middles().direction[texel].data()); });
+inline double slow_variance(const Probe& probe, const Vector& n, const builder::Company& company, const Made& made,
+                            const Directions& all = middles()) {
+    return slow_variance(
+        probe, n, share_of(company), company.heuristic,
+        [&](std::size_t texel) { return made.pdf(n, middles().direction[texel].data()); }, all);
 }
 
 } // namespace acdf::company_test
