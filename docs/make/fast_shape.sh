@@ -9,15 +9,13 @@ trap 'rm -rf "$work"' EXIT
 
 # variance PROBE SIZE SHAPE
 variance() {
-    local options=()
-    [[ $1 == *grace_probe* ]] && options=(--projection angular)
-    "$acdf" local "$1" -o "$work/out.acdf" --budget "$2" --shape "$3" --force --quiet --json "${options[@]}" 2>/dev/null |
+    "$acdf" local "$1" -o "$work/out.acdf" --budget "$2" --shape "$3" --force --quiet --json 2>/dev/null |
         jq .relative_variance
 }
 
 echo "| mean relative variance | 1 MiB, small | fast | ratio | 128 KiB, small | fast | ratio |"
 echo "|---|---|---|---|---|---|---|"
-for name in noon_grass_1k.hdr studio_small_05_1k.hdr venice_sunset_1k.hdr courtyard.exr grace_probe.hdr city.exr; do
+for name in noon_grass_1k.hdr studio_small_05_1k.hdr venice_sunset_1k.hdr courtyard.exr sunset.exr city.exr; do
     line="| ${name%.*} |"
     for size in 1MiB 128KiB; do
         small=$(variance "$data/probes/$name" $size small)

@@ -60,7 +60,7 @@ options() {
             sed -n "s/^  \"$key\": \([0-9.e+-]*\),*$/\1/p" "$work/report"
         done)
         # shellcheck disable=SC2086
-        printf '| %s | %d | %d | %.4g | %.3g | %.2f |\n' "${arguments:+\`$arguments\`}" $numbers \
+        printf '| %s | %d | %d | %.4g | %.3g | %.2f |\n' "$([ "$arguments" ] && echo "\`$arguments\`" || echo 'nothing: `--cells 4096`')" $numbers \
             "$(awk '{ print $1 + $2 }' "$work/time")"
     done <<'LIST'
 

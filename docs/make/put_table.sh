@@ -5,7 +5,7 @@ docs=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 page=$(grep -lFx "<!-- $1 -->" "$docs"/*.md) || { echo "no place for $1 in docs/*.md" >&2; exit 1; }
 work=$(mktemp -d "${TMPDIR:-/tmp}/acdf-table-XXXXXX")
 trap 'rm -rf "$work"' EXIT
-cat > "$work/table"
+sed -e :a -e '/^\n*$/{$d;N;ba' -e '}' > "$work/table" # without empty lines at its end
 awk -v name="$1" -v table="$work/table" '
     $0 == "<!-- " name " -->" { print; while ((getline line < table) > 0) print line; inside = 1; next }
     $0 == "<!-- /" name " -->" { inside = 0 }
