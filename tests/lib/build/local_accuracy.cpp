@@ -19,16 +19,17 @@ using acdf_test::kPi;
 using acdf_test::kSanitized;
 using acdf_test::uniform;
 
-constexpr std::uint32_t kWide = 96, kHigh = 48;
+const build::Normal kNormal{0.36f, 0.48f, 0.8f};
 
 struct Lookup {
+    std::uint32_t columns, rows;
     std::vector<float> rgb;
     AcdfFilter filter;
 
     double texel(std::size_t channel, double column, double row) const {
-        const auto r = static_cast<std::size_t>(std::clamp(row, 0.0, kHigh - 1.0));
-        const auto c = static_cast<std::size_t>(column + kWide) % kWide;
-        return double{rgb[(r * kWide + c) * 3 + channel]};
+        const auto r = static_cast<std::size_t>(std::clamp(row, 0.0, rows - 1.0));
+        const auto c = static_cast<std::size_t>(column + columns) % columns;
+        return double{rgb[(r * columns + c) * 3 + channel]};
     }
     /// At a place in the map, in texels.
     double operator()(std::size_t channel, double x, double y) const {
@@ -47,8 +48,9 @@ double drawn_variance(const LocalEnvironmentView& view, const build::Normal& nor
     for (int i = 0; i < count; ++i) {
         const double u0 = uniform(random), u1 = uniform(random);
         const DirectionSample s = view.sample(normal.data(), u0, u1);
-        const double x = kWide * (0.5 - std::atan2(double{s.direction[1]}, double{s.direction[0]}) / (2.0 * kPi)),
-                     y = kHigh * std::acos(double{s.direction[2]}) / kPi;
+        const double x = lookup.columns *
+                         (0.5 - std::atan2(double{s.direction[1]}, double{s.direction[0]}) / (2.0 * kPi)),
+                     y = lookup.rows * std::acos(double{s.direction[2]}) / kPi;
         const double cosine = std::max(0.0, acdf_test::dot(normal.data(), s.direction));
         for (std::size_t k = 0; k < channels; ++k) {
             const double weight = lookup(k, x, y) * cosine / double{s.pdf};
@@ -59,28 +61,46 @@ double drawn_variance(const LocalEnvironmentView& view, const build::Normal& nor
     return square / (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) - 1.0;
 }
 
+Lookup noise(std::uint32_t columns, std::uint32_t rows, float least, std::mt19937_64& random) {
+    Lookup out{columns, rows, std::vector<float>(std::size_t{columns} * rows * 3), ACDF_FILTER_NEAREST};
+    for (float& value : out.rgb) value = least + static_cast<float>(uniform(random));
+    return out;
+}
+
+/// Of one channel the first.
+compress::Target target_of(const Lookup& lookup, std::size_t channels) {
+    compress::TargetOptions of;
+    of.filter = lookup.filter;
+    of.channels = channels == 3 ? ACDF_CHANNELS_SEPARATE : ACDF_CHANNELS_WEIGHTED;
+    of.weights = channels == 3 ? compress::ChannelWeights{1.0, 1.0, 1.0} : compress::ChannelWeights{1.0, 0.0, 0.0};
+    return compress::environment_target(lookup.rgb.data(), lookup.columns, lookup.rows, of);
+}
+
+build::Local of_budget(const compress::Target& target, std::uint64_t budget) {
+    build::LocalOptions options;
+    options.goal.budget = budget;
+    return build::build_local(target, {}, options);
+}
+
+/// Lives no longer than `local`.
+File opened(const build::Local& local) {
+    File file;
+    EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+    return file;
+}
+
 TEST(LocalFiles, ChannelsAndFiltersCountAsSamplesTell) {
     std::mt19937_64 random(4);
-    Lookup lookup{std::vector<float>(kWide * kHigh * 3), ACDF_FILTER_NEAREST};
-    for (float& value : lookup.rgb) value = static_cast<float>(uniform(random));
-    const build::Normal normal{0.36f, 0.48f, 0.8f};
+    Lookup lookup = noise(96, 48, 0.0f, random);
     for (const std::size_t channels : {1u, 3u})
         for (const AcdfFilter filter : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR}) {
             SCOPED_TRACE(std::to_string(channels) + (filter == ACDF_FILTER_NEAREST ? ", nearest" : ", bilinear"));
             lookup.filter = filter;
-            compress::TargetOptions of;
-            of.filter = filter;
-            of.channels = channels == 3 ? ACDF_CHANNELS_SEPARATE : ACDF_CHANNELS_WEIGHTED;
-            of.weights =
-                channels == 3 ? compress::ChannelWeights{1.0, 1.0, 1.0} : compress::ChannelWeights{1.0, 0.0, 0.0};
-            const compress::Target target = compress::environment_target(lookup.rgb.data(), kWide, kHigh, of);
-            build::LocalOptions options;
-            options.goal.budget = kSanitized ? 32768 : 262144;
-            const build::Local local = build::build_local(target, {"probe.exr", "", "latlong", ""}, options);
-            File file;
-            ASSERT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
-            const double drawn = drawn_variance(file.local(), normal, lookup, channels, random);
-            const build::NormalAccuracy measured = build::measure_normals(file, target, {normal}).front();
+            const compress::Target target = target_of(lookup, channels);
+            const build::Local local = of_budget(target, kSanitized ? 32768 : 262144);
+            const File file = opened(local);
+            const double drawn = drawn_variance(file.local(), kNormal, lookup, channels, random);
+            const build::NormalAccuracy measured = build::measure_normals(file, target, {kNormal}).front();
             EXPECT_NEAR(measured.relative_variance, drawn, (kSanitized ? 0.15 : 0.03) * drawn);
             EXPECT_GE(measured.max_weight, 1.0 + measured.relative_variance);
         }
@@ -89,29 +109,12 @@ TEST(LocalFiles, ChannelsAndFiltersCountAsSamplesTell) {
 // The cosine varies within texels of ten degrees.
 TEST(LocalFiles, MapsOfFewTexelsCountAsSamplesTell) {
     std::mt19937_64 random(6);
-    const compress::Target target =
-        acdf_test::texel_target(32, 16, [&](std::uint32_t, std::uint32_t) { return 0.1 + uniform(random); });
-    build::LocalOptions options;
-    options.goal.budget = 65536;
-    const build::Local local = build::build_local(target, {}, options);
-    File file;
-    ASSERT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
-    const build::Normal normal{0.36f, 0.48f, 0.8f};
-    double sum = 0.0, square = 0.0;
-    const int count = kSanitized ? 50000 : 1000000;
-    for (int i = 0; i < count; ++i) {
-        const double u0 = uniform(random), u1 = uniform(random);
-        const DirectionSample s = file.local().sample(normal.data(), u0, u1);
-        const double x = 32 * (0.5 - std::atan2(double{s.direction[1]}, double{s.direction[0]}) / (2.0 * kPi)),
-                     y = 16 * std::acos(double{s.direction[2]}) / kPi;
-        const double f = double{
-            target.row(std::min(static_cast<std::uint32_t>(y), 15u))[std::min(static_cast<std::uint32_t>(x), 31u)]};
-        const double weight = f * std::max(0.0, acdf_test::dot(normal.data(), s.direction)) / double{s.pdf};
-        sum += weight / count;
-        square += weight * weight / count;
-    }
-    const double drawn = square / (sum * sum) - 1.0;
-    EXPECT_NEAR(build::measure_normals(file, target, {normal}).front().relative_variance, drawn,
+    const Lookup lookup = noise(32, 16, 0.1f, random);
+    const compress::Target target = target_of(lookup, 1);
+    const build::Local local = of_budget(target, 65536);
+    const File file = opened(local);
+    const double drawn = drawn_variance(file.local(), kNormal, lookup, 1, random);
+    EXPECT_NEAR(build::measure_normals(file, target, {kNormal}).front().relative_variance, drawn,
                 (kSanitized ? 0.3 : 0.1) * drawn);
 }
 
@@ -121,8 +124,7 @@ TEST(LocalFiles, NoVarianceIsBelowZero) { // where rounding alone is left
     options.cosine_share = 0.99;
     const compress::Target sky = acdf_test::texel_target(1, 1, [](std::uint32_t, std::uint32_t) { return 1.0; });
     const build::Local local = build::build_local(sky, {}, options);
-    File file;
-    ASSERT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+    const File file = opened(local);
     for (const build::NormalAccuracy& a :
          build::measure_normals(file, sky, build::test_normals(options.scene, 64))) {
         EXPECT_GE(a.relative_variance, 0.0);
