@@ -110,9 +110,9 @@ Exported make_tables(const ExportArguments& options, const LoadedFile& loaded) {
 }
 
 bool one_file(const std::string& a, const std::string& b) {
-    namespace fs = std::filesystem;
-    std::error_code ignored;
-    return a == b || fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+    std::error_code ignored; // then empty
+    const std::filesystem::path path = std::filesystem::weakly_canonical(a, ignored);
+    return a == b || (!path.empty() && path == std::filesystem::weakly_canonical(b, ignored));
 }
 
 void run(const ExportArguments& options) {

@@ -64,13 +64,13 @@ void tell(const input::Probe& probe, const input::ProbeOptions& options, const s
     for (const std::string& warning : probe.warnings) note(warning);
 }
 
+} // namespace
+
 Note notes_of(const std::string& path, bool quiet) {
     return [path, quiet](const std::string& text) {
         if (!quiet) say(path + ": " + text);
     };
 }
-
-} // namespace
 
 builder::Target probe_target(const std::string& path, const input::Probe& probe,
                              const builder::TargetOptions& options) {

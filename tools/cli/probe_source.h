@@ -24,6 +24,9 @@ builder::Target probe_target(const std::string& path, const input::Probe& probe,
 /// Called with what a user should know of a source: one line without a file's name.
 using Note = std::function<void(const std::string&)>;
 
+/// Tells them on stderr, behind the name of a source, unless `quiet`.
+Note notes_of(const std::string& path, bool quiet);
+
 /// A probe without its pixels, and what is fitted of it.
 struct ProbeTarget {
     input::Probe probe; ///< its width and height are those of the target's grid

@@ -24,6 +24,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace acdf::tools {
 namespace {
@@ -53,7 +54,10 @@ struct LocalRivals {
 std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<build::Normal>& normals) {
     const std::uint32_t columns = std::min(32u, target.columns), rows = std::min(16u, target.rows);
     const build::FineTexels texels(target);
-    const LocalRivals made(target, columns, rows), summed(texels.target(), columns, rows);
+    const LocalRivals made(target, columns, rows);
+    std::optional<LocalRivals> divided;
+    if (&texels.target() != &target) divided.emplace(texels.target(), columns, rows);
+    const LocalRivals& summed = divided ? *divided : made;
     const auto mean = [&](const std::function<double(const float*)>& variance) {
         std::vector<double> each(normals.size());
         tbb::parallel_for(std::size_t{0}, normals.size(),

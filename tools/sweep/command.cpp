@@ -131,9 +131,7 @@ std::string output_of(const std::string& source, SweepKind kind) {
 ProbeTarget sweep_target(const SweepArguments& options, SweepKind kind) {
     input::ProbeOptions input = options.input;
     if (kind == SweepKind::places) input.domain = input::Domain::latlong;
-    return load_target(options.source, input, options.sweep.target, [&](const std::string& text) {
-        if (!options.quiet) say(options.source + ": " + text);
-    });
+    return load_target(options.source, input, options.sweep.target, notes_of(options.source, options.quiet));
 }
 
 SweptMesh swept_mesh(const SweepArguments& options) {
