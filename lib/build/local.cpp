@@ -2,6 +2,7 @@
 
 #include "build/compressed_budget.h"
 #include "build/errors.h"
+#include "build/lit_bins.h"
 #include "build/local_size.h"
 #include "build/text/company.h"
 #include "build/text/options.h"
@@ -118,6 +119,9 @@ std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
 
 std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
 
+/// Whether somebody hears which size would not be too small: it takes a fit to tell.
+enum class Least { told, unheard };
+
 /// A size is too small.
 struct OutOfReach : std::runtime_error {
     std::uint64_t least;
@@ -141,11 +145,10 @@ std::uint64_t bytes_of_bins(const compress::Target& target, const Source& source
 
 /// Of a file that has these bins, two tiles, and as little in them as can be.
 std::uint64_t least_bytes(const compress::Target& target, const Source& source, const LocalOptions& options,
-                          const NormalBins& bins, compress::LocalSize size) {
+                          LitBins& bins, compress::LocalSize size) {
     size.tiles = 2;
-    size.inside_bytes = 64;
-    const compress::LocalFit fit = compress::fit_local(target, bins, size, {}, options.company);
-    return bytes_of(shared_draft(fit, target, source, options, bins)) + kSlack;
+    compress::LocalFitter fitter(target, bins.bins(), bins.light(), size, {}, options.company);
+    return bytes_of(shared_draft(fitter.outlined(64), target, source, options, bins.bins())) + kSlack;
 }
 
 /// The file in which what is there without places has `local` bytes.
@@ -194,17 +197,21 @@ bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compr
 
 /// At most `whole_budget` bytes before compression, and nearly as many.
 Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
-                  std::uint64_t whole_budget, double max_weight, const Progress& progress) {
+                  std::uint64_t whole_budget, double max_weight, LastBins& last, Least least,
+                  const Progress& progress) {
     const std::uint64_t budget = local_budget(options, whole_budget);
-    const NormalBins bins = bins_for(options, double(budget));
+    LitBins& lit = bins_for(options, double(budget), target, last);
+    const NormalBins& bins = lit.bins();
     compress::LocalSize size = size_for(options, bins, double(budget));
     if (max_weight > 0.0) size.max_weight = max_weight;
-    if (bytes_of_bins(target, source, options, bins) > budget)
-        throw OutOfReach(whole_budget, whole_of(options, least_bytes(target, source, options, bins, size)));
+    if (const std::uint64_t bytes = bytes_of_bins(target, source, options, bins); bytes > budget)
+        throw OutOfReach(
+            whole_budget,
+            whole_of(options, least == Least::unheard ? bytes : least_bytes(target, source, options, lit, size)));
     std::optional<compress::LocalFitter> fitter; // of so many tiles
     std::optional<Local> grown;                  // the best of those that left bytes
     for (int tries = 0, growths = 0;; ++tries) {
-        if (!fitter) fitter.emplace(target, bins, size, fitting(progress), options.company);
+        if (!fitter) fitter.emplace(target, bins, lit.light(), size, fitting(progress), options.company);
         compress::LocalFit fit = fitter->outlined(size.inside_bytes);
         LocalDraft draft = shared_draft(fit, target, source, options, bins);
         const std::uint64_t bytes = bytes_of(draft);
@@ -243,10 +250,11 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
 }
 
 Local build_in_budget(const compress::Target& target, const Source& source, const LocalOptions& options,
-                      std::uint64_t budget, const Progress& progress) {
+                      std::uint64_t budget, LastBins& last, Least least, const Progress& progress) {
+    if (options.codec != ACDF_CODEC_NONE) least = Least::told; // by which it goes on
     return within_weight(options.max_weight, [&](double max_weight) {
         const auto build = [&](std::uint64_t bytes) {
-            return build_plain(target, source, options, bytes, max_weight, progress);
+            return build_plain(target, source, options, bytes, max_weight, last, least, progress);
         };
         if (options.codec == ACDF_CODEC_NONE) return build(budget);
         try {
@@ -262,13 +270,15 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
 /// The smallest file whose measured variance is low enough.
 Local build_to_variance(const compress::Target& target, const Source& source, const LocalOptions& options,
                         const Progress& progress) {
+    LastBins last;
     double share = 0.0; // steps of the search are of about the same size
     const auto at = [&](double bytes) -> std::optional<Local> {
         const auto searching = [&](double, const char*) { // no news, but a chance to cancel
             if (progress) progress(share, "searching");
         };
         try {
-            return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), searching);
+            return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), last, Least::unheard,
+                                   searching);
         } catch (const OutOfReach&) {
             return std::nullopt; // bins alone may take more
         }
@@ -359,27 +369,15 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     return o.fit.epsilon > 0.0 ? text + " --eps " + option_number(o.fit.epsilon) : text;
 }
 
-std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count) {
-    if (scene.empty()) return random_normals(count);
-    double sum = 0.0;
-    std::vector<double> upto;
-    for (const compress::SceneNormal& n : scene) upto.push_back(sum += n.weight);
-    std::vector<Normal> out;
-    for (std::uint32_t i = 0; i < count; ++i) { // even steps: the scene's own frequencies
-        const double at = sum * (i + 0.5) / count;
-        const auto found = std::upper_bound(upto.begin(), upto.end() - 1, at);
-        out.push_back(scene[static_cast<std::size_t>(found - upto.begin())].normal);
-    }
-    return out;
-}
-
 Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
                   const Progress& progress) {
     if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
     if (!options.sharing) return build_separate(target, source, options, progress);
     switch (options.goal.kind) {
-    case Goal::Kind::budget:
-        return build_in_budget(target, source, options, options.goal.budget, progress);
+    case Goal::Kind::budget: {
+        LastBins last;
+        return build_in_budget(target, source, options, options.goal.budget, last, Least::told, progress);
+    }
     case Goal::Kind::variance:
         return build_to_variance(target, source, options, progress);
     default: {

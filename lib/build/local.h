@@ -59,7 +59,4 @@ struct Local {
 Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
                   const Progress& progress = {});
 
-/// The normals over which accuracy is measured: random ones or, where a scene is given, of the scene.
-std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count);
-
 } // namespace acdf::build

@@ -136,84 +136,135 @@ private:
         return out;
     }
 
-    NormalAccuracy sum(const float n[3], const TilePicture& picture, const std::vector<double>& tile) const {
-        return picture.slope.empty() ? sum<false>(n, picture, tile) : sum<true>(n, picture, tile);
+    /// Over the texels of a row, as far as they are above the horizon.
+    struct RowSums {
+        double flux = 0.0, second = 0.0, first = 0.0, light = 0.0, light_second = 0.0;
+        compress::ChannelSums irradiance; ///< of channels, where f is not g
+    };
+    /// What goes on from row to row.
+    struct Row {
+        const float* n;
+        const TilePicture& picture;
+        const std::vector<double>&
+            tile;                ///< probabilities without the share around the normal; empty: nothing is drawn
+        double share;            ///< that is drawn around the normal
+        Combination both, rival; ///< with the company
+        double largest = 0.0;
+        std::uint64_t violations = 0;
+    };
+
+    /// Of files that are drawn from alone, of the integrand g, without slopes and shares: most are.
+    bool is_plain(const Row& state) const {
+        return !local_.company && target_.means.empty() && target_.peaks.empty() && state.picture.slope.empty() &&
+               state.share == 0.0 && !state.tile.empty();
     }
 
-    template <bool sloped>
+    RowSums sum_plain_row(std::uint32_t r, Row& state) const {
+        const std::size_t row = std::size_t{r} * target_.columns;
+        const std::uint32_t* const tiles = state.picture.tile.data() + row;
+        const double *const densities = state.picture.density.data() + row, *const probability = state.tile.data();
+        const double* const measures = target_.column_measure.data();
+        const float* const values = target_.row(r);
+        const double height = target_.row_measure[r];
+        double flux = 0.0, second = 0.0, first = 0.0, light = 0.0, light_second = 0.0, largest = state.largest;
+        std::uint64_t violations = 0;
+        cosines_.for_each_above(state.n, r, [&](std::uint32_t c, double cosine) {
+            const double p = probability[tiles[c]] * densities[c], omega = height * measures[c], g = values[c];
+            first += p * omega;
+            if (!(g > 0.0)) return;
+            const double f = g * cosine, energy = f * omega;
+            flux += energy;
+            light += g * omega;
+            light_second += energy * cosine;
+            if (!(p > 0.0)) {
+                ++violations;
+                return;
+            }
+            const double weight = f / p;
+            second += weight * energy;
+            largest = std::max(largest, weight);
+        });
+        state.largest = largest;
+        state.violations += violations;
+        return {flux, second, first, light, light_second, {}};
+    }
+
+    RowSums sum_row(std::uint32_t r, Row& state) const {
+        RowSums out;
+        const std::size_t row = std::size_t{r} * target_.columns;
+        const bool alone = !local_.company;
+        cosines_.for_each_above(state.n, r, [&](std::uint32_t c, double cosine) {
+            const std::size_t i = row + c;
+            const double light_p =
+                state.tile.empty() ? 0.0 : state.tile[state.picture.tile[i]] * state.picture.density[i];
+            const double rest = state.share > 0.0 ? state.share * cosine / ACDF_PI : 0.0, p = light_p + rest;
+            const double omega = solid_angle(r, c), g = target_.row(r)[c];
+            out.first += light_p * omega;
+            if (!(g > 0.0)) return;
+            const double f = g * cosine;
+            out.flux += f * omega;
+            double means[3];
+            std::size_t channels = 0;
+            if (!alone || !target_.means.empty()) {
+                channels = compress::means_of(target_, i, means);
+                out.irradiance.add(means, channels, cosine * omega);
+            }
+            out.light += g * omega;
+            out.light_second += f * omega * cosine;
+            if (!alone) {
+                for (std::size_t k = 0; k < channels; ++k) means[k] *= cosine;
+                state.both.add(f, means, channels, omega, p, cosine / ACDF_PI);
+                state.rival.add(f, means, channels, omega, g / total_, cosine / ACDF_PI);
+                return;
+            }
+            if (!(p > 0.0)) {
+                ++state.violations;
+                return;
+            }
+            // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
+            const Slope slope = state.picture.slope.empty() ? Slope{} : state.picture.slope[i];
+            const double most = cosine * (target_.peaks.empty() ? g : double{target_.peaks[i]});
+            out.second += f / (light_p * double{slope.harmonic} + rest) * f * omega;
+            state.largest = std::max(state.largest, most / (light_p * double{slope.smallest} + rest));
+        });
+        return out;
+    }
+
     NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
         NormalAccuracy out;
-        Sum flux, second, first_above, light, light_second;
-        compress::ChannelSums irradiance; // of channels, where f is not g
         const bool drawn = !tile.empty(), alone = !local_.company;
         const double share = drawn ? double{local_.cosine_share} : 0.0;
         for (double& probability : tile) probability *= 1.0 - share;
-        double largest = 0.0;
-        Combination both = no_combination(), rival = both;
+        Row state{n, picture, tile, share, no_combination(), no_combination()};
+        const bool plain = is_plain(state);
+        Sum flux, second, first_above, light, light_second;
+        compress::ChannelSums irradiance;
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
-            const std::size_t row = std::size_t{r} * target_.columns;
-            compress::ChannelSums row_irradiance;
-            double row_flux = 0.0, row_second = 0.0, row_above = 0.0, row_light = 0.0, row_light_second = 0.0;
-            cosines_.for_each_above(n, r, [&](std::uint32_t c, double cosine) {
-                const double light_p = drawn ? tile[picture.tile[row + c]] * picture.density[row + c] : 0.0;
-                const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = light_p + rest;
-                const double omega = solid_angle(r, c), g = target_.row(r)[c];
-                row_above += light_p * omega;
-                if (!(g > 0.0)) return;
-                const double f = g * cosine;
-                row_flux += f * omega;
-                double means[3];
-                std::size_t channels = 0;
-                if (!alone || !target_.means.empty()) {
-                    channels = compress::means_of(target_, row + c, means);
-                    row_irradiance.add(means, channels, cosine * omega);
-                }
-                row_light += g * omega;
-                row_light_second += f * cosine * omega;
-                if (!alone) {
-                    for (std::size_t k = 0; k < channels; ++k) means[k] *= cosine;
-                    both.add(f, means, channels, omega, p, cosine / ACDF_PI);
-                    rival.add(f, means, channels, omega, g / total_, cosine / ACDF_PI);
-                    return;
-                }
-                if (!(p > 0.0)) {
-                    ++out.support_violations;
-                    return;
-                }
-                const double most = cosine * (target_.peaks.empty() ? g : double{target_.peaks[row + c]});
-                if (!sloped) {
-                    row_second += f / p * f * omega;
-                    largest = std::max(largest, most / p);
-                    return;
-                }
-                // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
-                const Slope slope = picture.slope[row + c];
-                row_second += f / (light_p * static_cast<double>(slope.harmonic) + rest) * f * omega;
-                largest = std::max(largest, most / (light_p * static_cast<double>(slope.smallest) + rest));
-            });
-            flux.add(row_flux);
-            irradiance.add(row_irradiance);
-            second.add(row_second);
-            first_above.add(row_above);
-            light.add(row_light);
-            light_second.add(row_light_second);
+            const RowSums row = plain ? sum_plain_row(r, state) : sum_row(r, state);
+            flux.add(row.flux);
+            irradiance.add(row.irradiance);
+            second.add(row.second);
+            first_above.add(row.first);
+            light.add(row.light);
+            light_second.add(row.light_second);
         }
         const double e = flux.value();
         if (!(e > 0.0)) return {};
         out.irradiance = e;
+        out.support_violations = state.violations;
         const double mean = target_.means.empty() ? e : irradiance.length();
         out.relative_variance = out.support_violations > 0 ? std::numeric_limits<double>::infinity()
                                                            : std::max(0.0, second.value() / mean / mean - 1.0);
         // What is drawn around the normal lies above its horizon, all of it.
         out.share_above_horizon = drawn ? std::min(first_above.value() + share, 1.0) : 0.0;
-        out.max_weight = largest / mean;
+        out.max_weight = state.largest / mean;
         out.relative_variance_full_cdf = std::max(0.0, total_ / mean * (light_second.value() / mean) - 1.0);
         out.share_above_horizon_full_cdf = light.value() / total_;
         if (alone) return out;
-        out.relative_variance = both.relative_variance();
-        out.relative_variance_full_cdf = rival.relative_variance();
-        out.support_violations = both.violations();
-        out.max_weight = both.max_weight();
+        out.relative_variance = state.both.relative_variance();
+        out.relative_variance_full_cdf = state.rival.relative_variance();
+        out.support_violations = state.both.violations();
+        out.max_weight = state.both.max_weight();
         out.combined = true;
         return out;
     }
@@ -287,6 +338,20 @@ std::vector<Normal> random_normals(std::uint32_t count) {
         double s, c;
         acdf_sincospi(2.0 * uniform() - 1.0, &s, &c);
         out.push_back({static_cast<float>(r * c), static_cast<float>(r * s), static_cast<float>(z)});
+    }
+    return out;
+}
+
+std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count) {
+    if (scene.empty()) return random_normals(count);
+    double sum = 0.0;
+    std::vector<double> upto;
+    for (const compress::SceneNormal& n : scene) upto.push_back(sum += n.weight);
+    std::vector<Normal> out;
+    for (std::uint32_t i = 0; i < count; ++i) { // even steps: the scene's own frequencies
+        const double at = sum * (i + 0.5) / count;
+        const auto found = std::upper_bound(upto.begin(), upto.end() - 1, at);
+        out.push_back(scene[static_cast<std::size_t>(found - upto.begin())].normal);
     }
     return out;
 }

@@ -1,6 +1,7 @@
 // How far a local environment map is from its target, by summation over every texel, for given normals.
 #pragma once
 
+#include "compress/local/normals.h"
 #include "compress/target.h"
 
 #include <acdf/accuracy.h>
@@ -39,5 +40,8 @@ LocalAccuracy summary(const std::vector<NormalAccuracy>& normals);
 
 /// `count` random normals, uniform over the sphere; the same ones every time.
 std::vector<Normal> random_normals(std::uint32_t count);
+
+/// The normals over which accuracy is measured: random ones or, where a scene is given, of the scene.
+std::vector<Normal> test_normals(const std::vector<compress::SceneNormal>& scene, std::uint32_t count);
 
 } // namespace acdf::build

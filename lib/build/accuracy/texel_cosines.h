@@ -26,19 +26,14 @@ public:
     /// Calls visit(column, cosine) for the texels of a row whose centre is above the horizon of unit normal n.
     template <class Visit>
     void for_each_above(const float n[3], std::uint32_t row, const Visit& visit) const {
-        if (!directions_.empty()) {
-            const std::array<float, 3>* d = directions_.data() + std::size_t{row} * columns_;
-            for (std::uint32_t c = 0; c < columns_; ++c) {
-                const double cosine = double{n[0]} * d[c][0] + double{n[1]} * d[c][1] + double{n[2]} * d[c][2];
-                if (cosine > 0.0) visit(c, cosine);
-            }
-            return;
-        }
-        const double up = n[2] * z_[row], radius = std::sqrt((1.0 - z_[row]) * (1.0 + z_[row]));
-        const double x = n[0] * radius, y = n[1] * radius;
+        const std::array<float, 3>* const d =
+            directions_.empty() ? nullptr : directions_.data() + std::size_t{row} * columns_;
+        const double z = d ? 0.0 : z_[row], radius = std::sqrt((1.0 - z) * (1.0 + z));
+        const double up = n[2] * z, x = n[0] * radius, y = n[1] * radius;
         for (std::uint32_t c = 0; c < columns_; ++c) {
-            const double cosine = up + x * cosine_[c] + y * sine_[c];
-            if (cosine > 0.0) visit(c, cosine);
+            const double cosine = d ? double{n[0]} * d[c][0] + double{n[1]} * d[c][1] + double{n[2]} * d[c][2]
+                                    : up + x * cosine_[c] + y * sine_[c];
+            if (cosine > 0.0) visit(c, cosine); // called in one place, so that it is inlined
         }
     }
 

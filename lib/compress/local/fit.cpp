@@ -130,23 +130,20 @@ Sums sums_of(const LocalFit& fit) { return {fit.shared.row_count, fit.tiles.tile
 
 } // namespace
 
-LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const LocalSize& size,
+LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const BinLight& light, const LocalSize& size,
                          const Progress& progress, const Company& company)
-    : target_(target), bins_(bins), size_(size), total_(integral(target)), progress_(progress) {
+    : target_(target), bins_(bins), light_(light), size_(size), total_(integral(target)), progress_(progress) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
     if (fast() && (company || std::isfinite(size.max_weight)))
         throw std::invalid_argument("the fast shape has no company, and no bound on weights");
-    const std::vector<LightPoint> points = light_points(target);
-    flux_ = irradiance(points, bins);
-    worth_ = worth(target, bins, flux_);
-    if (company) beside_.emplace(target, points, bins, flux_, company);
+    if (company) beside_.emplace(target, light.points, bins, light.irradiance, company);
     report(0.1);
-    rule_ =
-        divide(beside_ ? beside_->excess(target) : target, worth_, std::min(size.tiles, ACDF_MAX_TILES), tiles_);
+    rule_ = divide(beside_ ? beside_->excess(target) : target, light.worth, std::min(size.tiles, ACDF_MAX_TILES),
+                   tiles_);
     report(0.4);
     if (beside_) filled_ = beside_->filled(target);
-    worth_of_tiles_ = worth_of_tiles(target, tiles_.tiles, worth_);
+    worth_of_tiles_ = worth_of_tiles(target, tiles_.tiles, light.worth);
     if (!fast()) return;
     grids_.emplace(target, tiles_.tiles, worth_of_tiles_);
     whole_ = fit_whole();
@@ -215,7 +212,8 @@ LocalFit LocalFitter::outlined(std::uint64_t inside_bytes) {
     if (fast()) outline_grids(inside_bytes, out);
     else outline_curves(inside_bytes, out);
     report(0.8);
-    out.lights = find_lights(target_, tiles_, insides(), fast() ? total_ : tile_curves_->total(), worth_, rule_);
+    out.lights =
+        find_lights(target_, tiles_, insides(), fast() ? total_ : tile_curves_->total(), light_.worth, rule_);
     out.shared.splits = stored_splits(tiles_, [](const TileTree::Split& split) {
         return std::uint32_t{split.axis == 0 ? ACDF_AXIS_THETA : ACDF_AXIS_PHI} | split.position << 3;
     });
@@ -237,7 +235,7 @@ void LocalFitter::fill_beside(LocalFit& out) const {
     const auto shares_of = [&](std::size_t b) {
         std::vector<double> shares = light.shares(b);
         for (double& share : shares) share /= total;
-        out.records[b] = {light.recommended_share(b, shares), static_cast<float>(flux_[b] / total)};
+        out.records[b] = {light.recommended_share(b, shares), static_cast<float>(light_.irradiance[b] / total)};
         return shares;
     };
     const auto put = [&](std::size_t b, const std::vector<double>& shares) {
@@ -268,7 +266,8 @@ void LocalFitter::fill(LocalFit& out) const {
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
                    const Company& company) {
-    LocalFitter fitter(target, bins, size, progress, company);
+    const BinLight light(target, bins);
+    LocalFitter fitter(target, bins, light, size, progress, company);
     LocalFit out = fitter.outlined(size.inside_bytes);
     fitter.fill(out);
     return out;

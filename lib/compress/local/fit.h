@@ -53,11 +53,11 @@ struct LocalFit {
 /// records tell the irradiance.
 class LocalFitter {
 public:
-    /// Divides into tiles; `size.inside_bytes` is of no meaning. Target and bins must outlive it. Throws
-    /// std::invalid_argument where the target has no energy, or the bins are cells of a grid: rows are made for
-    /// corners, whose mixture covers what a normal between them sees.
-    LocalFitter(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
-                const Company& company);
+    /// Divides into tiles; `size.inside_bytes` is of no meaning. Target, bins and their light must outlive it.
+    /// Throws std::invalid_argument where the target has no energy, or the bins are cells of a grid: rows are made
+    /// for corners, whose mixture covers what a normal between them sees.
+    LocalFitter(const Target& target, const NormalBins& bins, const BinLight& light, const LocalSize& size,
+                const Progress& progress, const Company& company);
 
     /// A fit whose curves or grids take at most `inside_bytes` (but for the least there must be): all of it, but
     /// shares are 0, and so is what rows and records hold. It is stored in as many bytes as it will be.
@@ -88,11 +88,10 @@ private:
 
     const Target& target_;
     const NormalBins& bins_;
+    const BinLight& light_;
     const LocalSize size_;
     const double total_; ///< the integral of the target
     const Progress progress_;
-    std::vector<double> flux_; ///< the irradiance of each bin
-    Worth worth_;
     std::optional<LocalCompany> beside_;
     Target filled_; ///< what is left of the target beside a company
     TileTree tiles_;

@@ -107,4 +107,8 @@ Worth worth(const Target& target, const NormalBins& bins, const std::vector<doub
     return out;
 }
 
+BinLight::BinLight(const Target& target, const NormalBins& bins)
+    : points(light_points(target)), irradiance(compress::irradiance(points, bins)),
+      worth(compress::worth(target, bins, irradiance)) {}
+
 } // namespace acdf::compress

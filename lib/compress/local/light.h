@@ -73,4 +73,13 @@ std::vector<double> irradiance(const std::vector<LightPoint>& points, const Norm
 /// On a coarse grid of the target's parameterization.
 Worth worth(const Target& target, const NormalBins& bins, const std::vector<double>& irradiance);
 
+/// What the light of a probe is to bins, however large a file for them becomes.
+struct BinLight {
+    BinLight(const Target& target, const NormalBins& bins);
+
+    std::vector<LightPoint> points;
+    std::vector<double> irradiance; ///< of each bin
+    Worth worth;
+};
+
 } // namespace acdf::compress
