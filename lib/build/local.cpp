@@ -289,11 +289,14 @@ Local build_to_variance(const compress::Target& target, const Source& source, co
     constexpr double smallest = 256.0, largest = 64.0 * 1048576.0;
     double low = 16384.0, high = 65536.0;
     std::optional<Local> best = at(high);
-    while (!reaches(best)) {
-        if (high >= largest)
+    for (std::size_t bytes = 0; !reaches(best);) {
+        const bool grown = !best || best->bytes.size() > bytes; // else nothing is left to store
+        if (high >= largest || !grown)
             throw std::runtime_error("a relative variance of " + option_number(options.goal.variance) +
-                                     " is out of reach; 64 MiB have " +
+                                     " is out of reach; " + (grown ? "64 MiB" : std::to_string(bytes) + " bytes") +
+                                     " have " +
                                      (best ? option_number(best->accuracy.relative_variance) : "no room"));
+        bytes = best ? best->bytes.size() : 0;
         low = high;
         high = std::min(4.0 * high, largest);
         best = at(high);

@@ -244,7 +244,7 @@ TEST_F(BatchCommand, ShardsTogetherAreTheWholeAndReportsMerge) {
 }
 
 TEST_F(BatchCommand, KilledAtAnyTimeItEndsWithTheSameBytes) {
-    const std::size_t share = acdf_test::kSanitized ? 12 : 24; // of the files, until a kill
+    const std::size_t share = acdf_test::kSanitized ? 6 : 24; // of the files, until a kill
     write_small_probes(probes, static_cast<std::uint32_t>(10 * share / 3));
     const std::vector<std::string> run = {probes,           "--kind", "env,local",         "--set",
                                           "env.cells=40",   "--set",  "local.budget=8KiB", "--set",
