@@ -2,9 +2,8 @@
 
 #include "build/accuracy/cells.h"
 #include "build/accuracy/combination.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +118,7 @@ TableCompany::TableCompany(const std::vector<Grid>& bins, const std::vector<Grid
     : bins_(bins), left_(bins.size()), least_(bins.size()),
       filling_(std::make_shared<const compress::Filling>(company.heuristic)) {
     if (!company) return;
-    tbb::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
+    compress::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
         const std::vector<double> f = density_of(bins[k]), b = density_of(others[k]);
         if (f.empty()) return;
         const double nu = solve_threshold(f, b, *filling_, company.light / company.other);
@@ -143,7 +142,7 @@ std::vector<BinAccuracy> measure_bins_beside(const File& file, const std::vector
     check_shapes(file, bins);
     check_company(file, bins, others);
     std::vector<BinAccuracy> out(bins.size());
-    tbb::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
+    compress::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
         out[k] = measure_bin(file, static_cast<std::uint32_t>(k), bins[k], others[k]);
     });
     if (std::none_of(out.begin(), out.end(), [](const BinAccuracy& a) { return a.lit; }))
@@ -154,7 +153,7 @@ std::vector<BinAccuracy> measure_bins_beside(const File& file, const std::vector
 std::vector<float> recommended_shares(const File& file, const std::vector<Grid>& bins,
                                       const std::vector<Grid>& others) {
     std::vector<float> out(bins.size(), 1.0f);
-    tbb::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
+    compress::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
         const Densities at(file, static_cast<std::uint32_t>(k), bins[k], others[k]);
         if (at.f.empty()) return;
         std::size_t low = 0, high = recommendable_shares - 1; // the moment is convex

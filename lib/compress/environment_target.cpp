@@ -1,10 +1,9 @@
 // From a probe to what the fit approximates: channels, filter, solid angles.
+#include "compress/parallel.h"
 #include "compress/sum.h"
 #include "compress/target.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -175,7 +174,7 @@ EnvironmentTarget::EnvironmentTarget(std::uint32_t columns, std::uint32_t rows, 
 void EnvironmentTarget::take(std::uint32_t first, std::uint32_t count, const float* rgb) {
     const std::size_t texels = std::size_t{columns_} * rows_, begin = std::size_t{first} * columns_;
     std::vector<std::uint8_t> finite(count, 1);
-    tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t row) {
+    parallel_for(std::uint32_t{0}, count, [&](std::uint32_t row) {
         const std::size_t i = std::size_t{row} * columns_;
         finite[row] = take_texels(rgb + kChannels * i, columns_, options_, values_.data() + begin + i, texels);
     });
@@ -194,7 +193,7 @@ Target EnvironmentTarget::nearest() {
     Target target = empty_target(columns_, rows_, options_.parameterization);
     target.values = std::move(values_);
     std::vector<double> row_total(rows_);
-    tbb::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
         Sum sum;
         for (std::uint32_t c = 0; c < columns_; ++c) sum.add(double{target.row(r)[c]} * target.column_measure[c]);
         row_total[r] = sum.value() * target.row_measure[r];
@@ -214,7 +213,7 @@ Target EnvironmentTarget::moments() {
     if (bilinear) target.peaks.resize(target.values.size());
     target.means.assign(planes_, std::vector<float>(target.values.size()));
     std::vector<std::array<double, kChannels>> row_total(rows_);
-    tbb::parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{0}, rows_, [&](std::uint32_t r) {
         std::vector<TexelMoments> moments(columns_);
         std::vector<double> square(columns_, 0.0), peak(columns_, 0.0);
         for (std::size_t plane = 0; plane < planes_; ++plane) {

@@ -1,9 +1,7 @@
 #include "compress/target.h"
 
+#include "compress/parallel.h"
 #include "compress/sum.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +27,7 @@ Target transposed(const Target& target) {
     out.parameterization = target.parameterization;
     out.values.resize(target.values.size());
     const std::uint32_t blocks = (target.rows + kBlock - 1) / kBlock;
-    tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
+    parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
         const std::uint32_t r0 = block * kBlock, r1 = std::min(r0 + kBlock, target.rows);
         for (std::uint32_t c0 = 0; c0 < target.columns; c0 += kBlock) {
             const std::uint32_t c1 = std::min(c0 + kBlock, target.columns);

@@ -1,6 +1,7 @@
 #include "tools/batch/plan.h"
 
 #include "build/text/format_names.h"
+#include "compress/parallel.h"
 #include "input/file_name.h"
 #include "input/sha256.h"
 #include "reader/check/check.h"
@@ -9,7 +10,6 @@
 #include "tools/commands.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -143,7 +143,7 @@ std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::
     std::vector<PlannedJob> plan(jobs.size());
     std::vector<std::string> wrong(jobs.size());
     tbb::enumerable_thread_specific<Conversions> conversions([&] { return Conversions(make); });
-    tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
         plan[i].job = jobs[i];
         try {
             look_at(plan[i], folder, options, conversions.local());

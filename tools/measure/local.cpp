@@ -8,6 +8,7 @@
 #include "build/accuracy/fine_texels.h"
 #include "build/accuracy/local.h"
 #include "build/local.h"
+#include "compress/parallel.h"
 #include "measure/samplers/light_samplers.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/tiling.h"
@@ -17,7 +18,6 @@
 #include "tools/commands.h"
 
 #include <nlohmann/json.hpp>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cinttypes>
@@ -60,8 +60,8 @@ std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<b
     const LocalRivals& summed = divided ? *divided : made;
     const auto mean = [&](const std::function<double(const float*)>& variance) {
         std::vector<double> each(normals.size());
-        tbb::parallel_for(std::size_t{0}, normals.size(),
-                          [&](std::size_t i) { each[i] = variance(normals[i].data()); });
+        compress::parallel_for(std::size_t{0}, normals.size(),
+                               [&](std::size_t i) { each[i] = variance(normals[i].data()); });
         double sum = 0.0;
         for (double v : each) sum += v;
         return sum / double(normals.size());

@@ -1,6 +1,5 @@
 #include "tools/plot/brdf.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <array>
 #include <cmath>
@@ -68,7 +67,7 @@ std::vector<float> knot_opacity(const PlottedView& view, const PlotMap& map) {
         float wi[3];
         return pixel_direction(map, x + 0.5, y + 0.5, wi) ? corner_of(brdf, served, wi) : Corner{};
     };
-    tbb::parallel_for(0, map.height, [&](int y) {
+    compress::parallel_for(0, map.height, [&](int y) {
         for (int x = 0; x < map.width; ++x) {
             const Corner here = corner(x, y);
             const bool left = x > 0 && corner(x - 1, y) != here, above = y > 0 && corner(x, y - 1) != here;

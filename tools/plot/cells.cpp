@@ -1,10 +1,9 @@
 #include "tools/plot/cells.h"
 
+#include "compress/parallel.h"
 #include "measure/scenes/scene.h"
 #include "tools/commands.h"
 #include "tools/plot/colour.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +82,7 @@ images::Picture cells_picture(const LocalEnvironmentView& view, const CellsOptio
     images::Picture out(options.width, options.height);
     const auto width = static_cast<std::uint32_t>(options.width),
                height = static_cast<std::uint32_t>(options.height);
-    tbb::parallel_for(0u, height, [&](std::uint32_t y) {
+    compress::parallel_for(0u, height, [&](std::uint32_t y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             const measure::Ray ray = camera.ray(x, y, width, height);
             const auto hit = geometry.trace(ray);

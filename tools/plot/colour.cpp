@@ -1,6 +1,5 @@
 #include "tools/plot/colour.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +41,7 @@ float linear_to_srgb(float linear) {
 images::Picture false_colour(const DensityImage& image, const DensityRange& range, ColourMap map) {
     const Knots& knots = map == ColourMap::rainbow ? rainbow_knots : diverging_knots;
     images::Picture picture(image.map.width, image.map.height);
-    tbb::parallel_for(std::size_t{0}, image.density.size(), [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, image.density.size(), [&](std::size_t i) {
         const float density = image.density[i];
         Colour colour = density == 0.0f ? zero_colour : background;
         if (density > 0.0f)

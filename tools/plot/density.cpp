@@ -1,6 +1,5 @@
 #include "tools/plot/density.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -65,7 +64,7 @@ DensityImage draw_density(const PlotMap& map, const Density& density, const buil
     const auto width = static_cast<std::size_t>(map.width);
     image.density.assign(width * static_cast<std::size_t>(map.height), shows_nothing);
     std::atomic<int> rows{0};
-    tbb::parallel_for(0, map.height, [&](int y) {
+    compress::parallel_for(0, map.height, [&](int y) {
         float* row = image.density.data() + static_cast<std::size_t>(y) * width;
         for (int x = 0; x < map.width; ++x)
             if (float direction[3]; pixel_direction(map, x + 0.5, y + 0.5, direction)) row[x] = density(direction);

@@ -1,8 +1,7 @@
 #include "tools/plot/knots.h"
 
+#include "compress/parallel.h"
 #include "tools/plot/density.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -149,13 +148,13 @@ std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, cons
     const auto width = static_cast<std::size_t>(map.width);
     std::vector<Extents> extents(width * static_cast<std::size_t>(map.height));
     std::atomic<int> finished{0};
-    tbb::parallel_for(0, map.height, [&](int y) {
+    compress::parallel_for(0, map.height, [&](int y) {
         for (int x = 0; x < map.width; ++x)
             extents[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = tracer.extents(x, y);
         if (progress) progress(++finished / static_cast<double>(map.height), "tracing cells");
     });
     std::vector<float> opacity(extents.size());
-    tbb::parallel_for(0, map.height, [&](int y) {
+    compress::parallel_for(0, map.height, [&](int y) {
         for (int x = 0; x < map.width; ++x)
             opacity[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] =
                 opacity_at(extents, map, x, y);
@@ -165,7 +164,7 @@ std::vector<float> knot_opacity(const FindCell& find, const AcdfGrid& grid, cons
 
 void draw_knots(images::Picture& picture, const std::vector<float>& opacity) {
     float* rgb = picture.values.data();
-    tbb::parallel_for(std::size_t{0}, opacity.size(), [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, opacity.size(), [&](std::size_t i) {
         float* p = rgb + 3 * i;
         const float luma = 0.299f * p[0] + 0.587f * p[1] + 0.114f * p[2];
         const float ink = luma > 0.45f ? 0.0f : 1.0f;

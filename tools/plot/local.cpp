@@ -1,8 +1,7 @@
 #include "tools/plot/local.h"
 
+#include "compress/parallel.h"
 #include "tools/plot/knots.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +47,7 @@ std::vector<float> horizon_opacity(const Normal& normal, const PlotMap& map) {
     };
     const auto width = static_cast<std::size_t>(map.width);
     std::vector<float> out(width * static_cast<std::size_t>(map.height), 0.0f);
-    tbb::parallel_for(0, map.height, [&](int y) {
+    compress::parallel_for(0, map.height, [&](int y) {
         for (int x = 0; x < map.width; ++x) {
             double here, left, right, above, below; // the distance to the horizon by its gradient
             if (!cosine(x + 0.5, y + 0.5, here) || !cosine(x, y + 0.5, left) || !cosine(x + 1.0, y + 0.5, right) ||

@@ -1,8 +1,7 @@
 #include "tools/sweep/occluders.h"
 
+#include "compress/parallel.h"
 #include "measure/scenes/scene_points.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +15,7 @@ using Directions = std::vector<std::array<float, 3>>;
 /// Of the texels' middles, row-major.
 Directions directions_of(const compress::Target& target) {
     Directions out(target.values.size());
-    tbb::parallel_for(0u, target.rows, [&](std::uint32_t r) {
+    compress::parallel_for(0u, target.rows, [&](std::uint32_t r) {
         for (std::uint32_t c = 0; c < target.columns; ++c)
             out[std::size_t{r} * target.columns + c] = texel_middle(target, r, c);
     });
@@ -55,8 +54,8 @@ std::vector<SurfacePoint> behind_occluders(const compress::Target& target, std::
     const std::vector<measure::ScenePoint> seen = measure::visible_points(scene).points;
     const Directions directions = directions_of(target);
     std::vector<SurfacePoint> out(seen.size());
-    tbb::parallel_for(std::size_t{0}, seen.size(),
-                      [&](std::size_t i) { out[i] = surface_point(seen[i], directions); });
+    compress::parallel_for(std::size_t{0}, seen.size(),
+                           [&](std::size_t i) { out[i] = surface_point(seen[i], directions); });
     return out;
 }
 

@@ -1,6 +1,5 @@
 #include "tools/sweep/pixel_draws.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <memory>
 
@@ -29,7 +28,7 @@ double unbiased_variance(const std::vector<double>& values) {
 double sobol_variance(const measure::LightSampler& sampler, const std::vector<DrawnPoint>& points,
                       const DrawnIntegrand& integrand, std::uint32_t samples, std::uint32_t seeds) {
     std::vector<double> relative(points.size(), 0.0);
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const double integral = points[i].integral;
         if (!(integral > 0.0)) return;
         const std::unique_ptr<measure::PointSampler> own = sampler.point_sampler();

@@ -2,9 +2,8 @@
 
 #include "build/accuracy/texel_cosines.h"
 #include "compress/fit/tiles.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +23,7 @@ std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t 
 
 std::vector<float> texel_densities(const compress::Target& target, const measure::LightSampler& sampler) {
     std::vector<float> out(target.values.size());
-    tbb::parallel_for(0u, target.rows, [&](std::uint32_t r) {
+    compress::parallel_for(0u, target.rows, [&](std::uint32_t r) {
         const std::unique_ptr<measure::PointSampler> point = sampler.point_sampler();
         point->move_to({});
         for (std::uint32_t c = 0; c < target.columns; ++c) {
@@ -98,8 +97,8 @@ std::vector<PointVariance> point_variances(const compress::Target& target, const
                                            const std::vector<SurfacePoint>& points) {
     const build::TexelCosines cosines(target);
     std::vector<PointVariance> out(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(),
-                      [&](std::size_t i) { out[i] = variance_at(target, cosines, density, points[i]); });
+    compress::parallel_for(std::size_t{0}, points.size(),
+                           [&](std::size_t i) { out[i] = variance_at(target, cosines, density, points[i]); });
     return out;
 }
 
@@ -119,8 +118,8 @@ SurfaceVariances summary(const std::vector<PointVariance>& points, Scale scale) 
 Lit over_normals(const std::vector<build::Normal>& normals,
                  const std::function<double(const float n[3])>& variance) {
     std::vector<double> each(normals.size());
-    tbb::parallel_for(std::size_t{0}, normals.size(),
-                      [&](std::size_t i) { each[i] = variance(normals[i].data()); });
+    compress::parallel_for(std::size_t{0}, normals.size(),
+                           [&](std::size_t i) { each[i] = variance(normals[i].data()); });
     return spread_of(std::move(each));
 }
 

@@ -1,11 +1,10 @@
 #include "tools/sweep/surface_draws.h"
 
+#include "compress/parallel.h"
 #include "measure/random.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/probe_grid.h"
 #include "tools/sweep/pixel_draws.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -82,7 +81,7 @@ DrawnVariances sobol_variances(const compress::Target& target, const measure::Li
     samples += samples % 2;
     const measure::ProbeGrid grid(target);
     std::vector<PointVariance> drawn(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const std::unique_ptr<measure::PointSampler> own = sampler.point_sampler();
         Draws draws(target, grid, *own, points[i]);
         measure::Random random(i, measure::Numbers::sobol);

@@ -2,12 +2,11 @@
 
 #include "build/accuracy/cells.h"
 #include "compress/no_energy.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
 
 #include <acdf/sample.h>
 #include <acdf/wavefront.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -175,7 +174,7 @@ std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compre
                                         const std::vector<compress::View>& views, std::uint32_t columns,
                                         std::uint32_t rows) {
     std::vector<ViewAccuracy> out(views.size());
-    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+    compress::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
         ViewSums sums;
@@ -193,7 +192,7 @@ std::vector<double> relative_variances(const std::vector<ViewDensity>& densities
                                        const std::vector<compress::View>& views, std::uint32_t columns,
                                        std::uint32_t rows) {
     std::vector<std::vector<ViewAccuracy>> measured(densities.size(), std::vector<ViewAccuracy>(views.size()));
-    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+    compress::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
         std::vector<VarianceSums> sums(densities.size());
@@ -220,7 +219,7 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
     const std::uint32_t visited = sides == Sides::alike && stored.mirrored() ? (columns + 1) / 2 : columns;
     const auto images = [&](std::uint32_t c) { return visited == columns || 2 * c + 1 == columns ? 1u : 2u; };
     std::vector<ViewAccuracy> out(views.size());
-    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+    compress::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
         const auto o = std::make_unique<float[][3]>(visited), i = std::make_unique<float[][3]>(visited);
@@ -250,7 +249,7 @@ ReflectedViews::ReflectedViews(const compress::Reflected& reflected, const std::
                                std::uint32_t columns, std::uint32_t rows, std::size_t most_kept)
     : reflected_(reflected), views_(views), columns_(columns), rows_(rows),
       light_(std::min(views.size(), most_kept / (std::size_t{columns} * rows))) {
-    tbb::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t v) {
+    compress::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t v) {
         double wo[3];
         views[v].direction(wo);
         light_[v].reserve(std::size_t{columns} * rows);
@@ -262,7 +261,7 @@ ReflectedViews::ReflectedViews(const compress::Reflected& reflected, const std::
 
 double ReflectedViews::relative_variance(const ViewDensity& density) const {
     std::vector<ViewAccuracy> out(views_.size());
-    tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t v) {
+    compress::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t v) {
         double wo[3];
         views_[v].direction(wo);
         VarianceSums sums;

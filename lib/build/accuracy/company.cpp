@@ -4,8 +4,7 @@
 #include "build/accuracy/combination.h"
 #include "build/accuracy/fine_texels.h"
 #include "build/accuracy/texel_cosines.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <array>
 #include <cmath>
@@ -107,7 +106,7 @@ std::array<double, Count> sum_moments(const Measure& measure, const std::vector<
     double mean = 0.0;
     for (const double e : irradiance) mean += e / double(irradiance.size());
     std::vector<std::array<double, Count>> of(normals.size());
-    tbb::parallel_for(std::size_t{0}, (normals.size() + every - 1) / every, [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, (normals.size() + every - 1) / every, [&](std::size_t i) {
         if (irradiance[i * every] > 0.0) of[i * every] = measure.second_moments<Count>(normals[i * every], first);
     });
     std::array<double, Count> sum{};
@@ -128,7 +127,7 @@ CompanyAccuracy measure_beside_company(const File& file, const compress::Target&
                                        const std::vector<Normal>& normals) {
     const Measure measure(file, target, Texels::divided);
     std::vector<Combination> of(normals.size(), Combination{0.5, ACDF_HEURISTIC_BALANCE});
-    tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) { of[i] = measure.of(normals[i]); });
+    compress::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) { of[i] = measure.of(normals[i]); });
     CompanyAccuracy out;
     double lit = 0.0;
     for (const Combination& one : of) {
@@ -145,8 +144,8 @@ CompanyAccuracy measure_beside_company(const File& file, const compress::Target&
 double recommended_share(const File& file, const compress::Target& target, const std::vector<Normal>& normals) {
     const Measure measure(file, target, Texels::own);
     std::vector<double> irradiance(normals.size());
-    tbb::parallel_for(std::size_t{0}, normals.size(),
-                      [&](std::size_t i) { irradiance[i] = measure.irradiance(normals[i]); });
+    compress::parallel_for(std::size_t{0}, normals.size(),
+                           [&](std::size_t i) { irradiance[i] = measure.irradiance(normals[i]); });
     if (std::none_of(irradiance.begin(), irradiance.end(), [](double e) { return e > 0.0; })) return 1.0;
     // The sum is convex: a share with less than both beside it has the least of all. A few normals guess which.
     std::size_t best = least(sum_moments<recommendable_shares>(measure, normals, irradiance, kGuess, 0));

@@ -4,8 +4,7 @@
 #include "build/accuracy/company.h"
 #include "build/accuracy/step_means.h"
 #include "build/accuracy/sums.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +99,7 @@ Work divide(const File& file) {
 
 Sums sum_all(const Work& work, const Target& target, double total) {
     std::vector<Sums> parts(work.begin.size() - 1);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
+    compress::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
         CellSummer summer(target, total);
         for (std::size_t i = work.begin[k]; i < work.begin[k + 1]; ++i) summer.add(work.cells[i], parts[k]);
     });

@@ -5,10 +5,10 @@
 #include "build/accuracy/fine_texels.h"
 #include "build/accuracy/step_means.h"
 #include "build/accuracy/texel_cosines.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -295,8 +295,8 @@ std::vector<NormalAccuracy> measure_normals(const File& file, const Target& targ
     const LocalMeasure local(file, target);
     std::vector<NormalAccuracy> out(normals.size());
     tbb::enumerable_thread_specific<TilePicture> own;
-    tbb::parallel_for(std::size_t{0}, normals.size(),
-                      [&](std::size_t i) { out[i] = local.measure(normals[i], own.local()); });
+    compress::parallel_for(std::size_t{0}, normals.size(),
+                           [&](std::size_t i) { out[i] = local.measure(normals[i], own.local()); });
     return out;
 }
 

@@ -2,8 +2,7 @@
 
 #include "build/accuracy/cells.h"
 #include "build/accuracy/sums.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +103,7 @@ TableWork divide(const File& file, std::uint32_t root, const Grid& grid) {
 
 Sums sum_cells(const TableWork& work, const Bin& bin) {
     std::vector<Sums> parts(work.begin.size() - 1);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
+    compress::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
         for (std::size_t i = work.begin[k]; i < work.begin[k + 1]; ++i) bin.add(work.cells[i], parts[k]);
     });
     Sums sums;
@@ -160,8 +159,9 @@ void check_shapes(const File& file, const std::vector<Grid>& bins) {
 std::vector<BinAccuracy> measure_bins(const File& file, const std::vector<Grid>& bins) {
     check_shapes(file, bins);
     std::vector<BinAccuracy> out(bins.size());
-    tbb::parallel_for(std::size_t{0}, bins.size(),
-                      [&](std::size_t i) { out[i] = measure_bin(file, static_cast<std::uint32_t>(i), bins[i]); });
+    compress::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t i) {
+        out[i] = measure_bin(file, static_cast<std::uint32_t>(i), bins[i]);
+    });
     if (std::none_of(out.begin(), out.end(), [](const BinAccuracy& a) { return a.lit; }))
         throw std::invalid_argument("a table without energy");
     return out;

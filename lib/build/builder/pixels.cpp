@@ -3,8 +3,7 @@
 #include "build/builder/guard.h"
 #include "build/builder/strides.h"
 #include "build/probe/projection.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 namespace acdf::builder {
 namespace {
@@ -63,7 +62,7 @@ void check(const Rows& rows) {
 void read_rows(const Pixels& pixels, std::uint32_t first, std::uint32_t count, float* rgb) {
     const Strides strides = strides_of(pixels);
     const std::ptrdiff_t next = pixels.channels == 1 ? 0 : strides.channel; // grey: the same three times
-    tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t r) {
+    compress::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t r) {
         const auto* row =
             static_cast<const unsigned char*>(pixels.data) + static_cast<std::ptrdiff_t>(first + r) * strides.row;
         float* out = rgb + std::size_t{3} * r * pixels.width;

@@ -1,10 +1,8 @@
 #include "build/probe/resample.h"
 
 #include "build/probe/overlap.h"
+#include "compress/parallel.h"
 #include "compress/threads.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <cfloat>
@@ -54,8 +52,8 @@ private:
 
     template <typename Function>
     static void parallel_rows(int rows, const Function& function) {
-        tbb::parallel_for(tbb::blocked_range<int>(0, rows, 4), [&](const tbb::blocked_range<int>& range) {
-            for (int row = range.begin(); row < range.end(); ++row) function(row);
+        compress::parallel_parts(0, static_cast<std::size_t>(rows), 4, [&](std::size_t first, std::size_t last) {
+            for (std::size_t row = first; row < last; ++row) function(static_cast<int>(row));
         });
     }
 

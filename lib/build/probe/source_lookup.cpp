@@ -1,8 +1,7 @@
 #include "build/probe/source_lookup.h"
 
 #include "build/probe/cube.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -118,7 +117,7 @@ SourceLookup::SourceLookup(const Map& map, const float* rgb, const compress::Tar
       values_(std::size_t{planes_} * static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height)) {
     const std::size_t width = static_cast<std::size_t>(map.width), texels = values_.size() / planes_;
     std::atomic<bool> finite{true};
-    tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(map.height), [&](std::size_t row) {
+    compress::parallel_for(std::size_t{0}, static_cast<std::size_t>(map.height), [&](std::size_t row) {
         if (!compress::take_texels(rgb + 3 * width * row, width, options, values_.data() + width * row, texels))
             finite = false;
     });

@@ -2,11 +2,10 @@
 
 #include "build/probe/overlap.h"
 #include "build/probe/source_lookup.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
 
 #include <acdf/grid.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -46,10 +45,10 @@ public:
         target_.values.assign(texels, 0.0f);
         target_.peaks.assign(texels, 0.0f);
         target_.means.assign(source_.planes(), std::vector<float>(texels, 0.0f));
-        tbb::parallel_for(std::uint32_t{0}, domain_.rows, [&](std::uint32_t row) { cover(row); });
+        compress::parallel_for(std::uint32_t{0}, domain_.rows, [&](std::uint32_t row) { cover(row); });
         const double error = scale_what_is_covered();
         std::vector<std::array<double, 3>> flux(domain_.rows);
-        tbb::parallel_for(std::uint32_t{0}, domain_.rows, [&](std::uint32_t row) { flux[row] = gather(row); });
+        compress::parallel_for(std::uint32_t{0}, domain_.rows, [&](std::uint32_t row) { flux[row] = gather(row); });
         std::array<Sum, 3> total;
         for (const auto& row : flux)
             for (std::size_t plane = 0; plane < 3; ++plane) total[plane].add(row[plane]);
@@ -113,7 +112,7 @@ private:
         std::vector<double> omegas(width * kRowsAtOnce); // the rim of a disc takes long
         for (int first = 0; first < map_.height; first += kRowsAtOnce) {
             const int rows = std::min(kRowsAtOnce, map_.height - first);
-            tbb::parallel_for(0, rows, [&](int row) {
+            compress::parallel_for(0, rows, [&](int row) {
                 for (int x = 0; x < map_.width; ++x)
                     omegas[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(x)] =
                         texel_solid_angle(map_, x, first + row);
@@ -197,7 +196,7 @@ private:
         const Map grid{domain_.parameterization == ACDF_PARAM_OCTAHEDRAL ? Layout::octahedral : Layout::latlong,
                        static_cast<int>(domain_.columns), static_cast<int>(domain_.rows)};
         const std::vector<float> values = target_.values;
-        tbb::parallel_for(0, grid.height, [&](int row) {
+        compress::parallel_for(0, grid.height, [&](int row) {
             for (int column = 0; column < grid.width; ++column) {
                 const std::size_t i =
                     static_cast<std::size_t>(row) * domain_.columns + static_cast<std::size_t>(column);

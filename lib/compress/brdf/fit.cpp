@@ -4,10 +4,9 @@
 #include "compress/brdf/views.h"
 #include "compress/brdf/weights.h"
 #include "compress/no_energy.h"
+#include "compress/parallel.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -69,11 +68,10 @@ public:
         const TileTree tree = partition_.pruned(cells);
         const std::vector<std::uint32_t> cell = cell_of_squares(views_.measures, tree);
         std::vector<SharedMixture> mixtures = mixtures_;
-        tbb::parallel_for(std::size_t{0}, mixtures.size(), [&](std::size_t m) {
-            mixtures[m].moment = moments(views_.targets[m].square, tree, cell);
-        });
+        parallel_for(std::size_t{0}, mixtures.size(),
+                     [&](std::size_t m) { mixtures[m].moment = moments(views_.targets[m].square, tree, cell); });
         RowProbabilities rows(nodes_.bins());
-        tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t b) { rows[b] = first_row(b, tree, cell); });
+        parallel_for(std::size_t{0}, rows.size(), [&](std::size_t b) { rows[b] = first_row(b, tree, cell); });
         optimise_rows(rows, mixtures, kRowSteps);
 
         BrdfFit out = empty(mirrored);
@@ -151,7 +149,7 @@ private:
                     served[mixtures_[v].bin[i]].push_back({v, share * share});
                     all += mixtures_[v].weight * share;
                 }
-        tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t b) {
+        parallel_for(std::size_t{0}, out.size(), [&](std::size_t b) {
             std::vector<float>& square = out[b].square;
             square.assign(views_.grid.size(), 0.0f);
             double sum = 0.0, weight = 0.0;

@@ -2,10 +2,9 @@
 
 #include "compress/fit/tree.h"
 #include "compress/no_energy.h"
+#include "compress/parallel.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +111,7 @@ Cascade fit_each(const std::vector<Target>& targets, const HalfGrid& grid, const
     fit.column_segments = options.phi_segments;
     fit.epsilon = options.epsilon;
     std::vector<Cascade> bins(targets.size());
-    tbb::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t b) { bins[b] = fit_regional(targets[b], fit); });
+    parallel_for(std::size_t{0}, bins.size(), [&](std::size_t b) { bins[b] = fit_regional(targets[b], fit); });
     Cascade out;
     for (const Cascade& bin : bins) append(bin, out);
     place_knots(out, grid);
@@ -150,9 +149,8 @@ BrdfFit fit_separate(const Reflected& reflected, const BrdfOptions& options) {
     const std::vector<BinRange> ranges = bin_ranges(thetas, azimuths);
     std::vector<Target> targets(ranges.size());
     std::vector<double> albedo(ranges.size());
-    tbb::parallel_for(std::size_t{0}, ranges.size(), [&](std::size_t b) {
-        targets[b] = bin_target(reflected, grid, ranges[b], isotropic, albedo[b]);
-    });
+    parallel_for(std::size_t{0}, ranges.size(),
+                 [&](std::size_t b) { targets[b] = bin_target(reflected, grid, ranges[b], isotropic, albedo[b]); });
     BrdfFit out;
     out.mirrored = options.symmetry.mirrored;
     out.phi_views = azimuths;

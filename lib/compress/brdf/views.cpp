@@ -1,8 +1,7 @@
 #include "compress/brdf/views.h"
+#include "compress/parallel.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +38,7 @@ public:
     explicit Mixtures(const BrdfViews& views) : views_(views), values_(views.targets.size()) {
         for (const double row : views.measures.row_measure)
             for (const double column : views.measures.column_measure) measure_.push_back(row * column);
-        tbb::parallel_for(std::size_t{0}, values_.size(), [&](std::size_t v) { values_[v] = probabilities(v); });
+        parallel_for(std::size_t{0}, values_.size(), [&](std::size_t v) { values_[v] = probabilities(v); });
     }
 
     /// Weighted sum of the relative variances of the views between two nodes, each drawn from their mixture.
@@ -93,7 +92,7 @@ BrdfViews look_at(const Reflected& reflected, const HalfGrid& grid, const std::v
                   const std::vector<double>& phi) {
     BrdfViews out{grid, {grid.row_measure, grid.column_measure}, x, phi, position_weights(x), {}};
     out.targets.resize(x.size() * phi.size());
-    tbb::parallel_for(std::size_t{0}, out.targets.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, out.targets.size(), [&](std::size_t i) {
         out.targets[i] = view_target(reflected, out.grid, {x[i / phi.size()], phi[i % phi.size()]});
     });
     return out;
@@ -122,7 +121,7 @@ std::vector<double> choose_nodes(const Reflected& reflected, const BrdfSymmetry&
         for (std::size_t c = gap.a + step; c < gap.b; c += step) tried.push_back(c);
         if (tried.empty()) continue;
         std::vector<std::pair<double, double>> error(tried.size());
-        tbb::parallel_for(std::size_t{0}, tried.size(), [&](std::size_t i) {
+        parallel_for(std::size_t{0}, tried.size(), [&](std::size_t i) {
             error[i] = {mixtures.error(gap.a, tried[i]), mixtures.error(tried[i], gap.b)};
         });
         std::size_t best = 0;

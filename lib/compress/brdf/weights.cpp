@@ -1,8 +1,7 @@
 #include "compress/brdf/weights.h"
+#include "compress/parallel.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -92,7 +91,7 @@ std::vector<HorizonSquare> horizon_squares(const Reflected& reflected, const Hal
 
 HorizonSquares look_at_horizon(const Reflected& reflected, BrdfViews& views) {
     HorizonSquares out(views.targets.size());
-    tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t v) {
+    parallel_for(std::size_t{0}, out.size(), [&](std::size_t v) {
         ViewTarget& target = views.targets[v];
         if (!(target.albedo > 0.0)) return;
         out[v] = horizon_squares(reflected, views.grid, target.view, target.albedo);
@@ -110,7 +109,7 @@ WeightBound::WeightBound(const BrdfViews& views, const HorizonSquares& horizon,
         for (std::uint32_t c = 0; c < views.grid.columns(); ++c, ++i)
             measure[cell[i]] += views.grid.row_measure[r] * views.grid.column_measure[c];
     std::vector<std::vector<double>> peaks(least_.size());
-    tbb::parallel_for(std::size_t{0}, peaks.size(), [&](std::size_t v) {
+    parallel_for(std::size_t{0}, peaks.size(), [&](std::size_t v) {
         peaks[v].assign(cells, 0.0);
         if (!(views.targets[v].albedo > 0.0)) return;
         for (std::size_t i = 0; i < cell.size(); ++i) {
@@ -123,7 +122,7 @@ WeightBound::WeightBound(const BrdfViews& views, const HorizonSquares& horizon,
             peak = std::max(peak, double{s.peak});
         }
     });
-    tbb::parallel_for(std::size_t{0}, peaks.size(), [&](std::size_t v) {
+    parallel_for(std::size_t{0}, peaks.size(), [&](std::size_t v) {
         const std::size_t ix = v / turns, k = v % turns;
         least_[v] = peaks[v];
         const auto add = [&](std::size_t x, std::size_t turn) {
@@ -143,7 +142,7 @@ bool WeightBound::raise(const RowProbabilities& rows, const std::vector<SharedMi
     constexpr double kNear = 0.99;
     const std::size_t cells = rows.front().size(), block = 64; // cells a task
     std::atomic<bool> any{false};
-    tbb::parallel_for(std::size_t{0}, (cells + block - 1) / block, [&](std::size_t task) {
+    parallel_for(std::size_t{0}, (cells + block - 1) / block, [&](std::size_t task) {
         std::vector<double> factor(rows.size());
         for (std::size_t c = task * block; c < std::min(cells, (task + 1) * block); ++c) {
             std::fill(factor.begin(), factor.end(), 1.0);

@@ -2,9 +2,8 @@
 
 #include "compress/company/demand.h"
 #include "compress/local/light.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +69,7 @@ private:
     /// that are nearly black would decide otherwise.
     void weigh_normals() {
         std::vector<double> irradiance(normals_.normals.size(), 0.0);
-        tbb::parallel_for(std::size_t{0}, irradiance.size(), [&](std::size_t n) {
+        parallel_for(std::size_t{0}, irradiance.size(), [&](std::size_t n) {
             for (const Point& p : points_)
                 irradiance[n] += p.radiance * p.measure * lobes_.brightness(dot(p.direction, normals_.normals[n]));
         });
@@ -95,7 +94,7 @@ private:
     /// For each normal the mean of what a sample of ours adds, less that of the company's. Since the numbers of
     /// samples are fixed, only what deviates from its own mean is noise.
     void compare_means() {
-        tbb::parallel_for(std::size_t{0}, difference_.size(), [&](std::size_t n) {
+        parallel_for(std::size_t{0}, difference_.size(), [&](std::size_t n) {
             double ours = 0.0, theirs = 0.0;
             if (weight_[n] > 0.0)
                 for (const Point& p : points_) {
@@ -115,7 +114,7 @@ private:
     template <class Weight>
     void find_curves(const Weight& weight,
                      void (NoiseKernel::*set)(const NoiseKernel::Histogram&, NoiseCurve&) const) {
-        tbb::parallel_for(std::size_t{0}, curves_.size(), [&](std::size_t i) {
+        parallel_for(std::size_t{0}, curves_.size(), [&](std::size_t i) {
             if (set == &NoiseKernel::set_means && !used_[i]) return;
             const Direction d =
                 direction_at(grid_, double(i / grid_.columns) + 0.5, double(i % grid_.columns) + 0.5);
@@ -167,7 +166,7 @@ private:
 /// Calls `visit(texel, row, column)` for all texels, rows in parallel.
 template <class Visit>
 void for_each_texel(const Target& target, const Visit& visit) {
-    tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         for (std::uint32_t c = 0; c < target.columns; ++c) visit(std::size_t{r} * target.columns + c, r, c);
     });
 }

@@ -2,8 +2,7 @@
 
 #include "compress/fit/division.h"
 #include "compress/fit/prune.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -183,9 +182,8 @@ private:
     template <class Visit>
     void divide_batch(std::vector<std::uint32_t>& next, const Visit& visit) {
         if (children_.size() < batch_.size()) children_.resize(batch_.size()); // most partitions are tiles: small
-        tbb::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t k) {
-            growth_.divide(forced(batch_[k]), parts_[batch_[k]], children_[k]);
-        });
+        parallel_for(std::size_t{0}, batch_.size(),
+                     [&](std::size_t k) { growth_.divide(forced(batch_[k]), parts_[batch_[k]], children_[k]); });
         for (std::size_t k = 0; k < batch_.size(); ++k) {
             visit(parts_[batch_[k]]);
             adopt(children_[k], batch_[k], parts_);
@@ -198,7 +196,7 @@ private:
     void grow_subtrees(std::size_t begin, std::size_t end, const Visit& visit) {
         std::vector<std::vector<Part>> kept(end - begin);
         std::mutex visiting;
-        tbb::parallel_for(begin, end, [&](std::size_t k) {
+        parallel_for(begin, end, [&](std::size_t k) {
             const std::vector<Part> all = grow_subtree(growth_, forced(aside_[k]), parts_[aside_[k]]);
             kept[k - begin] = without_dear(all, forgetting_.price, growth_.heaviest);
             const std::lock_guard<std::mutex> lock(visiting);

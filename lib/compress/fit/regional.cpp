@@ -2,9 +2,8 @@
 // marginal.
 #include "compress/fit/curve.h"
 #include "compress/fit/fit.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +25,7 @@ Curve fit_curve(AcdfFit fit, const Distribution& distribution, const CurveBudget
 /// Energy of each row: the marginal density times the row's measure.
 Distribution marginal_distribution(const Target& target) {
     Distribution marginal{std::vector<double>(target.rows), target.row_measure};
-    tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         const float* row = target.row(r);
         Sum sum;
         for (std::uint32_t c = 0; c < target.columns; ++c) sum.add(row[c] * target.column_measure[c]);
@@ -39,7 +38,7 @@ Distribution marginal_distribution(const Target& target) {
 /// dy over that step (eq. 5).
 std::vector<double> gradient(const Target& target) {
     std::vector<double> g(target.rows - 1);
-    tbb::parallel_for(std::uint32_t{1}, target.rows, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{1}, target.rows, [&](std::uint32_t r) {
         const float *above = target.row(r - 1), *row = target.row(r);
         Sum sum;
         for (std::uint32_t c = 0; c < target.columns; ++c)
@@ -118,7 +117,7 @@ Cascade fit_regional(const Target& target, const FitOptions& options) {
 
     const std::size_t regions = root.segments();
     std::vector<Curve> conditionals(regions);
-    tbb::parallel_for(std::size_t{0}, regions, [&](std::size_t s) {
+    parallel_for(std::size_t{0}, regions, [&](std::size_t s) {
         if (!(root.probability[s] > 0.0)) return;
         const std::uint32_t begin = s == 0 ? 0 : root.knots[s - 1];
         const std::uint32_t end = s < root.knots.size() ? root.knots[s] : target.rows;

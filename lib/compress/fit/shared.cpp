@@ -1,6 +1,5 @@
 #include "compress/fit/shared.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,8 +129,8 @@ SharedPartition::SharedPartition(const SharedGrid& grid, const std::vector<Share
             // Early on the order matters: the best box is among few.
             if (children.size() >= std::max<std::size_t>(2, leaves / 8)) break;
         }
-        tbb::parallel_for(std::size_t{0}, children.size(),
-                          [&](std::size_t i) { consider(grid, targets, nodes_[children[i]]); });
+        parallel_for(std::size_t{0}, children.size(),
+                     [&](std::size_t i) { consider(grid, targets, nodes_[children[i]]); });
         for (const std::uint32_t child : children) push(child);
     }
 }
@@ -198,7 +197,7 @@ std::vector<std::uint32_t> cell_of_squares(const SharedGrid& grid, const TileTre
 
 double second_moment(const RowProbabilities& rows, const std::vector<SharedMixture>& mixtures) {
     std::vector<double> moment(mixtures.size(), 0.0);
-    tbb::parallel_for(std::size_t{0}, mixtures.size(), [&](std::size_t m) {
+    parallel_for(std::size_t{0}, mixtures.size(), [&](std::size_t m) {
         const SharedMixture& mix = mixtures[m];
         for (std::size_t c = 0; c < mix.moment.size(); ++c) {
             double q = 0.0;
@@ -220,7 +219,7 @@ void optimise_rows(RowProbabilities& rows, const std::vector<SharedMixture>& mix
     const double least = kLeastShares / double(cells);
     for (int step = 0; step < steps; ++step) {
         // At the minimum the derivatives by the probabilities of a row are equal wherever these are positive.
-        tbb::parallel_for(std::size_t{0}, (cells + block - 1) / block, [&](std::size_t task) {
+        parallel_for(std::size_t{0}, (cells + block - 1) / block, [&](std::size_t task) {
             std::vector<double> slope(rows.size());
             for (std::size_t c = task * block; c < std::min(cells, (task + 1) * block); ++c) {
                 std::fill(slope.begin(), slope.end(), 0.0);
@@ -235,7 +234,7 @@ void optimise_rows(RowProbabilities& rows, const std::vector<SharedMixture>& mix
                     if (rows[b][c] > 0.0) rows[b][c] = std::max(rows[b][c] * std::sqrt(slope[b]), least * 1e-9);
             }
         });
-        tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t b) {
+        parallel_for(std::size_t{0}, rows.size(), [&](std::size_t b) {
             double sum = 0.0;
             for (const double p : rows[b]) sum += p;
             for (double& p : rows[b])

@@ -9,10 +9,8 @@
 // sum least.
 #include "compress/fit/fit.h"
 #include "compress/fit/join.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +30,7 @@ struct Bands {
 Bands bands_of(const Target& target, const std::vector<std::uint32_t>& begin) {
     Bands bands{begin, std::vector<double>(begin.size(), 0.0),
                 std::vector<double>(begin.size() * target.columns, 0.0)};
-    tbb::parallel_for(std::size_t{0}, begin.size(), [&](std::size_t b) {
+    parallel_for(std::size_t{0}, begin.size(), [&](std::size_t b) {
         const std::uint32_t end = b + 1 < begin.size() ? begin[b + 1] : target.rows;
         double* energy = bands.energy.data() + b * target.columns;
         for (std::uint32_t r = begin[b]; r < end; ++r) {
@@ -65,7 +63,7 @@ std::vector<std::uint32_t> row_joins(const Target& target) {
         return sum * std::sqrt(bands.measure[a] + bands.measure[b]);
     };
     std::vector<double> alone(target.rows);
-    tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) { alone[r] = cost(r, r); });
+    parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) { alone[r] = cost(r, r); });
 
     std::vector<std::uint32_t> order;
     join_neighbours(
@@ -159,8 +157,8 @@ void join_until(Cells& cells, std::size_t columns, std::size_t count) {
 Cells join_bands(const Target& target, Bands bands, std::size_t count) {
     Cells cells;
     cells.history.resize(bands.begin.size());
-    tbb::parallel_for(std::size_t{0}, bands.begin.size(),
-                      [&](std::size_t b) { cells.history[b] = join_columns(target, bands, b); });
+    parallel_for(std::size_t{0}, bands.begin.size(),
+                 [&](std::size_t b) { cells.history[b] = join_columns(target, bands, b); });
     join_until(cells, target.columns, count);
     cells.bands = std::move(bands);
     return cells;

@@ -1,8 +1,7 @@
 #include "compress/local/company.h"
+#include "compress/parallel.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,14 +17,14 @@ LocalCompany::LocalCompany(const Target& target, const std::vector<LightPoint>& 
                            const std::vector<double>& irradiance, const Company& company)
     : lobes_(company.kind), filling_(std::make_shared<const Filling>(company.heuristic)),
       ratio_(company.light / company.other), nu_(bins.normals.size(), 0.0) {
-    tbb::parallel_for(std::size_t{0}, nu_.size(), [&](std::size_t b) {
+    parallel_for(std::size_t{0}, nu_.size(), [&](std::size_t b) {
         if (irradiance[b] > 0.0) nu_[b] = solve(points, bins.normals[b], irradiance[b]);
     });
     Target grid;
     grid.columns = CoarseMap::columns;
     grid.rows = CoarseMap::rows;
     grid.parameterization = target.parameterization;
-    tbb::parallel_for(std::size_t{0}, mean_.values.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, mean_.values.size(), [&](std::size_t i) {
         const Direction d = direction_at(grid, double(i / grid.columns) + 0.5, double(i % grid.columns) + 0.5);
         double sum = 0.0, weight = 0.0;
         for (std::size_t b = 0; b < nu_.size(); ++b) {
@@ -74,7 +73,7 @@ Target LocalCompany::filled(const Target& target) const {
     out.filling = filling_;
     out.left.resize(target.values.size());
     out.least.resize(target.values.size());
-    tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             const std::size_t i = std::size_t{r} * target.columns + c;
             const Left left =
@@ -88,7 +87,7 @@ Target LocalCompany::filled(const Target& target) const {
 
 Target LocalCompany::excess(const Target& target) const {
     Target out = target;
-    tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             float& value = out.values[std::size_t{r} * target.columns + c];
             const double g = value, at = mean_.at(double(c) / target.columns, double(r) / target.rows);
@@ -110,7 +109,7 @@ FilledTiles::FilledTiles(const Target& target, const TileTree& tiles, const Tile
     : lights_(lights), company_(company), bins_(bins), is_light_(tiles.tiles.size(), false),
       pieces_(tiles.tiles.size()) {
     for (const AcdfLight& light : lights) is_light_[light.tile] = true;
-    tbb::parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t t) {
+    parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t t) {
         double shares = 0.0, costs = 0.0;
         const Filling* filling = curves.partition(t).grid().filling;
         const auto share_of = [&](const Part& part) {

@@ -10,10 +10,9 @@
 #include "compress/local/tile_grids.h"
 #include "compress/local/tile_light.h"
 #include "compress/local/tile_size.h"
+#include "compress/parallel.h"
 
 #include <acdf/local.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +111,7 @@ std::vector<std::uint8_t> row_above(const LocalFit& fit, std::vector<double> cos
 /// `put(bin, costs)` stores that.
 template <class Costs, class Put>
 void fill_rows(const Costs& costs, const Put& put, LocalFit& out) {
-    tbb::parallel_for(std::size_t{0}, out.tree.roots.size(), [&](std::size_t b) {
+    parallel_for(std::size_t{0}, out.tree.roots.size(), [&](std::size_t b) {
         if (out.tree.roots[b] == ACDF_NO_ROOT) return;
         const std::vector<double> cost = costs(b);
         double sum = 0.0;

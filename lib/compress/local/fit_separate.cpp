@@ -3,10 +3,9 @@
 #include "compress/fit/partition.h"
 #include "compress/fit/prune.h"
 #include "compress/local/light.h"
+#include "compress/parallel.h"
 
 #include <acdf/local.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -124,7 +123,7 @@ OneBin target_of(const Target& target, const std::vector<LightPoint>& light, con
     const MeanSquare square(normals, light, texel);
     OneBin out{target, square.mean_irradiance};
     out.target.peaks.clear();
-    tbb::parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
+    parallel_for(std::uint32_t{0}, target.rows, [&](std::uint32_t r) {
         float* row = out.target.values.data() + std::size_t{r} * target.columns;
         for (std::uint32_t c = 0; c < target.columns; ++c) {
             if (row[c] == 0.0f) continue;

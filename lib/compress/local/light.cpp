@@ -1,10 +1,9 @@
 #include "compress/local/light.h"
 
+#include "compress/parallel.h"
 #include "compress/sum.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 namespace acdf::compress {
 namespace {
@@ -57,7 +56,7 @@ std::vector<LightPoint> light_points(const Target& target) {
     std::vector<Box> blocks;
     for_each_block(target, all, kPointStep, [&](const Box& block, double) { blocks.push_back(block); });
     std::vector<LightPoint> points(blocks.size());
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
         Sum sum;
         for (std::uint32_t r = blocks[i].begin[0]; r < blocks[i].end[0]; ++r)
             for (std::uint32_t c = blocks[i].begin[1]; c < blocks[i].end[1]; ++c)
@@ -69,7 +68,7 @@ std::vector<LightPoint> light_points(const Target& target) {
 
 std::vector<double> irradiance(const std::vector<LightPoint>& points, const NormalBins& bins) {
     std::vector<double> out(bins.normals.size());
-    tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t b) {
+    parallel_for(std::size_t{0}, out.size(), [&](std::size_t b) {
         for (const LightPoint& p : points) out[b] += p.amount * std::max(0.0, dot(p.direction, bins.normals[b]));
     });
     return out;
@@ -89,7 +88,7 @@ Worth worth(const Target& target, const NormalBins& bins, const std::vector<doub
     std::vector<Lit> lit;
     for (std::size_t b = 0; b < bins.normals.size(); ++b)
         if (irradiance[b] > 0.0) lit.push_back({bins.normals[b], bins.weight[b], irradiance[b]});
-    tbb::parallel_for(std::size_t{0}, out.mean.values.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, out.mean.values.size(), [&](std::size_t i) {
         const Direction d = direction_at(grid, double(i / grid.columns) + 0.5, double(i % grid.columns) + 0.5);
         double mean = 0.0, spread = 0.0, alarm = 0.0;
         for (const Lit& bin : lit) {

@@ -1,9 +1,9 @@
 #include "compress/local/mixed_rows.h"
+#include "compress/parallel.h"
 
 #include <acdf/local.h>
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -211,7 +211,7 @@ private:
 TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::vector<AcdfLight>& lights) {
     tbb::enumerable_thread_specific<MixedScratch> scratch;
     TileParts own(bins.normals.size());
-    tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t b) {
+    parallel_for(std::size_t{0}, own.size(), [&](std::size_t b) {
         if (!(bins.weight[b] > 0.0)) return;
         const std::vector<double> costs = light.costs(bins.normals[b]);
         own[b].resize(costs.size());
@@ -221,7 +221,7 @@ TileParts mixed_rows(const TileLight& light, const NormalBins& bins, const std::
     TileParts parts = own, next = own;
     for (int step = 0; step < kDescents; ++step) {
         const Step towards(light, lights, normals, own, parts);
-        tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
+        parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
             if (!parts[b].empty()) towards.run(b, scratch.local(), next[b]);
         });
         std::swap(parts, next);

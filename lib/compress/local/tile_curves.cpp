@@ -1,8 +1,7 @@
 #include "compress/local/tile_curves.h"
+#include "compress/parallel.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <limits>
 
@@ -12,7 +11,7 @@ TileCurves::TileCurves(const Target& target, const std::vector<Box>& tiles, std:
                        double heaviest)
     : worth_(std::move(worth)), heaviest_(heaviest), total_(integral(target)), partitions_(tiles.size()),
       nodes_(tiles.size()) {
-    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
+    parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
         partitions_[t] =
             std::make_unique<Partition>(grid_of(target), total_, tiles[t], std::uint8_t{TileTree::most_depth + 1});
         look_at(t);
@@ -24,7 +23,7 @@ void TileCurves::look_at(std::size_t tile) {
 }
 
 void TileCurves::refine(double price) {
-    tbb::parallel_for(std::size_t{0}, partitions_.size(), [&](std::size_t t) {
+    parallel_for(std::size_t{0}, partitions_.size(), [&](std::size_t t) {
         if (!(worth_[t] > 0.0)) return;
         partitions_[t]->refine(price * kLeastBytes / (worth_[t] * total_), heaviest_);
         look_at(t);
@@ -46,7 +45,7 @@ double TileCurves::cost(std::size_t tile, const Pruned& pruned) const {
 TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double price)
     : tile_curve(tiles.tiles.size(), -1), tiles_(tiles), curves_(curves), pruned_(tiles.tiles.size()),
       cost_(tiles.tiles.size(), 0.0), split_cost_(tiles.splits.size()) {
-    tbb::parallel_for(std::size_t{0}, tiles.tiles.size(), [&](std::size_t t) {
+    parallel_for(std::size_t{0}, tiles.tiles.size(), [&](std::size_t t) {
         pruned_[t] = curves.pruned(t, price);
         cost_[t] = curves.cost(t, pruned_[t]);
     });

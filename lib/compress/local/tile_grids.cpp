@@ -1,9 +1,8 @@
 #include "compress/local/tile_grids.h"
 
 #include "compress/local/light.h"
+#include "compress/parallel.h"
 #include "compress/store/quantize.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -129,7 +128,7 @@ TileGrid stepped_grid(std::array<std::uint32_t, 2> shift, std::array<std::uint32
 TileGrids::TileGrids(const Target& target, const std::vector<Box>& tiles, std::vector<double> worth)
     : target_(target), tiles_(tiles), worth_(std::move(worth)), total_(integral(target)), choices_(tiles.size()),
       chosen_(tiles.size()), grids_(tiles.size()) {
-    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) { look_at(t); });
+    parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) { look_at(t); });
 }
 
 /// All grids that a tile may have.
@@ -169,7 +168,7 @@ void TileGrids::choose(std::uint64_t bytes) {
         }
         choose_at(high);
     }
-    tbb::parallel_for(std::size_t{0}, tiles_.size(), [&](std::size_t t) {
+    parallel_for(std::size_t{0}, tiles_.size(), [&](std::size_t t) {
         grids_[t] = steps_for(coarsened(finest(target_, tiles_[t]), choices_[t][chosen_[t]].shift));
     });
 }

@@ -1,6 +1,5 @@
 #include "compress/local/tile_light.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +51,7 @@ TileLight::TileLight(const Target& target, const TileTree& tiles, const TileInsi
     : target_(target), tiles_(tiles), tile_(tiles.tiles.size()) {
     std::vector<bool> is_light(tile_.size(), false);
     for (const AcdfLight& light : lights) is_light[light.tile] = true;
-    tbb::parallel_for(std::size_t{0}, tile_.size(), [&](std::size_t t) {
+    parallel_for(std::size_t{0}, tile_.size(), [&](std::size_t t) {
         if (!is_light[t] && insides.tile_cost(t) > 0.0) fill(insides, t);
     });
 }

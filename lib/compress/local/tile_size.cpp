@@ -1,6 +1,5 @@
 #include "compress/local/tile_size.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -83,7 +82,7 @@ void TileSizer::forget() {
 }
 
 void TileSizer::prune(double price) {
-    tbb::parallel_for(std::size_t{0}, inside_.size(), [&](std::size_t t) {
+    parallel_for(std::size_t{0}, inside_.size(), [&](std::size_t t) {
         Inside& inside = inside_[t];
         Pruned pruned = curves_.pruned(t, price);
         if (pruned.divided == inside.divided) return;

@@ -1,6 +1,5 @@
 #include "compress/places/cells.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +70,7 @@ PlaceCells::PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& p
         queue.pop();
         divide(index);
         const std::uint32_t child = nodes_[index].first_child;
-        tbb::parallel_for(0u, 2u, [&](std::uint32_t k) { consider(nodes_[child + k]); });
+        parallel_for(0u, 2u, [&](std::uint32_t k) { consider(nodes_[child + k]); });
         push(child);
         push(child + 1);
         ++cell_count_;
@@ -91,7 +90,7 @@ void PlaceCells::consider(Node& node) const {
     node.gain = 0.0;
     if (node.depth + 1 >= ACDF_MAX_PLACE_SPLITS_DEEP || float(count) < 2.0f * kLeastPoints) return;
     std::array<Division, axes> best;
-    tbb::parallel_for(std::size_t{0}, axes, [&](std::size_t axis) {
+    parallel_for(std::size_t{0}, axes, [&](std::size_t axis) {
         best[axis] = consider_axis(node, sums, stride, static_cast<std::uint32_t>(axis));
     });
     for (const Division& candidate : best)

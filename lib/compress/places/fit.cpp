@@ -1,11 +1,9 @@
 #include "compress/places/fit.h"
 
 #include "compress/fit/shared.h"
+#include "compress/parallel.h"
 #include "compress/places/portal_rows.h"
 #include "compress/places/rows.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -43,8 +41,8 @@ AcdfPlaces header_of(const PointSource& source, const PlacesFrame& frame) {
     constexpr std::size_t batch = 1 << 16;
     std::vector<PlacePoint> points(batch);
     std::vector<char> there(batch, 0);
-    tbb::parallel_for(std::size_t{0}, batch,
-                      [&](std::size_t i) { there[i] = source(i, points[i]) && is_near(points[i].position); });
+    parallel_for(std::size_t{0}, batch,
+                 [&](std::size_t i) { there[i] = source(i, points[i]) && is_near(points[i].position); });
     if (std::find(there.begin(), there.end(), 1) == there.end())
         throw std::invalid_argument("a scene without points within 1e30 of its origin");
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -109,7 +107,7 @@ public:
         std::vector<PlacePoint> candidates(batch);
         std::vector<std::uint32_t> cell(batch);
         for (const std::uint64_t end = next_ + most; next_ < end && points_.size() < count; next_ += batch) {
-            tbb::parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
+            parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
                 const bool there = source_(next_ + i, candidates[i]) && is_near(candidates[i].position);
                 cell[i] = there ? numbers.of(candidates[i]) : cells;
             });
@@ -207,7 +205,7 @@ std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const 
     std::vector<std::uint16_t> columns(regions.size() * splits_of_tiles), set_of_row(tree.cell_count());
     std::vector<std::uint8_t> rows(tree.cell_count() * width);
     std::atomic<std::size_t> done{0};
-    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
+    parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
         const PlaceParts parts(coarse, tree.loss(regions[r]));
         const PlaceRows told =
             place_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);

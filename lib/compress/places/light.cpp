@@ -1,7 +1,5 @@
 #include "compress/places/light.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -55,15 +53,15 @@ void trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points
     light.arrives.resize(points.size(), 0.0);
     light.scale.resize(points.size(), 1.0);
     std::atomic<std::size_t> done{0};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(known, points.size(), 64), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
+    parallel_parts(known, points.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
             light.arrives[i] = trace_point(parts, points[i], i, occluded, &light.given[i * light.parts]);
-        if (progress) progress(double(done += range.size()) / double(more));
+        if (progress) progress(double(done += last - first) / double(more));
     });
     double mean = 0.0;
     for (const double l : light.arrives) mean += l / double(points.size());
     light.dark = dark < 0.0 ? kDarkest * mean : dark;
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { light.rescale(i, light.arrives[i]); });
+    parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { light.rescale(i, light.arrives[i]); });
 }
 
 void PlaceLight::rescale(std::size_t point, double light) {

@@ -1,11 +1,10 @@
 #include "compress/places/portal_maps.h"
 
 #include "compress/local/light.h"
+#include "compress/parallel.h"
 #include "compress/sum.h"
 
 #include <acdf/grid.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +118,7 @@ double light_of(const Target& target, const AcdfPortalMap& map, std::uint32_t si
 double fill(const Target& target, const AcdfPortalMap& map, std::uint32_t size, std::uint32_t* sums) {
     const int lookups = std::clamp(static_cast<int>(target.columns / size), kFewest, kMost);
     std::vector<double> light(std::size_t{size} * size);
-    tbb::parallel_for(0u, size, [&](std::uint32_t row) {
+    parallel_for(0u, size, [&](std::uint32_t row) {
         for (std::uint32_t column = 0; column < size; ++column)
             light[std::size_t{row} * size + column] = light_of(target, map, size, column, row, lookups);
     });

@@ -1,6 +1,5 @@
 #include "compress/places/portal_rows.h"
-
-#include <tbb/parallel_for.h>
+#include "compress/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -151,8 +150,7 @@ double mean_light(const PortalRays& rays, const PortalSet& set, const std::vecto
     const std::size_t step = std::max<std::size_t>(points.size() / kAsked, 1), count = points.size() / step;
     const std::size_t pieces = std::size_t{set.header.pieces} * set.header.pieces;
     std::vector<PortalLight> lights(count);
-    tbb::parallel_for(std::size_t{0}, count,
-                      [&](std::size_t i) { lights[i] = rays.trace(i * step, points[i * step]); });
+    parallel_for(std::size_t{0}, count, [&](std::size_t i) { lights[i] = rays.trace(i * step, points[i * step]); });
     double mean = 0.0;
     for (const PortalLight& light : lights) mean += double{light.all()} / double(count);
     for (std::size_t k = 0; k < set.portals.size(); ++k) {
@@ -214,7 +212,7 @@ Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const std::vect
     const PortalRays rays(local, set, occluded);
     const double dark = kDark * mean_light(rays, set, points);
     std::vector<std::uint8_t> rows(cells * width);
-    tbb::parallel_for(0u, (cells + kCells - 1) / kCells, [&](std::uint32_t block) {
+    parallel_for(0u, (cells + kCells - 1) / kCells, [&](std::uint32_t block) {
         const std::uint32_t begin = block * kCells, end = std::min(begin + kCells, cells);
         const std::vector<CellSums> sums = sum_up_cells(rays, shares, points, begin, end, width - 1, dark);
         for (std::uint32_t cell = begin; cell < end; ++cell)

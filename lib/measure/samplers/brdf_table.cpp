@@ -1,10 +1,9 @@
 #include "measure/samplers/brdf_table.h"
 
+#include "compress/parallel.h"
 #include "compress/sum.h"
 
 #include <acdf/elementary.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +46,7 @@ TabulatedBrdf::TabulatedBrdf(const compress::Reflected& reflected, bool isotropi
     conditional_.resize(mass_.size());
     marginal_.resize(size.view_bins() * size.theta_h);
     const bool turned = isotropic && size.phi_h % size.phi_o == 0;
-    tbb::parallel_for(std::uint32_t{0}, size.theta_o, [&](std::uint32_t i) {
+    compress::parallel_for(std::uint32_t{0}, size.theta_o, [&](std::uint32_t i) {
         for (std::uint32_t j = 0; j < size.phi_o; ++j) {
             if (j > 0 && turned) copy_turned(i, j);
             else fill_bin(reflected, kind, i, j);

@@ -1,10 +1,9 @@
 #include "measure/scenes/mesh_stage.h"
 
+#include "compress/parallel.h"
 #include "measure/scenes/point_sums.h"
 #include "measure/scenes/render.h"
 #include "measure/sequences.h"
-
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -37,7 +36,7 @@ StageVariances variances_on(const MeshStage& stage, const std::vector<const Ligh
     for (const LightSampler* sampler : samplers) parts.push_back({{{{sampler}, 1}}});
     std::vector<PointSums> sums(points.size());
     std::atomic<std::size_t> done{0};
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         std::vector<PartsAtPoint> at;
         for (const SamplerParts& one : parts) at.emplace_back(one, points[i]);
         sums[i] = sums_at(points[i], stage.light(), at);

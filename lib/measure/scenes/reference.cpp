@@ -1,10 +1,9 @@
 #include "measure/scenes/reference.h"
 
+#include "compress/parallel.h"
 #include "compress/sum.h"
 
 #include <acdf/sample.h>
-
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <cmath>
@@ -133,7 +132,7 @@ std::vector<Rgb> reference(const ProbeLight& light, const std::vector<ScenePoint
     const Centres centres(light);
     std::vector<Rgb> out(points.size());
     std::atomic<std::size_t> done{0};
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    compress::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         out[i] = PointSum(light, centres, points[i]).value();
         if (progress) progress(static_cast<double>(++done) / static_cast<double>(points.size()));
     });

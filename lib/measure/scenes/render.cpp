@@ -1,9 +1,7 @@
 #include "measure/scenes/render.h"
 
+#include "compress/parallel.h"
 #include "compress/sum.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -106,11 +104,11 @@ Rendering render(const std::vector<ScenePoint>& points, const std::vector<const 
     const PointRendering render_point(out, points.size(), options, mixed(hash(name)));
     std::vector<Tally> tallies(points.size());
     std::atomic<std::size_t> done{0};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 16), [&](const auto& range) {
+    compress::parallel_parts(0, points.size(), 16, [&](std::size_t first, std::size_t last) {
         const PointEstimators own = point_estimators(estimators);
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
+        for (std::size_t i = first; i < last; ++i)
             tallies[i] = render_point(i, points[i], *own[points[i].material()]);
-        if (progress) progress(static_cast<double>(done += range.size()) / static_cast<double>(points.size()));
+        if (progress) progress(static_cast<double>(done += last - first) / static_cast<double>(points.size()));
     });
     for (const Tally& tally : tallies) {
         out.tally.samples += tally.samples;

@@ -1,9 +1,8 @@
+#include "compress/parallel.h"
 #include "compress/sum.h"
 #include "measure/samplers/point_samplers.h"
 #include "measure/scenes/portal_frame.h"
 #include "measure/scenes/portals.h"
-
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
@@ -24,7 +23,7 @@ public:
         : axes_(axes), size_(size), sums_((std::size_t{size} + 1) * (size + 1), 0.0) {
         if (size == 0) throw std::invalid_argument("a map of a portal needs cells");
         std::vector<double> light(std::size_t{size} * size);
-        tbb::parallel_for(0u, size, [&](std::uint32_t row) {
+        compress::parallel_for(0u, size, [&](std::uint32_t row) {
             for (std::uint32_t column = 0; column < size; ++column)
                 light[std::size_t{row} * size + column] = light_of(target, column, row);
         });

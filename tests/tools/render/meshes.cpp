@@ -43,7 +43,7 @@ struct MeshFolder : SceneFolder {
         }
     }
     Result render(const std::string& scene, const std::string& output, std::vector<std::string> more = {},
-                  const std::string& seeds = acdf_test::kSanitized ? "40" : "150") {
+                  const std::string& seeds = acdf_test::kSanitized ? "20" : "150") {
         std::vector<std::string> arguments{"render", "--scene",     *this / scene,  "--data",
                                            data(),   "-o",          *this / output, "--seeds",
                                            seeds,    "--no-timing", "--json",       "--no-reference"};
