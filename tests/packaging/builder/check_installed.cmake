@@ -8,7 +8,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/../checks.cmake)
 
 set(EXAMPLES ${SOURCE}/docs/examples)
 set(configure ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -G Ninja -DEXAMPLES=${EXAMPLES}
-    -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX})
+    -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER=${CXX})
 
 # refuse(WHY COMMAND...): the command fails and says why.
 function(refuse why)
@@ -54,7 +54,7 @@ set(ENV{PKG_CONFIG_PATH} ${WORK}/prefix/${LIBDIR}/pkgconfig)
 run(flags pkg-config --cflags --libs acdf-builder)
 string(STRIP "${flags}" flags)
 separate_arguments(flags UNIX_COMMAND "${flags}")
-run(ignored ${CXX} -std=c++17 -O2 ${EXAMPLES}/build_environment.cpp -o ${WORK}/pkgconfig ${flags})
+run(ignored ${CXX} -std=c++17 ${EXAMPLES}/build_environment.cpp -o ${WORK}/pkgconfig ${flags})
 
 foreach(program build/build_environment build/embed_builder pkgconfig)
     expect_needed(${WORK}/${program} tbb z m c gcc_s stdc++ ld-linux-x86-64 ld-linux-aarch64)
