@@ -60,7 +60,7 @@ def main(folder, page, *flags):
             browser = subprocess.Popen(
                 ["chromium", *FLAGS, *flags, "--enable-logging=stderr", "--user-data-dir=" + profile,
                  "http://127.0.0.1:%d/%s" % (server.server_port, page)],
-                stdout=log, stderr=log, env={**os.environ, "HOME": profile}, start_new_session=True)
+                stdout=log, stderr=log, env={**os.environ, "HOME": profile, "TMPDIR": profile}, start_new_session=True)
             server.answered.wait(LONGEST)
             browser.terminate()
             browser.wait()

@@ -11,7 +11,7 @@ fi
 work=$(mktemp -d)
 # Helpers of the browser may outlive it for a moment, and write to the profile while it is removed.
 trap 'rm -rf "$work" || { sleep 2 && rm -rf "$work"; }' EXIT
-export HOME=$work # its profile and caches
+export HOME=$work TMPDIR=$work # its profile, caches and sockets
 run() {
     timeout 120 "$browser" --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
         --hide-scrollbars --user-data-dir="$work/profile" "$@"
