@@ -269,8 +269,7 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
 
 /// The smallest file whose measured variance is low enough.
 Local build_to_variance(const compress::Target& target, const Source& source, const LocalOptions& options,
-                        const Progress& progress) {
-    LastBins last;
+                        LastBins& last, const Progress& progress) {
     double share = 0.0; // steps of the search are of about the same size
     const auto at = [&](double bytes) -> std::optional<Local> {
         const auto searching = [&](double, const char*) { // no news, but a chance to cancel
@@ -376,21 +375,22 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
                   const Progress& progress) {
     if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
     if (!options.sharing) return build_separate(target, source, options, progress);
+    LastBins last;
     switch (options.goal.kind) {
-    case Goal::Kind::budget: {
-        LastBins last;
+    case Goal::Kind::budget:
         return build_in_budget(target, source, options, options.goal.budget, last, Least::told, progress);
-    }
     case Goal::Kind::variance:
-        return build_to_variance(target, source, options, progress);
+        return build_to_variance(target, source, options, last, progress);
     default: {
         const double bytes = bytes_of_cell(options.shape) * options.goal.cells;
-        const NormalBins bins = bins_for(options, bytes_around(bytes));
-        compress::LocalSize size = size_around(options, bins, bytes);
+        LitBins& lit = bins_for(options, bytes_around(bytes), target, last);
+        compress::LocalSize size = size_around(options, lit.bins(), bytes);
         return within_weight(options.max_weight, [&](double max_weight) {
             if (max_weight > 0.0) size.max_weight = max_weight;
-            const compress::LocalFit fit =
-                compress::fit_local(target, bins, size, fitting(progress), options.company);
+            const NormalBins& bins = lit.bins();
+            compress::LocalFitter fitter(target, bins, lit.light(), size, fitting(progress), options.company);
+            compress::LocalFit fit = fitter.outlined(size.inside_bytes);
+            fitter.fill(fit);
             return finish(shared_draft(fit, target, source, options, bins), target, source, options, bins);
         });
     }

@@ -21,7 +21,8 @@ private:
     void (*call_)(const void*, std::size_t, std::size_t);
 };
 
-/// Calls `body` for parts of [begin, end), which are halved to no less than `grain`. What it throws is thrown here.
+/// Calls `body` for parts of [begin, end), none of which is halved once it is down to `grain`. What it throws is
+/// thrown here.
 void parallel_parts(std::size_t begin, std::size_t end, std::size_t grain, const PartBody& body);
 
 /// Calls body(i) for each i of [begin, end), neither of them below 0.

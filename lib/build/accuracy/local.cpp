@@ -145,8 +145,8 @@ private:
     struct Row {
         const float* n;
         const TilePicture& picture;
-        const std::vector<double>&
-            tile;                ///< probabilities without the share around the normal; empty: nothing is drawn
+        /// Probabilities without the share around the normal; empty: nothing is drawn.
+        const std::vector<double>& tile;
         double share;            ///< that is drawn around the normal
         Combination both, rival; ///< with the company
         double largest = 0.0;
@@ -159,58 +159,40 @@ private:
                state.share == 0.0 && !state.tile.empty();
     }
 
-    RowSums sum_plain_row(std::uint32_t r, Row& state) const {
+    /// `plain`: of what is_plain(), so that all else is left out of the loop.
+    template <bool plain>
+    RowSums sum_row(std::uint32_t r, Row& state) const {
         const std::size_t row = std::size_t{r} * target_.columns;
         const std::uint32_t* const tiles = state.picture.tile.data() + row;
         const double *const densities = state.picture.density.data() + row, *const probability = state.tile.data();
         const double* const measures = target_.column_measure.data();
         const float* const values = target_.row(r);
-        const double height = target_.row_measure[r];
+        const double height = target_.row_measure[r], share = plain ? 0.0 : state.share;
+        const bool drawn = plain || !state.tile.empty(), alone = plain || !local_.company;
+        const bool means_differ = !plain && !target_.means.empty();
+        const Slope* const slopes =
+            plain || state.picture.slope.empty() ? nullptr : state.picture.slope.data() + row;
+        const float* const peaks = plain || target_.peaks.empty() ? nullptr : target_.peaks.data() + row;
+        // Copies, which compilers keep in registers.
         double flux = 0.0, second = 0.0, first = 0.0, light = 0.0, light_second = 0.0, largest = state.largest;
         std::uint64_t violations = 0;
+        compress::ChannelSums irradiance;
         cosines_.for_each_above(state.n, r, [&](std::uint32_t c, double cosine) {
-            const double p = probability[tiles[c]] * densities[c], omega = height * measures[c], g = values[c];
-            first += p * omega;
+            const double light_p = drawn ? probability[tiles[c]] * densities[c] : 0.0;
+            const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = plain ? light_p : light_p + rest;
+            const double omega = height * measures[c], g = values[c];
+            first += light_p * omega;
             if (!(g > 0.0)) return;
             const double f = g * cosine, energy = f * omega;
             flux += energy;
             light += g * omega;
             light_second += energy * cosine;
-            if (!(p > 0.0)) {
-                ++violations;
-                return;
-            }
-            const double weight = f / p;
-            second += weight * energy;
-            largest = std::max(largest, weight);
-        });
-        state.largest = largest;
-        state.violations += violations;
-        return {flux, second, first, light, light_second, {}};
-    }
-
-    RowSums sum_row(std::uint32_t r, Row& state) const {
-        RowSums out;
-        const std::size_t row = std::size_t{r} * target_.columns;
-        const bool alone = !local_.company;
-        cosines_.for_each_above(state.n, r, [&](std::uint32_t c, double cosine) {
-            const std::size_t i = row + c;
-            const double light_p =
-                state.tile.empty() ? 0.0 : state.tile[state.picture.tile[i]] * state.picture.density[i];
-            const double rest = state.share > 0.0 ? state.share * cosine / ACDF_PI : 0.0, p = light_p + rest;
-            const double omega = solid_angle(r, c), g = target_.row(r)[c];
-            out.first += light_p * omega;
-            if (!(g > 0.0)) return;
-            const double f = g * cosine;
-            out.flux += f * omega;
             double means[3];
             std::size_t channels = 0;
-            if (!alone || !target_.means.empty()) {
-                channels = compress::means_of(target_, i, means);
-                out.irradiance.add(means, channels, cosine * omega);
+            if (!alone || means_differ) {
+                channels = compress::means_of(target_, row + c, means);
+                irradiance.add(means, channels, cosine * omega);
             }
-            out.light += g * omega;
-            out.light_second += f * omega * cosine;
             if (!alone) {
                 for (std::size_t k = 0; k < channels; ++k) means[k] *= cosine;
                 state.both.add(f, means, channels, omega, p, cosine / ACDF_PI);
@@ -218,16 +200,22 @@ private:
                 return;
             }
             if (!(p > 0.0)) {
-                ++state.violations;
+                ++violations;
                 return;
             }
             // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
-            const Slope slope = state.picture.slope.empty() ? Slope{} : state.picture.slope[i];
-            const double most = cosine * (target_.peaks.empty() ? g : double{target_.peaks[i]});
-            out.second += f / (light_p * double{slope.harmonic} + rest) * f * omega;
-            state.largest = std::max(state.largest, most / (light_p * double{slope.smallest} + rest));
+            const double weight = f / (slopes ? light_p * double{slopes[c].harmonic} + rest : p);
+            second += weight * energy;
+            if (plain) {
+                largest = std::max(largest, weight);
+                return;
+            }
+            const double most = peaks ? cosine * double{peaks[c]} : f;
+            largest = std::max(largest, most / (slopes ? light_p * double{slopes[c].smallest} + rest : p));
         });
-        return out;
+        state.largest = largest;
+        state.violations += violations;
+        return {flux, second, first, light, light_second, irradiance};
     }
 
     NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
@@ -240,7 +228,7 @@ private:
         Sum flux, second, first_above, light, light_second;
         compress::ChannelSums irradiance;
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
-            const RowSums row = plain ? sum_plain_row(r, state) : sum_row(r, state);
+            const RowSums row = plain ? sum_row<true>(r, state) : sum_row<false>(r, state);
             flux.add(row.flux);
             irradiance.add(row.irradiance);
             second.add(row.second);

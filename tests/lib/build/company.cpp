@@ -87,9 +87,11 @@ TEST(Company, BrightnessDoesNotCount) {
 }
 
 TEST(Company, VarianceIsThatOfTheSlowReference) {
-    for (const Probe& probe : {probes()[1], probes()[4]})
+    const std::vector<Probe> all = probes();
+    for (const std::size_t which : {std::size_t{1}, std::size_t{4}}) {
+        if (acdf_test::kSanitized && which == 4) break; // the same code, of other light
+        const Probe& probe = all[which];
         for (const Kind& kind : {kinds[0], kinds[1], kinds[4], kinds[5], kinds[6]}) {
-            if (acdf_test::kSanitized && probe.name == probes()[4].name) break; // the same code, of other light
             Made made;
             make(probe, kind, made);
             std::mt19937_64 engine(20051); // the normals of build::random_normals
@@ -105,6 +107,7 @@ TEST(Company, VarianceIsThatOfTheSlowReference) {
             }
             EXPECT_NEAR(made.variance, sum / lit, 2e-3 * (sum / lit) + 1e-4) << probe.name;
         }
+    }
 }
 
 TEST(Company, LocalFilesComeNearWaterFillingOfEachNormal) {

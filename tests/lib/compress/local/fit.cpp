@@ -3,11 +3,11 @@
 #include "tests/inputs/sanitized.h"
 
 #include "compress/local/light.h"
+#include "compress/parallel.h"
 
 #include <gtest/gtest.h>
 
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include <cstring>
 
@@ -237,7 +237,7 @@ TEST(LocalFit, TenMillionSamplesAgree) {
     options.cosine_share = 0.1;
     const LocalMap map(suns_target(128, 64), octahedral_bins(6), options);
     const std::vector<Normal> all = hard_normals(map.bins, 7, 60);
-    tbb::parallel_for(0, normals, [&](int k) {
+    parallel_for(0, normals, [&](int k) {
         const Normal& n = all[all.size() - 1 - std::size_t(k)];
         const auto view = map.view();
         const AcdfLocalPoint at = view.at(n.data());

@@ -3,11 +3,10 @@
 #include "tests/inputs/places.h"
 #include "tests/lib/measure/samplers/rivals.h"
 
+#include "compress/parallel.h"
 #include "input/probe/probe.h"
 #include "measure/samplers/local_rivals.h"
 #include "measure/samplers/tiling.h"
-
-#include <tbb/parallel_for.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -55,7 +54,7 @@ TEST_P(RivalsOn, RandomNormals) {
     const std::vector<Normal> normals = random_normals(kNormals, 1);
     std::vector<Variances> each(normals.size());
     std::vector<double> above(normals.size());
-    tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
+    acdf::compress::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
         const float* n = normals[i].data();
         each[i].full = full.relative_variance(n);
         each[i].cosine = cosine.relative_variance(n);
