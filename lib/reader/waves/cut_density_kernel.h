@@ -1,6 +1,7 @@
 // Densities of cuts (acdf/cut_sample.h) over vectors, operation by operation. Internal linkage: see local_kernel.h.
 #pragma once
 
+#include "waves/alone.h"
 #include "waves/local_density_kernel.h"
 
 #include <acdf/cut_wave.h>
@@ -55,7 +56,7 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
     lost |= told_densities(local, cells, done, out);
     for (; lost; lost &= lost - 1) {
         const auto lane = (std::size_t)__builtin_ctzll(lost);
-        out[lane] = acdf_cut_pdf(&local, &point, &cut, directions[lane]);
+        out[lane] = acdf::alone::cut_pdf(local, point, cut, directions[lane]);
     }
 }
 

@@ -2,6 +2,7 @@
 // tiles and directions as LocalWavefront draws them. Internal linkage: see local_kernel.h.
 #pragma once
 
+#include "waves/alone.h"
 #include "waves/local_kernel.h"
 
 #include <acdf/cut_wave.h>
@@ -127,7 +128,7 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
     lost |= place_cells(local, cells, done, out);
     for (; lost; lost &= lost - 1) {
         const auto lane = (std::size_t)__builtin_ctzll(lost);
-        out[lane] = acdf_cut_sample(&local, &point, &cut, u[lane][0], u[lane][1]);
+        out[lane] = acdf::alone::cut_sample(local, point, cut, u[lane]);
     }
 }
 

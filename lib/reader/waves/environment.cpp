@@ -2,6 +2,7 @@
 #include "waves/environment.h"
 
 #include "instructions.h"
+#include "waves/alone.h"
 
 #include <algorithm>
 
@@ -17,7 +18,7 @@ void EnvironmentWavefront::sample(const double (*u)[2], std::size_t count, Direc
     if (instructions_ == Instructions::avx512) return environment_sample_avx512(environment_, u, count, out);
     if (instructions_ == Instructions::avx2) return environment_sample_avx2(environment_, u, count, out);
 #endif
-    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_environment_sample(&environment_, u[i][0], u[i][1]);
+    for (std::size_t i = 0; i < count; ++i) out[i] = alone::environment_sample(environment_, u[i]);
 }
 
 void EnvironmentWavefront::pdf(const float (*directions)[3], std::size_t count, float* out) const noexcept {
@@ -25,7 +26,7 @@ void EnvironmentWavefront::pdf(const float (*directions)[3], std::size_t count, 
     if (instructions_ == Instructions::avx512) return environment_pdf_avx512(environment_, directions, count, out);
     if (instructions_ == Instructions::avx2) return environment_pdf_avx2(environment_, directions, count, out);
 #endif
-    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_environment_pdf(&environment_, directions[i]);
+    for (std::size_t i = 0; i < count; ++i) out[i] = alone::environment_pdf(environment_, directions[i]);
 }
 
 } // namespace acdf

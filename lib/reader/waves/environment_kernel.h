@@ -8,6 +8,7 @@
 // in another, some two lanes in a hundred, or is not answered by tables, is left to the functions of acdf/sample.h.
 #pragma once
 
+#include "waves/alone.h"
 #include "waves/environment.h"
 #include "waves/piece_vectors.h"
 #include "waves/search_vectors.h"
@@ -77,7 +78,7 @@ ACDF_LANE void sample_by_cells(const AcdfEnvironment& env, const double (*u)[2],
                 lost |= draw(env.cells, s, *draws, first, to);
             for (; lost; lost &= lost - 1) {
                 const std::uint32_t i = acdf_lowest_bit(lost);
-                to[i] = acdf_environment_sample(&env, from[i][0], from[i][1]);
+                to[i] = acdf::alone::environment_sample(env, from[i]);
             }
         });
 }
@@ -138,7 +139,7 @@ ACDF_LANE void pdf_by_cells(const AcdfEnvironment& env, const float (*w)[3], std
                 lost |= densities(env.cells, s, *places, first, to);
             for (; lost; lost &= lost - 1) {
                 const std::uint32_t i = acdf_lowest_bit(lost);
-                to[i] = acdf_environment_pdf(&env, from[i]);
+                to[i] = acdf::alone::environment_pdf(env, from[i]);
             }
         });
 }

@@ -3,6 +3,7 @@
 // them.
 #pragma once
 
+#include "waves/alone.h"
 #include "waves/fast_density_kernel.h"
 #include "waves/fast_kernel.h"
 
@@ -35,8 +36,8 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
     for (std::size_t i = count; i % kLanes != 0; ++i) d.rows.tile[i] = d.rows.tile[0];
     pad_lanes(count, &c);
     end_draws(
-        local, &d, 0, [&](std::size_t i) { out[i] = acdf_fast_cut_sample(&local, &point, &cut, u[i][0], u[i][1]); },
-        count, out);
+        local, &d, 0, [&](std::size_t i) { out[i] = acdf::alone::cut_sample(local, point, cut, u[i]); }, count,
+        out);
 }
 
 /* acdf_fast_cut_pdf of up to kBlock lanes. */
@@ -56,7 +57,7 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
     pad_lanes(count, &f.cells);
     store_densities(local, f.cells, count, out);
     leave_alone(lost, count,
-                [&](std::size_t i) { out[i] = acdf_fast_cut_pdf(&local, &point, &cut, directions[i]); });
+                [&](std::size_t i) { out[i] = acdf::alone::cut_pdf(local, point, cut, directions[i]); });
 }
 
 // ---- all of an array -------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 // single functions look for another where that is not it.
 #pragma once
 
+#include "waves/alone.h"
 #include "waves/environment.h"
 #include "waves/row_vectors.h"
 #include "waves/search_vectors.h"
@@ -243,7 +244,7 @@ ACDF_LANE void end_draws(const AcdfEnvironment& env, const GroupArrays& g, const
     for (std::size_t first = 0; first < kSearched; first += kLanes) place_lanes(env, g, first, &in, out);
     for (; in.lost; in.lost &= in.lost - 1) {
         const std::uint32_t i = acdf_lowest_bit(in.lost);
-        out[i] = acdf_environment_sample(&env, u[i][0], u[i][1]);
+        out[i] = acdf::alone::environment_sample(env, u[i]);
     }
 }
 
@@ -330,7 +331,7 @@ ACDF_LANE void end_densities(const AcdfEnvironment& env, const GroupArrays& g, c
     }
     for (; lost; lost &= lost - 1) {
         const std::uint32_t i = acdf_lowest_bit(lost);
-        out[i] = acdf_environment_pdf(&env, w[i]);
+        out[i] = acdf::alone::environment_pdf(env, w[i]);
     }
 }
 

@@ -1,7 +1,9 @@
 // Local environment files many times at once. What a single call waits for, memory and the splits on the way to a
 // tile, is asked for by several of them side by side; the operations are the same ones, on any processor.
 #include "waves/local.h"
+
 #include "instructions.h"
+#include "waves/alone.h"
 
 #include <algorithm>
 
@@ -95,7 +97,7 @@ void LocalWavefront::sample(const AcdfLocalPoint& point, const double (*u)[2], s
     const LocalLoops* const loops = loops_of(local_, instructions_);
     if (loops && count >= kFewest && serves_waves(point)) return loops->sample_at(local_, point, u, count, out);
 #endif
-    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_local_sample_at(&local_, &point, u[i][0], u[i][1]);
+    for (std::size_t i = 0; i < count; ++i) out[i] = alone::local_sample(local_, point, u[i]);
 }
 
 void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std::size_t count,
@@ -113,7 +115,7 @@ void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std
             acdf_local_at(&local_, normals[i], &l.point);
             const double v[2] = {acdf_unit_interval(u[i][0]), acdf_unit_interval(u[i][1])};
             if (!usual(local_, l.point) || !acdf_local_draws_mixture(&l.point, v[0])) {
-                out[i] = acdf_local_sample_at(&local_, &l.point, v[0], v[1]);
+                out[i] = alone::local_sample(local_, l.point, v);
                 continue;
             }
             double from[2];
@@ -136,7 +138,7 @@ void LocalWavefront::pdf(const AcdfLocalPoint& point, const float (*directions)[
     if (loops && count >= kFewest && serves_waves(point))
         return loops->pdf_at(local_, point, directions, count, out);
 #endif
-    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_local_pdf_at(&local_, &point, directions[i]);
+    for (std::size_t i = 0; i < count; ++i) out[i] = alone::local_pdf(local_, point, directions[i]);
 }
 
 void LocalWavefront::pdf(const float (*normals)[3], const float (*directions)[3], std::size_t count,
@@ -145,7 +147,7 @@ void LocalWavefront::pdf(const float (*normals)[3], const float (*directions)[3]
     if (const LocalLoops* const loops = loops_of(local_, instructions_))
         return loops->pdf(local_, normals, directions, count, out);
 #endif
-    for (std::size_t i = 0; i < count; ++i) out[i] = acdf_local_pdf(&local_, normals[i], directions[i]);
+    for (std::size_t i = 0; i < count; ++i) out[i] = alone::local_pdf(local_, normals[i], directions[i]);
 }
 
 } // namespace acdf

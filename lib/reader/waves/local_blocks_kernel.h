@@ -2,6 +2,7 @@
 // of both shapes share. Internal linkage: see local_kernel.h.
 #pragma once
 
+#include "waves/alone.h"
 #include "waves/local_tile_vectors.h"
 
 #include <algorithm>
@@ -41,16 +42,15 @@ ACDF_LANE void draws_in_blocks(const AcdfLocal& local, const float (*normals)[3]
         [&](std::size_t first) {
             return PointsOf<P>{local, normals + first};
         },
-        [&](std::size_t i) { out[i] = acdf_local_sample(&local, normals[i], u[i][0], u[i][1]); }, u, count, out,
-        block);
+        [&](std::size_t i) { out[i] = acdf::alone::local_sample(local, normals[i], u[i]); }, u, count, out, block);
 }
 template <class P, class Block>
 ACDF_LANE void draws_in_blocks(const AcdfLocal& local, const AcdfLocalPoint& point, const double (*u)[2],
                                std::size_t count, AcdfDirectionSample* out, const Block& block) {
     const OnePoint<P> points(local, point);
     in_blocks<kBlock>([&](std::size_t) -> const OnePoint<P>& { return points; },
-                      [&](std::size_t i) { out[i] = acdf_local_sample_at(&local, &point, u[i][0], u[i][1]); }, u,
-                      count, out, block);
+                      [&](std::size_t i) { out[i] = acdf::alone::local_sample(local, point, u[i]); }, u, count, out,
+                      block);
 }
 
 /* The same of densities. */
@@ -61,8 +61,8 @@ ACDF_LANE void densities_in_blocks(const AcdfLocal& local, const float (*normals
         [&](std::size_t first) {
             return PointsOf<P>{local, normals + first};
         },
-        [&](std::size_t i) { out[i] = acdf_local_pdf(&local, normals[i], directions[i]); }, directions, count, out,
-        block);
+        [&](std::size_t i) { out[i] = acdf::alone::local_pdf(local, normals[i], directions[i]); }, directions,
+        count, out, block);
 }
 template <std::size_t Size, class P, class Block>
 ACDF_LANE void densities_in_blocks(const AcdfLocal& local, const AcdfLocalPoint& point,
@@ -70,8 +70,8 @@ ACDF_LANE void densities_in_blocks(const AcdfLocal& local, const AcdfLocalPoint&
                                    const Block& block) {
     const OnePoint<P> points(local, point);
     in_blocks<Size>([&](std::size_t) -> const OnePoint<P>& { return points; },
-                    [&](std::size_t i) { out[i] = acdf_local_pdf_at(&local, &point, directions[i]); }, directions,
-                    count, out, block);
+                    [&](std::size_t i) { out[i] = acdf::alone::local_pdf(local, point, directions[i]); },
+                    directions, count, out, block);
 }
 
 } // namespace

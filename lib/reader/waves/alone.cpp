@@ -1,0 +1,44 @@
+#include "waves/alone.h"
+
+namespace acdf::alone {
+
+AcdfDirectionSample environment_sample(const AcdfEnvironment& env, const double u[2]) noexcept {
+    return acdf_environment_sample(&env, u[0], u[1]);
+}
+float environment_pdf(const AcdfEnvironment& env, const float w[3]) noexcept {
+    return acdf_environment_pdf(&env, w);
+}
+
+AcdfDirectionSample local_sample(const AcdfLocal& local, const AcdfLocalPoint& point, const double u[2]) noexcept {
+    return acdf_local_sample_at(&local, &point, u[0], u[1]);
+}
+float local_pdf(const AcdfLocal& local, const AcdfLocalPoint& point, const float w[3]) noexcept {
+    return acdf_local_pdf_at(&local, &point, w);
+}
+
+AcdfDirectionSample local_sample(const AcdfLocal& local, const float normal[3], const double u[2]) noexcept {
+    AcdfLocalPoint point;
+    acdf_local_at(&local, normal, &point);
+    return local_sample(local, point, u);
+}
+float local_pdf(const AcdfLocal& local, const float normal[3], const float w[3]) noexcept {
+    return acdf_local_pdf(&local, normal, w);
+}
+
+AcdfDirectionSample cut_sample(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
+                               const double u[2]) noexcept {
+    return acdf_cut_sample(&local, &point, &cut, u[0], u[1]);
+}
+AcdfDirectionSample cut_sample(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfFastCut& cut,
+                               const double u[2]) noexcept {
+    return acdf_fast_cut_sample(&local, &point, &cut, u[0], u[1]);
+}
+float cut_pdf(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut, const float w[3]) noexcept {
+    return acdf_cut_pdf(&local, &point, &cut, w);
+}
+float cut_pdf(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfFastCut& cut,
+              const float w[3]) noexcept {
+    return acdf_fast_cut_pdf(&local, &point, &cut, w);
+}
+
+} // namespace acdf::alone
