@@ -30,8 +30,9 @@ namespace acdf::tools {
 namespace {
 
 // Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
-// one channel, 15 to 23 for three channels, with clamped pixels, or resampled.
-constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kEnvironmentMemoryOfPixel = 24;
+// one channel, 15 to 23 for three channels, with clamped pixels, or resampled. And of small maps
+// that are resampled, what lib/build/probe/overlap.h keeps.
+constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kOverlapMemory = 24 << 20, kEnvironmentMemoryOfPixel = 24;
 // A tree takes so much on top while it is looked for: of each cell asked for (four bytes of a budget, one where
 // it is for deflated ones). There are no more cells than pixels, which take less each where they are many; a
 // variance may ask for as many, but for no larger file than is searched for.
@@ -54,6 +55,7 @@ private:
     void set_knots();
     void add_fit_options(CLI::App& command);
     std::uint64_t memory_of_tree(std::uint64_t pixels) const;
+    bool is_resampled(const input::ImageSize& size) const;
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Environment& result) const;
 
     input::ProbeOptions input_;
@@ -189,9 +191,20 @@ std::uint64_t EnvConversion::memory_of_tree(std::uint64_t pixels) const {
     return std::min(cells * kMemoryOfCell, pixels * kMemoryOfEachPixel);
 }
 
+/// As far as its header and the options tell.
+bool EnvConversion::is_resampled(const input::ImageSize& size) const {
+    const bool latlong = input_.projection == input::Projection::automatic
+                             ? size.width == 2 * size.height
+                             : input_.projection == input::Projection::latlong;
+    return !latlong || input_.domain == input::Domain::octahedral;
+}
+
 std::uint64_t EnvConversion::memory() const {
-    const std::uint64_t pixels = input::image_pixels(source);
-    return pixels > 0 ? kEnvironmentMemory + pixels * kEnvironmentMemoryOfPixel + memory_of_tree(pixels) : 0;
+    const input::ImageSize size = input::image_size(source);
+    const std::uint64_t pixels = size.pixels();
+    if (pixels == 0) return 0;
+    return kEnvironmentMemory + (is_resampled(size) ? kOverlapMemory : 0) + pixels * kEnvironmentMemoryOfPixel +
+           memory_of_tree(pixels);
 }
 
 Converted EnvConversion::convert(const Listener& listener) {

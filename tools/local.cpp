@@ -224,7 +224,7 @@ std::string summary_of(const builder::Local& result) {
 }
 
 std::uint64_t LocalConversion::memory() const {
-    const std::uint64_t pixels = input::image_pixels(source);
+    const std::uint64_t pixels = input::image_size(source).pixels();
     if (pixels == 0) return 0;
     const std::uint64_t alone = kLocalMemory + pixels * kLocalMemoryOfPixel;
     const bool bounded = local_.goal.kind == builder::Goal::Kind::budget;

@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace acdf::build {
 
@@ -76,6 +79,30 @@ private:
         acdf_octahedral_direction(u, v, d);
         return {d[0], d[1], d[2]};
     }
+};
+
+/// What a texel of the grid, in column `of`, overlaps of a texel of the map, numbered by rows.
+struct Overlap {
+    std::uint32_t of, texel;
+    double omega;
+};
+inline Overlap overlap(std::size_t of, std::size_t texel, double omega) {
+    return {static_cast<std::uint32_t>(of), static_cast<std::uint32_t>(texel), omega};
+}
+
+/// The overlaps of a grid by its rows, from one pass over them to the next, where there are few texels: small maps
+/// are cut into as many cells as larger ones. Some 20 MB at most.
+class KeptOverlaps {
+public:
+    KeptOverlaps(const Map& map, std::size_t columns, std::size_t rows) {
+        if (columns * rows <= 256 * 128 && double(map.width) * map.height < 0x1p32) rows_.resize(rows);
+    }
+    bool any() const { return !rows_.empty(); }
+    void keep(std::size_t row, const std::vector<Overlap>& found) { rows_[row] = found; } // no larger than it is
+    const std::vector<Overlap>& operator[](std::size_t row) const { return rows_[row]; }
+
+private:
+    std::vector<std::vector<Overlap>> rows_;
 };
 
 /// A polygon in texel coordinates, convex but for rounding. A convex quadrilateral cut along two rows and two

@@ -16,23 +16,14 @@ constexpr int max_halvings = 6;
 // Solid angles are added up as integers: their sum is the same in any order, so on any number of threads.
 constexpr double units = 0x1p61 / (4.0 * compress::pi);
 
-// Small maps are cut into as many cells as larger ones. Their overlaps, some 15 MB, are kept from one pass to the
-// next.
-constexpr std::size_t max_kept_texels = 256 * 128;
-
-struct Overlap {
-    int x, y;
-    double omega;
-};
-
 class Resampler {
 public:
     Resampler(const Map& map, std::vector<float>& rgb, int width)
-        : map_(map), rgb_(rgb), width_(width), height_(width / 2), covered_(texels(map)) {}
+        : map_(map), rgb_(rgb), width_(width), height_(width / 2), covered_(texels(map)),
+          kept_(map, static_cast<std::size_t>(width_), static_cast<std::size_t>(height_)) {}
 
     std::vector<float> run() {
         const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-        if (count <= max_kept_texels) kept_.resize(count);
         parallel_rows(height_, [&](int row) { add_coverage(row); });
         parallel_rows(map_.height, [&](int row) { scale_source(row); });
         std::vector<float> result(3 * count);
@@ -64,19 +55,21 @@ private:
     }
 
     template <typename Visit>
-    void for_each_source(int column, int row, const Visit& visit) const {
-        for_each_overlap(map_, texel(column, row), max_halvings, [&](int x, int y, double omega, const Polygon&) {
-            visit(Overlap{x, y, omega});
-        });
+    void for_each_source(int row, const Visit& visit) const {
+        for (int column = 0; column < width_; ++column)
+            for_each_overlap(map_, texel(column, row), max_halvings,
+                             [&](int x, int y, double omega, const Polygon&) {
+                                 visit(static_cast<std::size_t>(column), index(x, y), omega);
+                             });
     }
 
     void add_coverage(int row) {
-        for (int column = 0; column < width_; ++column)
-            for_each_source(column, row, [&](const Overlap& part) {
-                covered_[index(part.x, part.y)].fetch_add(static_cast<std::uint64_t>(part.omega * units),
-                                                          std::memory_order_relaxed);
-                if (!kept_.empty()) kept_[texel_index(column, row)].push_back(part);
-            });
+        std::vector<Overlap> found;
+        for_each_source(row, [&](std::size_t column, std::size_t texel, double omega) {
+            covered_[texel].fetch_add(static_cast<std::uint64_t>(omega * units), std::memory_order_relaxed);
+            if (kept_.any()) found.push_back(overlap(column, texel, omega));
+        });
+        if (kept_.any()) kept_.keep(static_cast<std::size_t>(row), found);
     }
 
     // After this, `rgb_` times the solid angle by which lat-long texels overlap a texel is what it hands out.
@@ -91,28 +84,29 @@ private:
     }
 
     void gather(int row, std::vector<float>& result) const {
-        for (int column = 0; column < width_; ++column) {
-            double sum[3] = {0.0, 0.0, 0.0}, total = 0.0;
-            const auto add = [&](const Overlap& part) {
-                const float* source = rgb_.data() + 3 * index(part.x, part.y);
-                for (int c = 0; c < 3; ++c) sum[c] += part.omega * source[c];
-                total += part.omega;
-            };
-            if (kept_.empty()) for_each_source(column, row, add);
-            for (const Overlap& part : kept(column, row)) add(part);
-            for (int c = 0; c < 3; ++c)
-                result[result_index(column, row) + static_cast<std::size_t>(c)] = to_float(sum[c] / total);
-        }
+        struct Sums {
+            double rgb[3] = {0.0, 0.0, 0.0}, total = 0.0;
+        };
+        std::vector<Sums> sums(static_cast<std::size_t>(width_));
+        const auto add = [&](std::size_t column, std::size_t texel, double omega) {
+            Sums& sum = sums[column];
+            const float* source = rgb_.data() + 3 * texel;
+            for (int c = 0; c < 3; ++c) sum.rgb[c] += omega * source[c];
+            sum.total += omega;
+        };
+        if (!kept_.any()) for_each_source(row, add);
+        else
+            for (const Overlap& part : kept_[static_cast<std::size_t>(row)]) add(part.of, part.texel, part.omega);
+        for (int column = 0; column < width_; ++column)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Sums& sum = sums[static_cast<std::size_t>(column)];
+                result[result_index(column, row) + c] = to_float(sum.rgb[c] / sum.total);
+            }
     }
 
-    std::size_t texel_index(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
-    }
-    std::size_t result_index(int column, int row) const { return 3 * texel_index(column, row); }
-
-    const std::vector<Overlap>& kept(int column, int row) const {
-        static const std::vector<Overlap> none;
-        return kept_.empty() ? none : kept_[texel_index(column, row)];
+    std::size_t result_index(int column, int row) const {
+        return 3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(column));
     }
 
     // Slivers at the rim of a disc may have been missed by all: each goes where its middle points.
@@ -145,7 +139,7 @@ private:
     std::vector<float>& rgb_;
     const int width_, height_;
     std::vector<std::atomic<std::uint64_t>> covered_;
-    std::vector<std::vector<Overlap>> kept_; ///< of each texel; none where there are many
+    KeptOverlaps kept_;
 };
 
 } // namespace

@@ -38,7 +38,8 @@ class Overlay {
 public:
     Overlay(const SourceLookup& source, const Domain& domain, Target& target)
         : source_(source), map_(source.map()), domain_(domain), target_(target),
-          covered_(static_cast<std::size_t>(map_.width) * static_cast<std::size_t>(map_.height)) {}
+          covered_(static_cast<std::size_t>(map_.width) * static_cast<std::size_t>(map_.height)),
+          kept_(map_, domain.columns, domain.rows) {}
 
     SourceTarget run() {
         const std::size_t texels = std::size_t{domain_.columns} * domain_.rows;
@@ -76,8 +77,9 @@ private:
                                         row / rows, (row + 1) / rows},
                              kMaxHalvings, visit, source_.parts());
     }
+    std::size_t width() const { return static_cast<std::size_t>(map_.width); }
     std::size_t texel_of(int column, int row) const { // of a part
-        return static_cast<std::size_t>(row / source_.parts()) * static_cast<std::size_t>(map_.width) +
+        return static_cast<std::size_t>(row / source_.parts()) * width() +
                static_cast<std::size_t>(column / source_.parts());
     }
     double covered(std::size_t texel) const {
@@ -97,12 +99,16 @@ private:
     }
 
     void cover(std::uint32_t row) {
+        std::vector<Overlap> found;
         for (std::uint32_t column = 0; column < domain_.columns; ++column)
             overlaps(column, row, [&](int x, int y, double omega, const Polygon&) {
-                covered_[texel_of(x, y)].fetch_add(static_cast<std::uint64_t>(omega * kUnits),
-                                                   std::memory_order_relaxed);
+                const std::size_t texel = texel_of(x, y);
+                covered_[texel].fetch_add(static_cast<std::uint64_t>(omega * kUnits), std::memory_order_relaxed);
+                if (keeps()) found.push_back(overlap(column, texel, omega));
             });
+        if (keeps()) kept_.keep(row, found);
     }
+    bool keeps() const { return kept_.any() && source_.parts() == 1; } // else polygons would be needed, too
 
     /// Each texel of the map is to hand out its own solid angle: what is covered is scaled by about 1. Returns how
     /// much of the energy that moves.
@@ -135,15 +141,26 @@ private:
     }
 
     std::array<double, 3> gather(std::uint32_t row) {
+        std::vector<Overlapped> sums(domain_.columns);
+        const auto add_part = [&](std::size_t column, int x, int y, double omega, const Polygon& part) {
+            const double scaled = scale(texel_of(x, y));
+            if (scaled >= 0.0) add(source_.moments(x, y, part), omega * scaled, sums[column]);
+        };
+        if (keeps()) {
+            Polygon any; // of the part that is overlapped: such maps are looked up by texels
+            for (const Overlap& o : kept_[row])
+                add_part(o.of, static_cast<int>(o.texel % width()), static_cast<int>(o.texel / width()), o.omega,
+                         any);
+        } else {
+            for (std::uint32_t column = 0; column < domain_.columns; ++column)
+                overlaps(column, row, [&](int x, int y, double omega, const Polygon& part) {
+                    add_part(column, x, y, omega, part);
+                });
+        }
         std::array<double, 3> flux{};
         for (std::uint32_t column = 0; column < domain_.columns; ++column) {
-            Overlapped sum;
-            overlaps(column, row, [&](int x, int y, double omega, const Polygon& part) {
-                const double scaled = scale(texel_of(x, y));
-                if (scaled >= 0.0) add(source_.moments(x, y, part), omega * scaled, sum);
-            });
-            for (std::size_t plane = 0; plane < 3; ++plane) flux[plane] += sum.flux[plane];
-            put(column, row, sum);
+            for (std::size_t plane = 0; plane < 3; ++plane) flux[plane] += sums[column].flux[plane];
+            put(column, row, sums[column]);
         }
         return flux;
     }
@@ -218,6 +235,7 @@ private:
     const Domain domain_;
     Target& target_;
     std::vector<std::atomic<std::uint64_t>> covered_;
+    KeptOverlaps kept_;
 };
 
 } // namespace

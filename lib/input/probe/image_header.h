@@ -6,8 +6,13 @@
 
 namespace acdf::input {
 
-/// Pixels of the image, those of its display window or its data window, whichever has more; 0 where its header
+struct ImageSize {
+    int width = 0, height = 0;
+    std::uint64_t pixels() const { return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height); }
+};
+
+/// That of the image's display window or of its data window, whichever has more pixels; 0 x 0 where its header
 /// cannot be read.
-std::uint64_t image_pixels(const std::string& path);
+ImageSize image_size(const std::string& path);
 
 } // namespace acdf::input
