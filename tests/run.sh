@@ -9,7 +9,9 @@
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
 #
 #   tests/run.sh            all of it
-#   tests/run.sh --quick    the optimised build and its tests
+#   tests/run.sh --quick    the optimised build and its tests, without real data and without the packages that are made of it
+#
+# ACDF_TEST_DATA: the folder of real data, if it is not ../shared/data.
 set -euo pipefail
 
 quick=false
@@ -18,7 +20,10 @@ case "${1-}" in
     --quick) quick=true ;;
     *) echo "usage: tests/run.sh [--quick]" >&2; exit 2 ;;
 esac
+data=${ACDF_TEST_DATA:+$(realpath -m "$ACDF_TEST_DATA")}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+data=${data:-$PWD/../shared/data}
+if $quick; then data=/nonexistent; fi
 
 jobs=$(nproc)
 log=build/release/ctest.log
@@ -62,7 +67,7 @@ run_sanitized_tests() {
 }
 
 build_release() {
-    cmake --preset release -DACDF_BUILD_ONCE=ON
+    cmake --preset release -DACDF_BUILD_ONCE=ON -DACDF_TEST_DATA="$data"
     cmake --build --preset release --parallel "$jobs"
 }
 
@@ -70,11 +75,11 @@ run_all_builds_alike() {
     tests/same_bytes.sh build/release/tools/acdf build/asan/tools/acdf
 }
 
-run_all_tests() {
+run_tests() { # OPTIONS of ctest
     # One more than there are cores, for some wait: for browsers, for daemons of farms, for what they had killed.
     # ctest lists skipped tests after its summary; the summary is to be the last line.
     local status=0
-    ctest --preset release --parallel "$((jobs + 1))" 2>&1 | tee "$log" || status=$?
+    ctest --preset release --parallel "$((jobs + 1))" "$@" 2>&1 | tee "$log" || status=$?
     grep 'tests passed' "$log" || true
     return "$status"
 }
@@ -85,7 +90,7 @@ if $quick; then
     step "Optimised build, in build/release"
     build_release
     step "Its tests"
-    run_all_tests
+    run_tests --label-exclude packaging
     exit
 fi
 step "Packages, and libraries that need few of them"
@@ -101,4 +106,4 @@ run_sanitized_tests
 step "2. The same bytes from both builds, with any number of threads"
 run_all_builds_alike
 step "3. All tests, optimised, in build/release"
-run_all_tests
+run_tests
