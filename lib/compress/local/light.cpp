@@ -48,6 +48,18 @@ std::array<double, 2> texel_radians(const Target& target, const Box& box) {
     return {ACDF_PI / target.rows, 2.0 * ACDF_PI / target.columns * std::sqrt(std::max(0.0, 1.0 - z * z))};
 }
 
+DividedGrid::DividedGrid(const Target& target) {
+    grid.parameterization = target.parameterization;
+    grid.column_axis = target.column_axis, grid.row_axis = target.row_axis;
+    const double side = 2.0 * std::sqrt(ACDF_PI);
+    const auto parts_of = [](double radians) {
+        return static_cast<std::uint32_t>(std::ceil(radians / kTexelStep));
+    };
+    parts[0] = parts_of((is_octahedral(target) ? side : ACDF_PI) / target.rows);
+    parts[1] = parts_of((is_octahedral(target) ? side : 2.0 * ACDF_PI) / target.columns);
+    grid.rows = target.rows * parts[0], grid.columns = target.columns * parts[1];
+}
+
 std::vector<LightPoint> light_points(const Target& target) {
     Box all;
     all.end = {};

@@ -27,6 +27,7 @@ struct LightPoint {
 
 /// Radians across which light is taken to have one cosine.
 constexpr double kPointStep = 0.02;
+constexpr double kTexelStep = 0.05; ///< and across which a texel is, which blocks do not divide
 
 double solid_angle(const Target& target, const Box& box);
 /// The height and width of a texel in the middle of a box.
@@ -63,6 +64,24 @@ void for_each_block(const Target& target, const Box& box, double step, const Vis
 
 /// The direction at a place of the grid, in texels.
 Direction direction_at(const Target& target, double row, double column);
+
+/// The grid of a target, without values, whose texels are no larger than kTexelStep: those of coarse maps are
+/// divided, for a horizon that cuts one leaves light above it.
+struct DividedGrid {
+    explicit DividedGrid(const Target& target);
+
+    Target grid;
+    std::array<std::uint32_t, 2> parts; ///< rows and columns of each texel
+
+    /// Calls `visit(direction, share)` for blocks of a box of the target that have one cosine, with their share of
+    /// its solid angle.
+    template <class Visit>
+    void for_each_point(Box box, const Visit& visit) const {
+        for (std::size_t axis = 0; axis < 2; ++axis) box.begin[axis] *= parts[axis], box.end[axis] *= parts[axis];
+        for_each_block(grid, box, kPointStep,
+                       [&](const Box& block, double share) { visit(centre(grid, block), share); });
+    }
+};
 
 /// The integrals of g over blocks of about a degree.
 std::vector<LightPoint> light_points(const Target& target);

@@ -48,7 +48,7 @@ ACDF_BY_LANES void add_points(const LightPoint* points, std::size_t count, const
 
 TileLight::TileLight(const Target& target, const TileTree& tiles, const TileInsides& insides,
                      const std::vector<AcdfLight>& lights)
-    : target_(target), tiles_(tiles), tile_(tiles.tiles.size()) {
+    : target_(target), divided_(target), tiles_(tiles), tile_(tiles.tiles.size()) {
     std::vector<bool> is_light(tile_.size(), false);
     for (const AcdfLight& light : lights) is_light[light.tile] = true;
     parallel_for(std::size_t{0}, tile_.size(), [&](std::size_t t) {
@@ -64,8 +64,8 @@ void TileLight::fill(const TileInsides& insides, std::size_t tile) {
     out.lit = insides.lit_cells(tile);
     for (const LitCell& cell : out.lit) {
         out.heaviest = std::max(out.heaviest, cell.weight);
-        for_each_block(target_, cell.box, kPointStep, [&](const Box& block, double share) {
-            out.points.push_back({centre(target_, block), cell.amount * share, 0.0});
+        divided_.for_each_point(cell.box, [&](const Direction& direction, double share) {
+            out.points.push_back({direction, cell.amount * share, 0.0});
         });
     }
     for (const LightPoint& p : out.points) {

@@ -64,6 +64,7 @@ private:
     bool seen(std::size_t tile, const Direction& normal) const;
 
     const Target& target_;
+    const DividedGrid divided_;
     const TileTree& tiles_;
     std::vector<Tile> tile_;
 };
