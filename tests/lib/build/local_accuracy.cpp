@@ -118,6 +118,18 @@ TEST(LocalFiles, MapsOfFewTexelsCountAsSamplesTell) {
                 (kSanitized ? 0.3 : 0.1) * drawn);
 }
 
+// A horizon that goes through a texel leaves the light above it.
+TEST(LocalFiles, MapsOfFewTexelsHaveLittleNoise) {
+    for (const std::uint32_t rows : {2u, 4u, 8u, 16u}) {
+        const compress::Target sky = acdf_test::texel_target(2 * rows, rows, [&](std::uint32_t c, std::uint32_t r) {
+            return c == rows / 2 && r == rows / 3 ? 500.0 : 1.5 - double(r) / rows;
+        });
+        const build::Local local = of_budget(sky, 65536);
+        EXPECT_LT(local.accuracy.relative_variance, 0.4 * local.accuracy.relative_variance_full_cdf) << rows;
+        EXPECT_LT(local.accuracy.max_weight, 60.0) << rows;
+    }
+}
+
 TEST(LocalFiles, NoVarianceIsBelowZero) { // where rounding alone is left
     build::LocalOptions options;
     options.goal.budget = 8192;
