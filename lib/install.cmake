@@ -125,7 +125,8 @@ endif()
 
 if(TARGET acdf)
     install(TARGETS acdf RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
-    install(TARGETS acdf_images_module acdf_openexr_module acdf_text_module
+    get_target_property(modules acdf_images ACDF_MODULES)
+    install(TARGETS ${modules}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/acdf COMPONENT tools)
 endif()
 

@@ -86,7 +86,7 @@ run_tests() { # OPTIONS of ctest
 
 if $quick; then
     step "Packages, and libraries that need few of them"
-    tools/first_build.sh build quick
+    tools/first_build.sh build images quick
     step "Optimised build, in build/release"
     build_release
     step "Its tests"
@@ -94,7 +94,7 @@ if $quick; then
     exit
 fi
 step "Packages, and libraries that need few of them"
-tools/first_build.sh build quick
+tools/first_build.sh build images quick
 step "0. Optimised build, in build/release, and formatting"
 begin_to_install_for_tests
 build_release

@@ -17,11 +17,16 @@ for probe in "$@"; do
 done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+# Probes that are given may be of any format; the built-in ones are OpenEXR.
+packages=(build)
+all_formats=OFF
+if ((${#probes[@]} > 0)); then packages+=(images) && all_formats=ON; fi
+
 step "Packages, and libraries that need few of them"
-tools/first_build.sh build
+tools/first_build.sh "${packages[@]}"
 
 step "Building the acdf program in build/release"
-cmake --preset release -DACDF_BUILD_TESTS=OFF -DACDF_BUILD_ONCE=ON
+cmake --preset release -DACDF_OPENIMAGEIO=$all_formats -DACDF_BUILD_TESTS=OFF -DACDF_BUILD_ONCE=ON
 cmake --build --preset release --target acdf --parallel "$(nproc)"
 
 step "Running the demo on ${#probes[@]} probes given (none: the built-in ones)"

@@ -28,7 +28,8 @@ bool ImageFile::read(const Rows& rows, float* to) {
     if (reader_->read(image_.get(), rows, to, error_)) return true;
     // What is wrong with a file, and whether it can be read all the same, OpenImageIO tells.
     const ImageReader& other = module().reader;
-    return reader_ != &other && open(other) && reader_->read(image_.get(), rows, to, error_);
+    if (reader_ == &other || !other.read) return false;
+    return open(other) && reader_->read(image_.get(), rows, to, error_);
 }
 
 } // namespace acdf::images

@@ -51,10 +51,12 @@ const Table& load(const std::string& name) {
 } // namespace
 
 // Once in all threads; after a failure the next call tries again.
+#if ACDF_OPENIMAGEIO
 const ReaderModule& module() {
     static const ReaderModule& loaded = load<ReaderModule>("acdf_images");
     return loaded;
 }
+#endif
 
 const OpenExrModule& openexr_module() {
     static const OpenExrModule& loaded = load<OpenExrModule>("acdf_openexr");
