@@ -11,9 +11,10 @@ namespace {
 void* refuse(const std::string& path, int, Header&, std::string& error) {
     errno = 0;
     const bool readable = std::ifstream(path).good();
-    error = readable || errno == 0 ? "this acdf was built without OpenImageIO: it reads OpenEXR (one part, no tiles), "
-                                     "Radiance and PFM alone"
-                                   : std::strerror(errno);
+    error = readable || errno == 0
+                ? "this acdf was built without OpenImageIO: it reads usual OpenEXR (one part, in rows), "
+                  "Radiance and PFM files alone"
+                : std::strerror(errno);
     return nullptr;
 }
 
