@@ -30,8 +30,8 @@ namespace acdf::tools {
 namespace {
 
 // Peaks beside the program itself, measured on probes of 2^19 to 2^25 pixels: 6 bytes a pixel for a lat-long map in
-// one channel, 15 to 23 for three channels, with clamped pixels, or resampled. And of small maps
-// that are resampled, what lib/build/probe/overlap.h keeps.
+// one channel, 15 to 23 for three channels, with clamped pixels, or resampled. And what lib/build/probe/overlap.h
+// keeps of small maps that are resampled.
 constexpr std::uint64_t kEnvironmentMemory = 16 << 20, kOverlapMemory = 24 << 20, kEnvironmentMemoryOfPixel = 24;
 // A tree takes so much on top while it is looked for: of each cell asked for (four bytes of a budget, one where
 // it is for deflated ones). There are no more cells than pixels, which take less each where they are many; a

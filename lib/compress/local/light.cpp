@@ -22,6 +22,12 @@ double spread_worth(double cosine) {
     return (1.0 - cosine * cosine) / std::max(cosine, kTileRadius);
 }
 
+Box whole(const Target& target) {
+    Box all;
+    all.end = {target.rows, target.columns};
+    return all;
+}
+
 } // namespace
 
 Direction direction_at(const Target& target, double row, double column) {
@@ -49,24 +55,16 @@ std::array<double, 2> texel_radians(const Target& target, const Box& box) {
 }
 
 DividedGrid::DividedGrid(const Target& target) {
+    const auto largest = texel_radians(target, whole(target)); // on a lat-long map those of the equator
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        parts[axis] = static_cast<std::uint32_t>(std::ceil(largest[axis] / kTexelStep));
     grid.parameterization = target.parameterization;
-    grid.column_axis = target.column_axis, grid.row_axis = target.row_axis;
-    const double side = 2.0 * std::sqrt(ACDF_PI);
-    const auto parts_of = [](double radians) {
-        return static_cast<std::uint32_t>(std::ceil(radians / kTexelStep));
-    };
-    parts[0] = parts_of((is_octahedral(target) ? side : ACDF_PI) / target.rows);
-    parts[1] = parts_of((is_octahedral(target) ? side : 2.0 * ACDF_PI) / target.columns);
     grid.rows = target.rows * parts[0], grid.columns = target.columns * parts[1];
 }
 
 std::vector<LightPoint> light_points(const Target& target) {
-    Box all;
-    all.end = {};
-    all.end[0] = target.rows;
-    all.end[1] = target.columns;
     std::vector<Box> blocks;
-    for_each_block(target, all, kPointStep, [&](const Box& block, double) { blocks.push_back(block); });
+    for_each_block(target, whole(target), kPointStep, [&](const Box& block, double) { blocks.push_back(block); });
     std::vector<LightPoint> points(blocks.size());
     parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
         Sum sum;
