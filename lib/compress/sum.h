@@ -20,4 +20,32 @@ private:
     double sum_ = 0.0, compensation_ = 0.0;
 };
 
+/// The same of terms that are themselves known to a few bits less than that: so many at a time are added plainly,
+/// which waits less.
+class PlainerSum {
+public:
+    void add(double term) {
+        part_ += term;
+        if (++count_ == kTogether) fold();
+    }
+    double value() const {
+        Sum all = sum_;
+        all.add(part_);
+        return all.value();
+    }
+
+private:
+    static constexpr unsigned kTogether = 64;
+
+    void fold() {
+        sum_.add(part_);
+        part_ = 0.0;
+        count_ = 0;
+    }
+
+    double part_ = 0.0;
+    unsigned count_ = 0;
+    Sum sum_;
+};
+
 } // namespace acdf::compress

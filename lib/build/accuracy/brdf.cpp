@@ -59,7 +59,7 @@ public:
     }
 
 private:
-    compress::Sum albedo_, above_, below_, second_;
+    compress::PlainerSum albedo_, above_, below_, second_;
     std::uint64_t violations_ = 0;
 };
 
@@ -88,7 +88,7 @@ public:
 
 private:
     VarianceSums variance_;
-    compress::Sum square_p_, cross_, square_f_, log_;
+    compress::PlainerSum square_p_, cross_, square_f_, log_;
     double largest_ = 0.0;
 };
 

@@ -35,16 +35,14 @@ public:
             ++violations_;
             return;
         }
-        // What weights multiply, over the larger density so that squares stay in range.
-        const double x = ours / most, y = theirs / most;
-        const double all = power_ ? x * x + y * y : x + y;
-        const double weight_ours = (power_ ? x * x : x) / all, weight_theirs = 1.0 - weight_ours;
-        const double ratio = f / most * f * omega;
-        second_ += ratio * ((x > 0.0 ? weight_ours * weight_ours / x : 0.0) +
-                            (y > 0.0 ? weight_theirs * weight_theirs / y : 0.0));
-        ours_.add(means, channels, weight_ours * omega);
-        theirs_.add(means, channels, weight_theirs * omega);
-        largest_ = std::max(largest_, f / most / all * (power_ ? std::max(x, y) : 1.0));
+        // What weights multiply, over the larger density so that squares stay in range: 1 and `less`.
+        const double less = std::min(ours, theirs) / most, weighed = power_ ? less * less : less;
+        const double of_larger = 1.0 / (1.0 + weighed), of_other = weighed * of_larger;
+        const double ratio = f / most;
+        second_ += ratio * f * omega * (power_ ? (1.0 + less * weighed) * of_larger : 1.0) * of_larger;
+        ours_.add(means, channels, (ours < theirs ? of_other : of_larger) * omega);
+        theirs_.add(means, channels, (ours < theirs ? of_larger : of_other) * omega);
+        largest_ = std::max(largest_, ratio * of_larger);
     }
     /// Adds the sums of other texels.
     void add(const Combination& other) {

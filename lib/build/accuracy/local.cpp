@@ -159,27 +159,84 @@ private:
                state.share == 0.0 && !state.tile.empty();
     }
 
-    /// `plain`: of what is_plain(), so that all else is left out of the loop.
-    template <bool plain>
+    /// Sums of every so manieth texel of a row: those of one wait for each other, those of several do not, and
+    /// compilers put them into vectors.
+    struct Lanes {
+        static constexpr std::size_t count = 4;
+        double flux[count] = {}, second[count] = {}, first[count] = {}, light[count] = {}, light_second[count] = {},
+               largest[count] = {};
+        std::uint64_t violations = 0;
+    };
+
+    /// sum_row() of what is_plain(). `cosine`: room for those of a row.
+    RowSums sum_plain_row(std::uint32_t r, Row& state, double* cosine) const {
+        cosines_.of_row(state.n, r, cosine);
+        const std::size_t row = std::size_t{r} * target_.columns,
+                          whole = target_.columns / Lanes::count * Lanes::count;
+        Lanes lanes;
+        std::size_t c = 0;
+        for (; c < whole; c += Lanes::count) add_texels<Lanes::count>(r, row, c, state, cosine, lanes);
+        for (; c < target_.columns; ++c) add_texels<1>(r, row, c, state, cosine, lanes);
+        state.violations += lanes.violations;
+        RowSums out;
+        for (std::size_t k = 0; k < Lanes::count; ++k) {
+            out.flux += lanes.flux[k];
+            out.second += lanes.second[k];
+            out.first += lanes.first[k];
+            out.light += lanes.light[k];
+            out.light_second += lanes.light_second[k];
+            state.largest = std::max(state.largest, lanes.largest[k]);
+        }
+        return out;
+    }
+
+    /// Of `count` texels from column c on.
+    template <std::size_t count>
+    void add_texels(std::uint32_t r, std::size_t row, std::size_t c, const Row& state, const double* cosine,
+                    Lanes& lanes) const {
+        double above = 0.0;
+        for (std::size_t k = 0; k < count; ++k) above += cosine[c + k];
+        if (above == 0.0) return;
+        const std::uint32_t* const tiles = state.picture.tile.data() + row + c;
+        const double *const densities = state.picture.density.data() + row + c, *const probability =
+                                                                                    state.tile.data();
+        const double* const measures = target_.column_measure.data() + c;
+        const float* const values = target_.row(r) + c;
+        const double height = target_.row_measure[r];
+        double p[count];
+        for (std::size_t k = 0; k < count; ++k) p[k] = probability[tiles[k]] * densities[k];
+        for (std::size_t k = 0; k < count; ++k) {
+            const double up = cosine[c + k], omega = up > 0.0 ? height * measures[k] : 0.0;
+            const double g = values[k], f = g * up, energy = f * omega;
+            const double weight = p[k] > 0.0 ? f / p[k] : 0.0;
+            lanes.first[k] += p[k] * omega;
+            lanes.flux[k] += energy;
+            lanes.light[k] += g * omega;
+            lanes.light_second[k] += energy * up;
+            lanes.second[k] += weight * energy;
+            lanes.largest[k] = weight > lanes.largest[k] ? weight : lanes.largest[k];
+        }
+        for (std::size_t k = 0; k < count; ++k)
+            lanes.violations += values[k] > 0.0f && cosine[c + k] > 0.0 && !(p[k] > 0.0);
+    }
+
     RowSums sum_row(std::uint32_t r, Row& state) const {
         const std::size_t row = std::size_t{r} * target_.columns;
         const std::uint32_t* const tiles = state.picture.tile.data() + row;
         const double *const densities = state.picture.density.data() + row, *const probability = state.tile.data();
         const double* const measures = target_.column_measure.data();
         const float* const values = target_.row(r);
-        const double height = target_.row_measure[r], share = plain ? 0.0 : state.share;
-        const bool drawn = plain || !state.tile.empty(), alone = plain || !local_.company;
-        const bool means_differ = !plain && !target_.means.empty();
-        const Slope* const slopes =
-            plain || state.picture.slope.empty() ? nullptr : state.picture.slope.data() + row;
-        const float* const peaks = plain || target_.peaks.empty() ? nullptr : target_.peaks.data() + row;
+        const double height = target_.row_measure[r], share = state.share;
+        const bool drawn = !state.tile.empty(), alone = !local_.company, means_differ = !target_.means.empty();
+        const Slope* const slopes = state.picture.slope.empty() ? nullptr : state.picture.slope.data() + row;
+        const float* const peaks = target_.peaks.empty() ? nullptr : target_.peaks.data() + row;
         // Copies, which compilers keep in registers.
         double flux = 0.0, second = 0.0, first = 0.0, light = 0.0, light_second = 0.0, largest = state.largest;
         std::uint64_t violations = 0;
         compress::ChannelSums irradiance;
         cosines_.for_each_above(state.n, r, [&](std::uint32_t c, double cosine) {
             const double light_p = drawn ? probability[tiles[c]] * densities[c] : 0.0;
-            const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = plain ? light_p : light_p + rest;
+            const double rest = share > 0.0 ? share * cosine / ACDF_PI : 0.0, p = light_p + rest;
             const double omega = height * measures[c], g = values[c];
             first += light_p * omega;
             if (!(g > 0.0)) return;
@@ -206,10 +263,6 @@ private:
             // Beside a share of cosine samples the harmonic mean is a bound, near what it stands for.
             const double weight = f / (slopes ? light_p * double{slopes[c].harmonic} + rest : p);
             second += weight * energy;
-            if (plain) {
-                largest = std::max(largest, weight);
-                return;
-            }
             const double most = peaks ? cosine * double{peaks[c]} : f;
             largest = std::max(largest, most / (slopes ? light_p * double{slopes[c].smallest} + rest : p));
         });
@@ -224,11 +277,11 @@ private:
         const double share = drawn ? double{local_.cosine_share} : 0.0;
         for (double& probability : tile) probability *= 1.0 - share;
         Row state{n, picture, tile, share, no_combination(), no_combination()};
-        const bool plain = is_plain(state);
+        std::vector<double> cosines(is_plain(state) ? target_.columns : 0);
         Sum flux, second, first_above, light, light_second;
         compress::ChannelSums irradiance;
         for (std::uint32_t r = 0; r < target_.rows; ++r) {
-            const RowSums row = plain ? sum_row<true>(r, state) : sum_row<false>(r, state);
+            const RowSums row = cosines.empty() ? sum_row(r, state) : sum_plain_row(r, state, cosines.data());
             flux.add(row.flux);
             irradiance.add(row.irradiance);
             second.add(row.second);

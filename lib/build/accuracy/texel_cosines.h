@@ -6,6 +6,7 @@
 
 #include <acdf/sample.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -35,6 +36,19 @@ public:
                                     : up + x * cosine_[c] + y * sine_[c];
             if (cosine > 0.0) visit(c, cosine); // called in one place, so that it is inlined
         }
+    }
+
+    /// The same cosines of a whole row, 0 below the horizon.
+    void of_row(const float n[3], std::uint32_t row, double* __restrict out) const {
+        if (!directions_.empty()) {
+            const std::array<float, 3>* const d = directions_.data() + std::size_t{row} * columns_;
+            for (std::uint32_t c = 0; c < columns_; ++c)
+                out[c] = std::max(0.0, double{n[0]} * d[c][0] + double{n[1]} * d[c][1] + double{n[2]} * d[c][2]);
+            return;
+        }
+        const double z = z_[row], radius = std::sqrt((1.0 - z) * (1.0 + z));
+        const double up = n[2] * z, x = n[0] * radius, y = n[1] * radius;
+        for (std::uint32_t c = 0; c < columns_; ++c) out[c] = std::max(0.0, up + x * cosine_[c] + y * sine_[c]);
     }
 
 private:
