@@ -35,7 +35,11 @@ if ((${#missing[@]} == 0)); then
 fi
 
 as_root=()
-if ((EUID != 0)); then
+options=()
+if ((EUID == 0)); then
+    # As root only, as on machines that are thrown away: what is unpacked is not waited for until it is on the disk.
+    options=(-o Dpkg::Options::=--force-unsafe-io)
+else
     if ! command -v sudo >/dev/null; then
         echo "These packages are missing, and installing them needs root or sudo: ${missing[*]}" >&2
         echo "As root: apt-get install ${missing[*]}" >&2
@@ -49,4 +53,4 @@ echo "Installing ${#missing[@]} missing packages: ${missing[*]}"
 if [[ -z $(find /var/lib/apt/lists/partial -maxdepth 0 -mmin -10 2>/dev/null) ]]; then
     "${as_root[@]}" apt-get update
 fi
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "${options[@]}" install --yes --no-install-recommends "${missing[@]}"

@@ -17,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <regex>
 
 namespace acdf::tools {
 namespace {
@@ -218,11 +217,14 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
 /// Of all points of a chart: the attributes of its groups.
 std::vector<std::map<std::string, std::string>> points_of(const std::string& html, const std::string& chart) {
     std::vector<std::map<std::string, std::string>> out;
-    const std::regex group("<g class=\"point [^>]*>"), attribute("data-([a-z]+)=\"([^\"]*)\"");
-    for (std::sregex_iterator g(html.begin(), html.end(), group), end; g != end; ++g) {
-        const std::string text = g->str();
+    const std::string group = "<g class=\"point ", attribute = " data-";
+    for (std::size_t begin = html.find(group); begin != std::string::npos; begin = html.find(group, begin + 1)) {
+        const std::string text = html.substr(begin, html.find('>', begin) - begin);
         std::map<std::string, std::string> one;
-        for (std::sregex_iterator a(text.begin(), text.end(), attribute); a != end; ++a) one[(*a)[1]] = (*a)[2];
+        for (std::size_t at = text.find(attribute); at != std::string::npos; at = text.find(attribute, at + 1)) {
+            const std::size_t name = at + attribute.size(), value = text.find("=\"", name);
+            one[text.substr(name, value - name)] = text.substr(value + 2, text.find('"', value + 2) - value - 2);
+        }
         if (one["chart"] == chart) out.push_back(one);
     }
     return out;
