@@ -1,4 +1,5 @@
 // Samples follow the density that goes with them.
+#include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/reference.h"
 #include "tests/lib/reader/sampling.h"
 
@@ -28,7 +29,7 @@ double chi_square_quantile(double degrees, double tail) {
 
 // Counts over the quarters of all cells (halved at t = 1/2 on both axes), located by the slow decoder.
 TEST(EnvironmentView, samplesFollowTheDensity) {
-    constexpr int samples = 40000;
+    const int samples = repeated(40000);
     // Šidák: all trees together fail by chance once in a hundred times; the seeds are fixed.
     const double tail = 1.0 - std::pow(1.0 - 0.01, 1.0 / tree_count);
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
