@@ -130,17 +130,14 @@ Converted BrdfConversion::convert(const Listener& listener) {
 }
 
 void BrdfConversion::add_fit_options(CLI::App& command) {
-    const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
-                                              {"cdf", ACDF_FIT_CDF},
-                                              {"pdf", ACDF_FIT_PDF},
-                                              {"variance", ACDF_FIT_VARIANCE}};
-    command
-        .add_option(
-            "--fit", brdf_.fit,
-            "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
-            "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
-            "views, the nearest bin serves)")
-        ->transform(one_of(fits))
+    constexpr Named<AcdfFit> fits[] = {{"uniform", ACDF_FIT_UNIFORM},
+                                       {"cdf", ACDF_FIT_CDF},
+                                       {"pdf", ACDF_FIT_PDF},
+                                       {"variance", ACDF_FIT_VARIANCE}};
+    add_choice(command, "--fit", brdf_.fit, fits,
+               "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
+               "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
+               "views, the nearest bin serves)")
         ->option_text("NAME [variance]")
         ->group("Fit");
     command

@@ -239,42 +239,34 @@ Converted EnvConversion::convert(const Listener& listener) {
 
 void EnvConversion::add_fit_options(CLI::App& command) {
     builder::FitOptions& fit = environment_.fit;
-    const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
-                                              {"cdf", ACDF_FIT_CDF},
-                                              {"pdf", ACDF_FIT_PDF},
-                                              {"variance", ACDF_FIT_VARIANCE}};
-    command
-        .add_option(
-            "--fit", fit.fit,
-            "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
-            "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
-            "uniform (equal steps, to compare with)")
-        ->transform(one_of(fits))
+    constexpr Named<AcdfFit> fits[] = {{"uniform", ACDF_FIT_UNIFORM},
+                                       {"cdf", ACDF_FIT_CDF},
+                                       {"pdf", ACDF_FIT_PDF},
+                                       {"variance", ACDF_FIT_VARIANCE}};
+    add_choice(command, "--fit", fit.fit, fits,
+               "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
+               "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
+               "uniform (equal steps, to compare with)")
         ->option_text("NAME [variance]")
         ->group("Fit");
-    const std::map<std::string, builder::Shape> shapes{{"tree", builder::Shape::tree},
-                                                       {"cascade", builder::Shape::cascade}};
-    command
-        .add_option(
-            "--shape", fit.shape,
-            "What --fit variance makes: tree (refines any segment along any axis: less noise for its size) or "
-            "cascade (two levels, as in the paper: a sample takes less time)")
-        ->transform(one_of(shapes))
+    constexpr Named<builder::Shape> shapes[] = {{"tree", builder::Shape::tree},
+                                                {"cascade", builder::Shape::cascade}};
+    add_choice(command, "--shape", fit.shape, shapes,
+               "What --fit variance makes: tree (refines any segment along any axis: less noise for its size) or "
+               "cascade (two levels, as in the paper: a sample takes less time)")
         ->option_text("NAME [tree]")
         ->group("Fit");
     enum class First { either, phi, z };
-    const std::map<std::string, First> orders{{"auto", First::either}, {"phi", First::phi}, {"z", First::z}};
-    command
-        .add_option_function<First>(
-            "--order",
-            [&fit](First first) {
-                if (first != First::either)
-                    fit.order = first == First::phi ? builder::Order::phi : builder::Order::z;
-            },
-            "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
-            "file is "
-            "kept, in twice the time; a tree takes the axis that gains more)")
-        ->transform(one_of(orders))
+    constexpr Named<First> orders[] = {{"auto", First::either}, {"phi", First::phi}, {"z", First::z}};
+    add_choice(
+        command, "--order",
+        [&fit](First first) {
+            if (first != First::either) fit.order = first == First::phi ? builder::Order::phi : builder::Order::z;
+        },
+        orders,
+        "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
+        "file is "
+        "kept, in twice the time; a tree takes the axis that gains more)")
         ->option_text("NAME [auto]")
         ->group("Fit");
     add_goal(
@@ -304,13 +296,11 @@ void EnvConversion::add_fit_options(CLI::App& command) {
         ->check(CLI::Range(0u, 1u << 20))
         ->option_text("N [0]")
         ->group("Fit");
-    const std::map<std::string, builder::Conditional> conditionals{{"energy", builder::Conditional::energy},
-                                                                   {"mean", builder::Conditional::mean}};
-    command
-        .add_option("--conditional", fit.conditional,
-                    "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "
-                    "(all alike, as ibid., eq. 4, is printed)")
-        ->transform(one_of(conditionals))
+    constexpr Named<builder::Conditional> conditionals[] = {{"energy", builder::Conditional::energy},
+                                                            {"mean", builder::Conditional::mean}};
+    add_choice(command, "--conditional", fit.conditional, conditionals,
+               "How the lines of a region are averaged: energy (by what they emit, less noise) or mean "
+               "(all alike, as ibid., eq. 4, is printed)")
         ->option_text("NAME [energy]")
         ->group("Fit");
 }

@@ -15,7 +15,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <optional>
 
 namespace acdf::tools {
@@ -137,11 +136,11 @@ void run(const ExportArguments& options) {
 } // namespace
 
 void add_export(CLI::App& program, int& exit_code) {
-    static const std::map<std::string, Target> targets = {{"c", Target::c},
-                                                          {"glsl", Target::glsl},
-                                                          {"hlsl", Target::hlsl},
-                                                          {"wgsl", Target::wgsl},
-                                                          {"json", Target::json}};
+    constexpr Named<Target> targets[] = {{"c", Target::c},
+                                         {"glsl", Target::glsl},
+                                         {"hlsl", Target::hlsl},
+                                         {"wgsl", Target::wgsl},
+                                         {"json", Target::json}};
     auto options = std::make_shared<ExportArguments>();
     CLI::App* command = program.add_subcommand("export", "Write an environment, a local environment or a BRDF for "
                                                          "shaders: functions that draw and evaluate, and tables");
@@ -150,15 +149,12 @@ void add_export(CLI::App& program, int& exit_code) {
                      "The .acdf file of an environment, a local environment or a BRDF (- is stdin)")
         ->required()
         ->type_name("");
-    command
-        ->add_option(
-            "--target", options->target,
-            "The language of the functions: glsl (WebGL 2, OpenGL, Vulkan), wgsl (WebGPU), hlsl (and Slang) "
-            "or c (C99, C++, CUDA, HIP, OpenCL C). json: no functions, but a description of the tables, for a "
-            "program that loads them")
+    add_choice(*command, "--target", options->target, targets,
+               "The language of the functions: glsl (WebGL 2, OpenGL, Vulkan), wgsl (WebGPU), hlsl (and Slang) "
+               "or c (C99, C++, CUDA, HIP, OpenCL C). json: no functions, but a description of the tables, for a "
+               "program that loads them")
         ->required()
         ->option_text("NAME (required)")
-        ->transform(one_of(targets))
         ->group("Output");
     command
         ->add_option(

@@ -309,14 +309,12 @@ void LocalConversion::add_size(CLI::App& command) {
 
 void LocalConversion::add_shape(CLI::App& command) {
     using Shape = builder::LocalShape;
-    const std::map<std::string, Shape> shapes{{"small", Shape::small}, {"fast", Shape::fast}};
-    command
-        .add_option(
-            "--shape", local_.shape,
-            "small: the least noise for its bytes; fast: tables that are searched by vectors, for renderers whose "
-            "time goes into calls: draws take some two thirds of the time, densities three quarters, at 0.6 to 1.7 "
-            "times the variance")
-        ->transform(one_of(shapes))
+    constexpr Named<Shape> shapes[] = {{"small", Shape::small}, {"fast", Shape::fast}};
+    add_choice(
+        command, "--shape", local_.shape, shapes,
+        "small: the least noise for its bytes; fast: tables that are searched by vectors, for renderers whose "
+        "time goes into calls: draws take some two thirds of the time, densities three quarters, at 0.6 to 1.7 "
+        "times the variance")
         ->option_text("small|fast [small]")
         ->group("Size and accuracy");
 }
@@ -328,12 +326,11 @@ void LocalConversion::add_separate(CLI::App& command) {
         .add_flag("--no-sharing", no_sharing_,
                   "A tree of its own for each bin, as in the paper, to compare with: larger and noisier")
         ->group(group);
-    const std::map<std::string, AcdfFit> fits{{"uniform", ACDF_FIT_UNIFORM},
-                                              {"cdf", ACDF_FIT_CDF},
-                                              {"pdf", ACDF_FIT_PDF},
-                                              {"variance", ACDF_FIT_VARIANCE}};
-    command.add_option("--fit", fit.fit, "How knots are chosen: as in acdf env")
-        ->transform(one_of(fits))
+    constexpr Named<AcdfFit> fits[] = {{"uniform", ACDF_FIT_UNIFORM},
+                                       {"cdf", ACDF_FIT_CDF},
+                                       {"pdf", ACDF_FIT_PDF},
+                                       {"variance", ACDF_FIT_VARIANCE}};
+    add_choice(command, "--fit", fit.fit, fits, "How knots are chosen: as in acdf env")
         ->option_text("NAME [variance]")
         ->group(group);
     command.add_option("--knots", knots_, "Segments of a curve over phi and over theta: as in acdf env")
@@ -343,21 +340,17 @@ void LocalConversion::add_separate(CLI::App& command) {
         ->check(number_range(0.0, 1.0))
         ->option_text("E")
         ->group(group);
-    const std::map<std::string, builder::Order> orders{{"phi", builder::Order::phi}, {"z", builder::Order::z}};
-    command
-        .add_option_function<builder::Order>(
-            "--order", [&fit](builder::Order order) { fit.order = order; }, "Which axis is split first")
-        ->transform(one_of(orders))
+    constexpr Named<builder::Order> orders[] = {{"phi", builder::Order::phi}, {"z", builder::Order::z}};
+    add_choice(
+        command, "--order", [&fit](builder::Order order) { fit.order = order; }, orders,
+        "Which axis is split first")
         ->option_text("phi|z [z]")
         ->group(group);
-    const std::map<std::string, builder::BinTarget> targets{{"mean", builder::BinTarget::mean},
-                                                            {"centre", builder::BinTarget::centre}};
-    command
-        .add_option(
-            "--bin-target", local_.bin_target,
-            "What a bin's tree is fitted to: mean (right for all of its normals) or centre (the paper's: biased "
-            "for the others)")
-        ->transform(one_of(targets))
+    constexpr Named<builder::BinTarget> targets[] = {{"mean", builder::BinTarget::mean},
+                                                     {"centre", builder::BinTarget::centre}};
+    add_choice(command, "--bin-target", local_.bin_target, targets,
+               "What a bin's tree is fitted to: mean (right for all of its normals) or centre (the paper's: biased "
+               "for the others)")
         ->option_text("NAME [mean]")
         ->group(group);
 }

@@ -12,8 +12,11 @@
 #include "tools/cli/view_option.h"
 #include "tools/commands.h"
 
+#include <acdf/wavefront.h>
+
+#include <algorithm>
 #include <cstdio>
-#include <map>
+#include <memory>
 
 namespace acdf::tools {
 namespace {
@@ -31,9 +34,10 @@ struct SampleArguments {
 };
 
 constexpr std::uint64_t max_count = std::uint64_t{1} << 32; // of the Sobol' sequence; 300 GB of text
+constexpr std::size_t kTogether = 4096;                     // are drawn at once
 
 // 9 and 17 significant digits give back exactly the float and the double that they print.
-std::string csv_line(const std::array<double, 2>& u, const DirectionSample& s) {
+std::string csv_line(const double u[2], const DirectionSample& s) {
     char text[160];
     std::snprintf(text, sizeof(text), "%.17g,%.17g,%.9g,%.9g,%.9g,%.9g\n", u[0], u[1],
                   static_cast<double>(s.direction[0]), static_cast<double>(s.direction[1]),
@@ -41,53 +45,59 @@ std::string csv_line(const std::array<double, 2>& u, const DirectionSample& s) {
     return text;
 }
 
-/// Writes `draw()` as often as samples are asked for.
+/// Writes numbers of the sequence, and the directions that `draw(numbers, count, samples)` makes of them.
 template <class Draw>
-void write_samples(const SampleArguments& options, Output& output, const Draw& draw) {
+void write_directions(const SampleArguments& options, Output& output, const Draw& draw) {
+    measure::Sequence sequence(options.sequence, options.count, options.seed);
     ProgressBar bar(options.quiet);
     const build::Progress progress = bar.callback();
-    for (std::uint64_t i = 0; i < options.count; ++i) {
-        if (i % 4096 == 0) progress(static_cast<double>(i) / static_cast<double>(options.count), "sampling");
-        output.write(draw());
+    const auto u = std::make_unique<double[][2]>(kTogether);
+    const auto samples = std::make_unique<DirectionSample[]>(kTogether);
+    output.write("u0,u1,x,y,z,pdf\n");
+    for (std::uint64_t done = 0; done < options.count;) {
+        progress(static_cast<double>(done) / static_cast<double>(options.count), "sampling");
+        const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(options.count - done, kTogether));
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::array<double, 2> next = sequence.next();
+            u[i][0] = next[0], u[i][1] = next[1];
+        }
+        draw(u.get(), count, samples.get());
+        for (std::size_t i = 0; i < count; ++i) output.write(csv_line(u[i], samples[i]));
+        done += count;
     }
 }
 
+using Numbers = const double (*)[2];
+
 void sample_environment(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
-    const EnvironmentView view = file.environment();
-    measure::Sequence sequence(options.sequence, options.count, options.seed);
-    output.write("u0,u1,x,y,z,pdf\n");
-    write_samples(options, output, [&] {
-        const std::array<double, 2> u = sequence.next();
-        return csv_line(u, view.sample(u[0], u[1]));
+    const EnvironmentWavefront view(file.environment());
+    write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
+        view.sample(u, count, samples);
     });
 }
 
 void sample_local(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
-    const LocalEnvironmentView view = file.local();
-    const AcdfLocalPoint point = view.at(chosen_normal(options.file, options.normal).data());
+    const AcdfLocalPoint point = file.local().at(chosen_normal(options.file, options.normal).data());
     if (point.what == ACDF_LOCAL_NOTHING)
         throw Failure(options.file + ": no light reaches this normal, so there is nothing to draw; choose another");
-    measure::Sequence sequence(options.sequence, options.count, options.seed);
-    output.write("u0,u1,x,y,z,pdf\n");
-    write_samples(options, output, [&] {
-        const std::array<double, 2> u = sequence.next();
-        return csv_line(u, view.sample(point, u[0], u[1]));
+    const LocalWavefront view(file.local());
+    write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
+        view.sample(point, u, count, samples);
     });
 }
 
 void sample_brdf(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a BRDF has no --at; give --view THETA[,PHI]");
-    const BrdfView view = file.brdf();
     const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
-    if (!(view.albedo(wo.data()) > 0.0))
+    if (!(file.brdf().albedo(wo.data()) > 0.0))
         throw Failure(options.file + ": nothing is reflected to this view, so there is nothing to draw");
-    measure::Sequence sequence(options.sequence, options.count, options.seed);
-    output.write("u0,u1,x,y,z,pdf\n");
-    write_samples(options, output, [&] {
-        const std::array<double, 2> u = sequence.next();
-        return csv_line(u, view.sample(wo.data(), u[0], u[1]));
+    const BrdfWavefront view = wavefront_of(options.file, file);
+    const auto views = std::make_unique<float[][3]>(kTogether);
+    for (std::size_t i = 0; i < kTogether; ++i) std::copy(wo.begin(), wo.end(), views[i]);
+    write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
+        view.sample(views.get(), u, count, samples);
     });
 }
 
@@ -102,12 +112,15 @@ void sample_table(const File& file, const SampleArguments& options, Output& outp
         throw Failure(options.file + ": this bin is empty, so there is nothing to draw; choose another with --at");
     measure::Sequence sequence(options.sequence, options.count, options.seed);
     output.write(point_columns("u", n) + point_columns("x", n) + "pdf\n");
-    write_samples(options, output, [&] {
+    ProgressBar bar(options.quiet);
+    const build::Progress progress = bar.callback();
+    for (std::uint64_t i = 0; i < options.count; ++i) {
+        if (i % kTogether == 0) progress(static_cast<double>(i) / static_cast<double>(options.count), "sampling");
         double u[ACDF_MAX_AXES], x[ACDF_MAX_AXES];
         sequence.next(u, n);
         const double pdf = view.sample(bin.data(), u, x);
-        return point_text(u, n) + point_text(x, n) + number_text(pdf) + "\n";
-    });
+        output.write(point_text(u, n) + point_text(x, n) + number_text(pdf) + "\n");
+    }
 }
 
 void run(const SampleArguments& options) {
@@ -129,10 +142,9 @@ void run(const SampleArguments& options) {
 } // namespace
 
 void add_sample(CLI::App& program, int& exit_code) {
-    static const std::map<std::string, measure::SequenceKind> sequences = {
-        {"random", measure::SequenceKind::random},
-        {"stratified", measure::SequenceKind::stratified},
-        {"sobol", measure::SequenceKind::sobol}};
+    constexpr Named<measure::SequenceKind> sequences[] = {{"random", measure::SequenceKind::random},
+                                                          {"stratified", measure::SequenceKind::stratified},
+                                                          {"sobol", measure::SequenceKind::sobol}};
     auto options = std::make_shared<SampleArguments>();
     CLI::App* command = program.add_subcommand(
         "sample", "Draw directions, or points of a table: CSV of random numbers, direction and density");
@@ -142,14 +154,11 @@ void add_sample(CLI::App& program, int& exit_code) {
         ->option_text("N (required)")
         ->check(CLI::Range(std::uint64_t{1}, max_count))
         ->group("Sampling");
-    command
-        ->add_option(
-            "--sequence", options->sequence,
-            "Where the random numbers come from: random (independent), stratified (one in each of N boxes of "
-            "equal area: less noise, needs N in advance) or sobol (least noise; any first part of it is "
-            "well spread too)")
+    add_choice(*command, "--sequence", options->sequence, sequences,
+               "Where the random numbers come from: random (independent), stratified (one in each of N boxes of "
+               "equal area: less noise, needs N in advance) or sobol (least noise; any first part of it is "
+               "well spread too)")
         ->option_text("NAME [random]")
-        ->transform(one_of(sequences))
         ->group("Sampling");
     command
         ->add_option(

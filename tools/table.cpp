@@ -206,14 +206,11 @@ void add_axis_options(CLI::App& command, TableArguments& options) {
             "evaluated, in these units (--range theta=0:3.14159). May be repeated")
         ->option_text("AXIS=LOW:HIGH [0 to length]")
         ->group("Axes");
-    const std::map<std::string, input::BadValuePolicy> policies{{"error", input::BadValuePolicy::refuse},
-                                                                {"zero", input::BadValuePolicy::zero}};
-    command
-        .add_option(
-            "--bad-values", options.input.bad_values,
-            "What to do about NaN, infinities and negative numbers: error (refuse, and say how many and where) "
-            "or zero (nothing is drawn there)")
-        ->transform(one_of(policies))
+    constexpr Named<input::BadValuePolicy> policies[] = {{"error", input::BadValuePolicy::refuse},
+                                                         {"zero", input::BadValuePolicy::zero}};
+    add_choice(command, "--bad-values", options.input.bad_values, policies,
+               "What to do about NaN, infinities and negative numbers: error (refuse, and say how many and where) "
+               "or zero (nothing is drawn there)")
         ->option_text("NAME [error]")
         ->group("Input");
 }

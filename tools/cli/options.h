@@ -8,7 +8,6 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
-#include <map>
 #include <memory>
 #include <string>
 
@@ -37,12 +36,10 @@ inline CLI::Option* add_output(CLI::App& command, std::string& path, bool& force
 }
 
 inline CLI::Option* add_codec(CLI::App& command, AcdfCodec& codec) {
-    const std::map<std::string, AcdfCodec> codecs{{"none", ACDF_CODEC_NONE}, {"zlib", ACDF_CODEC_ZLIB}};
-    return command
-        .add_option(
-            "--compress", codec,
-            "none: usable in place, mapped or linked into a program; zlib: smaller to ship, inflated at load")
-        ->transform(one_of(codecs))
+    constexpr Named<AcdfCodec> codecs[] = {{"none", ACDF_CODEC_NONE}, {"zlib", ACDF_CODEC_ZLIB}};
+    return add_choice(
+               command, "--compress", codec, codecs,
+               "none: usable in place, mapped or linked into a program; zlib: smaller to ship, inflated at load")
         ->option_text("NAME [none]")
         ->group("Output");
 }

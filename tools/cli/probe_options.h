@@ -7,61 +7,49 @@
 
 #include <CLI/CLI.hpp>
 
-#include <map>
 #include <string>
 
 namespace acdf::tools {
 
 /// `name` is another where --projection means that of an output.
 inline void add_projection(CLI::App& command, input::Projection& projection, const char* name = "--projection") {
-    const std::map<std::string, input::Projection> names{
+    constexpr Named<input::Projection> names[] = {
         {"auto", input::Projection::automatic},        {"latlong", input::Projection::latlong},
         {"angular", input::Projection::angular},       {"mirrorball", input::Projection::mirrorball},
         {"cube-cross", input::Projection::cube_cross}, {"octahedral", input::Projection::octahedral}};
-    command
-        .add_option(name, projection,
-                    "How the probe lays out directions: auto (metadata, then shape), latlong, angular (Debevec), "
-                    "mirrorball, cube-cross, octahedral (equal-area). Set it where auto refuses")
-        ->transform(one_of(names))
+    add_choice(command, name, projection, names,
+               "How the probe lays out directions: auto (metadata, then shape), latlong, angular (Debevec), "
+               "mirrorball, cube-cross, octahedral (equal-area). Set it where auto refuses")
         ->option_text("NAME [auto]")
         ->group("Input");
 }
 
 /// The grid that a fit lies on.
 inline void add_domain(CLI::App& command, input::Domain& domain) {
-    const std::map<std::string, input::Domain> names{{"source", input::Domain::source},
-                                                     {"latlong", input::Domain::latlong},
-                                                     {"octahedral", input::Domain::octahedral}};
-    command
-        .add_option(
-            "--domain", domain,
-            "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe themselves; "
-            "for other probes the one of both grids that loses least), latlong, octahedral (equal-area). "
-            "Noise is that of a renderer that looks the probe itself up, whatever the grid")
-        ->transform(one_of(names))
+    constexpr Named<input::Domain> names[] = {{"source", input::Domain::source},
+                                              {"latlong", input::Domain::latlong},
+                                              {"octahedral", input::Domain::octahedral}};
+    add_choice(command, "--domain", domain, names,
+               "The grid that the fit lies on: source (the texels of a lat-long or octahedral probe themselves; "
+               "for other probes the one of both grids that loses least), latlong, octahedral (equal-area). "
+               "Noise is that of a renderer that looks the probe itself up, whatever the grid")
         ->option_text("NAME [source]")
         ->group("Input");
 }
 
 /// What is done with values that are no radiance, and with probes without any.
 inline void add_repairs(CLI::App& command, input::ProbeOptions& options) {
-    const std::map<std::string, build::BadPixels> policies{
+    constexpr Named<build::BadPixels> policies[] = {
         {"zero", build::BadPixels::zero}, {"clamp", build::BadPixels::clamp}, {"error", build::BadPixels::error}};
-    command
-        .add_option(
-            "--bad-pixels", options.bad_pixels,
-            "What becomes of NaN, infinite and negative values: zero; clamp (+infinity becomes the largest "
-            "finite value of its channel, the others 0); error (refuse the probe). They are counted and told")
-        ->transform(one_of(policies))
+    add_choice(command, "--bad-pixels", options.bad_pixels, policies,
+               "What becomes of NaN, infinite and negative values: zero; clamp (+infinity becomes the largest "
+               "finite value of its channel, the others 0); error (refuse the probe). They are counted and told")
         ->option_text("NAME [zero]")
         ->group("Input");
-    const std::map<std::string, bool> when_black{{"error", false}, {"uniform", true}};
-    command
-        .add_option(
-            "--on-black", options.uniform_if_black,
-            "What becomes of a probe without any light: error, or uniform (all directions are equally likely; "
-            "the total is next to 0)")
-        ->transform(one_of(when_black))
+    constexpr Named<bool> when_black[] = {{"error", false}, {"uniform", true}};
+    add_choice(command, "--on-black", options.uniform_if_black, when_black,
+               "What becomes of a probe without any light: error, or uniform (all directions are equally likely; "
+               "the total is next to 0)")
         ->option_text("NAME [error]")
         ->group("Input");
 }

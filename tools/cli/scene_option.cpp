@@ -7,8 +7,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <map>
-
 namespace acdf::tools {
 
 void SceneOption::add(CLI::App& command, const std::string& help, const char* group) {
@@ -16,12 +14,9 @@ void SceneOption::add(CLI::App& command, const std::string& help, const char* gr
         ->type_name("FILE")
         ->allow_extra_args(false)
         ->group(group);
-    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
-    command
-        .add_option(
-            "--scene-up", input_.up,
-            "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
-        ->transform(one_of(axes))
+    constexpr Named<input::UpAxis> axes[] = {{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    add_choice(command, "--scene-up", input_.up, axes,
+               "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
         ->option_text("y|z [z]")
         ->group(group);
     command

@@ -9,7 +9,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -37,14 +36,10 @@ inline void add_target_options(CLI::App& command, builder::TargetOptions& target
         command, target.channels,
         "Whose noise is minimised: luminance (Rec. 709), rgb (the sum over the three channels: for strongly "
         "coloured lights), max (the largest channel), average (all alike), red, green or blue alone");
-    const std::map<std::string, AcdfFilter> filters{{"nearest", ACDF_FILTER_NEAREST},
-                                                    {"bilinear", ACDF_FILTER_BILINEAR}};
-    command
-        .add_option(
-            "--filter", target.filter,
-            "How your renderer looks the map up: nearest or bilinear. Set it right: a lookup that blends light "
-            "into dark texels finds light where a nearest fit has none, which is bias")
-        ->transform(one_of(filters))
+    constexpr Named<AcdfFilter> filters[] = {{"nearest", ACDF_FILTER_NEAREST}, {"bilinear", ACDF_FILTER_BILINEAR}};
+    add_choice(command, "--filter", target.filter, filters,
+               "How your renderer looks the map up: nearest or bilinear. Set it right: a lookup that blends light "
+               "into dark texels finds light where a nearest fit has none, which is bias")
         ->option_text("NAME [nearest]")
         ->group("Fit");
 }

@@ -24,7 +24,6 @@
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
-#include <map>
 #include <memory>
 
 namespace acdf::tools {
@@ -194,9 +193,8 @@ void add_measure(CLI::App& program, int& exit_code) {
                     "other local files: what acdf local takes, to measure by the normals of a scene alone")
         ->type_name("FILE")
         ->group("Input");
-    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
-    command.add_option("--scene-up", options->up, "Which axis of the scene points up, as in acdf local")
-        ->transform(one_of(axes))
+    constexpr Named<input::UpAxis> axes[] = {{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    add_choice(command, "--scene-up", options->up, axes, "Which axis of the scene points up, as in acdf local")
         ->option_text("y|z [z]")
         ->group("Input");
     command.add_option("--points", options->points, "Points on both sides of the mesh to take the mean over")

@@ -23,7 +23,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <tuple>
 
@@ -210,17 +209,14 @@ void run(const PlotArguments& options) {
 }
 
 void add_picture_options(CLI::App& command, PlotArguments& options) {
-    const std::map<std::string, PlotProjection> layouts{{"latlong", PlotProjection::latlong},
-                                                        {"angular", PlotProjection::angular},
-                                                        {"hemisphere", PlotProjection::hemisphere}};
-    command
-        .add_option(
-            "--projection", options.projection,
-            "How the picture lays out directions: latlong (a 2:1 map: all cells at a glance), angular (the "
-            "unit disc of Debevec's light probes and of Lawrence et al. 2005, Fig. 5: less distorted around "
-            "the middle, which is +x as in the lat-long map; sides as in a probe of that projection) or, for "
-            "BRDFs, hemisphere (seen from the normal, x to the right; a cross marks the mirror direction)")
-        ->transform(one_of(layouts))
+    constexpr Named<PlotProjection> layouts[] = {{"latlong", PlotProjection::latlong},
+                                                 {"angular", PlotProjection::angular},
+                                                 {"hemisphere", PlotProjection::hemisphere}};
+    add_choice(command, "--projection", options.projection, layouts,
+               "How the picture lays out directions: latlong (a 2:1 map: all cells at a glance), angular (the "
+               "unit disc of Debevec's light probes and of Lawrence et al. 2005, Fig. 5: less distorted around "
+               "the middle, which is +x as in the lat-long map; sides as in a probe of that projection) or, for "
+               "BRDFs, hemisphere (seen from the normal, x to the right; a cross marks the mirror direction)")
         ->option_text("NAME [latlong; BRDFs: hemisphere]")
         ->group("Picture");
     command
@@ -258,9 +254,8 @@ void add_mesh_options(CLI::App& command, PlotArguments& options) {
                     "shown over it, not a density")
         ->type_name("FILE")
         ->group("Cells over a mesh");
-    const std::map<std::string, input::UpAxis> axes{{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
-    command.add_option("--scene-up", options.up, "Which axis of the scene points up, as in acdf local")
-        ->transform(one_of(axes))
+    constexpr Named<input::UpAxis> axes[] = {{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    add_choice(command, "--scene-up", options.up, axes, "Which axis of the scene points up, as in acdf local")
         ->option_text("y|z [z]")
         ->group("Cells over a mesh");
     for (const auto& [name, target, help] :

@@ -230,16 +230,14 @@ void run(SweepArguments& options) {
 }
 
 void add_sweep_options(CLI::App& command, SweepArguments& options) {
-    const std::map<std::string, SweepKind> kinds{{"env", SweepKind::environment},
-                                                 {"local", SweepKind::local},
-                                                 {"places", SweepKind::places},
-                                                 {"brdf", SweepKind::brdf}};
-    command
-        .add_option_function<SweepKind>(
-            "--kind", [&options](SweepKind kind) { options.kind = kind; },
-            "Which files are compared: env, local (for every normal), places (of a scene: acdf local --places) or "
-            "brdf")
-        ->transform(one_of(kinds))
+    constexpr Named<SweepKind> kinds[] = {{"env", SweepKind::environment},
+                                          {"local", SweepKind::local},
+                                          {"places", SweepKind::places},
+                                          {"brdf", SweepKind::brdf}};
+    add_choice(
+        command, "--kind", [&options](SweepKind kind) { options.kind = kind; }, kinds,
+        "Which files are compared: env, local (for every normal), places (of a scene: acdf local --places) or "
+        "brdf")
         ->option_text("NAME [by the source: env or brdf]")
         ->group("Sweep");
     options.scene.add(command, "For --kind places: the mesh (.obj, .ply, .instances) whose places are told apart",
