@@ -159,8 +159,7 @@ private:
                state.share == 0.0 && !state.tile.empty();
     }
 
-    /// Sums of every so manieth texel of a row: those of one wait for each other, those of several do not, and
-    /// compilers put them into vectors.
+    /// Sums of every fourth texel of a row: additions to one of them wait for each other, those to several do not.
     struct Lanes {
         static constexpr std::size_t count = 4;
         double flux[count] = {}, second[count] = {}, first[count] = {}, light[count] = {}, light_second[count] = {},
@@ -198,8 +197,8 @@ private:
         for (std::size_t k = 0; k < count; ++k) above += cosine[c + k];
         if (above == 0.0) return;
         const std::uint32_t* const tiles = state.picture.tile.data() + row + c;
-        const double *const densities = state.picture.density.data() + row + c, *const probability =
-                                                                                    state.tile.data();
+        const double* const densities = state.picture.density.data() + row + c;
+        const double* const probability = state.tile.data();
         const double* const measures = target_.column_measure.data() + c;
         const float* const values = target_.row(r) + c;
         const double height = target_.row_measure[r];
