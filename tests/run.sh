@@ -9,7 +9,7 @@
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
 #
 #   tests/run.sh            all of it
-#   tests/run.sh --quick    the optimised build and its tests, without real data and without the packages that are made of it
+#   tests/run.sh --quick    the optimised build and its tests, without real data, farms, and packages that are made of it
 #
 # ACDF_TEST_DATA: the folder of real data, if it is not ../shared/data.
 set -euo pipefail
@@ -90,7 +90,7 @@ if $quick; then
     step "Optimised build, in build/release"
     build_release
     step "Its tests"
-    run_tests --label-exclude packaging
+    run_tests --label-exclude 'packaging|farm'
     exit
 fi
 step "Packages, and libraries that need few of them"
