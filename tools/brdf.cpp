@@ -3,7 +3,6 @@
 #include "build/text/format_names.h"
 #include "input/brdf/models.h"
 #include "tools/cli/built.h"
-#include "tools/cli/choice.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -130,15 +129,10 @@ Converted BrdfConversion::convert(const Listener& listener) {
 }
 
 void BrdfConversion::add_fit_options(CLI::App& command) {
-    constexpr Named<AcdfFit> fits[] = {{"uniform", ACDF_FIT_UNIFORM},
-                                       {"cdf", ACDF_FIT_CDF},
-                                       {"pdf", ACDF_FIT_PDF},
-                                       {"variance", ACDF_FIT_VARIANCE}};
-    add_choice(command, "--fit", brdf_.fit, fits,
-               "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
-               "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
-               "views, the nearest bin serves)")
-        ->option_text("NAME [variance]")
+    add_fit(command, brdf_.fit,
+            "How knots are chosen: variance (least noise for its size; views share cells and are interpolated), "
+            "or, to compare with, cdf, pdf and uniform (Lawrence et al. 2005: curves of its own for each bin of "
+            "views, the nearest bin serves)")
         ->group("Fit");
     command
         .add_option(

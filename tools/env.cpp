@@ -239,15 +239,10 @@ Converted EnvConversion::convert(const Listener& listener) {
 
 void EnvConversion::add_fit_options(CLI::App& command) {
     builder::FitOptions& fit = environment_.fit;
-    constexpr Named<AcdfFit> fits[] = {{"uniform", ACDF_FIT_UNIFORM},
-                                       {"cdf", ACDF_FIT_CDF},
-                                       {"pdf", ACDF_FIT_PDF},
-                                       {"variance", ACDF_FIT_VARIANCE}};
-    add_choice(command, "--fit", fit.fit, fits,
-               "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
-               "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
-               "uniform (equal steps, to compare with)")
-        ->option_text("NAME [variance]")
+    add_fit(command, fit.fit,
+            "How knots are chosen: variance (least noise for its size), cdf (Lawrence et al. 2005, "
+            "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
+            "uniform (equal steps, to compare with)")
         ->group("Fit");
     constexpr Named<builder::Shape> shapes[] = {{"tree", builder::Shape::tree},
                                                 {"cascade", builder::Shape::cascade}};

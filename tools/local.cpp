@@ -326,13 +326,7 @@ void LocalConversion::add_separate(CLI::App& command) {
         .add_flag("--no-sharing", no_sharing_,
                   "A tree of its own for each bin, as in the paper, to compare with: larger and noisier")
         ->group(group);
-    constexpr Named<AcdfFit> fits[] = {{"uniform", ACDF_FIT_UNIFORM},
-                                       {"cdf", ACDF_FIT_CDF},
-                                       {"pdf", ACDF_FIT_PDF},
-                                       {"variance", ACDF_FIT_VARIANCE}};
-    add_choice(command, "--fit", fit.fit, fits, "How knots are chosen: as in acdf env")
-        ->option_text("NAME [variance]")
-        ->group(group);
+    add_fit(command, fit.fit, "How knots are chosen: as in acdf env")->group(group);
     command.add_option("--knots", knots_, "Segments of a curve over phi and over theta: as in acdf env")
         ->option_text("AxB [64x64]")
         ->group(group);

@@ -9,8 +9,6 @@
 #include "tools/cli/view_option.h"
 #include "tools/commands.h"
 
-#include <acdf/wavefront.h>
-
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +29,7 @@ struct PdfArguments {
     std::string view;
 };
 
-/// The line of a direction (and what stands behind it); `density(direction, pdf)` is that of a unit vector.
+/// The line of a direction (and what stands behind it); `density` is a function of a unit vector of floats.
 template <class Density>
 std::string density_line(std::vector<double> v, const PdfArguments& options, const Density& density) {
     if (options.normalize) {
@@ -45,9 +43,7 @@ std::string density_line(std::vector<double> v, const PdfArguments& options, con
         std::snprintf(text, sizeof(text), "%.9g,", static_cast<double>(static_cast<float>(x)));
         if (options.csv) line += text;
     }
-    float pdf = 0.0f;
-    density(&direction, &pdf);
-    std::snprintf(text, sizeof(text), "%.9g\n", static_cast<double>(pdf));
+    std::snprintf(text, sizeof(text), "%.9g\n", static_cast<double>(density(direction)));
     return line + text;
 }
 
@@ -81,25 +77,23 @@ void evaluate(std::istream& in, PointParser parser, const PdfArguments& options,
     if (in.bad()) throw Failure(name + ": cannot read: " + std::strerror(errno));
 }
 
-using Direction = const float (*)[3]; // one
-
 void evaluate_environment(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
-    const EnvironmentWavefront view(file.environment());
+    const EnvironmentView view = file.environment();
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
-        return density_line(direction, options, [&](Direction d, float* pdf) { view.pdf(d, 1, pdf); });
+        return density_line(direction, options, [&](const float d[3]) { return view.pdf(d); });
     });
 }
 
 void evaluate_local(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a local environment has no --at; give --normal X,Y,Z");
-    const LocalWavefront view(file.local());
+    const LocalEnvironmentView view = file.local();
     if (!options.normal.empty()) {
-        const AcdfLocalPoint point = file.local().at(chosen_normal(options.file, options.normal).data());
+        const AcdfLocalPoint point = view.at(chosen_normal(options.file, options.normal).data());
         if (options.csv) output.write("x,y,z,pdf\n");
         return evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
-            return density_line(direction, options, [&](Direction d, float* pdf) { view.pdf(point, d, 1, pdf); });
+            return density_line(direction, options, [&](const float d[3]) { return view.pdf(point, d); });
         });
     }
     if (options.csv) output.write("x,y,z,nx,ny,nz,pdf\n");
@@ -107,18 +101,17 @@ void evaluate_local(const File& file, std::istream& in, const PdfArguments& opti
              [&](const std::vector<double>& both) {
                  const float n[3] = {static_cast<float>(both[3]), static_cast<float>(both[4]),
                                      static_cast<float>(both[5])};
-                 return density_line(both, options, [&](Direction d, float* pdf) { view.pdf(&n, d, 1, pdf); });
+                 return density_line(both, options, [&](const float d[3]) { return view.pdf(n, d); });
              });
 }
 
 void evaluate_brdf(const File& file, std::istream& in, const PdfArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a BRDF has no --at; give --view THETA[,PHI]");
-    const std::array<float, 3> chosen = chosen_view(options.file, file, options.view);
-    const float wo[3] = {chosen[0], chosen[1], chosen[2]};
-    const BrdfWavefront view = wavefront_of(options.file, file);
+    const BrdfView view = file.brdf();
+    const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
     if (options.csv) output.write("x,y,z,pdf\n");
     evaluate(in, PointParser(), options, output, [&](const std::vector<double>& direction) {
-        return density_line(direction, options, [&](Direction d, float* pdf) { view.pdf(&wo, d, 1, pdf); });
+        return density_line(direction, options, [&](const float d[3]) { return view.pdf(wo.data(), d); });
     });
 }
 

@@ -45,26 +45,32 @@ std::string csv_line(const double u[2], const DirectionSample& s) {
     return text;
 }
 
+/// Calls `write(count)` until as many samples are written as are asked for.
+template <class Write>
+void write_samples(const SampleArguments& options, const Write& write) {
+    ProgressBar bar(options.quiet);
+    const build::Progress progress = bar.callback();
+    for (std::uint64_t done = 0; done < options.count; done += kTogether) {
+        progress(static_cast<double>(done) / static_cast<double>(options.count), "sampling");
+        write(static_cast<std::size_t>(std::min<std::uint64_t>(options.count - done, kTogether)));
+    }
+}
+
 /// Writes numbers of the sequence, and the directions that `draw(numbers, count, samples)` makes of them.
 template <class Draw>
 void write_directions(const SampleArguments& options, Output& output, const Draw& draw) {
     measure::Sequence sequence(options.sequence, options.count, options.seed);
-    ProgressBar bar(options.quiet);
-    const build::Progress progress = bar.callback();
     const auto u = std::make_unique<double[][2]>(kTogether);
     const auto samples = std::make_unique<DirectionSample[]>(kTogether);
     output.write("u0,u1,x,y,z,pdf\n");
-    for (std::uint64_t done = 0; done < options.count;) {
-        progress(static_cast<double>(done) / static_cast<double>(options.count), "sampling");
-        const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(options.count - done, kTogether));
+    write_samples(options, [&](std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
             const std::array<double, 2> next = sequence.next();
             u[i][0] = next[0], u[i][1] = next[1];
         }
         draw(u.get(), count, samples.get());
         for (std::size_t i = 0; i < count; ++i) output.write(csv_line(u[i], samples[i]));
-        done += count;
-    }
+    });
 }
 
 using Numbers = const double (*)[2];
@@ -91,13 +97,11 @@ void sample_local(const File& file, const SampleArguments& options, Output& outp
 void sample_brdf(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": a BRDF has no --at; give --view THETA[,PHI]");
     const std::array<float, 3> wo = chosen_view(options.file, file, options.view);
-    if (!(file.brdf().albedo(wo.data()) > 0.0))
+    const BrdfView view = file.brdf();
+    if (!(view.albedo(wo.data()) > 0.0))
         throw Failure(options.file + ": nothing is reflected to this view, so there is nothing to draw");
-    const BrdfWavefront view = wavefront_of(options.file, file);
-    const auto views = std::make_unique<float[][3]>(kTogether);
-    for (std::size_t i = 0; i < kTogether; ++i) std::copy(wo.begin(), wo.end(), views[i]);
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
-        view.sample(views.get(), u, count, samples);
+        for (std::size_t i = 0; i < count; ++i) samples[i] = view.sample(wo.data(), u[i][0], u[i][1]);
     });
 }
 
@@ -112,15 +116,14 @@ void sample_table(const File& file, const SampleArguments& options, Output& outp
         throw Failure(options.file + ": this bin is empty, so there is nothing to draw; choose another with --at");
     measure::Sequence sequence(options.sequence, options.count, options.seed);
     output.write(point_columns("u", n) + point_columns("x", n) + "pdf\n");
-    ProgressBar bar(options.quiet);
-    const build::Progress progress = bar.callback();
-    for (std::uint64_t i = 0; i < options.count; ++i) {
-        if (i % kTogether == 0) progress(static_cast<double>(i) / static_cast<double>(options.count), "sampling");
-        double u[ACDF_MAX_AXES], x[ACDF_MAX_AXES];
-        sequence.next(u, n);
-        const double pdf = view.sample(bin.data(), u, x);
-        output.write(point_text(u, n) + point_text(x, n) + number_text(pdf) + "\n");
-    }
+    write_samples(options, [&](std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            double u[ACDF_MAX_AXES], x[ACDF_MAX_AXES];
+            sequence.next(u, n);
+            const double pdf = view.sample(bin.data(), u, x);
+            output.write(point_text(u, n) + point_text(x, n) + number_text(pdf) + "\n");
+        }
+    });
 }
 
 void run(const SampleArguments& options) {

@@ -44,6 +44,15 @@ inline CLI::Option* add_codec(CLI::App& command, AcdfCodec& codec) {
         ->group("Output");
 }
 
+/// --fit. `help`: what each is for.
+inline CLI::Option* add_fit(CLI::App& command, AcdfFit& fit, const std::string& help) {
+    constexpr Named<AcdfFit> fits[] = {{"uniform", ACDF_FIT_UNIFORM},
+                                       {"cdf", ACDF_FIT_CDF},
+                                       {"pdf", ACDF_FIT_PDF},
+                                       {"variance", ACDF_FIT_VARIANCE}};
+    return add_choice(command, "--fit", fit, fits, help)->option_text("NAME [variance]");
+}
+
 /// Holds as long as it lives; 0: all cores.
 inline std::unique_ptr<tbb::global_control> limit_threads(int threads) {
     if (threads == 0) return nullptr;

@@ -9,15 +9,19 @@
 
 namespace acdf::tools {
 
+CLI::Option* add_scene_up(CLI::App& command, input::UpAxis& up, const std::string& help) {
+    constexpr Named<input::UpAxis> axes[] = {{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
+    return add_choice(command, "--scene-up", up, axes, help)->option_text("y|z [z]");
+}
+
 void SceneOption::add(CLI::App& command, const std::string& help, const char* group) {
     command.add_option("--scene", paths, help + ". May be given several times: all files together")
         ->type_name("FILE")
         ->allow_extra_args(false)
         ->group(group);
-    constexpr Named<input::UpAxis> axes[] = {{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
-    add_choice(command, "--scene-up", input_.up, axes,
-               "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
-        ->option_text("y|z [z]")
+    add_scene_up(
+        command, input_.up,
+        "Which axis of the scene points up; y turns (x, y, z) into (z, x, y), as docs/conventions.md has it")
         ->group(group);
     command
         .add_flag("--scene-rgb", input_.rgb_is_normal,

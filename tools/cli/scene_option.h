@@ -12,11 +12,15 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+} // namespace CLI
 
 namespace acdf::tools {
 
 struct Renderer;
+
+/// --scene-up.
+CLI::Option* add_scene_up(CLI::App& command, input::UpAxis& up, const std::string& help);
 
 struct SceneOption {
     std::vector<std::string> paths; ///< none: all normals

@@ -5,7 +5,6 @@
 #include "tools/plot/brdf.h"
 
 #include <CLI/CLI.hpp>
-#include <acdf/wavefront.h>
 
 #include <array>
 #include <string>
@@ -29,14 +28,6 @@ inline std::array<float, 3> chosen_view(const std::string& path, const File& fil
     std::array<float, 3> wo{};
     PlottedView{file.brdf(), *angles}.direction(wo.data());
     return wo;
-}
-
-/// Its calls, of many directions at once. Throws Failure where memory does not last.
-inline BrdfWavefront wavefront_of(const std::string& path, const File& file) {
-    BrdfWavefront out;
-    const Status status = BrdfWavefront::prepare(file.brdf(), out);
-    if (!status.ok()) throw Failure(path + ": " + status.message);
-    return out;
 }
 
 inline void refuse_view(const std::string& path, const std::string& view) {

@@ -2,7 +2,6 @@
 #include "build/accuracy/environment.h"
 #include "build/brdf.h"
 #include "measure/samplers/full_cdf.h"
-#include "tools/cli/choice.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/help.h"
 #include "tools/cli/json.h"
@@ -11,6 +10,7 @@
 #include "tools/cli/options.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/probe_source.h"
+#include "tools/cli/scene_option.h"
 #include "tools/cli/source_check.h"
 #include "tools/commands.h"
 #include "tools/measure/brdf.h"
@@ -193,10 +193,7 @@ void add_measure(CLI::App& program, int& exit_code) {
                     "other local files: what acdf local takes, to measure by the normals of a scene alone")
         ->type_name("FILE")
         ->group("Input");
-    constexpr Named<input::UpAxis> axes[] = {{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
-    add_choice(command, "--scene-up", options->up, axes, "Which axis of the scene points up, as in acdf local")
-        ->option_text("y|z [z]")
-        ->group("Input");
+    add_scene_up(command, options->up, "Which axis of the scene points up, as in acdf local")->group("Input");
     command.add_option("--points", options->points, "Points on both sides of the mesh to take the mean over")
         ->check(CLI::Range(1u, 1u << 20))
         ->option_text("N [64]")

@@ -8,6 +8,7 @@
 #include "tools/cli/output.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/scene_option.h"
 #include "tools/commands.h"
 #include "tools/plot/brdf.h"
 #include "tools/plot/cells.h"
@@ -254,9 +255,7 @@ void add_mesh_options(CLI::App& command, PlotArguments& options) {
                     "shown over it, not a density")
         ->type_name("FILE")
         ->group("Cells over a mesh");
-    constexpr Named<input::UpAxis> axes[] = {{"y", input::UpAxis::y}, {"z", input::UpAxis::z}};
-    add_choice(command, "--scene-up", options.up, axes, "Which axis of the scene points up, as in acdf local")
-        ->option_text("y|z [z]")
+    add_scene_up(command, options.up, "Which axis of the scene points up, as in acdf local")
         ->group("Cells over a mesh");
     for (const auto& [name, target, help] :
          {std::tuple{"--from", &options.from, "Where the camera is, in the coordinates of the mesh"},

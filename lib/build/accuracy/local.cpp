@@ -164,19 +164,16 @@ private:
         static constexpr std::size_t count = 4;
         double flux[count] = {}, second[count] = {}, first[count] = {}, light[count] = {}, light_second[count] = {},
                largest[count] = {};
-        std::uint64_t violations = 0;
     };
 
     /// sum_row() of what is_plain(). `cosine`: room for those of a row.
     RowSums sum_plain_row(std::uint32_t r, Row& state, double* cosine) const {
-        cosines_.of_row(state.n, r, cosine);
-        const std::size_t row = std::size_t{r} * target_.columns,
-                          whole = target_.columns / Lanes::count * Lanes::count;
+        cosines_.write_row(state.n, r, cosine);
+        const std::size_t whole = target_.columns / Lanes::count * Lanes::count;
         Lanes lanes;
         std::size_t c = 0;
-        for (; c < whole; c += Lanes::count) add_texels<Lanes::count>(r, row, c, state, cosine, lanes);
-        for (; c < target_.columns; ++c) add_texels<1>(r, row, c, state, cosine, lanes);
-        state.violations += lanes.violations;
+        for (; c < whole; c += Lanes::count) add_texels<Lanes::count>(r, c, cosine + c, state, lanes);
+        for (; c < target_.columns; ++c) add_texels<1>(r, c, cosine + c, state, lanes);
         RowSums out;
         for (std::size_t k = 0; k < Lanes::count; ++k) {
             out.flux += lanes.flux[k];
@@ -189,15 +186,15 @@ private:
         return out;
     }
 
-    /// Of `count` texels from column c on.
+    /// Of `count` texels from column c on, and of their cosines.
     template <std::size_t count>
-    void add_texels(std::uint32_t r, std::size_t row, std::size_t c, const Row& state, const double* cosine,
-                    Lanes& lanes) const {
+    void add_texels(std::uint32_t r, std::size_t c, const double* cosine, Row& state, Lanes& lanes) const {
         double above = 0.0;
-        for (std::size_t k = 0; k < count; ++k) above += cosine[c + k];
+        for (std::size_t k = 0; k < count; ++k) above += cosine[k];
         if (above == 0.0) return;
-        const std::uint32_t* const tiles = state.picture.tile.data() + row + c;
-        const double* const densities = state.picture.density.data() + row + c;
+        const std::size_t first = std::size_t{r} * target_.columns + c;
+        const std::uint32_t* const tiles = state.picture.tile.data() + first;
+        const double* const densities = state.picture.density.data() + first;
         const double* const probability = state.tile.data();
         const double* const measures = target_.column_measure.data() + c;
         const float* const values = target_.row(r) + c;
@@ -205,7 +202,7 @@ private:
         double p[count];
         for (std::size_t k = 0; k < count; ++k) p[k] = probability[tiles[k]] * densities[k];
         for (std::size_t k = 0; k < count; ++k) {
-            const double up = cosine[c + k], omega = up > 0.0 ? height * measures[k] : 0.0;
+            const double up = cosine[k], omega = up > 0.0 ? height * measures[k] : 0.0;
             const double g = values[k], f = g * up, energy = f * omega;
             const double weight = p[k] > 0.0 ? f / p[k] : 0.0;
             lanes.first[k] += p[k] * omega;
@@ -216,7 +213,7 @@ private:
             lanes.largest[k] = weight > lanes.largest[k] ? weight : lanes.largest[k];
         }
         for (std::size_t k = 0; k < count; ++k)
-            lanes.violations += values[k] > 0.0f && cosine[c + k] > 0.0 && !(p[k] > 0.0);
+            state.violations += values[k] > 0.0f && cosine[k] > 0.0 && !(p[k] > 0.0);
     }
 
     RowSums sum_row(std::uint32_t r, Row& state) const {

@@ -27,31 +27,39 @@ public:
     /// Calls visit(column, cosine) for the texels of a row whose centre is above the horizon of unit normal n.
     template <class Visit>
     void for_each_above(const float n[3], std::uint32_t row, const Visit& visit) const {
-        const std::array<float, 3>* const d =
-            directions_.empty() ? nullptr : directions_.data() + std::size_t{row} * columns_;
-        const double z = d ? 0.0 : z_[row], radius = std::sqrt((1.0 - z) * (1.0 + z));
-        const double up = n[2] * z, x = n[0] * radius, y = n[1] * radius;
+        const Row cosines = of_row(n, row);
         for (std::uint32_t c = 0; c < columns_; ++c) {
-            const double cosine = d ? double{n[0]} * d[c][0] + double{n[1]} * d[c][1] + double{n[2]} * d[c][2]
-                                    : up + x * cosine_[c] + y * sine_[c];
+            const double cosine = cosines.at(c);
             if (cosine > 0.0) visit(c, cosine); // called in one place, so that it is inlined
         }
     }
 
     /// The same cosines of a whole row, 0 below the horizon.
-    void of_row(const float n[3], std::uint32_t row, double* __restrict out) const {
-        if (!directions_.empty()) {
-            const std::array<float, 3>* const d = directions_.data() + std::size_t{row} * columns_;
-            for (std::uint32_t c = 0; c < columns_; ++c)
-                out[c] = std::max(0.0, double{n[0]} * d[c][0] + double{n[1]} * d[c][1] + double{n[2]} * d[c][2]);
-            return;
-        }
-        const double z = z_[row], radius = std::sqrt((1.0 - z) * (1.0 + z));
-        const double up = n[2] * z, x = n[0] * radius, y = n[1] * radius;
-        for (std::uint32_t c = 0; c < columns_; ++c) out[c] = std::max(0.0, up + x * cosine_[c] + y * sine_[c]);
+    void write_row(const float n[3], std::uint32_t row, double* __restrict out) const {
+        const Row cosines = of_row(n, row);
+        for (std::uint32_t c = 0; c < columns_; ++c) out[c] = std::max(0.0, cosines.at(c));
     }
 
 private:
+    /// Cosines of a row: of directions, or of what a row's and a column's give together.
+    struct Row {
+        const std::array<float, 3>* directions; ///< null: of a lat-long map
+        const float* n;
+        const double *cosine, *sine;
+        double up, x, y;
+
+        double at(std::uint32_t c) const {
+            if (!directions) return up + x * cosine[c] + y * sine[c];
+            const std::array<float, 3>& d = directions[c];
+            return double{n[0]} * d[0] + double{n[1]} * d[1] + double{n[2]} * d[2];
+        }
+    };
+    Row of_row(const float n[3], std::uint32_t row) const {
+        const std::array<float, 3>* const d =
+            directions_.empty() ? nullptr : directions_.data() + std::size_t{row} * columns_;
+        const double z = d ? 0.0 : z_[row], radius = std::sqrt((1.0 - z) * (1.0 + z));
+        return {d, n, cosine_.data(), sine_.data(), n[2] * z, n[0] * radius, n[1] * radius};
+    }
     void fill_latlong(std::uint32_t rows) {
         cosine_.resize(columns_);
         sine_.resize(columns_);
