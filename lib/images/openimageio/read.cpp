@@ -29,6 +29,25 @@ Header header_of(const OIIO::ImageInput& input) {
     return header;
 }
 
+// Of the current part. OpenImageIO would convert by way of 64 MiB, however small the image is.
+bool read_scanlines(OIIO::ImageInput& input, const Rows& rows, int begin, int end, float* to) {
+    const OIIO::ImageSpec& s = input.spec();
+    const int part = input.current_subimage(), channels = rows.last_channel - rows.first_channel;
+    if (!s.channelformats.empty())
+        return input.read_scanlines(part, 0, begin, end, s.z, rows.first_channel, rows.last_channel,
+                                    OIIO::TypeDesc::FLOAT, to, rows.pixel_stride, rows.row_stride);
+    const std::size_t samples = static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(s.width) *
+                                static_cast<std::size_t>(channels);
+    const std::unique_ptr<unsigned char[]> stored(new unsigned char[samples * s.format.size()]);
+    const OIIO::TypeDesc format = s.format; // the image may be opened anew while it is read
+    const int width = s.width;
+    return input.read_native_scanlines(part, 0, begin, end, s.z, rows.first_channel, rows.last_channel,
+                                       stored.get()) &&
+           OIIO::parallel_convert_image(channels, width, end - begin, 1, stored.get(), format, OIIO::AutoStride,
+                                        OIIO::AutoStride, OIIO::AutoStride, to, OIIO::TypeDesc::FLOAT,
+                                        rows.pixel_stride, rows.row_stride, OIIO::AutoStride, input.threads());
+}
+
 } // namespace
 
 void* open_image(const std::string& path, int threads, Header& header, std::string& error) {
@@ -65,8 +84,7 @@ bool read_rows(void* image, const Rows& rows, float* to, std::string& error) {
         s.tile_width > 0
             ? input.read_tiles(part, 0, s.x, s.x + s.width, begin, end, s.z, s.z + 1, rows.first_channel,
                                rows.last_channel, OIIO::TypeDesc::FLOAT, to, rows.pixel_stride, rows.row_stride)
-            : input.read_scanlines(part, 0, begin, end, s.z, rows.first_channel, rows.last_channel,
-                                   OIIO::TypeDesc::FLOAT, to, rows.pixel_stride, rows.row_stride);
+            : read_scanlines(input, rows, begin, end, to);
     // Some readers report what is missing, but say they succeeded.
     if (done && !input.has_error()) return true;
     error = input.geterror();

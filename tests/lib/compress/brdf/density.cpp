@@ -114,7 +114,7 @@ TEST_P(BrdfDensity, sampleTellsThePdf) {
     const MadeBrdf& brdf = made(GetParam());
     std::mt19937_64 random(9);
     std::uniform_real_distribution<double> u(0.0, 1.0);
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < repeated(20000); ++i) {
         const Direction wo = at_angles(kCosines[i % 4], 2.0 * kPi * u(random));
         const auto s = brdf.view().sample(wo.data(), u(random), u(random));
         ASSERT_EQ(s.pdf, brdf.view().pdf(wo.data(), s.direction)) << kCosines[i % 4];
