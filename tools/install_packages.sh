@@ -5,7 +5,7 @@
 #   tools/install_packages.sh SET...     those of tools/packages.txt with such a second or third word
 set -euo pipefail
 
-usage() { echo "usage: tools/install_packages.sh first|build|images|quick|test|farm..." >&2; exit 2; }
+usage() { echo "usage: tools/install_packages.sh first|build|images|quick|test|farm|documents..." >&2; exit 2; }
 
 (($# > 0)) || usage
 list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
