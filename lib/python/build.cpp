@@ -3,10 +3,12 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <stdexcept>
 
 namespace acdf::python {
 namespace {

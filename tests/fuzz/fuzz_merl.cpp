@@ -4,6 +4,7 @@
 #include "input/error.h"
 #include "tests/fuzz/brdf_values.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace {

@@ -8,6 +8,8 @@
 
 #include "reader/check/check.h"
 
+#include <algorithm>
+
 using namespace acdf_test;
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);

@@ -1,5 +1,8 @@
 #include "tools/cli/help.h"
 
+#include <algorithm>
+#include <sstream>
+
 namespace acdf::tools {
 namespace {
 

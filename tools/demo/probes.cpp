@@ -3,6 +3,7 @@
 #include "images/openexr.h"
 #include "tools/cli/output.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace acdf::build {
 namespace {

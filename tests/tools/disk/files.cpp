@@ -9,6 +9,8 @@
 
 #include <sys/stat.h>
 
+#include <exception>
+
 using namespace acdf::test;
 using acdf::tools::Output;
 using acdf::tools::write_output;

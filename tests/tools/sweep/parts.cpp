@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 
 namespace acdf::tools {
 namespace {

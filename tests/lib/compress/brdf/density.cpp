@@ -1,11 +1,13 @@
 // Fitted BRDF files: what is drawn is what is told, it covers the light, and it is where the light is.
 #include "tests/inputs/brdf_files.h"
+#include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/compress/chi_square.h"
 
 #include <tbb/global_control.h>
 
 #include <random>
+#include <stdexcept>
 
 using namespace acdf_test;
 using acdf::build::Sides;

@@ -4,6 +4,7 @@
 #include "tests/inputs/places.h"
 #include "tests/lib/input/brdf/brdf.h"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace {

@@ -2,6 +2,7 @@
 #include "input/brdf/models.h"
 #include "tests/lib/input/brdf/brdf.h"
 
+#include <algorithm>
 #include <complex>
 
 namespace {

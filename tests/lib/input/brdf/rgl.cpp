@@ -2,6 +2,8 @@
 #include "input/brdf/rgl.h"
 #include "tests/lib/input/brdf/brdf.h"
 
+#include <algorithm>
+
 namespace {
 
 using namespace acdf::input;
