@@ -30,16 +30,27 @@ constexpr std::size_t kCalls = std::size_t{1} << 18; // before they repeat
 constexpr std::size_t kShared = 16;                  // calls a point, where a point has several
 constexpr std::size_t kWave = 4096;                  // calls at once
 
-/// What is asked: normals, pairs of numbers, directions anywhere and such as are drawn.
+/// What is asked: normals, pairs of numbers, directions anywhere and such as are drawn. Coherent ones go over a
+/// sphere, and through the strata of the numbers, in the order of a picture's pixels.
 struct Questions {
     Directions normals = uniform_directions(kCalls, 1), anywhere = uniform_directions(kCalls, 2), drawn{kCalls};
     std::vector<std::array<float, 2>> u{kCalls};
     std::vector<std::array<double, 2>> wide{kCalls}; ///< u
 
-    explicit Questions(const LocalEnvironmentView& view) {
+    explicit Questions(const LocalEnvironmentView& view, bool coherent = false) {
         std::mt19937_64 random(3);
         for (std::size_t i = 0; i < kCalls; ++i) {
             for (float& value : u[i]) value = static_cast<float>(random() >> 40) * 0x1p-24f;
+            if (coherent) {
+                constexpr std::size_t side = 512;
+                const std::size_t at[2] = {i % side, i / side % side};
+                for (int k = 0; k < 2; ++k)
+                    u[i][k] = std::min((static_cast<float>(at[k]) + u[i][k]) / side, 1.0f - 0x1p-24f);
+                const double phi = 2.0 * ACDF_PI * static_cast<double>(at[0]) / side,
+                             z = 2.0 * static_cast<double>(at[1]) / side - 1.0, r = std::sqrt(1.0 - z * z);
+                normals[i] = {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
+                              static_cast<float>(z)};
+            }
             wide[i] = {u[i][0], u[i][1]};
             const AcdfDirectionSample s = view.sample(normals[i].data(), u[i][0], u[i][1]);
             drawn[i] = {s.direction[0], s.direction[1], s.direction[2]};
@@ -69,7 +80,7 @@ Candidate density_each(const LocalEnvironmentView& view, const Questions& q, con
 struct Compared {
     const acdf_bench::FullTable& full;
     const LocalEnvironmentView &plain, &fast;
-    const Questions& q;
+    bool evicted = false;
     LocalWavefront waves[3] = {LocalWavefront(fast, Instructions::none), LocalWavefront(fast, Instructions::avx2),
                                LocalWavefront(fast, Instructions::avx512)};
 };
@@ -92,7 +103,9 @@ void report(const char* what, const Compared& all, const Ours& ours, const Full&
                                 for (std::size_t i = 0; i < count; i += kWave)
                                     wave(wavefront, first + i, std::min(kWave, count - i));
                             }});
-    acdf_bench::take_turns(rows, {});
+    acdf_bench::Turns turns;
+    if (all.evicted) turns = {20, 1024, kCalls, true};
+    acdf_bench::take_turns(rows, turns);
     std::printf("| %s | %.1f |", what, rows[0].least);
     for (std::size_t i = 1; i < rows.size(); ++i)
         std::printf(" %.1f (%.2f) |", rows[i].least, rows[i].least / rows[0].least);
@@ -124,15 +137,21 @@ bool run(const char* path) {
         : latlong             ? ""
                               : ", octahedral",
         static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
-    const Compared all = {full, plain, fast, q};
+    Compared all = {full, plain, fast};
     const auto nothing = [](const auto&, const AcdfLocalPoint& point, std::size_t) { keep(point); };
-    const auto draw = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
-        keep(view.sample(point, q.u[k][0], q.u[k][1]));
+    const auto draw_of = [](const Questions& of) {
+        return [&of](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
+            keep(view.sample(point, of.u[k][0], of.u[k][1]));
+        };
     };
+    const auto draw = draw_of(q);
     const auto drawn = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.pdf(point, q.drawn[k].data()));
     };
-    const auto full_draw = [&](std::size_t i) { keep(full.sample(q.u[i][0], q.u[i][1])); };
+    const auto full_draw_of = [&full](const Questions& of) {
+        return [&](std::size_t i) { keep(full.sample(of.u[i][0], of.u[i][1])); };
+    };
+    const auto full_draw = full_draw_of(q);
     const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
     const auto full_drawn = [&](std::size_t i) { keep(full.pdf(q.drawn[i].data())); };
     std::vector<DirectionSample> samples(kWave);
@@ -140,9 +159,13 @@ bool run(const char* path) {
     const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals.data());
     const auto* u = reinterpret_cast<const double(*)[2]>(q.wide.data());
     const auto* directions_drawn = reinterpret_cast<const float(*)[3]>(q.drawn.data());
-    const Wave draws = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
-        wavefront.sample(normals + first, u + first, n, samples.data());
+    const auto draws_of = [&samples](const Questions& asked) -> Wave {
+        return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+            wavefront.sample(reinterpret_cast<const float(*)[3]>(asked.normals.data()) + first,
+                             reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
+        };
     };
+    const Wave draws = draws_of(q);
     const Wave shared_draws = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
         for (std::size_t i = first; i < first + n; i += kShared)
             wavefront.sample(fast.at(normals[i]), u + i, kShared, &samples[i - first]);
@@ -157,9 +180,10 @@ bool run(const char* path) {
                           densities.data());
         };
     };
-    const auto at_points = [&q](std::size_t shared, const auto& ask) {
-        return [&q, shared, ask](const LocalEnvironmentView& view) { return each(view, q, shared, ask); };
+    const auto at_points_of = [](const Questions& asked, std::size_t shared, const auto& ask) {
+        return [&asked, shared, ask](const LocalEnvironmentView& view) { return each(view, asked, shared, ask); };
     };
+    const auto at_points = [&](std::size_t shared, const auto& ask) { return at_points_of(q, shared, ask); };
     const auto once = [&q](const Directions& directions) {
         return [&](const LocalEnvironmentView& view) { return density_each(view, q, directions); };
     };
@@ -170,6 +194,13 @@ bool run(const char* path) {
            of(q.anywhere));
     report("density of a drawn direction at a normal of its own", all, once(q.drawn), full_drawn, of(q.drawn));
     report("one of 16 densities at a point", all, at_points(kShared, drawn), full_drawn, shared_densities);
+    const Questions coherent(plain, true);
+    report("shading point and draw, coherent normals and numbers", all,
+           at_points_of(coherent, 1, draw_of(coherent)), full_draw_of(coherent), draws_of(coherent));
+    all.evicted = true;
+    report("shading point and draw, caches evicted", all, at_points(1, draw), full_draw, draws);
+    report("density of a uniform direction at a normal of its own, caches evicted", all, once(q.anywhere),
+           full_anywhere, of(q.anywhere));
     return true;
 }
 

@@ -13,10 +13,11 @@ local_file noon_grass_1k.hdr large
 local_file noon_grass_1k.hdr octahedral --domain octahedral
 local_file spruit_sunrise_4k.exr wide
 local_file noon_grass_1k.hdr fast --shape fast
+local_file spruit_sunrise_4k.exr fast_wide --shape fast
 
 . "$here/instructions.sh"
 {
-    "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide,fast}.acdf
+    "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide,fast,fast_wide}.acdf
     printf '\n| instructions, 1 MiB, noon_grass | shading point | and a draw | and a density |\n|---|---|---|---|\n'
     for how in tables walk; do
         if [ $how = walk ]; then options=(walk); else options=(); fi

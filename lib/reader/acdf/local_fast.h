@@ -53,28 +53,32 @@ ACDF_INLINE uint32_t acdf_local_fast_tile(const AcdfLocal* local, const uint32_t
 }
 
 /* How many sums up to lights are not above x. */
-ACDF_INLINE uint32_t acdf_local_fast_passed(const AcdfLocal* local, const AcdfLocalPoint* point, double x) {
+ACDF_INLINE uint32_t acdf_local_fast_passed(const AcdfLocalPoint* point, double x) {
     uint32_t i;
 #ifdef ACDF_SSE2
     const __m128d at = _mm_set1_pd(x);
     __m128i passed = _mm_setzero_si128();
-    for (i = 0; i < local->light_count; i += 2) /* of an odd number the last one has two equal sums */
+    for (i = 0; i < point->lit; i += 2)
         passed = _mm_sub_epi32(passed, _mm_castpd_si128(_mm_cmple_pd(_mm_loadu_pd(&point->light_end[i]), at)));
     return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi32(passed, _mm_shuffle_epi32(passed, 0x4E)));
 #else
     uint32_t k = 0;
-    for (i = 0; i < local->light_count; ++i) k += (uint32_t) !(x < point->light_end[i]);
+    for (i = 0; i < point->lit; ++i) k += (uint32_t) !(x < point->light_end[i]);
     return k;
 #endif
 }
 
-/* The light that x of the sum of weights draws, and what is left of x as a number in [0, 1]. */
-ACDF_INLINE uint32_t acdf_local_fast_light(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
-                                           double* u) {
-    uint32_t k = acdf_local_fast_passed(local, point, x);
-    while (k >= local->light_count || !(point->light[k] > 0.0)) --k; /* x is the whole of them, or rounded to it */
-    *u = acdf_unit_interval((x - (k > 0 ? point->light_end[k - 1] : 0.0)) / point->light[k]);
-    return k;
+/* The number of a light that the normal may see. */
+ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
+    return 2u * point->pair[i / 2] + i % 2;
+}
+
+/* Of those the one that x of the sum of weights draws, and what is left of x as a number in [0, 1]. */
+ACDF_INLINE uint32_t acdf_local_fast_light(const AcdfLocalPoint* point, double x, double* u) {
+    uint32_t i = acdf_local_fast_passed(point, x);
+    while (i >= point->lit || !(point->light[i] > 0.0)) --i; /* x is the whole of them, or rounded to it */
+    *u = acdf_unit_interval((x - (i > 0 ? point->light_end[i - 1] : 0.0)) / point->light[i]);
+    return i;
 }
 
 /* Draws a cell; u and range as in acdf_tree_sample. Returns its probability. */
@@ -85,9 +89,9 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const Acd
     AcdfFastGrid grid;
     uint32_t tile;
     if (x < point->lights || point->mix.count == 0) {
-        const uint32_t k = acdf_local_fast_light(local, point, x, u);
-        tile = local->lights[k].tile;
-        share.of = point->light[k];
+        const uint32_t i = acdf_local_fast_light(point, x, u);
+        tile = local->lights[acdf_local_lit(point, i)].tile;
+        share.of = point->light[i];
         share.all = point->sum * ACDF_FAST_STEPS;
     } else {
         const double most = 32767.0 * point->fast.whole * (1.0 - 0x1p-53);
@@ -101,6 +105,12 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const Acd
     return share;
 }
 
+/* The weight of the light that has a number and 1; of 0 of any. Without tables points have all. */
+ACDF_INLINE double acdf_local_fast_light_of(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t light) {
+    const uint32_t k = light - (uint32_t)(light > 0);
+    return local->tables ? acdf_tabled_weight(local, point, k) : point->light[k];
+}
+
 /* The cell of a square in its tile, which becomes `range`, and its probability: 0 where no sample can fall. */
 ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
                                                const uint32_t* square, AcdfRange* range) {
@@ -111,7 +121,7 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const Acd
     AcdfFastShare share = acdf_fast_share(&point->fast, tile);
     share.of *= point->unit;
     if (light > 0) { /* no row gives it any */
-        share.of = point->light[light - 1];
+        share.of = acdf_local_fast_light_of(local, point, light);
         share.all = point->sum;
     }
     share.of *= inside;

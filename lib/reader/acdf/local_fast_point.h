@@ -1,5 +1,5 @@
 /* Shading points of files of the fast shape (acdf/fast.h). Part of acdf/local.h. Where `draws` is 0 what only draws
- * need is left open: of rows where they are searched, of lights the sums up to each. */
+ * need is left open: where rows are searched, and the weight of each light. Points without are of facets. */
 #ifndef ACDF_LOCAL_FAST_POINT_H
 #define ACDF_LOCAL_FAST_POINT_H
 
@@ -21,12 +21,12 @@ ACDF_INLINE void acdf_local_fast_row(const AcdfLocal* local, uint32_t row, doubl
 /* acdf_local_table_rows of the fast shape. */
 ACDF_INLINE int acdf_local_fast_corners(const AcdfLocal* local, const float normal[3], const int draws,
                                         AcdfLocalPoint* out) {
-    const AcdfCornerRecord* corner[3];
     double weight[3], scale;
+    const AcdfFacet* facet = acdf_local_find_facet(local, normal, weight, &scale);
     int i;
-    if (!acdf_local_table_corners(local, normal, corner, weight, &scale)) return 0;
-    for (i = 0; i < 3; ++i) acdf_local_fast_row(local, corner[i]->row, weight[i], draws, out);
-    acdf_local_scaled(normal, scale, acdf_local_length(normal), out);
+    if (!facet) return 0;
+    for (i = 0; i < 3; ++i) acdf_local_fast_row(local, facet->row[i], weight[i], draws, out);
+    acdf_local_set_facet(normal, facet, scale, out);
     acdf_fast_mix(weight, ACDF_FAST_ROWS, &out->fast);
     return 1;
 }
@@ -36,7 +36,7 @@ ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3],
     AcdfNormalBins bins;
     int i;
     acdf_local_no_rows(normal, out);
-    if (local->tables && local->tables->corners && acdf_local_fast_corners(local, out->surface, 1, out)) return 1;
+    if (local->tables && local->tables->facets && acdf_local_fast_corners(local, out->surface, 1, out)) return 1;
     if (!acdf_local_bins(local, out->surface, &bins)) return 0;
     for (i = 0; i < bins.count; ++i) {
         const AcdfBin* bin = &local->bins[bins.bin[i]];
@@ -53,51 +53,62 @@ ACDF_FN int acdf_local_begin_fast(const AcdfLocal* local, const float normal[3],
     return 1;
 }
 
-/* Weighs the lights of the fast shape: each, the sums up to each, and all. Sums are made by twos, so that few wait
- * for each other. */
-ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, const int draws, AcdfLocalPoint* out) {
+/* Weighs the lights of the fast shape that the normal may see: each, the sums up to each, and all. Sums are made by
+ * twos, so that few wait for each other. */
+ACDF_INLINE void acdf_local_fast_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
     const double inverse = 1.0 / out->length;
     double end = 0.0, sum[2] = {0.0, 0.0};
     AcdfLightPair pair;
     uint32_t k;
     for (k = 0; k < local->light_count; k += 2) {
-        int i;
+        uint32_t i;
         acdf_local_light_pair(local, k, &pair);
-        for (i = 0; i < 2; ++i) sum[i] += out->light[k + (uint32_t)i] = acdf_pair_weight(out, &pair, i, inverse);
-        if (!draws) continue;
+        for (i = 0; i < 2; ++i) sum[i] += out->light[k + i] = acdf_pair_weight(out, &pair, i, inverse);
         out->light_end[k] = out->light[k] + end;
         end = out->light_end[k + 1] = (out->light[k + 1] + out->light[k]) + end;
+        out->pair[k / 2] = (uint8_t)(k / 2);
     }
+    out->lit = k;
     out->lights = sum[0] + sum[1];
 }
-/* The same by tables. */
-ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, const int draws, AcdfLocalPoint* out) {
+/* The same by tables; where a facet is known, all as acdf_facet_lights tells it. */
+ACDF_INLINE void acdf_local_tabled_lights(const AcdfLocal* local, AcdfLocalPoint* out) {
 #ifdef ACDF_SSE2
     const AcdfLightPair* pair = acdf_local_lights(local->tables);
     const AcdfHorizon horizon = acdf_horizon(out);
     const __m128d inverse = _mm_set1_pd(1.0 / out->length), zero = _mm_setzero_pd();
+    const AcdfFacet* facet = out->facet;
+    const uint32_t others = facet ? facet->others : 0xFFFFFFFFu;
+    uint32_t left = facet                    ? facet->seen
+                    : local->light_count > 0 ? 0xFFFFFFFFu >> (31 - (local->light_count - 1) / 2)
+                                             : 0;
     __m128d end = zero, sum = zero;
-    uint32_t k;
-    for (k = 0; k < local->light_count; k += 2, ++pair) {
-        const __m128d both = acdf_pair_weights(&horizon, pair, inverse);
-        _mm_storeu_pd(&out->light[k], both);
-        sum = _mm_add_pd(sum, both);
-        if (!draws) continue;
+    out->lit = 0;
+    for (; left; left &= left - 1) {
+        const uint32_t k = acdf_lowest_bit(left);
+        const __m128d both = acdf_pair_weights(&horizon, pair + k, inverse);
+        const __m128i is_other = _mm_set1_epi32(-(int32_t)(others >> k & 1u));
+        _mm_storeu_pd(&out->light[out->lit], both);
+        sum = _mm_add_pd(sum, _mm_and_pd(both, _mm_castsi128_pd(is_other)));
         end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
-        _mm_storeu_pd(&out->light_end[k], end); /* at once, as draws read them */
+        _mm_storeu_pd(&out->light_end[out->lit], end); /* at once, as draws read them */
         end = _mm_unpackhi_pd(end, end);
+        out->pair[out->lit / 2] = (uint8_t)k;
+        out->lit += 2;
     }
-    out->lights = _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+    out->lights = (facet ? acdf_facet_whole(out) : 0.0) + _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
 #else
-    acdf_local_fast_lights(local, draws, out);
+    acdf_local_fast_lights(local, out);
+    if (out->facet) out->lights = acdf_facet_lights(local, out);
 #endif
 }
 
 /* acdf_local_sum of the fast shape. */
 ACDF_INLINE void acdf_local_fast_sum(const AcdfLocal* local, const int draws, AcdfLocalPoint* out) {
     const double mixture = out->mix.weight[0] + out->mix.weight[1] + out->mix.weight[2];
-    if (local->tables) acdf_local_tabled_lights(local, draws, out);
-    else acdf_local_fast_lights(local, draws, out);
+    if (!local->tables) acdf_local_fast_lights(local, out);
+    else if (draws) acdf_local_tabled_lights(local, out);
+    else if (out->facet) out->lights = acdf_facet_lights(local, out);
     out->sum = out->lights + mixture;
     if (!(out->sum > 0.0)) return;
     out->step = mixture > 0.0 ? 32767.0 * out->fast.whole / mixture : 0.0;

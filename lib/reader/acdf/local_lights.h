@@ -98,7 +98,8 @@ ACDF_FN void acdf_local_light_pair(const AcdfLocal* local, uint32_t k, AcdfLight
 
 /* acdf_cap_weight of light i of two without a quotient, as the fast shape has it; `inverse` is that of the point's
  * length. */
-ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfLightPair* pair, int i, double inverse) {
+ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfLightPair* pair, uint32_t i,
+                                    double inverse) {
     const double height = point->normal[0] * pair->direction[0][i] + point->normal[1] * pair->direction[1][i] +
                           point->normal[2] * pair->direction[2][i];
     const double radius = pair->radius[i] * point->length, above = height + radius;
@@ -119,6 +120,51 @@ ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfLigh
     return _mm_or_pd(_mm_and_pd(is_cut, cut), _mm_andnot_pd(is_cut, whole));
 }
 #endif
+
+/* The same of light k by tables, without a branch. */
+ACDF_INLINE double acdf_tabled_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
+    const AcdfLightPair* pair = acdf_local_lights(local->tables) + k / 2;
+#ifdef ACDF_SSE2
+    const uint32_t i = k % 2;
+    const double height = point->normal[0] * pair->direction[0][i] + point->normal[1] * pair->direction[1][i] +
+                          point->normal[2] * pair->direction[2][i];
+    const double radius = pair->radius[i] * point->length, above = height + radius;
+    const double cut = above * above * (pair->quarter[i] * (1.0 / point->length));
+    const __m128d h = _mm_set_sd(height);
+    const __m128d whole = _mm_mul_sd(_mm_set_sd(pair->share[i]), _mm_max_sd(h, _mm_setzero_pd()));
+    const __m128d is_cut = _mm_cmplt_sd(_mm_andnot_pd(_mm_set1_pd(-0.0), h), _mm_set_sd(radius));
+    return _mm_cvtsd_f64(_mm_or_pd(_mm_and_pd(is_cut, _mm_set_sd(cut)), _mm_andnot_pd(is_cut, whole)));
+#else
+    return acdf_pair_weight(point, pair, k % 2, 1.0 / point->length);
+#endif
+}
+
+/* The sum of the weights of the lights that are above all horizons in the facet of a normal. */
+ACDF_INLINE double acdf_facet_whole(const AcdfLocalPoint* point) {
+    const double* whole = point->facet->whole;
+    return point->normal[0] * whole[0] + point->normal[1] * whole[1] + point->normal[2] * whole[2];
+}
+/* The sum of the weights of all lights at a normal whose facet is known. */
+ACDF_INLINE double acdf_facet_lights(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    const AcdfLightPair* pair = acdf_local_lights(local->tables);
+    const double inverse = 1.0 / point->length;
+    uint32_t left = point->facet->others;
+#ifdef ACDF_SSE2
+    const AcdfHorizon horizon = acdf_horizon(point);
+    __m128d sum = _mm_setzero_pd();
+    for (; left; left &= left - 1)
+        sum = _mm_add_pd(sum, acdf_pair_weights(&horizon, pair + acdf_lowest_bit(left), _mm_set1_pd(inverse)));
+    return acdf_facet_whole(point) + _mm_cvtsd_f64(_mm_add_sd(sum, _mm_unpackhi_pd(sum, sum)));
+#else
+    double sum[2] = {0.0, 0.0};
+    for (; left; left &= left - 1) {
+        const AcdfLightPair* of = pair + acdf_lowest_bit(left);
+        sum[0] += acdf_pair_weight(point, of, 0, inverse);
+        sum[1] += acdf_pair_weight(point, of, 1, inverse);
+    }
+    return acdf_facet_whole(point) + (sum[0] + sum[1]);
+#endif
+}
 
 #ifdef __cplusplus
 }

@@ -56,15 +56,18 @@ typedef struct AcdfLocalPoint {
     AcdfMixture mix;  /* of the blend; the weights are those that reach the place */
     const uint8_t* codes[ACDF_MAX_ROWS_MIXED]; /* the rows in the runtime tables, where there are such */
     const double* parts[ACDF_MAX_ROWS_MIXED];  /* what they give to each tile, where there are such */
-    double lights;                             /* sum of the weights of the lights */
-    double sum;                                /* of all weights */
-    AcdfPlaceMixture place;                    /* empty: the position is not known, or does not matter */
-    AcdfWindows windows;                       /* as the place sees them; its count is 0 where there are none */
-    AcdfFastMixture fast;                      /* of the fast shape; `mix` has the weights, too */
-    double step;                               /* of the fast shape: 32767 times the mixture's whole a weight */
-    double unit;                               /* of the fast shape: that of acdf_fast_share, of `sum` */
-    double light[ACDF_MAX_LIGHTS];             /* of the fast shape: weights of the lights, */
-    double light_end[ACDF_MAX_LIGHTS];         /* and their sums from the first one to each */
+    const AcdfFacet* facet;            /* that of the normal in the runtime tables; null: they do not tell */
+    double lights;                     /* sum of the weights of the lights */
+    double sum;                        /* of all weights */
+    AcdfPlaceMixture place;            /* empty: the position is not known, or does not matter */
+    AcdfWindows windows;               /* as the place sees them; its count is 0 where there are none */
+    AcdfFastMixture fast;              /* of the fast shape; `mix` has the weights, too */
+    double step;                       /* of the fast shape: 32767 times the mixture's whole a weight */
+    double unit;                       /* of the fast shape: that of acdf_fast_share, of `sum` */
+    uint32_t lit;                      /* of the fast shape: how many lights the normal may see, by twos; */
+    uint8_t pair[ACDF_MAX_LIGHTS / 2]; /* the number of each two, */
+    double light[ACDF_MAX_LIGHTS];     /* their weights, */
+    double light_end[ACDF_MAX_LIGHTS]; /* and the sums of these from the first one to each */
 } AcdfLocalPoint;
 
 #ifdef __cplusplus

@@ -261,7 +261,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
     tile = acdf_local_fast_tile(local, square, range);
     ACDF_PREFETCH(acdf_local_tile(local->tables, tile));
     acdf_local_no_rows(normal, &point);
-    if (!local->tables->corners || !acdf_local_fast_corners(local, point.surface, 0, &point))
+    if (!local->tables->facets || !acdf_local_fast_corners(local, point.surface, 0, &point))
         return acdf_local_any_new_pdf(local, normal, direction);
     acdf_local_fast_sum(local, 0, &point);
     if (point.what != ACDF_LOCAL_FAST) return 0.0f;

@@ -26,15 +26,15 @@ ACDF_INLINE void acdf_local_tabled_row(const AcdfLocal* local, uint32_t row, Acd
 
 /* Finds the rows of a normal within a triangle. Returns 0 where tables do not tell. */
 ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    const AcdfCornerRecord* corner[3];
     double weight[3], scale;
+    const AcdfFacet* facet = acdf_local_find_facet(local, normal, weight, &scale);
     int i;
-    if (!acdf_local_table_corners(local, normal, corner, weight, &scale)) return 0;
+    if (!facet) return 0;
     for (i = 0; i < 3; ++i) {
-        acdf_local_tabled_row(local, corner[i]->row, out);
-        acdf_mixture_add(&out->mix, &local->blend, corner[i]->row, weight[i]);
+        acdf_local_tabled_row(local, facet->row[i], out);
+        acdf_mixture_add(&out->mix, &local->blend, facet->row[i], weight[i]);
     }
-    acdf_local_scaled(normal, scale, acdf_local_length(normal), out);
+    acdf_local_set_facet(normal, facet, scale, out);
     return 1;
 }
 
@@ -68,7 +68,7 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
     AcdfNormalBins bins;
     int i;
     acdf_local_nothing(normal, out);
-    if (local->tables && local->tables->corners && acdf_local_table_rows(local, out->surface, out)) return 1;
+    if (local->tables && local->tables->facets && acdf_local_table_rows(local, out->surface, out)) return 1;
     if (!acdf_local_bins(local, out->surface, &bins)) return 0;
     if (!local->blend.tiles) {
         const AcdfBin* bin = &local->bins[acdf_nearest_bin(&bins)];
@@ -88,20 +88,12 @@ ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], Acdf
 
 /* Weighs lights and mixture together; `visible`: what of each light arrives, null: all. */
 ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, AcdfLocalPoint* out) {
-    double weight[2];
     uint32_t k;
-    if (local->tables && !visible) {
-        const AcdfLightPair* pair = acdf_local_lights(local->tables);
-        const AcdfHorizon horizon = acdf_horizon(out);
-        for (k = 0; k < local->light_count; k += 2, ++pair) {
-            acdf_store_weights(acdf_light_pair_weights(pair, &horizon), weight);
-            out->lights += weight[0];
-            out->lights += weight[1];
-        }
-    } else
+    if (out->facet && !visible) out->lights = acdf_facet_lights(local, out);
+    else
         for (k = 0; k < local->light_count; ++k) {
-            weight[0] = acdf_light_weight(&local->lights[k], out);
-            out->lights += visible ? weight[0] * visible[k] : weight[0];
+            const double weight = acdf_light_weight(&local->lights[k], out);
+            out->lights += visible ? weight * visible[k] : weight;
         }
     out->sum = out->lights + acdf_mixture_sum(&out->mix);
     if (out->sum > 0.0) out->what = ACDF_LOCAL_BLEND;

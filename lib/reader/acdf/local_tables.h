@@ -25,18 +25,22 @@ typedef struct AcdfTilePiece {
     double area;        /* 2 pi times the cell's columns times its acdf_grid_height */
 } AcdfTilePiece;
 
-/* A corner of the octahedron of normals (acdf/normals.h). */
-typedef struct AcdfCornerRecord {
-    double length; /* from the middle, in steps of an edge */
-    float share;   /* of its bin; 0 also where that is not stored */
-    uint32_t row;  /* of the bin */
-} AcdfCornerRecord;
-
 /* Two lights, as acdf_light_weight needs them; of an odd number the last one has share 0. */
 typedef struct AcdfLightPair {
     double direction[3][2], radius[2], share[2];
     double quarter[2]; /* of the share to the radius */
 } AcdfLightPair;
+
+/* A triangle of the octahedron of normals (acdf/normals.h): lights as its normals see them, and its corners in the
+ * order of acdf_octahedral_bins. */
+typedef struct AcdfFacet {
+    double whole[3];  /* sum of share times direction of the lights that are above the horizons of all, by pairs */
+    uint32_t others;  /* bit k: of pair k of lights one is neither above the horizons of all nor below */
+    uint32_t seen;    /* bit k: of pair k some normal may see one */
+    double length[3]; /* of corners from the middle, in steps of an edge */
+    float share[3];   /* of their bins; 0 also where that is not stored */
+    uint32_t row[3];  /* of the bins */
+} AcdfFacet;
 
 /* Offsets in words from the start of this struct, which the arrays follow. */
 typedef struct AcdfLocalTables {
@@ -47,16 +51,16 @@ typedef struct AcdfLocalTables {
     uint32_t pieces;        /* AcdfTilePiece, `count` of them; 0: the file is too large for such */
     uint32_t parts;         /* f64 a tile of each row: what part of the row it has; 0: as pieces */
     uint32_t heights;       /* f64, one more than there are rows: z between them; 0: not on a lat-long grid */
-    uint32_t corners;       /* AcdfCornerRecord, in two squares of (2 n + 1)^2, north and south, of x + n and
-                               (y + n) (2 n + 1); 0: the octahedron is too large, or there is none */
-    uint32_t lights;        /* AcdfLightPair, one two lights */
-    uint32_t middles;       /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and of the fast shape its
-                               solid angle, else 0 */
-    uint32_t hearts;        /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
-                               from it by the brighter halves; 0: there is no room */
-    uint32_t octahedral;    /* whether cells lie on the octahedral square */
-    uint32_t upper;         /* of the fast shape: u16, as AcdfFast has them */
-    AcdfTileBlocks blocks;  /* of the fast shape */
+    uint32_t facets;       /* AcdfFacet, n^2 of each octant, of acdf_local_facet; 0: the octahedron is too large, or
+                              there is none */
+    uint32_t lights;       /* AcdfLightPair, one two lights */
+    uint32_t middles;      /* f32, 4 a tile: the direction (unit to 1e-6) of its middle, and of the fast shape its
+                              solid angle, else 0 */
+    uint32_t hearts;       /* u16 a split of each row, numbered and counted as in `tiles`: the tile that is reached
+                              from it by the brighter halves; 0: there is no room */
+    uint32_t octahedral;   /* whether cells lie on the octahedral square */
+    uint32_t upper;        /* of the fast shape: u16, as AcdfFast has them */
+    AcdfTileBlocks blocks; /* of the fast shape */
     uint32_t group_hearts; /* of the fast shape: u8, of each row and group its tile that gets most, as many of a row
                               as it has ends; 0: there are more than cuts have */
     uint32_t group_angles; /* f32: the solid angle of each group, and 0 up to as many as a row has ends */
@@ -73,8 +77,8 @@ ACDF_INLINE const double* acdf_local_parts(const AcdfLocalTables* tables, uint32
 ACDF_INLINE const double* acdf_local_heights(const AcdfLocalTables* tables) {
     return (const double*)(const void*)(acdf_local_words(tables) + tables->heights);
 }
-ACDF_INLINE const AcdfCornerRecord* acdf_local_corners(const AcdfLocalTables* tables) {
-    return (const AcdfCornerRecord*)(const void*)(acdf_local_words(tables) + tables->corners);
+ACDF_INLINE const AcdfFacet* acdf_local_facets(const AcdfLocalTables* tables) {
+    return (const AcdfFacet*)(const void*)(acdf_local_words(tables) + tables->facets);
 }
 ACDF_INLINE const AcdfLightPair* acdf_local_lights(const AcdfLocalTables* tables) {
     return (const AcdfLightPair*)(const void*)(acdf_local_words(tables) + tables->lights);

@@ -86,14 +86,17 @@ ACDF_METHOD int GroupRating<AnyLobe>::add(int number, int entry, float light, fl
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::measure() noexcept {
     const float* angles = acdf_local_group_angles(of_.light.tables);
-    const int ends = static_cast<int>(of_.light.fast.ends), lit = static_cast<int>(of_.light.light_count);
+    const int ends = static_cast<int>(of_.light.fast.ends), lights = static_cast<int>(of_.light.light_count);
     const double of_all = 1.0 / of_.at.sum;
     const float unit = static_cast<float>(255.0 * of_.at.unit);
     std::int32_t masses[ACDF_FAST_CUT_GROUPS];
+    float weight[ACDF_MAX_LIGHTS] = {};
     int count = 0;
     first_entry_ = static_cast<int>(acdf_fast_cut_lights(&of_.light));
     acdf_fast_group_masses(&of_.light.fast, &of_.at.fast, masses);
-    for (int i = 0; i < lit; ++i) count = add(count, i, static_cast<float>(of_.at.light[i] * of_all), 0.0f);
+    for (std::uint32_t i = 0; i < of_.at.lit; ++i)
+        weight[acdf_local_lit(&of_.at, i)] = static_cast<float>(of_.at.light[i] * of_all);
+    for (int i = 0; i < lights; ++i) count = add(count, i, weight[i], 0.0f);
     add(count, first_entry_ - 1, 0.0f, 0.0f);
     lights_ = ++count;
     for (int i = 0; i < ends; ++i)

@@ -143,23 +143,80 @@ void PiecesMaker::add_parts(const std::uint8_t* row, u32 node, double product, d
     out[node & ~ACDF_TILE_FLAG] = product;
 }
 
-constexpr u32 kMostSubdivisions = 32; // of an octahedron whose corners are told in a table
+constexpr u32 kMostSubdivisions = 32; // of an octahedron whose triangles are told in a table
 
-std::size_t corner_words(const AcdfLocal& local) {
-    const std::size_t n = local.subdivisions, side = 2 * n + 1;
-    return n > 0 && n <= kMostSubdivisions ? whole_lines(2 * side * side * sizeof(AcdfCornerRecord) / 4) : 0;
+constexpr double kFacetMargin = 0x1p-6; // of a length: so far from a horizon sums lose no more than that
+
+std::size_t facet_words(const AcdfLocal& local) {
+    const std::size_t n = local.subdivisions;
+    return n > 0 && n <= kMostSubdivisions ? whole_lines(8 * n * n * sizeof(AcdfFacet) / 4) : 0;
 }
 
-void place_corners(const AcdfLocal& local, AcdfCornerRecord* out) {
+// Where normals between three corners see a light: 1 above all their horizons, -1 below all, 0 neither.
+int side_of(const AcdfLight& light, const double (*corner)[3]) {
+    double least = 1e300, most = -1e300, length = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const double* const n = corner[i];
+        double height = 0.0;
+        for (int axis = 0; axis < 3; ++axis) height += n[axis] * static_cast<double>(light.direction[axis]);
+        least = std::min(least, height);
+        most = std::max(most, height);
+        length = std::max(length, std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]));
+    }
+    /* heights are linear in normals, none of which is longer */
+    const double far = (static_cast<double>(light.radius) + kFacetMargin) * length;
+    return least >= far ? 1 : most <= -far ? -1 : 0;
+}
+
+// What normals between three corners see of lights.
+void place_lights_of(const AcdfLocal& local, const double (*corner)[3], AcdfFacet& facet) {
+    for (u32 k = 0; k < local.light_count; k += 2) {
+        const u32 end = std::min(k + 2, local.light_count);
+        int side[2] = {-1, -1};
+        for (u32 i = k; i < end; ++i) side[i - k] = side_of(local.lights[i], corner);
+        if (side[0] >= 0 || side[1] >= 0) facet.seen |= 1u << k / 2;
+        if (side[0] == 0 || side[1] == 0) {
+            facet.others |= 1u << k / 2;
+            continue;
+        }
+        for (u32 i = k; i < end; ++i)
+            for (int axis = 0; axis < 3 && side[i - k] > 0; ++axis)
+                facet.whole[axis] += static_cast<double>(local.lights[i].share) *
+                                     static_cast<double>(local.lights[i].direction[axis]);
+    }
+}
+
+// The triangle between three corners.
+void place_facet(const AcdfLocal& local, const std::int32_t (*corner)[3], AcdfFacet& facet) {
+    double at[3][3];
+    for (int i = 0; i < 3; ++i) {
+        const std::int32_t *const c = corner[i], square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        for (int axis = 0; axis < 3; ++axis) at[i][axis] = static_cast<double>(c[axis]);
+        const AcdfBin& bin = local.bins[acdf_octahedral_corner(local.subdivisions, c[0], c[1], c[2])];
+        if (bin.root == ACDF_NO_ROOT) continue;
+        facet.length[i] = std::sqrt(static_cast<double>(square));
+        facet.share[i] = bin.share;
+        facet.row[i] = bin.root;
+    }
+    place_lights_of(local, at, facet);
+}
+
+// All triangles, as acdf_local_facet numbers them.
+void place_facets(const AcdfLocal& local, AcdfFacet* out) {
     const auto n = static_cast<std::int32_t>(local.subdivisions);
-    for (std::int32_t south = 0; south < 2; ++south)
-        for (std::int32_t y = -n; y <= n; ++y)
-            for (std::int32_t x = -n; x <= n; ++x, ++out) {
-                const std::int32_t height = n - std::abs(x) - std::abs(y), z = south ? -height : height;
-                if (height < 0) continue;
-                const AcdfBin& bin = local.bins[acdf_octahedral_corner(local.subdivisions, x, y, z)];
-                if (bin.root == ACDF_NO_ROOT) continue;
-                *out = {std::sqrt(static_cast<double>(x * x + y * y + z * z)), bin.share, bin.root};
+    for (std::int32_t octant = 0; octant < 8; ++octant)
+        for (std::int32_t x = 0; x < n; ++x)
+            for (std::int32_t y = 0; y < n; ++y, ++out) {
+                const bool down = x + y >= n; // counted from the other side
+                std::int32_t corner[3][3];
+                for (int i = 0; i < 3; ++i) {
+                    std::int32_t* const c = corner[i];
+                    c[0] = (down ? n - 1 - x : x) + (down != (i == 0));
+                    c[1] = (down ? n - 1 - y : y) + (down != (i == 1));
+                    c[2] = n - c[0] - c[1];
+                    for (int axis = 0; axis < 3; ++axis) c[axis] = octant >> axis & 1 ? -c[axis] : c[axis];
+                }
+                place_facet(local, corner, *out);
             }
 }
 
@@ -245,15 +302,15 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     std::size_t at = sizeof(AcdfLocalTables) / 4;
     TileTablesMaker tiles(local.blend, env.columns, env.rows, !local.fast.grid);
     if (!tiles.make()) return nullptr;
-    const std::size_t corners = corner_words(local),
-                      lights = whole_lines((local.light_count + 1) / 2 * sizeof(AcdfLightPair) / 4);
+    const std::size_t lights = whole_lines((std::max(local.light_count, 1u) + 1) / 2 * sizeof(AcdfLightPair) / 4),
+                      facets = facet_words(local);
     const std::size_t group_hearts = group_heart_words(local), group_angles = whole_lines(local.fast.ends);
     const std::size_t groups = group_hearts > 0 ? group_hearts + group_angles : 0;
     const std::size_t middles = whole_lines(4 * std::size_t{local.blend.tiles->tile_count});
     TileBlocksMaker blocks;
     if (local.fast.grid && !blocks.make(local.blend, env.columns, env.rows)) return nullptr;
     const std::size_t upper = local.fast.grid ? upper_words(local) + blocks.words() : 0;
-    std::size_t words = at + tiles.words() + heights + corners + lights + middles + upper + groups;
+    std::size_t words = at + tiles.words() + heights + lights + facets + middles + upper + groups;
     if (4 * words > most_bytes) return nullptr;
     PiecesMaker pieces(local, tree_units, most_bytes - 4 * words);
     const bool small = !local.fast.grid && pieces.make();
@@ -275,10 +332,10 @@ AcdfLocalTables* make_local_tables(const AcdfLocal& local, u32 tree_units, std::
     tables->lights = static_cast<u32>(at);
     place_lights(local, reinterpret_cast<AcdfLightPair*>(out + at));
     at += lights;
-    if (corners > 0) {
-        tables->corners = static_cast<u32>(at);
-        place_corners(local, reinterpret_cast<AcdfCornerRecord*>(out + at));
-        at += corners;
+    if (facets > 0) {
+        tables->facets = static_cast<u32>(at);
+        place_facets(local, reinterpret_cast<AcdfFacet*>(out + at));
+        at += facets;
     }
     if (latlong) {
         tables->heights = static_cast<u32>(at);

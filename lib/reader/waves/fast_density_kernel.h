@@ -152,8 +152,7 @@ ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) 
     AcdfLocalPoint point;
     for (int axis = 0; axis < 3; ++axis) point.normal[axis] = f->normal[axis][i];
     point.length = f->length[i];
-    f->cells.of[i] =
-        acdf_pair_weight(&point, acdf_local_lights(local.tables) + k / 2, (int)(k % 2), 1.0 / point.length);
+    f->cells.of[i] = acdf_tabled_weight(&local, &point, k);
     f->cells.all[i] = f->sum[i] * ACDF_FAST_STEPS;
 }
 

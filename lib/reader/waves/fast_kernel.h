@@ -15,11 +15,10 @@ namespace {
 
 // ---- lights ----------------------------------------------------------------------------------------------------
 
-/* How many sums up to lights are not above x; of an odd number the last one has two equal sums. */
-ACDF_LANE Integer lights_passed(const AcdfLocal& local, const FastPoints<true>& p, Vector x) {
+/* How many sums up to lights are not above x. */
+ACDF_LANE Integer lights_passed(const FastPoints<true>& p, Vector x) {
     Integer passed = {};
-    for (std::uint32_t k = 0; k < local.light_count; k += 2)
-        passed -= (p.light_end[k] <= x) + (p.light_end[k + 1] <= x);
+    for (std::uint32_t k = 0; k < p.lit; k += 2) passed -= (p.light_end[k] <= x) + (p.light_end[k + 1] <= x);
     return passed;
 }
 
@@ -30,17 +29,18 @@ ACDF_LANE unsigned draw_lights(const AcdfLocal& local, const FastPoints<true>& p
                                double* weight, double* before, std::int32_t* tile) {
     alignas(64) long long passed[ACDF_WIDTH];
     unsigned lost = 0;
-    stored(passed, lights_passed(local, p, x));
+    stored(passed, lights_passed(p, x));
     for (; mask; mask &= mask - 1) {
         const std::uint32_t lane = acdf_lowest_bit(mask), k = (std::uint32_t)passed[lane];
-        if (k >= local.light_count || !(p.light[k][lane] > 0.0)) {
+        if (k >= p.lit || !(p.light[k][lane] > 0.0)) {
             lost |= 1u << lane;
             continue;
         }
         weight[lane] = p.light[k][lane];
         before[lane] = k > 0 ? p.light_end[k - 1][lane] : 0.0;
-        tile[lane] = (std::int32_t)local.lights[k].tile;
-        ACDF_PREFETCH(acdf_local_tile(local.tables, local.lights[k].tile));
+        const std::uint32_t number = 2u * p.pair[k / 2] + k % 2;
+        tile[lane] = (std::int32_t)local.lights[number].tile;
+        ACDF_PREFETCH(acdf_local_tile(local.tables, local.lights[number].tile));
     }
     return lost;
 }

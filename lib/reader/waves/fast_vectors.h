@@ -24,14 +24,6 @@ ACDF_LANE Vector to_doubles(Ints x) { return __builtin_convertvector(x, Vector);
 ACDF_LANE Ints to_integers(Vector x) { return __builtin_convertvector(x, Ints); } // rounded towards 0
 ACDF_LANE Integer to_indices(Ints x) { return __builtin_convertvector(x, Integer); }
 
-ACDF_LANE Vector above_zero(Vector x) {
-#if ACDF_WIDTH == 8
-    return (Vector)_mm512_max_pd((__m512d)x, _mm512_setzero_pd());
-#else
-    return (Vector)_mm256_max_pd((__m256d)x, _mm256_setzero_pd());
-#endif
-}
-
 /* acdf_fast_scaled */
 ACDF_LANE Vector scaled(Vector u, Vector whole) {
     const Vector x = u * whole, most = whole * (1.0 - 0x1p-53);
@@ -132,7 +124,10 @@ template <bool Draws>
 struct FastPoints : Corners {
     Integer group[kRows], tile[kRows], upper[kRows];
     Ints share[kRows]; // AcdfFastMixture::weight
-    Vector whole, lights, sum, step, unit, light[ACDF_MAX_LIGHTS], light_end[ACDF_MAX_LIGHTS];
+    Vector whole, lights, sum, step, unit, light[Draws ? ACDF_MAX_LIGHTS : 1],
+        light_end[Draws ? ACDF_MAX_LIGHTS : 1];
+    std::uint32_t lit; // as AcdfLocalPoint has them
+    std::uint8_t pair[ACDF_MAX_LIGHTS / 2];
 };
 
 /* acdf_fast_mix */
@@ -145,29 +140,20 @@ ACDF_LANE void mix_rows(Vector mixture, FastPoints<Draws>* out) {
 }
 
 /* acdf_local_tabled_lights; of densities only their sum. */
-template <bool Each>
-ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<Each>* out) {
-    const AcdfLightPair* pair = acdf_local_lights(local.tables);
-    const Vector length = out->length, inverse = 1.0 / length;
-    Vector end = all(0.0), sum[2] = {end, end};
-    for (std::uint32_t k = 0; k < local.light_count; k += 2, ++pair) {
-        Vector weight[2];
-        for (int i = 0; i < 2; ++i) {
-            const Vector height =
-                (out->normal[0] * pair->direction[0][i] + out->normal[1] * pair->direction[1][i]) +
-                out->normal[2] * pair->direction[2][i];
-            const Vector radius = pair->radius[i] * length, above = height + radius;
-            const Vector cut = above * above * (pair->quarter[i] * inverse);
-            const Vector whole = pair->share[i] * above_zero(height);
-            weight[i] = choose(less(absolute(height), radius), cut, whole);
-            sum[i] += weight[i];
-            if (Each) out->light[k + (std::uint32_t)i] = weight[i];
-        }
-        if (!Each) continue;
-        out->light_end[k] = weight[0] + end;
-        out->light_end[k + 1] = end = (weight[1] + weight[0]) + end;
-    }
-    out->lights = sum[0] + sum[1];
+ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<true>* out) {
+    Vector end = all(0.0);
+    out->lit = 0;
+    out->lights = facet_lights<true>(local, *out, [&](std::uint32_t k, const Vector* weight) {
+        const std::uint32_t at = out->lit;
+        for (std::uint32_t i = 0; i < 2; ++i) out->light[at + i] = weight[i];
+        out->light_end[at] = weight[0] + end;
+        out->light_end[at + 1] = end = (weight[1] + weight[0]) + end;
+        out->pair[at / 2] = (std::uint8_t)k;
+        out->lit += 2;
+    });
+}
+ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<false>* out) {
+    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
 }
 
 /* acdf_local_at of files of the fast shape. */
@@ -190,7 +176,7 @@ ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Fast
 
 /* One point in all lanes, which serves_waves has approved. */
 template <bool Draws>
-ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, FastPoints<Draws>* out) {
+ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoints<Draws>* out) {
     const AcdfFastMixture& mix = point.fast;
     for (int i = 0; i < kRows; ++i) {
         out->group[i] = Integer{} + (long long)(std::uintptr_t)mix.group[i];
@@ -198,11 +184,12 @@ ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Fa
         out->upper[i] = Integer{} + (long long)(std::uintptr_t)mix.upper[i];
         out->share[i] = Ints{} + mix.weight[i];
     }
-    for (std::uint32_t k = 0; Draws && k < local.light_count; k += 2)
-        for (std::uint32_t i = k; i < k + 2; ++i) {
-            out->light[i] = all(point.light[i]);
-            out->light_end[i] = all(point.light_end[i]);
-        }
+    out->lit = Draws ? point.lit : 0;
+    for (std::uint32_t i = 0; i < out->lit; ++i) {
+        out->light[i] = all(point.light[i]);
+        out->light_end[i] = all(point.light_end[i]);
+        out->pair[i / 2] = point.pair[i / 2];
+    }
     for (int i = 0; i < 3; ++i) out->normal[i] = all(point.normal[i]);
     out->length = all(point.length);
     out->whole = all(mix.whole);

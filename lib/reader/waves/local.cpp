@@ -64,7 +64,7 @@ void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count)
 
 // Whether vectors serve a file, and a point of such.
 bool serves_waves(const AcdfLocal& local) {
-    return local.tables && local.tables->corners && local.cosine_share == 0.0 && local.blend.tiles->tile_count > 1;
+    return local.tables && local.tables->facets && local.cosine_share == 0.0 && local.blend.tiles->tile_count > 1;
 }
 bool serves_waves(const AcdfLocalPoint& point) {
     return (point.what == ACDF_LOCAL_BLEND || point.what == ACDF_LOCAL_FAST) && point.mix.count == kRows &&
@@ -106,6 +106,10 @@ void LocalWavefront::sample(const float (*normals)[3], const double (*u)[2], std
     if (const LocalLoops* const loops = loops_of(local_, instructions_))
         return loops->sample(local_, normals, u, count, out);
 #endif
+    if (local_.fast.grid) { // nothing walks
+        for (std::size_t i = 0; i < count; ++i) out[i] = alone::local_sample(local_, normals[i], u[i]);
+        return;
+    }
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     Lane lane[kBlock];
     for (std::size_t first = 0; first < count; first += kBlock) {

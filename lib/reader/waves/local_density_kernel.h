@@ -87,7 +87,7 @@ struct Seen {
     alignas(64) long long row[kRows][kRoom];
 };
 
-ACDF_LANE void keep(const Points& p, std::size_t at, Seen* seen) {
+ACDF_LANE void keep(const Points<false>& p, std::size_t at, Seen* seen) {
     for (int i = 0; i < kRows; ++i) {
         stored(&seen->weight[i][at], p.weight[i]);
         stored(&seen->row[i][at], p.codes[i]);
@@ -193,12 +193,12 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     Cells cells;
     Boxes done;
     alignas(64) double given[kRoom];
-    Points room;
+    Points<false> room;
     std::uint64_t lost = 0;
     cells.count = count;
     for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
         const std::size_t more = lanes_there(first, count);
-        const Points& p = at(first, more, &room);
+        const Points<false>& p = at(first, more, &room);
         keep(p, first, &seen);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << more) - 1u)) << first;
     }

@@ -29,8 +29,8 @@ struct Walks {
 // ---- numbers ---------------------------------------------------------------------------------------------------
 
 /* acdf_local_draw_light of the lanes of a mask, into cells; of tiles the numbers of the lights. */
-ACDF_LANE void draw_lights(const AcdfLocal& local, const Points& p, const Vector u[2], unsigned mask, Integer lane,
-                           Cells* cells) {
+ACDF_LANE void draw_lights(const AcdfLocal& local, const Points<true>& p, const Vector u[2], unsigned mask,
+                           Integer lane, Cells* cells) {
     Vector x = u[0] * p.sum, weight = all(0.0), number = all(0.0);
     Mask active = all_lanes();
     for (std::uint32_t k = 0; k < local.light_count;) {
@@ -54,7 +54,7 @@ ACDF_LANE void draw_lights(const AcdfLocal& local, const Points& p, const Vector
 
 /// Where the codes of lanes are: in rows of each lane's own, and in those of one point.
 struct OwnRows {
-    ACDF_LANE_MEMBER void keep(const Points& p, unsigned mask, Walks* walks) const {
+    ACDF_LANE_MEMBER void keep(const Points<true>& p, unsigned mask, Walks* walks) const {
         const std::size_t at = walks->count;
         for (int i = 0; i < kRows; ++i) store_packed(&walks->row[i][at], p.codes[i], mask);
         for (std::size_t k = at; k < at + (std::size_t)__builtin_popcount(mask); ++k)
@@ -70,7 +70,7 @@ struct OwnRows {
 };
 struct SameRows {
     const std::uint8_t* const* row;
-    ACDF_LANE_MEMBER void keep(const Points&, unsigned, Walks*) const {}
+    ACDF_LANE_MEMBER void keep(const Points<true>&, unsigned, Walks*) const {}
     ACDF_LANE_MEMBER void end(Walks*, std::size_t) const {}
     ACDF_LANE_MEMBER void bytes(const Walks&, std::size_t, Integer place,
                                 const std::uint8_t* byte[kRows][ACDF_WIDTH]) const {
@@ -83,7 +83,7 @@ struct SameRows {
 
 /* acdf_tile_walk_begin of the lanes of a mask, at split `root`. */
 template <class Rows>
-ACDF_LANE void begin_walks(const Points& p, const Rows& rows, const Vector u[2], unsigned mask, Integer lane,
+ACDF_LANE void begin_walks(const Points<true>& p, const Rows& rows, const Vector u[2], unsigned mask, Integer lane,
                            std::uint32_t root, Walks* walks) {
     const std::size_t at = walks->count;
     for (int i = 0; i < kRows; ++i) store_packed(&walks->weight[i][at], p.weight[i], mask);
@@ -248,7 +248,7 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
     Walks walks;
     Cells cells;
     Boxes done;
-    Points room;
+    Points<true> room;
     std::uint64_t lost = 0;
     walks.count = cells.count = 0;
     for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
@@ -259,7 +259,7 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
         const Integer lane = numbers_from(first);
         if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
         load_pairs(more < ACDF_WIDTH ? last : u + first, given);
-        const Points& p = at(first, more, &room);
+        const Points<true>& p = at(first, more, &room);
         const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
         const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.lights)) & served;
         lost |= (std::uint64_t)(served ^ there) << first;
@@ -285,8 +285,8 @@ ACDF_LANE SameRows rows_of(const AcdfLocalPoint& point) { return {point.codes}; 
 template <class Of>
 ACDF_LANE void sample_all(const AcdfLocal& local, Of of, const double (*u)[2], std::size_t count,
                           AcdfDirectionSample* out) {
-    draws_in_blocks<Points>(local, of, u, count, out,
-                            [&](const auto&... rest) { draw_block(local, rows_of(of), rest...); });
+    draws_in_blocks<Points<true>>(local, of, u, count, out,
+                                  [&](const auto&... rest) { draw_block(local, rows_of(of), rest...); });
 }
 
 } // namespace

@@ -69,7 +69,7 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
     const auto* const pieces = (const AcdfTilePiece*)(const void*)(s.tables + local.tables->pieces);
     Seen seen;
     PieceLanes lanes;
-    Points room;
+    Points<false> room;
     float last[kSearched][3] = {};
     alignas(64) double given[kRoom], probability[kRoom];
     if (count < kSearched) std::memcpy(last, directions, count * sizeof *directions);
@@ -77,7 +77,7 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
     ask_for_blocks(s, lanes.sought);
     for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
         const std::size_t more = lanes_there(first, count);
-        const Points& p = at(first, more, &room);
+        const Points<false>& p = at(first, more, &room);
         keep(p, first, &seen);
         for (int k = 0; k < kRows; ++k) stored(&seen.row[k][first], parts_of(local, p.row[k]));
         lost |= (~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
@@ -118,11 +118,11 @@ template <class Of>
 ACDF_LANE void pdf_all(const AcdfLocal& local, Of of, const float (*directions)[3], std::size_t count, float* out) {
     if (local.tables->pieces) {
         const Search s = search_of(local.tables, local.tables->directions);
-        densities_in_blocks<kSearched, Points>(local, of, directions, count, out,
-                                               [&](const auto&... rest) { piece_block(local, s, rest...); });
+        densities_in_blocks<kSearched, Points<false>>(local, of, directions, count, out,
+                                                      [&](const auto&... rest) { piece_block(local, s, rest...); });
     } else {
-        densities_in_blocks<kBlock, Points>(local, of, directions, count, out,
-                                            [&](const auto&... rest) { density_block(local, rest...); });
+        densities_in_blocks<kBlock, Points<false>>(local, of, directions, count, out,
+                                                   [&](const auto&... rest) { density_block(local, rest...); });
     }
 }
 

@@ -15,19 +15,78 @@ constexpr int kRows = 3; // of nearly all normals: those on edges of triangles h
 /// The corners around normals, with the numbers of their rows: 0 in lanes that are not served, and all else is any
 /// number there.
 struct Corners {
-    Integer served, row[kRows];
+    Integer served, row[kRows], facet;
     Vector weight[kRows], normal[3], length;
 };
 
 /// Of lanes that are not served the rows are some of the table, and all else is any number.
+template <bool Draws>
 struct Points : Corners {
     Integer codes[kRows]; // addresses of those of the rows
-    Vector lights, mixture, sum, light[ACDF_MAX_LIGHTS];
+    Vector lights, mixture, sum, light[Draws ? ACDF_MAX_LIGHTS : 1];
 };
 
-/* acdf_local_sum by the normals in the scale of the weights. The horizon cuts few lights: those are weighed again.
- */
-ACDF_LANE void weigh_lights(const AcdfLocal& local, Points* out) {
+/* acdf_pair_weight */
+ACDF_LANE Vector pair_weight(const Corners& at, const AcdfLightPair& pair, std::uint32_t i, Vector inverse) {
+    const Vector height = (at.normal[0] * pair.direction[0][i] + at.normal[1] * pair.direction[1][i]) +
+                          at.normal[2] * pair.direction[2][i];
+    const Vector radius = pair.radius[i] * at.length, above = height + radius;
+    const Vector cut = above * above * (pair.quarter[i] * inverse);
+    return choose(less(absolute(height), radius), cut, pair.share[i] * above_zero(height));
+}
+
+/// What facets of lanes tell of their lights.
+struct Facets {
+    Vector whole;           // acdf_facet_whole
+    Integer others;         // in the lower halves, AcdfFacet::others
+    std::uint32_t any, lit; // what any lane has of others, and of those that are seen
+};
+
+ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
+    const AcdfFacet* const facets = acdf_local_facets(local.tables);
+    alignas(64) long long facet[ACDF_WIDTH];
+    const double* from[2][ACDF_WIDTH];
+    Vector low[2], high[2];
+    Facets out;
+    out.any = out.lit = 0;
+    stored(facet, at.facet);
+    for (int i = 0; i < ACDF_WIDTH; ++i) {
+        const AcdfFacet& of = facets[facet[i]];
+        from[0][i] = of.whole;
+        from[1][i] = of.whole + 2;
+        out.any |= of.others;
+        out.lit |= of.seen;
+    }
+    gather_pairs(from[0], low);
+    gather_pairs(from[1], high);
+    out.whole = (at.normal[0] * low[0] + at.normal[1] * low[1]) + at.normal[2] * high[0];
+    out.others = (Integer)high[1];
+    return out;
+}
+
+/* acdf_facet_lights. Facets of neighbouring lanes may differ: `weighed(k, weight)` is told the weights of a pair
+ * that any lane has of others, or `Each`: that any may see, and k counts these. */
+template <bool Each, class Weighed>
+ACDF_LANE Vector facet_lights(const AcdfLocal& local, const Corners& at, const Weighed& weighed) {
+    const Facets of = facets_of(local, at);
+    const AcdfLightPair* const pair = acdf_local_lights(local.tables);
+    const Vector inverse = 1.0 / at.length;
+    Vector sum[2] = {all(0.0), all(0.0)};
+    for (std::uint32_t left = Each ? of.lit : of.any; left; left &= left - 1) {
+        const std::uint32_t k = acdf_lowest_bit(left);
+        const Mask is_other = negative(of.others << (63 - k));
+        Vector weight[2];
+        for (std::uint32_t i = 0; i < 2; ++i) {
+            weight[i] = pair_weight(at, pair[k], i, inverse);
+            sum[i] += choose(is_other, weight[i], all(0.0));
+        }
+        weighed(k, weight);
+    }
+    return of.whole + (sum[0] + sum[1]);
+}
+
+/* The weight of each light, as acdf_light_weight has it. The horizon cuts few lights: those are weighed again. */
+ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
     const AcdfLightPair* pair = acdf_local_lights(local.tables);
     const Vector* const normal = out->normal;
     const Vector length = out->length;
@@ -48,51 +107,51 @@ ACDF_LANE void weigh_lights(const AcdfLocal& local, Points* out) {
         out->light[k] = choose(less(absolute(height[k]), radius), of.share[i] * (above * above / (4.0 * radius)),
                                out->light[k]);
     }
-    out->lights = all(0.0);
-    for (std::uint32_t k = 0; k < local.light_count; ++k) out->lights += out->light[k];
-    out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
-    out->sum = out->lights + out->mixture;
 }
+ACDF_LANE void weigh_each(const AcdfLocal&, Points<false>*) {}
 
-/* The corners that a table has at some numbers: how long they are, their shares and their rows. */
-ACDF_LANE void load_corners(const AcdfLocalTables& tables, Integer number, Vector* length, Vector* share,
-                            Integer* row) {
-    const AcdfCornerRecord* const corners = acdf_local_corners(&tables);
-    alignas(64) long long at[ACDF_WIDTH];
-    const double* from[ACDF_WIDTH];
-    Vector pair[2];
-    stored(at, number);
-    for (int i = 0; i < ACDF_WIDTH; ++i) from[i] = (const double*)(const void*)(corners + at[i]);
-    gather_pairs(from, pair);
-    *length = pair[0];
-    *share = low_floats((Integer)pair[1]);
-    *row = (Integer)((Unsigned)pair[1] >> 32);
-}
-
-/* acdf_local_table_corners; what tables do not serve is not served. Small whole numbers are doubles. */
+/* acdf_local_find_facet; what tables do not serve is not served. Small whole numbers are doubles. */
 ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], Corners* out) {
-    const double n = local.subdivisions, side = 2.0 * n + 1.0;
-    Vector v[3], a[3], base[3], length, share, sign[3], corner[kRows];
+    const double n = local.subdivisions;
+    Vector v[3], a[3], base[3], sign[3], pair[2];
     load_transposed(normals, v);
     const Vector sum = (absolute(v[0]) + absolute(v[1])) + absolute(v[2]);
     Integer served = (sum > 0.0) & (sum < 0x1p1000); // below: finite floats
-    Vector over = all(n);
+    Vector down = all(n - 1.0);
     for (int i = 0; i < 3; ++i) {
         a[i] = absolute(v[i]) / sum * n;
         base[i] = whole_part(a[i]);
-        over -= base[i];
+        down -= base[i];
         sign[i] = one_if(v[i] < 0.0);
     }
-    served &= (over == 1.0) | (over == 2.0);
-    const Vector down = over - 1.0, x = 1.0 - 2.0 * sign[0], y = side - 2.0 * side * sign[1];
-    corner[2] = (side * side * sign[2] + n * side + n) + (x * (base[0] + down) + y * (base[1] + down));
-    corner[0] = corner[2] + x * (1.0 - 2.0 * down);
-    corner[1] = corner[2] + y * (1.0 - 2.0 * down);
-    for (int i = 0; i < kRows; ++i) {
-        load_corners(*local.tables, truncated(select(served, corner[i], all(0.0))), &length, &share, &out->row[i]);
-        out->weight[i] = absolute(down - (a[i] - base[i])) * length * share;
+    served &= (down == 0.0) | (down == 1.0);
+    const Vector octant = sign[0] + 2.0 * sign[1] + 4.0 * sign[2], back = down * (n - 1.0), step = 1.0 - 2.0 * down;
+    const Vector facet = (octant * n + (back + base[0] * step)) * n + (back + base[1] * step);
+    alignas(64) long long at[ACDF_WIDTH];
+    out->facet = truncated(select(served, facet, all(0.0)));
+    stored(at, out->facet);
+    const double* from[3][ACDF_WIDTH];
+    for (int i = 0; i < ACDF_WIDTH; ++i) {
+        const AcdfFacet& of = acdf_local_facets(local.tables)[at[i]];
+        from[0][i] = of.length;
+        from[1][i] = of.length + 2;                              // and shares
+        from[2][i] = (const double*)(const void*)(of.share + 2); // and rows
     }
-    for (int i = 0; i < kRows; ++i) served &= out->weight[i] > 0.0;
+    Vector length[3], share[3];
+    gather_pairs(from[0], length);
+    gather_pairs(from[1], pair);
+    length[2] = pair[0];
+    share[0] = low_floats((Integer)pair[1]);
+    share[1] = low_floats((Integer)((Unsigned)pair[1] >> 32));
+    gather_pairs(from[2], pair);
+    share[2] = low_floats((Integer)pair[0]);
+    out->row[0] = (Integer)((Unsigned)pair[0] >> 32);
+    out->row[1] = (Integer)pair[1] & 0xFFFFFFFFll;
+    out->row[2] = (Integer)((Unsigned)pair[1] >> 32);
+    for (int i = 0; i < kRows; ++i) {
+        out->weight[i] = absolute(down - (a[i] - base[i])) * length[i] * share[i];
+        served &= out->weight[i] > 0.0;
+    }
     for (int i = 0; i < kRows; ++i) out->row[i] &= served;
     const Vector scale = n / sum, size = root((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
     for (int i = 0; i < 3; ++i) out->normal[i] = scale * v[i];
@@ -100,18 +159,23 @@ ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], Cor
     out->served = served;
 }
 
-/* acdf_local_at by tables of corners. */
-ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points* out) {
+/* acdf_local_at by facets. */
+template <bool Draws>
+ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points<Draws>* out) {
     const AcdfTileTables& tiles = local.tables->tiles;
     const auto rows = (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
     corners_of(local, normals, out);
     for (int i = 0; i < kRows; ++i) out->codes[i] = multiplied(out->row[i], tiles.stride) + rows;
-    weigh_lights(local, out);
+    weigh_each(local, out);
+    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
+    out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
+    out->sum = out->lights + out->mixture;
     out->served &= out->sum > 0.0;
 }
 
 /* One point in all lanes, which serves_waves has approved. */
-ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Points* out) {
+template <bool Draws>
+ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Points<Draws>* out) {
     const AcdfTileTables& tiles = local.tables->tiles;
     const std::uint8_t* const rows = acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
     for (int i = 0; i < kRows; ++i) {
@@ -121,7 +185,10 @@ ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Po
         out->normal[i] = all(point.normal[i]);
     }
     out->length = all(point.length);
-    weigh_lights(local, out);
+    weigh_each(local, out);
+    out->lights = all(point.lights);
+    out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
+    out->sum = all(point.sum);
     out->served = ~Integer{};
 }
 

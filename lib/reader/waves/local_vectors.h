@@ -188,6 +188,13 @@ ACDF_LANE Integer numbers_from(std::size_t first) {
     return lane + (long long)first;
 }
 
+ACDF_LANE Vector above_zero(Vector x) {
+#if ACDF_WIDTH == 8
+    return (Vector)_mm512_max_pd((__m512d)x, _mm512_setzero_pd());
+#else
+    return (Vector)_mm256_max_pd((__m256d)x, _mm256_setzero_pd());
+#endif
+}
 ACDF_LANE Vector whole_part(Vector x) { // of x in [0, 2^31)
 #if ACDF_WIDTH == 8
     return (Vector)_mm512_roundscale_pd((__m512d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
