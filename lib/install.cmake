@@ -76,6 +76,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sphere.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/squares.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/table_entries.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tile_blocks.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tile_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/tree.h

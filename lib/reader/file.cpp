@@ -6,6 +6,7 @@
 #include "tables/cells.h"
 #include "tables/groups.h"
 #include "tables/local.h"
+#include "tables/table_entries.h"
 #include "waves/brdf.h"
 #include "waves/cut.h"
 
@@ -147,6 +148,7 @@ File& File::operator=(File&& other) noexcept {
     groups_ = std::exchange(other.groups_, nullptr);
     local_tables_ = std::exchange(other.local_tables_, nullptr);
     brdf_tables_ = std::exchange(other.brdf_tables_, nullptr);
+    entries_ = std::exchange(other.entries_, nullptr);
     allocator_ = other.allocator_;
     for (int i = 0; i < 3; ++i) owned_[i] = std::exchange(other.owned_[i], AcdfBlock{});
     return *this;
@@ -215,6 +217,8 @@ void File::make_tables(const TreeSurvey& survey) noexcept {
     if (kind() == ACDF_KIND_ENVIRONMENT) make_environment_tables(survey, most);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
+    if (kind() == ACDF_KIND_TABLE)
+        entries_ = make_table_entries(table().data(), description_->bin_count, most, allocator_, owned_[2]);
 }
 
 void File::make_environment_tables(const TreeSurvey& checked, std::size_t most_bytes) noexcept {
@@ -311,7 +315,8 @@ BrdfView File::brdf() const noexcept {
 TableView File::table() const noexcept {
     u32 indexed = 0;
     while (axes_[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
-    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, company_});
+    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, company_,
+                      tree_units_, entries_});
 }
 
 } // namespace acdf

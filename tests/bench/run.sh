@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes what docs/performance.md says of environment files and BRDFs: ratios of calls to those of other samplers, and
+# Writes what docs/performance.md says of environment files, BRDFs and tables: ratios of calls to those of other samplers, and
 # instruction counts of a fixed run.
 #
 #   tests/bench/run.sh BUILD [WIDTHS...]      BUILD: a release build with -DACDF_BUILD_BENCHMARKS=ON
@@ -46,6 +46,8 @@ put=$here/../../docs/make/put_table.sh
             "$(instructions bench_brdf pdf "$work/128" $walk)"
     done
 } | "$put" brdf
+
+"$build/tests/bench/bench_table" | "$put" table
 
 if [ -n "${ACDF_TEST_DATA:-}" ]; then
     "$here/local.sh" "$build" "$ACDF_TEST_DATA"

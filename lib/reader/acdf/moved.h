@@ -99,6 +99,7 @@ static inline void acdf_move_table(AcdfTable* table, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfBin, table->bins);
     ACDF_MOVE(AcdfAxis, table->axes);
     ACDF_MOVE(AcdfCompany, table->company);
+    ACDF_MOVE(AcdfEntries, table->entries);
 }
 #undef ACDF_MOVE
 

@@ -115,6 +115,7 @@ public:
                                  : groups_       ? groups_->words
                                  : local_tables_ ? local_tables_->words
                                  : brdf_tables_  ? brdf_tables_->words
+                                 : entries_      ? entries_->words
                                                  : 0};
     }
 
@@ -160,6 +161,7 @@ private:
     AcdfGroups* groups_ = nullptr;
     AcdfLocalTables* local_tables_ = nullptr;
     AcdfBrdfTables* brdf_tables_ = nullptr;
+    AcdfEntries* entries_ = nullptr;
     AcdfAllocator allocator_ = {};
     AcdfBlock owned_[3] = {}; // the file's bytes; inflated chunks; runtime tables
 

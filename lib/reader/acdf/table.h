@@ -11,6 +11,7 @@
 #define ACDF_TABLE_H
 
 #include <acdf/sample.h>
+#include <acdf/table_entries.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -25,6 +26,8 @@ typedef struct AcdfTable {
     uint32_t indexed_count;     /* less than axis_count */
     double total;               /* sum over the bins of the integral over the sampled axes */
     const AcdfCompany* company; /* null: to be used alone */
+    uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
+    const AcdfEntries* entries; /* runtime tables; null: trees are walked from their roots */
 } AcdfTable;
 
 /* Where a point falls. */
@@ -111,17 +114,55 @@ ACDF_FN double acdf_table_density(const AcdfTable* table, double p, const AcdfTa
     return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
 }
 
+/* The grids of a bin; null where its tree is walked from the root. */
+ACDF_INLINE const AcdfEntryBin* acdf_table_entries(const AcdfTable* table, const AcdfBin* bin) {
+    const AcdfEntryBin* entries;
+    if (!table->entries) return 0;
+    entries = acdf_entry_bin(table->entries, (size_t)(bin - table->bins));
+    return entries->places ? entries : 0;
+}
+
+/* acdf_table_sample by the grids of a bin, which has no tilts: where in the cell a point lies is not asked again.
+ */
+ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEntryBin* grids, const double* u,
+                                           double* x) {
+    const uint32_t first = table->indexed_count, count = table->axis_count - first;
+    const AcdfEntryCurve* curve;
+    double left[ACDF_MAX_AXES], probability;
+    AcdfTablePlace place;
+    uint32_t axis, at, link;
+    for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
+    curve = acdf_entry_of_numbers(table->entries, grids, count, left + first);
+    acdf_entry_ranges(curve, count, place.range + first);
+    probability = curve->probability;
+    at = curve->at;
+    do {
+        link = acdf_curve_draw(table->tree, table->tree_units, at, left, place.range, &probability);
+        at += link;
+    } while (link != 0);
+    for (axis = first; axis < table->axis_count; ++axis) {
+        const double low = (double)place.range[axis].low, high = (double)place.range[axis].high;
+        const double border = grids->axes[axis - first].border, position = low + left[axis] * (high - low);
+        x[axis - first] =
+            acdf_table_coordinate(&table->axes[axis], acdf_clamp(position, low + border, high - border));
+    }
+    return acdf_table_density(table, acdf_positive(probability), &place);
+}
+
 /* Draws a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
  * Fills x[sampled count], monotone in each u within a segment, and returns the density there, finite and > 0.
  * Returns 0, and leaves x as it is, where there is nothing to draw. */
 ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, const double* u, double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const uint32_t first = table->indexed_count;
+    const AcdfEntryBin* grids;
     AcdfTablePlace place;
     double left[ACDF_MAX_AXES];
     double p;
     uint32_t axis;
     if (!bin) return 0.0;
+    grids = acdf_table_entries(table, bin);
+    if (grids) return acdf_table_entry_sample(table, grids, u, x);
     for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
     acdf_table_whole(table, place.range);
     p = acdf_tree_sample(table->tree, bin->root, left, place.range);
@@ -160,10 +201,41 @@ ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, co
     return acdf_tree_find(table->tree, bin->root, step, place->range, strata);
 }
 
+/* acdf_table_pdf by the grids of a bin, which has no tilts. */
+ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryBin* grids, const double* x) {
+    const uint32_t first = table->indexed_count, count = table->axis_count - first;
+    const AcdfEntryCurve* curve;
+    uint32_t square[ACDF_MAX_AXES], axis, entry, at, link;
+    AcdfTablePlace place;
+    double p;
+    for (axis = first; axis < table->axis_count; ++axis) {
+        const AcdfAxis* a = &table->axes[axis];
+        if (!acdf_table_in_range(a, x[axis - first])) return 0.0;
+        square[axis] = (uint32_t)acdf_table_position(a, x[axis - first]);
+        if (square[axis] >= a->resolution) square[axis] = a->resolution - 1;
+    }
+    entry = acdf_entry_of_place(table->entries, grids, count, square + first);
+    if (entry & ACDF_ENTRY_CELL)
+        return ((const double*)(const void*)acdf_entry_words(table->entries,
+                                                             table->entries->densities))[entry & ~ACDF_ENTRY_CELL];
+    curve = acdf_entry_curve(table->entries, entry);
+    acdf_entry_ranges(curve, count, place.range + first);
+    p = curve->probability;
+    at = curve->at;
+    do {
+        link = acdf_curve_locate(table->tree, table->tree_units, at, square, place.range, &p);
+        at += link;
+    } while (link != 0);
+    return p > 0.0 ? acdf_table_density(table, acdf_positive(p), &place) : 0.0;
+}
+
 /* Density with which acdf_table_sample draws x in the bin of `index`; 0 where none falls. */
 ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
+    const AcdfBin* bin = acdf_table_bin(table, index);
+    const AcdfEntryBin* grids = bin ? acdf_table_entries(table, bin) : 0;
     AcdfTablePlace place;
-    const double p = acdf_table_find(table, index, x, &place, 0);
+    const double p = grids ? 0.0 : acdf_table_find(table, index, x, &place, 0);
+    if (grids) return acdf_table_entry_pdf(table, grids, x);
     return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
 }
 
