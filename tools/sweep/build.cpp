@@ -23,14 +23,14 @@ const char* to_string(SweepKind kind) {
 
 const std::vector<std::string>& fits_of(SweepKind kind) {
     static const std::vector<std::string> environment{"variance", "cascade", "cdf", "pdf", "uniform"},
-        local{"variance", "separate", "cdf"}, places{"places", "variance"},
+        local{"variance", "fast", "separate", "cdf"}, places{"places", "variance"},
         brdf{"variance", "separate", "cdf", "uniform"};
     const std::vector<std::string>* const fits[] = {&environment, &local, &places, &brdf};
     return *fits[static_cast<std::size_t>(kind)];
 }
 
 std::vector<std::string> default_fits(SweepKind kind) {
-    return kind == SweepKind::local ? std::vector<std::string>{"variance", "cdf"} : fits_of(kind);
+    return kind == SweepKind::local ? std::vector<std::string>{"variance", "fast", "cdf"} : fits_of(kind);
 }
 
 std::vector<std::uint64_t> default_budgets(SweepKind kind) {

@@ -248,10 +248,11 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
     comma_separated(
         command.add_option(
             "--fits", options.sweep.fits,
-            "Fits to try, separated by commas. env: variance, cascade, cdf, pdf, uniform; local: variance, "
-            "separate (a tree for each normal), cdf (the paper's); places: places, variance (by normals "
+            "Fits to try, separated by commas. env: variance, cascade, cdf, pdf, uniform; local: variance, fast "
+            "(--shape fast), separate (a tree for each normal), cdf (the paper's); places: places, variance (by "
+            "normals "
             "alone); brdf: variance, separate, cdf, uniform"))
-        ->option_text("NAMES [all of the kind; local: variance,cdf]")
+        ->option_text("NAMES [all of the kind; local: variance,fast,cdf]")
         ->group("Sweep");
     command
         .add_option("--spp", options.sweep.visibility.spp,

@@ -5,7 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <map>
 #include <set>
+#include <sstream>
 #include <tuple>
 
 namespace acdf::test {
@@ -122,6 +124,34 @@ TEST(SweepCommand, PlacesAreComparedOnTheirScene) {
     EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "places"}).code, 2);
     EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--scene", mesh}).code, 2);
     EXPECT_EQ(run_acdf({"sweep", probe, "-o", folder / "x", "--kind", "places", "--scene", probe}).code, 1);
+}
+
+// Local files of both shapes, each with what it costs in variance and the options that make it.
+TEST(SweepCommand, LocalFilesAreComparedInBothShapes) {
+    const Folder folder;
+    const std::string probe = tiny_probe(folder);
+    const Result made = run_acdf({"sweep", probe, "-o", folder / "out", "--kind", "local", "--budgets", "32KiB",
+                                  "--no-timing", "--fits", "variance,fast", "--quiet"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const auto json = nlohmann::json::parse(read_text(folder / "out/sweep.json"));
+    std::map<std::string, double> variance;
+    for (const auto& row : json["rows"]) {
+        if (row["system"] != "acdf") continue;
+        variance[row["fit"]] = row["relative_variance"];
+        const std::string options = row["options"];
+        EXPECT_EQ(options.find("--shape fast") != std::string::npos, row["fit"] == "fast") << options;
+        const Folder again;
+        std::vector<std::string> words{"local", probe, "-q", "-o", again / "x.acdf"};
+        std::istringstream each(options);
+        for (std::string word; each >> word;) words.push_back(word);
+        const Result file = run_acdf(words);
+        EXPECT_EQ(file.code, 0) << file.err;
+        EXPECT_EQ(std::filesystem::file_size(again / "x.acdf"), row["bytes"].get<std::uintmax_t>());
+    }
+    ASSERT_EQ(variance.size(), 2u);
+    EXPECT_GT(variance["fast"], 0.0);
+    EXPECT_GT(variance["variance"], 0.0);
+    EXPECT_NE(variance["fast"], variance["variance"]);
 }
 
 TEST(SweepCommand, RefusesWhatIsThereAndWrongOptions) {
