@@ -358,7 +358,7 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.places.scene && o.scene_text.find("--places") == std::string::npos) text += "--places ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {
-        if (o.shape == compress::LocalShape::fast) text += "--shape fast ";
+        text += shape_text(o);
         if (o.max_weight > 0.0) text += "--max-weight " + option_number(o.max_weight) + " ";
         if (o.tiles > 0) text += "--tiles " + std::to_string(o.tiles) + " ";
         return text + goal_text(o.goal);

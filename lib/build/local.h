@@ -37,6 +37,7 @@ struct LocalOptions {
     bool sharing = true;
     compress::LocalShape shape =
         compress::LocalShape::small; ///< with sharing; see LocalFitter for what goes with fast
+    bool any_shape = false;          ///< build_local_in_any_shape chose it, or will
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
@@ -49,8 +50,12 @@ struct LocalOptions {
 /// All options that shape the file, in one spelling: what its `fit.options` tells.
 std::string option_text(const std::string& reading, const LocalOptions& options);
 
+/// Of that, which shape; with sharing.
+std::string shape_text(const LocalOptions& options);
+
 struct Local {
     std::vector<std::uint8_t> bytes;
+    compress::LocalShape shape = compress::LocalShape::small;
     LocalAccuracy accuracy; ///< over normals() of them
     std::uint32_t normals = 0;
 };
@@ -58,5 +63,15 @@ struct Local {
 /// Throws std::invalid_argument where the target has no energy, std::runtime_error where the goal is out of reach.
 Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
                   const Progress& progress = {});
+
+/// Makes both shapes, and chooses fast where it is at most kFastIsWorth times as noisy, small where it cannot be
+/// made.
+Local build_local_in_any_shape(const compress::Target& target, const Source& source, const LocalOptions& options,
+                               const Progress& progress = {});
+
+/// A draw and a density take 200 and 130 ns of the small shape and 125 and 76 of the fast one (docs/performance.md,
+/// 1 MiB), and a shadow ray and a BRDF beside them 500 (acdf sweep): 830 to 700 ns, so as much variance is even
+/// after the same time.
+constexpr double kFastIsWorth = 1.15;
 
 } // namespace acdf::build

@@ -148,7 +148,9 @@ LocalOptions local_options(const Options& options) {
     options.take("max_weight", out.max_weight);
     options.take("cosine_share", out.cosine_share);
     options.take("sharing", out.sharing);
-    options.choose<LocalShape>("shape", {{"small", LocalShape::small}, {"fast", LocalShape::fast}}, out.shape);
+    options.choose<LocalShape>(
+        "shape", {{"small", LocalShape::small}, {"fast", LocalShape::fast}, {"auto", LocalShape::automatic}},
+        out.shape);
     out.company = company_of(options);
     out.codec = codec_of(options);
     out.source = source_of(options);

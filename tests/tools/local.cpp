@@ -189,6 +189,33 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--shape", "fast", "--normals", "8x4"}, "--no-sharing");
 }
 
+// Both shapes are made, and the fast one chosen where it has no more noise after the same time.
+TEST_F(LocalCommand, ChoosesTheShape) {
+    const std::string lamp = folder / "lamp.pfm"; // beside dark: steps of 255 are coarse there
+    write_probe(lamp, [](double phi, double z) {
+        return std::hypot(phi, z - 0.4) < 0.1 ? 1e4 : 0.01 + (z > 0.0 ? z : 0.0);
+    });
+    int fast_ones = 0, small_ones = 0;
+    for (const std::string& source : {probe, lamp})
+        for (const char* budget : {"12KiB", "24KiB", "64KiB"}) {
+            const double fast = made({"--shape", "fast", "--budget", budget}, source).at("relative_variance");
+            const double small = made({"--budget", budget}, source).at("relative_variance");
+            const json chosen = made({"--shape", "auto", "--budget", budget}, source);
+            const bool is_fast = chosen.at("shape") == "fast";
+            EXPECT_EQ(is_fast, fast <= 1.15 * small) << budget;
+            EXPECT_EQ(chosen.at("relative_variance").get<double>(), is_fast ? fast : small);
+            EXPECT_NE(messages.find(is_fast ? "the fast shape" : "the small shape"), std::string::npos) << messages;
+            const json info = json::parse(run_acdf({"info", "--json", output}).out);
+            EXPECT_EQ(info["options"].get<std::string>().substr(0, 13), "--shape auto ");
+            EXPECT_EQ(info["local"].contains("shape"), is_fast);
+            ++(is_fast ? fast_ones : small_ones);
+        }
+    EXPECT_GT(fast_ones, 0);
+    EXPECT_GT(small_ones, 0);
+    EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--with", "cosine"}).at("shape"), "small");
+    EXPECT_EQ(made({"--shape", "auto", "--budget", "24KiB", "--max-weight", "50"}).at("shape"), "small");
+}
+
 TEST_F(LocalCommand, TheLeastSizeThatIsToldCanBeHad) {
     const std::string told = "the least that can be had is about ";
     for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{

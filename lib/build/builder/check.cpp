@@ -106,8 +106,10 @@ void check_bins(const LocalOptions& options) {
     require(options.max_weight == 0.0 ||
                 (options.sharing && !options.places.point && options.company.kind == ACDF_COMPANY_NONE),
             "max_weight is for bins that share tiles, without places or a company");
-    require(options.shape == LocalShape::small || options.shape == LocalShape::fast, "shape is no LocalShape");
-    require(options.shape == LocalShape::small ||
+    require(options.shape == LocalShape::small || options.shape == LocalShape::fast ||
+                options.shape == LocalShape::automatic,
+            "shape is no LocalShape");
+    require(options.shape != LocalShape::fast ||
                 (options.sharing && options.max_weight == 0.0 && !options.places.point &&
                  options.company.kind == ACDF_COMPANY_NONE),
             "the fast shape is for bins that share tiles, without max_weight, places or a company");

@@ -31,11 +31,14 @@ Environment make(const Target& target, const EnvironmentOptions& given, const bu
 Local make(const Target& target, const LocalOptions& given, const build::Progress& progress) {
     build::LocalOptions options = internal(given);
     options.target = target.data()->options;
-    build::Local made = build::build_local(target.data()->grid, source_of(given, target), options, progress);
+    const auto build = options.any_shape ? build::build_local_in_any_shape : build::build_local;
+    build::Local made = build(target.data()->grid, source_of(given, target), options, progress);
     Local out;
     out.bytes = std::move(made.bytes);
     out.accuracy = made.accuracy;
     out.normals = made.normals;
+    const bool fast = made.shape == compress::LocalShape::fast || options.shape == compress::LocalShape::fast;
+    out.shape = fast ? LocalShape::fast : LocalShape::small;
     out.bad_texels = target.data()->bad;
     return out;
 }

@@ -129,7 +129,8 @@ def build_local(
     cosine_share: of samples that are drawn around the normal instead, in [0, 0.99].
     sharing: bins share tiles; else each has a tree of its own.
     shape: "small", the least noise for its bytes, or "fast", a draw from which takes two thirds of the time. Fast files share
-        tiles, and have neither max_weight nor a company.
+        tiles, and have neither max_weight nor a company. "auto" makes both, and chooses fast where it has no more noise after
+        the same time.
     """
     return open(_acdf.build_local(image, _options({k: v for k, v in locals().items() if k != "image"})))
 
