@@ -10,8 +10,8 @@
 // safety and a correct density need, in time linear in the size, and never read outside what they are given.
 // A file that was accepted can be sampled for ever without reading outside it. Memory: at most four times the
 // file and its inflated chunks, and 1 MiB; the limits are checked before any of it is allocated. Runtime tables
-// take at most eight times the file and 1 MiB more, and as much again while they are made, of environments in
-// blocks of 6 MiB that are touched as far as they are needed; LoadOptions leaves them out.
+// take at most eight times the file and 1 MiB more, and as much again while they are made, of environments and
+// tables in blocks of 6 MiB that are touched as far as they are needed; LoadOptions leaves them out.
 #pragma once
 
 #include <acdf/allocator.h>

@@ -68,8 +68,8 @@ bool each_segment(const AcdfCurve& curve, Reached& reached, const Each& each) {
 
 /// How wide cells are, and how many: by which grids are made.
 struct Widths {
-    double place[ACDF_MAX_AXES] = {},
-           number[ACDF_MAX_AXES] = {}; ///< sums of the logarithms of their parts of an axis
+    /// Sums of the logarithms of their parts of an axis.
+    double place[ACDF_MAX_AXES] = {}, number[ACDF_MAX_AXES] = {};
     std::size_t cells = 0;
 };
 
@@ -137,7 +137,8 @@ void EntriesMaker::add_widths(const Reached& cell, u32 axis, double times, Width
     const ReachedSide& side = cell.side[first_axis_ + axis];
     const double part = static_cast<double>(side.last - side.first) / resolution(axis);
     widths.place[axis] += times * logarithm(part);
-    widths.number[axis] += times * logarithm(std::max(side.high - side.low, 0x1p-40));
+    if (side.high > side.low)
+        widths.number[axis] += times * logarithm(side.high - side.low); // others are not drawn
 }
 
 // A path passes at most 64 curves. False where curves have tilts, or are shared so often that passing all of them
