@@ -55,8 +55,7 @@ compress::Description description_of(const compress::Target& target, const Sourc
 }
 
 Local measured(std::vector<std::uint8_t> bytes, const compress::Target& target, const LocalOptions& options) {
-    Local out;
-    out.bytes = std::move(bytes);
+    Local out = {std::move(bytes), options.shape, {}, 0};
     const std::vector<Normal> normals = test_normals(options.scene, kTestNormals);
     File file;
     if (const Status status = File::from_memory(out.bytes.data(), out.bytes.size(), file); !status.ok())

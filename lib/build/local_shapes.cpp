@@ -25,7 +25,6 @@ Local build_local_in_any_shape(const compress::Target& target, const Source& sou
     each.shape = compress::LocalShape::fast;
     try {
         Local fast = build_local(target, source, each, half(0.5));
-        fast.shape = each.shape;
         if (fast.accuracy.relative_variance <= kFastIsWorth * small.accuracy.relative_variance) return fast;
     } catch (const std::runtime_error&) { // a variance or a budget that it does not reach
     }

@@ -109,13 +109,16 @@ void check_bins(const LocalOptions& options) {
     require(options.shape == LocalShape::small || options.shape == LocalShape::fast ||
                 options.shape == LocalShape::automatic,
             "shape is no LocalShape");
-    require(options.shape != LocalShape::fast ||
-                (options.sharing && options.max_weight == 0.0 && !options.places.point &&
-                 options.company.kind == ACDF_COMPANY_NONE),
+    require(options.shape != LocalShape::fast || may_be_fast(options),
             "the fast shape is for bins that share tiles, without max_weight, places or a company");
 }
 
 } // namespace
+
+bool may_be_fast(const LocalOptions& options) {
+    return options.sharing && options.max_weight == 0.0 && !options.places.point &&
+           options.company.kind == ACDF_COMPANY_NONE;
+}
 
 void check(const TargetOptions& options) {
     check(options.channels);

@@ -155,8 +155,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.company = internal(options.company);
     out.sharing = options.sharing;
     out.shape = options.shape == LocalShape::fast ? compress::LocalShape::fast : compress::LocalShape::small;
-    out.any_shape = options.shape == LocalShape::automatic && options.sharing && options.max_weight == 0.0 &&
-                    !options.places.point && options.company.kind == ACDF_COMPANY_NONE;
+    out.any_shape = options.shape == LocalShape::automatic && may_be_fast(options);
     out.bin_target =
         options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;
     out.fit = internal(options.fit);

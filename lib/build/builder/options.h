@@ -16,6 +16,9 @@ build::LocalOptions internal(const LocalOptions& options);
 build::BrdfFileOptions internal(const BrdfOptions& options);
 build::TableOptions internal(const TableOptions& options);
 
+// Whether no option asks for what the fast shape has not.
+bool may_be_fast(const LocalOptions& options);
+
 // Throw build::OptionError for what is out of range or contradicts itself.
 void check(const TargetOptions& options);
 void check(const EnvironmentOptions& options);

@@ -128,25 +128,20 @@ ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEnt
                                            double* x) {
     const uint32_t first = table->indexed_count, count = table->axis_count - first;
     const AcdfEntryCurve* curve;
-    double left[ACDF_MAX_AXES], probability;
+    double left[ACDF_MAX_AXES], p;
     AcdfTablePlace place;
-    uint32_t axis, at, link;
+    uint32_t axis;
     for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
     curve = acdf_entry_of_numbers(table->entries, grids, count, left + first);
     acdf_entry_ranges(curve, count, place.range + first);
-    probability = curve->probability;
-    at = curve->at;
-    do {
-        link = acdf_curve_draw(table->tree, table->tree_units, at, left, place.range, &probability);
-        at += link;
-    } while (link != 0);
+    p = acdf_tree_draw_on(table->tree, table->tree_units, curve->at, left, place.range, curve->probability);
     for (axis = first; axis < table->axis_count; ++axis) {
         const double low = (double)place.range[axis].low, high = (double)place.range[axis].high;
         const double border = grids->axes[axis - first].border, position = low + left[axis] * (high - low);
         x[axis - first] =
             acdf_table_coordinate(&table->axes[axis], acdf_clamp(position, low + border, high - border));
     }
-    return acdf_table_density(table, acdf_positive(probability), &place);
+    return acdf_table_density(table, p, &place);
 }
 
 /* Draws a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
@@ -179,24 +174,29 @@ ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, 
     return acdf_table_density(table, p, &place);
 }
 
+/* Where x[sampled count] lies: its position, and the step of the grid on each sampled axis. Returns 0 for NaN and
+ * outside the axes' ranges. */
+ACDF_INLINE int acdf_table_step(const AcdfTable* table, const double* x, double* position, uint32_t* step) {
+    const uint32_t first = table->indexed_count;
+    uint32_t axis;
+    for (axis = first; axis < table->axis_count; ++axis) {
+        const AcdfAxis* a = &table->axes[axis];
+        if (!acdf_table_in_range(a, x[axis - first])) return 0;
+        position[axis] = acdf_table_position(a, x[axis - first]);
+        step[axis] = (uint32_t)position[axis];
+        if (step[axis] >= a->resolution) step[axis] = a->resolution - 1;
+    }
+    return 1;
+}
+
 /* Finds the cell that holds x[sampled count]; `strata` as in acdf_tree_find. Returns its probability; 0 where no
  * sample can fall, for NaN and outside the axes' ranges. A border belongs to the cell of the higher position, the
  * end of an axis to its last cell. */
 ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, const double* x,
                                AcdfTablePlace* place, AcdfStratum* strata) {
     const AcdfBin* bin = acdf_table_bin(table, index);
-    const uint32_t first = table->indexed_count;
     uint32_t step[ACDF_MAX_AXES];
-    uint32_t axis;
-    if (!bin) return 0.0;
-    for (axis = first; axis < table->axis_count; ++axis) {
-        const AcdfAxis* a = &table->axes[axis];
-        const double position = acdf_table_position(a, x[axis - first]);
-        if (!acdf_table_in_range(a, x[axis - first])) return 0.0;
-        place->position[axis] = position;
-        step[axis] = (uint32_t)position;
-        if (step[axis] >= a->resolution) step[axis] = a->resolution - 1;
-    }
+    if (!bin || !acdf_table_step(table, x, place->position, step)) return 0.0;
     acdf_table_whole(table, place->range);
     return acdf_tree_find(table->tree, bin->root, step, place->range, strata);
 }
@@ -205,28 +205,18 @@ ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, co
 ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryBin* grids, const double* x) {
     const uint32_t first = table->indexed_count, count = table->axis_count - first;
     const AcdfEntryCurve* curve;
-    uint32_t square[ACDF_MAX_AXES], axis, entry, at, link;
+    uint32_t step[ACDF_MAX_AXES], entry;
     AcdfTablePlace place;
     double p;
-    for (axis = first; axis < table->axis_count; ++axis) {
-        const AcdfAxis* a = &table->axes[axis];
-        if (!acdf_table_in_range(a, x[axis - first])) return 0.0;
-        square[axis] = (uint32_t)acdf_table_position(a, x[axis - first]);
-        if (square[axis] >= a->resolution) square[axis] = a->resolution - 1;
-    }
-    entry = acdf_entry_of_place(table->entries, grids, count, square + first);
+    if (!acdf_table_step(table, x, place.position, step)) return 0.0;
+    entry = acdf_entry_of_place(table->entries, grids, count, step + first);
     if (entry & ACDF_ENTRY_CELL)
         return ((const double*)(const void*)acdf_entry_words(table->entries,
                                                              table->entries->densities))[entry & ~ACDF_ENTRY_CELL];
     curve = acdf_entry_curve(table->entries, entry);
     acdf_entry_ranges(curve, count, place.range + first);
-    p = curve->probability;
-    at = curve->at;
-    do {
-        link = acdf_curve_locate(table->tree, table->tree_units, at, square, place.range, &p);
-        at += link;
-    } while (link != 0);
-    return p > 0.0 ? acdf_table_density(table, acdf_positive(p), &place) : 0.0;
+    p = acdf_tree_locate_on(table->tree, table->tree_units, curve->at, step, place.range, curve->probability);
+    return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
 }
 
 /* Density with which acdf_table_sample draws x in the bin of `index`; 0 where none falls. */
@@ -234,8 +224,9 @@ ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, con
     const AcdfBin* bin = acdf_table_bin(table, index);
     const AcdfEntryBin* grids = bin ? acdf_table_entries(table, bin) : 0;
     AcdfTablePlace place;
-    const double p = grids ? 0.0 : acdf_table_find(table, index, x, &place, 0);
+    double p;
     if (grids) return acdf_table_entry_pdf(table, grids, x);
+    p = acdf_table_find(table, index, x, &place, 0);
     return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
 }
 

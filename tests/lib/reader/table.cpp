@@ -61,11 +61,7 @@ TEST(TableView, PdfIsExactlyThatOfTheSampleAndInvertLeadsBack) {
     for (const Space& space : spaces()) {
         for (std::uint64_t seed = 0; seed < 12; ++seed) {
             SCOPED_TRACE(std::string(space.name) + " " + std::to_string(seed));
-            std::vector<std::uint32_t> resolution;
-            for (const auto& a : space.axes) resolution.push_back(std::min(a.resolution, 1000u));
-            compress::Cascade cascade;
-            RandomTableTree(seed, resolution, 0, seed % 2).add_bin(cascade);
-            const LoadedTable loaded(table_file(cascade, space.axes));
+            const LoadedTable loaded(random_table(space, seed, seed % 2));
             const TableView view = loaded.file.table();
             std::mt19937_64 random(seed);
             for (int n = 0; n < 2000; ++n) {

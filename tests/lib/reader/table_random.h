@@ -99,6 +99,15 @@ inline std::vector<Space> spaces() {
             {"eight", eight}};
 }
 
+/// The file of a random tree over a space: of steps up to the 1000th of an axis.
+inline std::vector<std::uint8_t> random_table(const Space& space, std::uint64_t seed, bool tilted) {
+    std::vector<std::uint32_t> resolution;
+    for (const auto& a : space.axes) resolution.push_back(std::min(a.resolution, 1000u));
+    compress::Cascade cascade;
+    RandomTableTree(seed, resolution, 0, tilted).add_bin(cascade);
+    return table_file(cascade, space.axes);
+}
+
 inline double next_double(std::mt19937_64& random) {
     const double edges[] = {0.0, 1.0, 1.0 - 0x1p-53, 0x1p-60, 0.5};
     return random() % 4 == 0 ? edges[random() % 5] : uniform(random);
