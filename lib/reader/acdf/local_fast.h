@@ -129,19 +129,25 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const Acd
     return share;
 }
 
-/* The density in a cell of such a probability; 0 where that is 0, which nobody guesses. */
-ACDF_INLINE float acdf_local_fast_density(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
-                                          const AcdfFastShare* share) {
-    double height, pdf, least;
+/* The density, at least `least`, in a cell of such a probability. */
+ACDF_INLINE float acdf_local_fast_at_least(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
+                                           const AcdfFastShare* share, double least) {
+    double height, pdf;
     if (local->tables && local->tables->heights) {
         const double* z = acdf_local_heights(local->tables);
         height = z[range[1].low] - z[range[1].high];
     } else height = acdf_grid_height(grid, &range[1]);
     pdf = share->of * (double)grid->columns /
           (2.0 * ACDF_PI * (double)(range[0].high - range[0].low) * (share->all * height));
-    least = share->of > 0.0 ? 1.17549435e-38 : 0.0;
     if (pdf >= 3.402823466e38) return 3.402823466e38f;
     return (float)(pdf > least ? pdf : least);
+}
+/* Of any such cell: 0 where its probability is, which that of half of all directions is. Nobody guesses it, and to
+ * know it all the rest is waited for: so no branch asks. */
+ACDF_INLINE float acdf_local_fast_density(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
+                                          const AcdfFastShare* share) {
+    const double huge = share->of * 0x1p1000;
+    return acdf_local_fast_at_least(local, grid, range, share, huge < 1.17549435e-38 ? huge : 1.17549435e-38);
 }
 
 /* The direction that what is left of the random numbers picks in a cell of such a probability. */
@@ -151,7 +157,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_fast_place(const AcdfLocal* local, co
     AcdfDirectionSample out;
     if (!acdf_local_place_by_tables(local, grid, range, u, out.direction))
         out = acdf_grid_place(grid, range, u, 1.0);
-    out.pdf = acdf_local_fast_density(local, grid, range, share);
+    out.pdf = acdf_local_fast_at_least(local, grid, range, share, 1.17549435e-38);
     return out;
 }
 

@@ -22,7 +22,8 @@ ACDF_INLINE uint32_t acdf_local_tile_root(const AcdfLocal* local, uint32_t tile)
 
 /* Asks for the curves of a tile while something else is done. */
 ACDF_INLINE void acdf_local_ahead(const AcdfLocal* local, const AcdfTileRecord* tile) {
-    if (tile->root != ACDF_NO_ROOT) ACDF_PREFETCH(local->blend.tree + 2 * (size_t)tile->root);
+    const uint32_t any = tile->root != ACDF_NO_ROOT ? tile->root : 0; /* of cells something that is no use */
+    ACDF_PREFETCH(local->blend.tree + 2 * (size_t)any);
 }
 
 /* The range of a tile that tables found, and its share of a mixture that `first` splits above it have been taken

@@ -38,16 +38,10 @@ ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal
     return 1;
 }
 
-/* No place. */
+/* No place. Rows are left open. */
 ACDF_INLINE void acdf_local_nowhere(AcdfPlaceMixture* place) {
-    int i;
     place->count = 0;
     place->alike = 1;
-    for (i = 0; i < ACDF_MAX_PLACES_MIXED; ++i) {
-        place->row[i] = 0;
-        place->columns[i] = 0;
-        place->weight[i] = 0.0;
-    }
 }
 
 /* Begins a point: nothing serves it. */
