@@ -67,9 +67,11 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_brdf.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_grids.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_square.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tables.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tiles.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_tree.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_walk.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/short_curves.h

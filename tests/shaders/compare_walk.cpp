@@ -14,6 +14,8 @@ namespace {
 
 // Of a density: what floats round. Beyond the second, it is another cell's.
 constexpr double kNear = 1e-5, kSame = 1e-3;
+// In the fast shape rows have weights that are whole numbers, 2^12 in all or more: one may be one more or less.
+constexpr double kNearOnGrids = 3.0 / 4096.0;
 // Draws of another cell than the reader's, and directions of another density: next to borders.
 constexpr double kMostOthers = 1e-4;
 
@@ -43,7 +45,10 @@ public:
     }
 
     /// Of a density: what floats round.
-    double near(const float d[3]) const { return brdf() ? Halves(wo_, d).rounded() : kNear; }
+    double near(const float d[3]) const {
+        if (file_.fast().grid) return kNearOnGrids;
+        return brdf() ? Halves(wo_, d).rounded() : kNear;
+    }
     /// Beyond this it is another cell's.
     double same(const float d[3]) const { return brdf() ? kSame + Halves(wo_, d).moved() : kSame; }
 

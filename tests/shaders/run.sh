@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, draws and evaluates COUNT times on a device, and compares
 # with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
-# on a lat-long grid; or what is walked: local, local_square, square (the octahedral one), walk (the first one again), brdf
-# and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment name another source than that of tests, the size of the
+# on a lat-long grid; or what is walked: local, local_square, the same of the fast shape (local_fast, local_fast_square), square
+# (the octahedral one), walk (the first one again), brdf and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment name another source than that of tests, the size of the
 # file, and the share of a BRDF that follows the cosine. MADE names a folder for files that several devices take: DEVICE "file"
 # puts one there, others take it if there is one.
 set -euo pipefail
@@ -24,7 +24,7 @@ skip() {
 need() { command -v "$1" >/dev/null || skip "no $1"; }
 
 make_file() {
-    local probe=${PROBE:-$work/sky.pfm} domain=latlong kind=env
+    local probe=${PROBE:-$work/sky.pfm} domain=latlong kind=env shape=()
     if [ "$walk" = brdf ]; then
         local model=cook-torrance:m=0.2
         [ "$form" = brdf ] || model=ggx:alpha=0.1,0.3
@@ -38,8 +38,11 @@ make_file() {
     fi
     [ -n "${PROBE-}" ] || "$make_sky" "$probe"
     case $form in *square) domain=octahedral ;; esac
-    case $form in local*) kind=local ;; esac
-    "$acdf" $kind "$probe" --domain $domain --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
+    case $form in
+    local_fast*) kind=local shape=(--shape fast) ;;
+    local*) kind=local shape=(--shape small) ;;
+    esac
+    "$acdf" $kind "$probe" "${shape[@]}" --domain $domain --budget "${BUDGET:-16KiB}" -o "$work/sky.acdf" --quiet
     "$compare" inputs "$work/sky.acdf" "$count" "$work"
 }
 

@@ -4,14 +4,15 @@
  * here it is C.
  *
  * Trees (acdf/shader_tree.h) end in leaves: parts of cells that lie in one piece of the sphere (acdf/pieces.h), or
- * cells of the octahedral square.
+ * cells of the octahedral square. The fast shape of local environments has tiles and grids instead
+ * (acdf/shader_tiles.h, acdf/shader_grids.h).
  *
  * Densities are the reader's but for the rounding of floats, below 1e-5 of them. A draw is moved 2^-20 radians (or
  * 2^-20 of the square's side) inwards; the density of a direction so close to a border may be the neighbour's. */
 #ifndef ACDF_SHADER_WALK_H
 #define ACDF_SHADER_WALK_H
 
-#include <acdf/shader_point.h>
+#include <acdf/shader_grids.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +59,9 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
     ACDF_VAR(AcdfPlace, place);
     if (here.mix.root == ACDF_WALK_NONE || d.length2 == 0.0f) {
         return 0.0f;
+    }
+    if (acdf_tiles_serve(tables, here) != 0u) {
+        return acdf_walk_density(here, acdf_tiles_pdf(tables, here, d), x, y, z);
     }
     if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
         place = acdf_square_place(d.x, d.y, d.z, d.sin2, d.length2);
@@ -110,64 +114,91 @@ ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF
     return d;
 }
 
-/* Leads numbers into a light: what is left of them ends in its tile. */
+/* Draws a light: its link becomes the end's leaf. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_draw_light, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
-    ACDF_VAR(AcdfWalkNumbers, left) = numbers;
+    ACDF_VAR(AcdfWalkEnd, end);
     ACDF_VAR(ACDF_F32, rest) = here.light_sum;
     ACDF_VAR(ACDF_U32, light) = 0u;
     ACDF_VAR(ACDF_U32, k) = 0u;
     ACDF_VAR(ACDF_U32, found) = 0u;
+    end.numbers = numbers;
     for (k = 0u; k < here.lights && found == 0u; k = k + 1u) {
         ACDF_LET(ACDF_F32, weight) = acdf_point_light(tables, here, k);
         if (weight > 0.0f) {
             rest = ACDF_MAX(rest - weight, 0.0f);
             light = k;
-            ACDF_LET(ACDF_U32, border) = acdf_walk_border(weight, rest, left.width0);
-            if (left.at0 < border) {
-                left.width0 = border;
+            ACDF_LET(ACDF_U32, border) = acdf_walk_border(weight, rest, end.numbers.width0);
+            if (end.numbers.at0 < border) {
+                end.numbers.width0 = border;
                 found = 1u;
             } else {
-                left.at0 = left.at0 - border;
-                left.width0 = left.width0 - border;
+                end.numbers.at0 = end.numbers.at0 - border;
+                end.numbers.width0 = end.numbers.width0 - border;
             }
         }
     }
-    ACDF_LET(ACDF_U32, root) = ACDF_WORD(tables, ACDF_WORD(tables, ACDF_WALK_LIGHTS) + 8u * light + 5u);
-    return acdf_walk_draw(tables, acdf_mixture_below(root, 1.0f), left);
+    end.leaf = ACDF_WORD(tables, ACDF_WORD(tables, ACDF_WALK_LIGHTS) + 8u * light + 5u);
+    end.given = 0.0f; /* by the mixture */
+    return end;
+}
+
+/* Draws by lights and rows: where a walk ends; of the fast shape the tile of a light, or ACDF_WALK_ON_GRIDS. */
+ACDF_FN3(AcdfWalkEnd, acdf_walk_draw_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
+    ACDF_VAR(AcdfWalkNumbers, left) = numbers;
+    ACDF_VAR(AcdfWalkMixture, mix) = here.mix;
+    ACDF_VAR(AcdfWalkEnd, end);
+    ACDF_LET(ACDF_U32, lit) = acdf_walk_border(here.light_sum, here.sum - here.light_sum, left.width0);
+    ACDF_LET(ACDF_U32, is_light) = ACDF_SELECT(left.at0 < lit, 1u, 0u);
+    if (is_light != 0u) {
+        left.width0 = lit;
+        end = acdf_walk_draw_light(tables, here, left);
+        left = end.numbers;
+        mix = acdf_mixture_below(end.leaf, 1.0f);
+    } else {
+        left.at0 = left.at0 - lit;
+        left.width0 = left.width0 - lit;
+    }
+    if (acdf_tiles_serve(tables, here) == 0u) {
+        end = acdf_walk_draw(tables, mix, left);
+    } else {
+        end.leaf = mix.root;
+        end.given = 0.0f;
+        end.numbers = left;
+    }
+    if (is_light != 0u) {
+        end.given = 0.0f; /* by the mixture */
+    }
+    return end;
 }
 
 /* Draws a direction at a point for two random words: n0 / 2^32 (azimuth) and n1 / 2^32 (elevation) are the random
  * numbers of acdf_local_sample_at and acdf_environment_sample. pdf 0 where nothing serves the point. */
 ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, n0, ACDF_U32, n1) {
     ACDF_VAR(AcdfWalkNumbers, numbers) = acdf_walk_numbers(n0, n1);
-    ACDF_VAR(AcdfVector, d);
-    ACDF_VAR(AcdfWalkEnd, end);
-    ACDF_VAR(ACDF_F32, pdf) = 0.0f;
+    ACDF_VAR(AcdfVector, d) = acdf_vector(0.0f, 0.0f, 0.0f);
+    ACDF_VAR(ACDF_F32, light) = -1.0f; /* density of what follows the light, where it is known */
     if (here.mix.root == ACDF_WALK_NONE) {
-        return acdf_walk_drawn(acdf_vector(0.0f, 0.0f, 0.0f), 0.0f);
+        return acdf_walk_drawn(d, 0.0f);
     }
     ACDF_LET(ACDF_U32, cosine) = acdf_walk_border(here.cosine, 1.0f - here.cosine, numbers.width0);
     if (numbers.at0 < cosine) {
         d = acdf_walk_cosine(here, acdf_walk_part(numbers.at0, cosine),
                              acdf_walk_part(numbers.at1, numbers.width1));
-        pdf = acdf_walk_pdf(tables, here, d.x, d.y, d.z);
     } else {
         numbers.at0 = numbers.at0 - cosine;
         numbers.width0 = numbers.width0 - cosine;
-        ACDF_LET(ACDF_U32, lit) = acdf_walk_border(here.light_sum, here.sum - here.light_sum, numbers.width0);
-        if (numbers.at0 < lit) {
-            numbers.width0 = lit;
-            end = acdf_walk_draw_light(tables, here, numbers);
-            end.given = 0.0f; /* by the mixture */
+        ACDF_LET(AcdfWalkEnd, end) = acdf_walk_draw_row(tables, here, numbers);
+        if (acdf_tiles_serve(tables, here) != 0u) {
+            d = acdf_tiles_sample(tables, here.mix, end.leaf, end.numbers);
         } else {
-            numbers.at0 = numbers.at0 - lit;
-            numbers.width0 = numbers.width0 - lit;
-            end = acdf_walk_draw(tables, here.mix, numbers);
+            d = acdf_walk_direction(tables, end);
+            light = acdf_walk_light_pdf(tables, here, end);
         }
-        d = acdf_walk_direction(tables, end);
-        pdf = acdf_walk_density(here, acdf_walk_light_pdf(tables, here, end), d.x, d.y, d.z);
     }
-    return acdf_walk_drawn(d, pdf);
+    if (light < 0.0f) {
+        return acdf_walk_drawn(d, acdf_walk_pdf(tables, here, d.x, d.y, d.z));
+    }
+    return acdf_walk_drawn(d, acdf_walk_density(here, light, d.x, d.y, d.z));
 }
 
 #ifdef __cplusplus

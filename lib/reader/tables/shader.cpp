@@ -52,8 +52,6 @@ Status ShaderTables::make(const File& file, ShaderTables& out) noexcept {
 Status ShaderTables::make_walk(const File& file, ShaderTables& out) noexcept {
     out = ShaderTables();
     if (file.kind() == ACDF_KIND_TABLE) return none("it is no environment, no local environment and no BRDF");
-    if (file.fast().grid)
-        return none("it has the fast shape, which shaders do not walk; make one with --shape small");
     if (!acdf::make_walk(file, out.block_))
         return none("its cells tilt (--fit pdf), too many share their curves, or memory is too little");
     return {};

@@ -3,6 +3,7 @@
 
 #include "memory.h"
 #include "tables/walk_cells.h"
+#include "tables/walk_tiles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,6 +72,7 @@ private:
     bool failed_ = false;
     WalkParts parts_;
     Growable<u32> bins_, views_, light_links_, tree_links_;
+    WalkTiles tiles_;
     u32 root_ = ACDF_WALK_NONE, mixture_ = ACDF_WALK_NONE;
 };
 
@@ -199,24 +201,29 @@ bool WalkMaker::make() {
     if (!cells_.remember(most_leaves_)) return false;
     if (local_.light_count > 0 && !light_links_.add(local_.light_count, ACDF_WALK_LEAF)) return false;
     if (!brdf()) root_ = tree(environment_.tree, environment_.root, cells_.whole(), 0);
-    if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
+    if (local_.fast.grid) {
+        mixture_ = ACDF_WALK_ON_GRIDS;
+        for (u32 i = 0; i < local_.light_count; ++i) light_links_[i] = local_.lights[i].tile;
+        failed_ = !tiles_.make(local_) || failed_;
+    } else if (local_.blend.tiles && !failed_) mixture_ = splits(acdf_blend_root(&local_.blend), cells_.whole());
     if (failed_ || (brdf() && !views())) return false;
     return file_.kind() == ACDF_KIND_ENVIRONMENT || bins();
 }
 
 bool WalkMaker::assemble(AcdfBlock& block) const {
     const AcdfTiles* const tiles = local_.blend.tiles;
-    const std::size_t stride = tiles ? tiles->tile_count - 1 : 0, rows = tiles ? stride * tiles->row_count : 0;
-    const std::size_t codes = tiles ? 512 : 0, lights = 8 * std::size_t{local_.light_count};
+    const bool coded = tiles && !local_.fast.grid;
+    const std::size_t stride = coded ? tiles->tile_count - 1 : 0, rows = coded ? stride * tiles->row_count : 0;
+    const std::size_t codes = coded ? 512 : 0, lights = 8 * std::size_t{local_.light_count};
     const std::size_t words = ACDF_WALK_HEADER_WORDS +
                               (parts_.nodes.bytes() + parts_.leaves.bytes() + bins_.bytes() + views_.bytes()) / 4 +
-                              codes + lights + rows / 4 + 1;
+                              codes + lights + rows / 4 + 1 + tiles_.words();
     if (rows > 0xFFFFFFFFu || words > 0x3FFFFFFFu) return false;
     block = take_block({}, 4 * words);
     if (!block.data) return false;
     u32* const out = static_cast<u32*>(std::memset(block.data, 0, 4 * words));
     const float scale = unit();
-    std::size_t at = ACDF_WALK_HEADER_WORDS;
+    std::size_t at = ACDF_WALK_HEADER_WORDS + (local_.fast.grid ? WalkTiles::header_words : 0);
     const auto place = [&](u32 header, const void* from, std::size_t bytes) { // where there is none, its place is 0
         if (bytes == 0) return;
         out[header] = static_cast<u32>(at);
@@ -234,6 +241,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
     out[ACDF_WALK_STRIDE] = static_cast<u32>(stride);
     out[ACDF_WALK_LIGHT_COUNT] = local_.light_count;
     out[ACDF_WALK_COSINE] = float_bits(local_.cosine_share);
+    out[ACDF_WALK_FAST] = local_.fast.grid != nullptr;
     if (brdf()) {
         const AcdfViews& views = *file_.brdf().data().views; // in the file
         out[ACDF_WALK_VIEW_COUNT] = views.theta_count;
@@ -259,6 +267,7 @@ bool WalkMaker::assemble(AcdfBlock& block) const {
         at += 8;
     }
     place(ACDF_WALK_CODE_ROWS, local_.blend.rows, rows);
+    if (local_.fast.grid) tiles_.place(local_, out, at);
     return true;
 }
 
