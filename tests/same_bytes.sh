@@ -33,7 +33,7 @@ make_files() {
     mkdir -p "$out"
     for codec in none zlib; do
         "$acdf" env "$work/sky.hdr" -o "$out/env_$codec.acdf" --cells 500 --compress $codec "${common[@]}"
-        "$acdf" local "$work/sky.hdr" -o "$out/local_$codec.acdf" --budget 16KiB --compress $codec "${common[@]}"
+        "$acdf" local "$work/sky.hdr" -o "$out/local_$codec.acdf" --budget 16KiB --shape small --compress $codec "${common[@]}"
         "$acdf" table "$work/table.npy" --indexed 1 -o "$out/table_$codec.acdf" --cells 40 --compress $codec "${common[@]}"
     done
     "$acdf" local "$work/sky.hdr" -o "$out/local_fast.acdf" --budget 24KiB --shape fast "${common[@]}"

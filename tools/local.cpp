@@ -217,10 +217,10 @@ std::string summary_of(const builder::Local& result) {
         return text;
     }
     std::snprintf(text, sizeof text,
-                  "relative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
+                  "%srelative variance %.4g over %u normals: %.3g times less than the probe's own CDF (%.4g); "
                   "%.1f %% of samples above the horizon",
-                  a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf,
-                  100.0 * a.share_above_horizon);
+                  result.shape == builder::LocalShape::fast ? "fast shape, " : "", a.relative_variance,
+                  a.lit_normals, gain(result), a.relative_variance_full_cdf, 100.0 * a.share_above_horizon);
     return text;
 }
 
@@ -250,11 +250,6 @@ Converted LocalConversion::convert(const Listener& listener) {
                       gain(result));
         listener.note(text);
     }
-    if (local.shape == builder::LocalShape::automatic)
-        listener.note(
-            result.shape == builder::LocalShape::fast
-                ? "the fast shape: it has no more noise after the same time"
-                : "the small shape: the fast one would have more noise after the same time, or cannot be made");
     std::string told = json_text(report(loaded, result)), summary = summary_of(result);
     return {std::move(result.bytes), result.accuracy.relative_variance, std::move(told), std::move(summary)};
 }
@@ -322,7 +317,7 @@ void LocalConversion::add_shape(CLI::App& command) {
         "time goes into calls: these take some 0.6 of the time, at 0.6 to 1.7 times the variance; auto: both are "
         "made, and fast is chosen where it has no more noise after the same time, and no option asks for what it "
         "has not")
-        ->option_text("small|fast|auto [small]")
+        ->option_text("small|fast|auto [auto]")
         ->group("Size and accuracy");
 }
 

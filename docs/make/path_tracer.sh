@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 python3 "$root/tests/inputs/sky_pfm.py" 1024 sky.pfm
 "$build/tools/acdf" env sky.pfm --budget 16KiB -o environment.acdf --quiet
-"$build/tools/acdf" local sky.pfm --budget 64KiB -o product.acdf --quiet
+"$build/tools/acdf" local sky.pfm --budget 64KiB --shape small -o product.acdf --quiet
 cp product.acdf cosine.acdf
 for sampler in cosine environment product; do
     echo "$sampler: $(build/path_tracer $sampler $sampler.acdf sky.pfm $sampler.pfm 16 320)"

@@ -54,7 +54,7 @@ noise() {
 
 # The densities of one local file for two normals.
 local_file() {
-    "$acdf" local "$data/probes/venice_sunset_1k.hdr" -o "$work/venice_sunset.acdf" --force --quiet
+    "$acdf" local "$data/probes/venice_sunset_1k.hdr" --shape small -o "$work/venice_sunset.acdf" --force --quiet
     "$acdf" plot "$work/venice_sunset.acdf" -o "$work/1.png" --normal 0,0,1 --width 512 --no-knots --range 1e-5:10 --force --quiet
     "$acdf" plot "$work/venice_sunset.acdf" -o "$work/2.png" --normal 1,0.3,0.2 --width 512 --no-knots --range 1e-5:10 --force --quiet
     side_by_side local "$work"/[12].png
@@ -87,7 +87,7 @@ sweep() {
 plot() {
     local size
     for size in 4KiB 64KiB; do
-        "$acdf" env "$data/probes/venice_sunset_1k.hdr" -o "$work/venice_sunset.acdf" --budget $size --force --quiet
+        "$acdf" env "$data/probes/venice_sunset_1k.hdr" --shape small -o "$work/venice_sunset.acdf" --budget $size --force --quiet
         "$acdf" plot "$work/venice_sunset.acdf" -o "$work/$size.png" --width 512 --range 1e-3:30 --force --quiet
     done
     side_by_side plot "$work"/{4KiB,64KiB}.png

@@ -38,6 +38,7 @@ struct LocalOptions {
     compress::LocalShape shape =
         compress::LocalShape::small; ///< with sharing; see LocalFitter for what goes with fast
     bool any_shape = false;          ///< build_local_in_any_shape chose it, or will
+    bool only_small = false;         ///< where fast is possible, too
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
@@ -64,14 +65,14 @@ struct Local {
 Local build_local(const compress::Target& target, const Source& source, const LocalOptions& options,
                   const Progress& progress = {});
 
-/// Makes both shapes, and chooses fast where it is at most kFastIsWorth times as noisy, small where it cannot be
-/// made.
+/// Makes both shapes, and chooses fast where it is at most kFastIsWorth times as noisy and as large (of those that
+/// reach a variance: no larger), small where it cannot be made.
 Local build_local_in_any_shape(const compress::Target& target, const Source& source, const LocalOptions& options,
                                const Progress& progress = {});
 
-/// A draw and a density take 200 and 130 ns of the small shape and 125 and 76 of the fast one (docs/performance.md,
-/// 1 MiB), and a shadow ray and a BRDF beside them 500 (acdf sweep): 830 to 700 ns, so as much variance is even
-/// after the same time.
+/// A draw and a density take 200 and 126 ns of the small shape and 127 and 63 of the fast one (docs/performance.md,
+/// 1 MiB), and a shadow ray and a BRDF beside them 500 (acdf sweep): 826 to 690 ns. So as much variance, and more,
+/// is even after the same time.
 constexpr double kFastIsWorth = 1.15;
 
 } // namespace acdf::build

@@ -7,9 +7,19 @@
 
 namespace acdf::build {
 
+namespace {
+
+// `bytes`: how many times those of small it may take.
+bool is_worth(const Local& fast, const Local& small, double bytes) {
+    return fast.accuracy.relative_variance <= kFastIsWorth * small.accuracy.relative_variance &&
+           static_cast<double>(fast.bytes.size()) <= bytes * static_cast<double>(small.bytes.size());
+}
+
+} // namespace
+
 std::string shape_text(const LocalOptions& options) {
-    if (options.any_shape) return "--shape auto ";
-    return options.shape == compress::LocalShape::fast ? "--shape fast " : "";
+    if (options.shape == compress::LocalShape::fast && !options.any_shape) return "--shape fast ";
+    return options.only_small ? "--shape small " : "";
 }
 
 Local build_local_in_any_shape(const compress::Target& target, const Source& source, const LocalOptions& options,
@@ -18,6 +28,7 @@ Local build_local_in_any_shape(const compress::Target& target, const Source& sou
         if (!progress) return {};
         return [&progress, begin](double done, const char* what) { progress(begin + 0.5 * done, what); };
     };
+    const bool smallest = options.goal.kind == compress::Goal::Kind::variance;
     LocalOptions each = options;
     each.any_shape = true;
     each.shape = compress::LocalShape::small;
@@ -25,7 +36,7 @@ Local build_local_in_any_shape(const compress::Target& target, const Source& sou
     each.shape = compress::LocalShape::fast;
     try {
         Local fast = build_local(target, source, each, half(0.5));
-        if (fast.accuracy.relative_variance <= kFastIsWorth * small.accuracy.relative_variance) return fast;
+        if (is_worth(fast, small, smallest ? 1.0 : kFastIsWorth)) return fast;
     } catch (const std::runtime_error&) { // a variance or a budget that it does not reach
     }
     return small;

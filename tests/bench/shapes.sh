@@ -13,7 +13,7 @@ for shape in "${shapes[@]}"; do
     for probe in noon_grass_1k.hdr studio_small_05_1k.hdr venice_sunset_1k.hdr courtyard.exr; do
         file=$work/$probe${shape// /}.acdf
         read -ra options <<<"$shape"
-        "$build/tools/acdf" local "$data/probes/$probe" "${options[@]}" -o "$file" --json --quiet |
+        "$build/tools/acdf" local "$data/probes/$probe" "${options[@]}" --shape small -o "$file" --json --quiet |
             awk '/"relative_variance":/ { printf " %.4f |", $2 }'
     done
     printf '\n'

@@ -245,7 +245,7 @@ FRESH = [["env", "sky.pfm", *options.split()] for options in (
     "--fit cdf --order phi --gradient 2 --knots 9x12 --compress zlib", "--fit pdf --knots 12x9",
     "--fit uniform --knots 8x8 --compress zlib")]
 FRESH += [["local", "sky.pfm", *options.split()] for options in (
-    "--budget 24KiB", "--budget 24KiB --cosine-share 0.25 --compress zlib", "--no-sharing --cells 24",
+    "--budget 24KiB --shape small", "--budget 24KiB --shape small --cosine-share 0.25 --compress zlib", "--no-sharing --cells 24",
     "--budget 24KiB --with cosine", "--budget 24KiB --shape fast", "--budget 48KiB --shape fast --compress zlib",
     "--no-sharing --normals 5x3 --fit cdf --knots 6x6 --cosine-share 0.1",
     "--no-sharing --normals 5x3 --fit uniform --knots 6x6 --compress zlib")]

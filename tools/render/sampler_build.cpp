@@ -64,7 +64,7 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
                   const std::vector<builder::SceneNormal>& normals) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(spec.bytes);
-    if (spec.fast) options.shape = builder::LocalShape::fast;
+    options.shape = spec.fast ? builder::LocalShape::fast : builder::LocalShape::small;
     options.company = spec.company;
     if (spec.of_scene) options.normals = normals;
     builder::Local made;

@@ -22,7 +22,7 @@ constexpr std::uint32_t kPaperColumns = 25, kPaperRows = 10;
 builder::LocalOptions options_of(const Step& step) {
     builder::LocalOptions out;
     out.goal = builder::Goal::of_budget(step.budget);
-    if (step.fit == "fast") out.shape = builder::LocalShape::fast;
+    out.shape = step.fit == "fast" ? builder::LocalShape::fast : builder::LocalShape::small;
     out.sharing = step.fit == "variance" || step.fit == "fast";
     if (step.fit != "cdf") return out;
     out.columns = kPaperColumns, out.rows = kPaperRows;
@@ -35,14 +35,14 @@ builder::LocalOptions options_of(const Step& step) {
 }
 
 std::string text_of(const Step& step, const builder::LocalOptions& o) {
-    if (step.fit == "variance") return "--budget " + budget_text(step.budget);
+    if (step.fit == "variance") return "--shape small --budget " + budget_text(step.budget);
     if (step.fit == "fast") return "--shape fast --budget " + budget_text(step.budget);
     if (step.fit == "separate") return "--no-sharing --budget " + budget_text(step.budget);
     return "--no-sharing --normals 25x10 --fit cdf " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
 }
 
 const char* local_label(const std::string& fit) {
-    return fit == "variance"   ? "shared tiles (default)"
+    return fit == "variance"   ? "the small shape"
            : fit == "fast"     ? "the fast shape"
            : fit == "separate" ? "a tree for each normal"
                                : "the paper's: 25 x 10 normals, cdf fit";

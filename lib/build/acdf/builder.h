@@ -215,8 +215,9 @@ enum class LocalShape {
     small, ///< least noise for its bytes
     fast,  ///< grids in tiles and sums in rows, which are searched by vectors: draws and densities take 0.6 of the
            ///< time
-    automatic ///< both are made: fast where its variance is at most 1.15 times that of small, for then it has no
-              ///< more noise after the same time; small where that fails, or options ask for what fast has not
+    automatic ///< both are made: fast where its variance and its size are at most 1.15 times those of small, for
+              ///< then it has no more noise after the same time (of those that reach a variance: where it is no
+              ///< larger); small where that fails, or options ask for what fast has not
 };
 
 /// A point of a scene where light is gathered: on a surface, or in the air.
@@ -259,10 +260,10 @@ struct LocalOptions {
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
-    LocalShape shape = LocalShape::small; ///< fast: with sharing, without max_weight, a company and places
-    BinTarget bin_target = BinTarget::mean; ///< without sharing
-    FitOptions fit;                         ///< of a bin's tree, without sharing
-    Company company;                        ///< of bins that share tiles, without a cosine_share
+    LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, a company and places
+    BinTarget bin_target = BinTarget::mean;   ///< without sharing
+    FitOptions fit;                           ///< of a bin's tree, without sharing
+    Company company;                          ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
