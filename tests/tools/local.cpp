@@ -32,7 +32,10 @@ protected:
         write_rgb(path, 64, 32, rgb);
     }
 
+    /// Of the small shape, if no other is asked for: by default two files are made.
     json made(std::vector<std::string> options, const std::string& source = "") {
+        if (std::find(options.begin(), options.end(), "--shape") == options.end())
+            options.insert(options.end(), {"--shape", "small"});
         options.insert(options.begin(),
                        {"local", source.empty() ? probe : source, "-o", output, "--force", "--json"});
         const Result result = run_acdf(options);
@@ -202,7 +205,7 @@ TEST_F(LocalCommand, ChoosesTheShape) {
             const double small = made({"--shape", "small", "--budget", budget}, source).at("relative_variance");
             const json told = json::parse(run_acdf({"info", "--json", output}).out);
             EXPECT_EQ(told["options"].get<std::string>().substr(0, 14), "--shape small ");
-            const json chosen = made({"--budget", budget}, source);
+            const json chosen = made({"--shape", "auto", "--budget", budget}, source);
             const bool is_fast = chosen.at("shape") == "fast";
             EXPECT_EQ(is_fast, fast <= 1.15 * small) << budget;
             EXPECT_EQ(chosen.at("relative_variance").get<double>(), is_fast ? fast : small);
@@ -213,6 +216,9 @@ TEST_F(LocalCommand, ChoosesTheShape) {
         }
     EXPECT_GT(fast_ones, 0);
     EXPECT_GT(small_ones, 0);
+    const std::string by_default = folder / "default.acdf"; // as the last one
+    EXPECT_EQ(run_acdf({"local", lamp, "-o", by_default, "--budget", "64KiB"}).code, 0);
+    EXPECT_EQ(read_text(by_default), read_text(output));
     EXPECT_EQ(made({"--shape", "auto", "--budget", "48KiB", "--with", "cosine"}).at("shape"), "small");
     EXPECT_EQ(made({"--shape", "auto", "--budget", "24KiB", "--max-weight", "50"}).at("shape"), "small");
 }
