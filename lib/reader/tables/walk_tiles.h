@@ -25,7 +25,7 @@ private:
         std::uint32_t lows, sides, ends, rest;
     };
 
-    void add_tiles(const AcdfLocal& local, std::uint32_t node, const AcdfRange* box) noexcept;
+    void add(const AcdfLocal& local, std::uint32_t tile) noexcept;
 
     Growable<Record> records_;
     Growable<float> sines_;
