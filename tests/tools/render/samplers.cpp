@@ -1,4 +1,5 @@
 // Every sampler on a small scene with shadows and two materials: none may be biased.
+#include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
 
 #include "tools/render/report.h"
@@ -39,6 +40,8 @@ struct SmallScene {
     }
 };
 
+const std::uint32_t kSeeds = acdf_test::kSanitized ? 60 : 400; // sanitizers are for code, not for statistics
+
 void expect_unbiased(const Comparison& comparison) {
     for (const Compared& one : comparison.samplers) {
         EXPECT_LT(std::abs(one.bias_standard_errors), 4.0) << one.spec.text << " by " << one.bias;
@@ -51,7 +54,7 @@ TEST(RenderSamplers, OfLightAreUnbiased) {
     SmallScene scene;
     expect_unbiased(scene.compare({"full-cdf", "cosine", "tiles:8x4", "alias", "hierarchical", "downsampled:8x4",
                                    "strata", "strata:radiance", "ris:4", "env:4KiB"},
-                                  400));
+                                  kSeeds));
 }
 
 TEST(RenderSamplers, OfCompaniesAreUnbiased) {
@@ -60,24 +63,24 @@ TEST(RenderSamplers, OfCompaniesAreUnbiased) {
                                    "mis-power(local:48KiB --with cosine --heuristic power,cosine)",
                                    "mis(auto:local:48KiB --with cosine --shares 3:1, cosine, full-cdf)",
                                    "mis(env:4KiB --with brdf,cosine)", "ideal", "mis(ideal --with cosine,cosine)"},
-                                  400));
+                                  kSeeds));
 }
 
 TEST(RenderSamplers, CombinedAreUnbiased) {
     SmallScene scene;
     expect_unbiased(scene.compare(
         {"mis(full-cdf,cosine)", "mis-power(3*full-cdf,cosine)", "mis-compensated", "mis(env:4KiB,ggx:0.4,cosine)"},
-        400));
+        kSeeds));
 }
 
 TEST(RenderSamplers, OfTheSurfaceAreUnbiased) {
     SmallScene scene;
-    expect_unbiased(scene.compare({"ggx:0.4", "brdf:16KiB", "mis(env:4KiB,brdf:16KiB)"}, 400));
+    expect_unbiased(scene.compare({"ggx:0.4", "brdf:16KiB", "mis(env:4KiB,brdf:16KiB)"}, kSeeds));
 }
 
 TEST(RenderSamplers, OfLocalEnvironmentsAreUnbiased) {
     SmallScene scene;
-    expect_unbiased(scene.compare({"local:32KiB", "mis(4*local:32KiB,cosine)"}, 400));
+    expect_unbiased(scene.compare({"local:32KiB", "mis(4*local:32KiB,cosine)"}, kSeeds));
 }
 
 TEST(RenderSamplers, ScrambledSequencesAreUnbiasedAndLessNoisy) {

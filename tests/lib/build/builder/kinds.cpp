@@ -68,8 +68,6 @@ TEST(BuilderLocal, MakesWhatTheProgramMakes) {
     options.goal = Goal::of_budget(32 << 10);
     options.shape = LocalShape::fast;
     EXPECT_EQ(local_bytes(file, options), file.program({"--budget", "32KiB", "--shape", "fast"}));
-    options.shape = LocalShape::automatic;
-    EXPECT_EQ(local_bytes(file, options), file.program({"--budget", "32KiB", "--shape", "auto"}));
     options = {};
     options.sharing = false;
     options.columns = 6, options.rows = 3;
