@@ -24,7 +24,7 @@ using acdf::compress::Order;
 using acdf::compress::Shape;
 using acdf::compress::Target;
 
-const std::uint32_t kSamples = std::uint32_t(repeated(100000));
+const std::uint32_t kSamples = std::uint32_t(repeated(60000));
 // Chi-square tests in all: two a fit, 19 fits, 12 synthetic targets on two grids and four probes on two. Together
 // they reject a correct program with a chance of 1 % (once and for all, because the seeds are fixed).
 constexpr int kChiSquareTests = 2 * 19 * 2 * (12 + 4);

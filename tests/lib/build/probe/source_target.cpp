@@ -191,8 +191,8 @@ void check(const Map& map, AcdfParameterization grid, AcdfFilter filter) {
 TEST_P(EveryLayout, WhatIsPrintedIsTrue) {
     for (const AcdfParameterization grid : {ACDF_PARAM_LATLONG, ACDF_PARAM_OCTAHEDRAL})
         for (const AcdfFilter filter : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR}) {
-            // Each grid with each filter takes ten seconds under sanitizers.
-            if (kSanitized && (grid == ACDF_PARAM_LATLONG) != (filter == ACDF_FILTER_NEAREST)) continue;
+            // Each grid with each filter takes long under sanitizers; other tests have the other ones.
+            if (kSanitized && (grid == ACDF_PARAM_LATLONG || filter == ACDF_FILTER_NEAREST)) continue;
             SCOPED_TRACE(std::string(grid == ACDF_PARAM_LATLONG ? "lat-long" : "octahedral") +
                          (filter == ACDF_FILTER_NEAREST ? ", nearest" : ", bilinear"));
             check(GetParam().map, grid, filter);
