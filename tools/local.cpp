@@ -194,7 +194,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"tiles", file.blend().tiles ? file.blend().tiles->tile_count : 0},
         {"places", file.local().has_places() ? file.local().data().places.header->row_count : 0},
         {"shape", result.shape == builder::LocalShape::fast ? "fast" : "small"},
-        {"normals_measured", result.normals},
+        {"normals", result.normals},
         {"relative_variance", a.relative_variance},
         {"relative_variance_full_cdf", a.relative_variance_full_cdf},
         {"gain", gain(result)},

@@ -43,7 +43,7 @@ sizes() {
             [ $size = 64KiB ] && line="$line $(jq -r '.relative_variance_full_cdf*1000|round/1000' "$json") |"
             line="$line $(jq -r '(.relative_variance*1e5|round/1e5|tostring) + " (" + (.gain|round|tostring) + "×)"' "$json") |"
             echo "$size $(field "$json" gain)" >> "$work/gains"
-            [ $size = 1MB ] && above="$(jq -r '[.share_above_horizon,.share_above_horizon_least]|map(.*1000|round/10|tostring+" %")|join(", ")' "$json") | $(jq -r '[.share_above_horizon_full_cdf,.share_above_horizon_full_cdf_least]|map(.*1000|round/10|tostring+" %")|join(", ")' "$json") |"
+            [ $size = 1MB ] && above="$(jq -r '[.share_above_horizon,.least_share_above_horizon]|map(.*1000|round/10|tostring+" %")|join(", ")' "$json") | $(jq -r '[.share_above_horizon_full_cdf,.least_share_above_horizon_full_cdf]|map(.*1000|round/10|tostring+" %")|join(", ")' "$json") |"
         done
         echo "$line $above"
     done <<< "$list"
@@ -67,7 +67,7 @@ bins() {
     echo "|---|---|---|---|"
     for n in 6 8 10 12 14 16 20; do
         build grace grace_probe.hdr angular --budget 1MB --normals $n
-        jq -r --arg n $n '"| " + $n + " | " + (.bins|tostring) + " | " + (.relative_variance*1e5|round/1e5|tostring) + " | " + (.share_above_horizon_least*1000|round/10|tostring) + " % |"' "$work/grace.json"
+        jq -r --arg n $n '"| " + $n + " | " + (.bins|tostring) + " | " + (.relative_variance*1e5|round/1e5|tostring) + " | " + (.least_share_above_horizon*1000|round/10|tostring) + " % |"' "$work/grace.json"
     done
 }
 
@@ -86,12 +86,12 @@ paper() {
     while read -r text options; do
         # shellcheck disable=SC2086
         build grace grace_probe.hdr angular --no-sharing --normals 25x10 $options
-        jq -r --arg t "${text//_/ }" '"| " + $t + " | " + (.bytes|tostring) + " | " + (if .relative_variance then (.relative_variance*1e4|round/1e4|tostring) + " | " + (.gain*10|round/10|tostring) + "×" else "infinite | none" end) + " | " + ([.share_above_horizon,.share_above_horizon_least]|map(.*1000|round/10|tostring+" %")|join(", ")) + " | " + (.support_violations|tostring) + " |"' "$work/grace.json"
+        jq -r --arg t "${text//_/ }" '"| " + $t + " | " + (.bytes|tostring) + " | " + (if .relative_variance then (.relative_variance*1e4|round/1e4|tostring) + " | " + (.gain*10|round/10|tostring) + "×" else "infinite | none" end) + " | " + ([.share_above_horizon,.least_share_above_horizon]|map(.*1000|round/10|tostring+" %")|join(", ")) + " | " + (.support_violations|tostring) + " |"' "$work/grace.json"
     done <<< "cdf,_of_the_centre_(as_published) --fit cdf --knots 128x128 --bin-target centre
 cdf,_of_the_bin's_mean --fit cdf --knots 128x128
 variance,_of_the_bin's_mean,_one_price --cells 4096"
     build grace grace_probe.hdr angular --budget 1MB
-    jq -r '"| shared, 1 MB, 12 | \(.bytes) | \(.relative_variance*1e4|round/1e4) | \(.gain*10|round/10)× | \([.share_above_horizon,.share_above_horizon_least]|map(.*1000|round/10|tostring+" %")|join(", ")) | \(.support_violations) |"' "$work/grace.json"
+    jq -r '"| shared, 1 MB, 12 | \(.bytes) | \(.relative_variance*1e4|round/1e4) | \(.gain*10|round/10)× | \([.share_above_horizon,.least_share_above_horizon]|map(.*1000|round/10|tostring+" %")|join(", ")) | \(.support_violations) |"' "$work/grace.json"
 }
 
 for table in $tables; do

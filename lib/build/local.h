@@ -24,6 +24,13 @@ struct ScenePlaces {
     std::vector<compress::PortalRectangle> portals; ///< among the cells
 };
 
+/// Why a local file has its shape.
+enum class ShapeFrom {
+    necessity, ///< it is small, as options ask for what fast has not
+    request,   ///< of the two that there are
+    comparison ///< build_local_in_any_shape chooses
+};
+
 /// What `acdf local` was asked for, beside the probe.
 struct LocalOptions {
     compress::TargetOptions target;
@@ -37,8 +44,7 @@ struct LocalOptions {
     bool sharing = true;
     compress::LocalShape shape =
         compress::LocalShape::small; ///< with sharing; see LocalFitter for what goes with fast
-    bool any_shape = false;          ///< build_local_in_any_shape chose it, or will
-    bool only_small = false;         ///< where fast is possible, too
+    ShapeFrom shape_from = ShapeFrom::necessity;
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
@@ -51,7 +57,7 @@ struct LocalOptions {
 /// All options that shape the file, in one spelling: what its `fit.options` tells.
 std::string option_text(const std::string& reading, const LocalOptions& options);
 
-/// Of that, which shape; with sharing.
+/// Of that, which shape, where it was asked for.
 std::string shape_text(const LocalOptions& options);
 
 struct Local {

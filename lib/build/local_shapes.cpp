@@ -18,8 +18,8 @@ bool is_worth(const Local& fast, const Local& small, double bytes) {
 } // namespace
 
 std::string shape_text(const LocalOptions& options) {
-    if (options.shape == compress::LocalShape::fast && !options.any_shape) return "--shape fast ";
-    return options.only_small ? "--shape small " : "";
+    if (options.shape_from != ShapeFrom::request) return "";
+    return options.shape == compress::LocalShape::fast ? "--shape fast " : "--shape small ";
 }
 
 Local build_local_in_any_shape(const compress::Target& target, const Source& source, const LocalOptions& options,
@@ -30,7 +30,7 @@ Local build_local_in_any_shape(const compress::Target& target, const Source& sou
     };
     const bool smallest = options.goal.kind == compress::Goal::Kind::variance;
     LocalOptions each = options;
-    each.any_shape = true;
+    each.shape_from = ShapeFrom::comparison;
     each.shape = compress::LocalShape::small;
     Local small = build_local(target, source, each, half(0.0));
     each.shape = compress::LocalShape::fast;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "compress/brdf/target.h"
+#include "measure/samplers/alias_choices.h"
 
 #include <acdf/sample.h>
 
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace acdf_bench {
@@ -70,8 +72,7 @@ public:
     }
 };
 
-/// Walker's alias method, by Vose's construction: the cell by one number, the choice by the other; what is left of
-/// each is where in the cell.
+/// The alias method: the cell by one number, the choice by the other; what is left of each is where in the cell.
 class AliasSlices {
 public:
     explicit AliasSlices(const acdf::compress::Reflected& reflected) {
@@ -104,22 +105,11 @@ private:
         float part;
     };
     void add(const std::vector<float>& mass) {
-        const std::size_t first = entries_.size();
-        std::vector<double> scaled(mass.size());
-        std::vector<std::uint32_t> less, more;
-        for (std::uint32_t i = 0; i < mass.size(); ++i) {
-            scaled[i] = double{mass[i]} * static_cast<double>(mass.size());
-            entries_.push_back({1.0f, i, mass[i]});
-            (scaled[i] < 1.0 ? less : more).push_back(i);
-        }
-        while (!less.empty() && !more.empty()) {
-            const std::uint32_t low = less.back(), high = more.back();
-            less.pop_back();
-            entries_[first + low].keep = static_cast<float>(scaled[low]);
-            entries_[first + low].alias = high;
-            scaled[high] -= 1.0 - scaled[low];
-            if (scaled[high] < 1.0) more.pop_back(), less.push_back(high);
-        }
+        std::vector<double> scaled;
+        for (const float m : mass) scaled.push_back(double{m} * static_cast<double>(mass.size()));
+        const std::vector<acdf::measure::AliasChoice> choices = acdf::measure::alias_choices(std::move(scaled));
+        for (std::size_t i = 0; i < mass.size(); ++i)
+            entries_.push_back({choices[i].keep, choices[i].alias, mass[i]});
     }
     std::vector<Entry> entries_;
 };

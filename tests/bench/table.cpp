@@ -2,6 +2,8 @@
 // numbers in floats. Writes tables in Markdown.
 #include "tests/bench/turns.h"
 
+#include "measure/samplers/alias_choices.h"
+
 #include <acdf/builder.h>
 
 #include <algorithm>
@@ -89,29 +91,18 @@ private:
     std::vector<float> pdf_;
 };
 
-/// Cells in constant time (Vose 1991), where in a cell by the other numbers.
+/// Cells by the alias method, where in a cell by the other numbers.
 class AliasCells {
 public:
     AliasCells(const std::vector<float>& values, std::vector<std::uint32_t> sides)
         : sides_(std::move(sides)), entries_(values.size()) {
         const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
         std::vector<double> share(values.size());
-        std::vector<std::uint32_t> low, high;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            share[i] = values[i] / mean;
-            entries_[i] = {1.0f, static_cast<std::uint32_t>(i),
+        for (std::size_t i = 0; i < values.size(); ++i) share[i] = values[i] / mean;
+        const std::vector<acdf::measure::AliasChoice> choices = acdf::measure::alias_choices(share);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            entries_[i] = {choices[i].keep, choices[i].alias,
                            static_cast<float>(share[i] / static_cast<double>(values.size()))};
-            (share[i] < 1.0 ? low : high).push_back(static_cast<std::uint32_t>(i));
-        }
-        while (!low.empty() && !high.empty()) {
-            const std::uint32_t less = low.back(), more = high.back();
-            low.pop_back();
-            entries_[less].keep = static_cast<float>(share[less]);
-            entries_[less].alias = more;
-            if ((share[more] -= 1.0 - share[less]) >= 1.0) continue;
-            high.pop_back();
-            low.push_back(more);
-        }
     }
 
     float sample(const float* u, float* x) const {

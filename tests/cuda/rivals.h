@@ -5,6 +5,7 @@
 #include "on_device.h"
 
 #include "compress/target.h"
+#include "measure/samplers/alias_choices.h"
 
 #include <acdf/sphere.h>
 
@@ -63,7 +64,7 @@ struct FullTable {
     }
 };
 
-/// Walker's alias method. Sixteen bytes a texel, so that a draw is one load: what the texel keeps, its alias, and
+/// The alias method. Sixteen bytes a texel, so that a draw is one load: what the texel keeps, its alias, and
 /// the densities of both.
 struct AliasTable {
     TexelGrid grid;
@@ -168,30 +169,14 @@ private:
         conditional_ = to_device(conditional);
         densities_ = to_device(densities);
     }
-    /// Vose, IEEE TSE 17(9), 1991.
-    void make_alias(std::vector<double> rest, const std::vector<float>& densities) {
-        std::vector<std::uint32_t> small, large, alias(rest.size());
-        std::vector<float> keep(rest.size(), 1.0f);
-        for (std::uint32_t i = 0; i < rest.size(); ++i) {
-            rest[i] *= static_cast<double>(rest.size());
-            alias[i] = i;
-            (rest[i] < 1.0 ? small : large).push_back(i);
-        }
-        while (!small.empty() && !large.empty()) {
-            const std::uint32_t filled = small.back(), filling = large.back();
-            small.pop_back();
-            keep[filled] = static_cast<float>(rest[filled]);
-            alias[filled] = filling;
-            rest[filling] -= 1.0 - rest[filled];
-            if (rest[filling] >= 1.0) continue;
-            large.pop_back();
-            small.push_back(filling);
-        }
-        std::vector<float4> entries(rest.size());
-        for (std::size_t i = 0; i < rest.size(); ++i) {
+    void make_alias(std::vector<double> mass, const std::vector<float>& densities) {
+        for (double& m : mass) m *= static_cast<double>(mass.size());
+        const std::vector<acdf::measure::AliasChoice> choices = acdf::measure::alias_choices(mass);
+        std::vector<float4> entries(mass.size());
+        for (std::size_t i = 0; i < mass.size(); ++i) {
             float number;
-            std::memcpy(&number, &alias[i], sizeof number);
-            entries[i] = {keep[i], number, densities[i], densities[alias[i]]};
+            std::memcpy(&number, &choices[i].alias, sizeof number);
+            entries[i] = {choices[i].keep, number, densities[i], densities[choices[i].alias]};
         }
         entries_ = to_device(entries);
     }

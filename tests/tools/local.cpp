@@ -93,8 +93,10 @@ TEST_F(LocalCommand, TellsWhatMeasureTells) {
     const Result measured = run_acdf({"measure", output, "--against", probe, "--json", "--rivals"});
     ASSERT_EQ(measured.code, 0) << measured.err;
     const json accuracy = json::parse(measured.out);
-    for (const char* key : {"relative_variance", "relative_variance_full_cdf", "share_above_horizon", "gain"})
-        EXPECT_EQ(report[key], accuracy[key]) << key;
+    for (const char* key :
+         {"file", "source", "bytes", "bins", "normals", "relative_variance", "relative_variance_full_cdf", "gain",
+          "max_weight", "share_above_horizon", "least_share_above_horizon", "support_violations"})
+        EXPECT_EQ(report.at(key), accuracy.at(key)) << key;
     for (const char* rival : {"full_cdf", "resampling_32", "tiling_512", "cosine"})
         EXPECT_GT(accuracy["rivals"][rival]["relative_variance"], accuracy["relative_variance"]) << rival;
     EXPECT_NEAR(accuracy["rivals"]["full_cdf"]["relative_variance"].get<double>(),

@@ -155,8 +155,9 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.company = internal(options.company);
     out.sharing = options.sharing;
     out.shape = options.shape == LocalShape::fast ? compress::LocalShape::fast : compress::LocalShape::small;
-    out.any_shape = options.shape == LocalShape::automatic && may_be_fast(options);
-    out.only_small = options.shape == LocalShape::small && may_be_fast(options);
+    out.shape_from = !may_be_fast(options)                    ? build::ShapeFrom::necessity
+                     : options.shape == LocalShape::automatic ? build::ShapeFrom::comparison
+                                                              : build::ShapeFrom::request;
     out.bin_target =
         options.bin_target == BinTarget::centre ? compress::BinTarget::centre : compress::BinTarget::mean;
     out.fit = internal(options.fit);

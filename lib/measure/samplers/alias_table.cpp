@@ -1,5 +1,7 @@
 #include "measure/samplers/alias_table.h"
 
+#include "measure/samplers/alias_choices.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -24,31 +26,11 @@ AliasTable::AliasTable(const compress::Target& target, AliasNumbers numbers) : g
             mass.push_back(density * target.column_measure[c] * target.row_measure[r] *
                            static_cast<double>(grid_.texels()));
         }
-    build(mass);
-}
-
-// `mass` has mean 1. Each texel below it is filled up by one above it.
-void AliasTable::build(const std::vector<double>& mass) {
-    std::vector<double> rest = mass;
-    std::vector<std::uint32_t> small, large;
-    for (std::uint32_t i = 0; i < rest.size(); ++i) {
-        entries_[i].alias = i;
-        (rest[i] < 1.0 ? small : large).push_back(i);
+    const std::vector<AliasChoice> choices = alias_choices(std::move(mass));
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        entries_[i].keep = choices[i].keep;
+        entries_[i].alias = choices[i].alias;
     }
-    while (!small.empty() && !large.empty()) {
-        const std::uint32_t filled = small.back(), filling = large.back();
-        small.pop_back();
-        entries_[filled].keep = static_cast<float>(rest[filled]);
-        entries_[filled].alias = filling;
-        rest[filling] -= 1.0 - rest[filled];
-        if (rest[filling] >= 1.0) continue;
-        large.pop_back();
-        small.push_back(filling);
-    }
-    // What rounding leaves is full; but a dark texel is never drawn.
-    const auto brightest = static_cast<std::uint32_t>(std::max_element(mass.begin(), mass.end()) - mass.begin());
-    for (const std::uint32_t i : small)
-        if (!(mass[i] > 0.0)) entries_[i].keep = 0.0f, entries_[i].alias = brightest;
 }
 
 AcdfDirectionSample AliasTable::sample(double u0, double u1) const {

@@ -14,8 +14,8 @@ enum class AliasNumbers {
     two, ///< the texel from u0, the choice from u1
 };
 
-/// Walker's alias method (ACM TOMS 3(3), 1977) over all texels, built in linear time after Vose (IEEE TSE 17(9),
-/// 1991); where in the texel comes from what is left of the random numbers. Twelve bytes a texel. Not monotone:
+/// Walker's alias method over all texels (alias_choices); where in the texel comes from what is left of the random
+/// numbers. Twelve bytes a texel. Not monotone:
 /// strata of random numbers do not stay strata of directions.
 class AliasTable {
 public:
@@ -32,7 +32,6 @@ private:
         std::uint32_t alias;
         float pdf; ///< sr^-1
     };
-    void build(const std::vector<double>& mass);
 
     ProbeGrid grid_;
     AliasNumbers numbers_;
