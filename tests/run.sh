@@ -2,8 +2,8 @@
 # Everything that must hold, from a bare Debian 12: installs what is missing, then
 #   0. builds optimised with warnings as errors, while packages are still being installed, and checks the formatting,
 #   1. builds libraries, the program and tests of the reader with clang, AddressSanitizer and UndefinedBehaviorSanitizer, and
-#      links the other tests with them; runs the tests on synthetic data, and beside them fuzzes the reader for a quarter of
-#      a minute, and every parser of our own for 5 seconds,
+#      links the other tests with them; runs the tests on synthetic data, and beside them fuzzes the reader for ten
+#      seconds, and every parser of our own for 3,
 #   2. compares the files that both builds make byte for byte,
 #   3. runs all tests of the optimised build, those on real data too where it is present.
 # Fails at the first stage that fails. May be run again at any time; later runs build only what changed.
