@@ -87,7 +87,7 @@ sweep() {
 plot() {
     local size
     for size in 4KiB 64KiB; do
-        "$acdf" env "$data/probes/venice_sunset_1k.hdr" --shape small -o "$work/venice_sunset.acdf" --budget $size --force --quiet
+        "$acdf" env "$data/probes/venice_sunset_1k.hdr" -o "$work/venice_sunset.acdf" --budget $size --force --quiet
         "$acdf" plot "$work/venice_sunset.acdf" -o "$work/$size.png" --width 512 --range 1e-3:30 --force --quiet
     done
     side_by_side plot "$work"/{4KiB,64KiB}.png

@@ -15,8 +15,7 @@ enum class AliasNumbers {
 };
 
 /// Walker's alias method over all texels (alias_choices); where in the texel comes from what is left of the random
-/// numbers. Twelve bytes a texel. Not monotone:
-/// strata of random numbers do not stay strata of directions.
+/// numbers. Twelve bytes a texel. Not monotone: strata of random numbers do not stay strata of directions.
 class AliasTable {
 public:
     /// Throws std::invalid_argument where the target is no probe or black.

@@ -211,7 +211,8 @@ TEST_F(BatchCommand, KeepsWithinMemory) {
 }
 
 TEST_F(BatchCommand, FilesAreTheSameForAnyThreadsAndJobs) {
-    if (acdf_test::kSanitized) GTEST_SKIP() << "tests/same_bytes.sh runs sanitized programs so";
+    if (acdf_test::kSanitized)
+        GTEST_SKIP() << "tests/same_bytes.sh runs sanitized programs on any number of threads";
     const std::uint32_t count = 5;
     write_small_probes(probes, count, 16);
     const std::vector<std::string> run = {probes, "--kind", "env,local", "--set", "local.budget=12KiB", "--force"};
