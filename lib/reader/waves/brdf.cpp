@@ -39,7 +39,7 @@ struct Arena {
 struct Arrays {
     WavefrontTable* table;
     WavefrontSplit* splits;
-    u32 *codes, *boxes;
+    u32* boxes;
     // While the tables are made, of each split of the file:
     u32* number; // in the tables
     u32* split_boxes;
@@ -49,14 +49,13 @@ u32 splits_of(const AcdfBrdf& brdf) { return brdf.blend.tiles->tile_count - 1; }
 u32 entries_of(const AcdfBrdf& brdf) { return (brdf.blend.tiles->tile_count + 7) & ~7u; }
 std::size_t pairs_of(const AcdfBrdf& brdf) { return brdf.views->theta_count > 1 ? brdf.views->theta_count - 1 : 1; }
 
-/// The arrays in `block`; `bytes` becomes their size. Vectors load the bytes behind an element, too: eight in all.
+/// The arrays in `block`; `bytes` becomes their size.
 Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes) {
     const std::size_t cells = brdf.blend.tiles->tile_count;
     Arena arena{block};
     Arrays out;
     out.table = arena.take<WavefrontTable>(1);
-    out.splits = arena.take<WavefrontSplit>(entries_of(brdf));
-    out.codes = arena.take<u32>(pairs_of(brdf) * entries_of(brdf) + 1);
+    out.splits = arena.take<WavefrontSplit>(pairs_of(brdf) * entries_of(brdf));
     out.boxes = arena.take<u32>(4 * cells);
     out.number = arena.take<u32>(cells);
     out.split_boxes = arena.take<u32>(4 * cells);
@@ -64,53 +63,42 @@ Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes) {
     return out;
 }
 
+bool is_power_of_two(u32 x) { return x != 0 && (x & (x - 1)) == 0; }
 bool is_split(u32 child) { return !(child & ACDF_TILE_FLAG); }
 
-/// Numbers of the splits: those of the first levels from 0 on, then the others in their order.
-void number_splits(const AcdfBrdf& brdf, u32* number) {
-    const u32 none = splits_of(brdf);
-    u32 level[8] = {0}, width = none > 0 ? 1 : 0, count = 0;
-    std::fill(number, number + none, none);
-    for (u32 depth = 0; depth < kTopLevels; ++depth) {
-        u32 next[8], next_width = 0;
-        for (u32 i = 0; i < width; ++i) {
-            number[level[i]] = count++;
-            for (const u32 child : brdf.blend.splits[level[i]].child)
-                if (is_split(child)) next[next_width++] = child;
-        }
-        std::copy(next, next + next_width, level);
-        width = next_width;
+u32 axis_of(const AcdfSplit& split) { return split.place & 7u; }
+
+/// Numbers of the splits: those of axis 0 in their order, then the others. Returns how many are of axis 0.
+u32 number_splits(const AcdfBrdf& brdf, u32* number) {
+    u32 count = 0, first = 0;
+    for (u32 axis = 0; axis < 2; ++axis) {
+        for (u32 i = 0; i < splits_of(brdf); ++i)
+            if (axis_of(brdf.blend.splits[i]) == axis) number[i] = count++;
+        if (axis == 0) first = count;
     }
-    for (u32 i = 0; i < none; ++i)
-        if (number[i] == none) number[i] = count++;
+    return first;
 }
 
-constexpr WavefrontSplit kAllBelow = {{0, 0}, 0};
+constexpr std::uint16_t kAll = 0xFFFF; // the code of a split that gives all to its lower part
 
 void place_splits(const AcdfBrdf& brdf, const u32* number, WavefrontSplit* out) {
-    std::fill(out, out + entries_of(brdf), kAllBelow);
-    for (u32 i = 0; i < splits_of(brdf); ++i) {
-        const AcdfSplit& split = brdf.blend.splits[i];
-        WavefrontSplit& placed = out[number[i]];
-        placed.axis = split.place & 7u;
-        for (u32 part = 0; part < 2; ++part) {
-            const u32 child = split.child[part];
-            placed.child[part] = static_cast<std::uint16_t>(is_split(child) ? number[child] : child);
-        }
-    }
-}
-
-void pair_codes(const AcdfBrdf& brdf, const u32* number, u32* out) {
     const std::size_t last = brdf.views->theta_count - 1;
     const std::uint16_t* codebook = brdf.blend.tiles->codebook;
     for (std::size_t pair = 0; pair < pairs_of(brdf); ++pair, out += entries_of(brdf)) {
         const std::uint8_t* low = brdf.blend.rows + std::size_t{brdf.bins[pair].root} * splits_of(brdf);
         const std::uint8_t* high =
             brdf.blend.rows + std::size_t{brdf.bins[std::min(pair + 1, last)].root} * splits_of(brdf);
-        std::fill(out, out + entries_of(brdf), 0xFFFFFFFFu);
-        for (u32 i = 0; i < splits_of(brdf); ++i) out[number[i]] = codebook[low[i]] | u32{codebook[high[i]]} << 16;
+        std::fill(out + splits_of(brdf), out + entries_of(brdf), WavefrontSplit{{kAll, kAll}, {0, 0}});
+        for (u32 i = 0; i < splits_of(brdf); ++i) {
+            WavefrontSplit& placed = out[number[i]];
+            placed.code[0] = codebook[low[i]];
+            placed.code[1] = codebook[high[i]];
+            for (u32 part = 0; part < 2; ++part) {
+                const u32 child = brdf.blend.splits[i].child[part];
+                placed.child[part] = static_cast<std::uint16_t>(is_split(child) ? number[child] : child);
+            }
+        }
     }
-    *out = 0;
 }
 
 /// Parents stand before their children: one pass.
@@ -123,7 +111,7 @@ void place_boxes(const AcdfBrdf& brdf, u32* of_splits, u32* of_cells) {
             const u32 child = split.child[upper], number = child & (ACDF_TILE_FLAG - 1);
             u32* box = (is_split(child) ? of_splits : of_cells) + 4 * std::size_t{number};
             std::memcpy(box, of_splits + 4 * std::size_t{i}, sizeof whole);
-            box[2 * (split.place & 7u) + 1 - upper] = split.place >> 3;
+            box[2 * axis_of(split) + 1 - upper] = split.place >> 3;
         }
     }
 }
@@ -133,13 +121,15 @@ std::size_t most_bytes_of(const AcdfBrdf& brdf) {
     return std::size_t{32} * brdf.blend.tiles->row_count * splits_of(brdf) + (std::size_t{1} << 24);
 }
 bool are_in_proportion(const AcdfBrdf& brdf) {
-    return std::size_t{12} * brdf.views->theta_count * entries_of(brdf) <= most_bytes_of(brdf);
+    return std::size_t{16} * brdf.views->theta_count * entries_of(brdf) <= most_bytes_of(brdf);
 }
 
 /// What is the same for all waves of a file.
 void add_runtime_tables(const AcdfBrdf& brdf, const AcdfBrdfTables& tables, WavefrontTable* out) {
     out->columns = brdf.columns;
     out->rows = brdf.rows;
+    std::copy(tables.inverse, tables.inverse + 2, out->inverse);
+    out->exact_inverse = is_power_of_two(brdf.columns) && is_power_of_two(brdf.rows);
     out->mirrored = acdf_brdf_mirrored(&brdf) != 0;
     const auto array = [&](auto*& at, u32 words) {
         at = static_cast<std::remove_reference_t<decltype(at)>>(acdf_brdf_words(&tables, words));
@@ -159,17 +149,15 @@ void add_runtime_tables(const AcdfBrdf& brdf, const AcdfBrdfTables& tables, Wave
 }
 
 WavefrontTable* filled(const Arrays& arrays, const AcdfBrdf& brdf, const AcdfBrdfTables& tables) {
-    number_splits(brdf, arrays.number);
+    const u32 of_axis0 = number_splits(brdf, arrays.number);
     place_splits(brdf, arrays.number, arrays.splits);
-    pair_codes(brdf, arrays.number, arrays.codes);
     place_boxes(brdf, arrays.split_boxes, arrays.boxes);
     WavefrontTable* out = new (arrays.table) WavefrontTable{};
     out->brdf = brdf;
     out->entries = entries_of(brdf);
-    std::copy(arrays.splits, arrays.splits + 7, out->top);
-    out->top[7] = kAllBelow;
+    out->last_of_axis0 = static_cast<long long>(of_axis0) - 1;
+    out->root = splits_of(brdf) > 0 ? arrays.number[0] : acdf_blend_root(&brdf.blend);
     out->splits = arrays.splits;
-    out->codes = arrays.codes;
     out->boxes = arrays.boxes;
     add_runtime_tables(brdf, tables, out);
     return out;

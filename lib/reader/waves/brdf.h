@@ -9,11 +9,11 @@
 
 namespace acdf {
 
-/// An AcdfSplit without its position.
+/// A split as two neighbouring views have it: the code of each, and where both go.
 struct WavefrontSplit {
-    std::uint16_t child[2];
-    std::uint32_t axis;
+    std::uint16_t code[2], child[2];
 };
+static_assert(sizeof(WavefrontSplit) == 8);
 
 /// Positions at which cells end on an axis, of AcdfBrdfTables.
 struct WavefrontBorders {
@@ -21,25 +21,20 @@ struct WavefrontBorders {
     const std::uint16_t* guide;
 };
 
-/// Splits of the first three levels, which vectors of eight keep in a register: numbers 0 to 6.
-constexpr std::uint32_t kTopLevels = 3;
-
 /// What the loops need beside and of the runtime tables. T: stored views, N: cells, E: N rounded up to a multiple
 /// of 8.
 struct WavefrontTable {
     AcdfBrdf brdf;
-    double columns, rows;
+    double columns, rows, inverse[2]; // inverse: of them
+    bool exact_inverse;
     bool mirrored;
     long long entries; // E
 
-    /// E, those of the first levels first, else in their order: children have higher numbers than their parents.
-    /// What is left over, the last one at least, leaves all to its lower part and has the children 0.
+    /// E a pair of neighbouring views, T - 1 of them but at least one: first those of axis 0. What is left over,
+    /// the last one at least, leaves all to its lower part.
     const WavefrontSplit* splits;
-    WavefrontSplit top[8]; // the first seven, and the last one
-    /// E a pair of neighbouring views, T - 1 of them but at least one: code of the lower view, << 16 of the upper
-    /// one.
-    const std::uint32_t* codes;
-    const std::uint32_t* boxes; // 4 a cell: low and high on axis 0, on axis 1
+    long long root, last_of_axis0; // number of the split, or the cell's with its flag; -1: none
+    const std::uint32_t* boxes;    // 4 a cell: low and high on axis 0, on axis 1
 
     // Of the runtime tables:
     long long last, stride, columns_between;

@@ -36,7 +36,6 @@ struct DensitiesOf {
     Place place[Groups];
     Integer valid[Groups];
     int cell[kLanes];
-    const double* part[kLanes];
 };
 
 /* Of views that are known. */
@@ -44,9 +43,12 @@ template <int Groups>
 ACDF_LANE void find(const WavefrontTable& t, const float (*wi)[3], DensitiesOf<Groups>* d) {
     constexpr std::size_t lanes = DensitiesOf<Groups>::kLanes;
     alignas(64) long long step[2][lanes], square[2][lanes], lower[lanes];
+    Directions half[Groups];
+    for (int g = 0; g < Groups; ++g)
+        d->valid[g] = half_of(d->view[g], load(&wi[g * kWidth]), &half[g], &d->place[g]);
     for (int g = 0; g < Groups; ++g) {
         const int lane = g * kWidth;
-        d->valid[g] = place_of(t, d->view[g], load(&wi[lane]), &d->place[g]);
+        place_half(t, d->view[g], half[g], &d->place[g]);
         for (int axis = 0; axis < 2; ++axis)
             find_square(select(d->valid[g], d->place[g].position[axis], all(0.0)), axis ? t.rows : t.columns,
                         &step[axis][lane], &square[axis][lane]);
@@ -56,27 +58,23 @@ ACDF_LANE void find(const WavefrontTable& t, const float (*wi)[3], DensitiesOf<G
         const int column = borders_below(t.borders[0], step[0][i], square[0][i]);
         const int line = borders_below(t.borders[1], step[1][i], square[1][i]);
         d->cell[i] = t.grid[line * t.columns_between + column];
-        d->part[i] = t.parts + d->cell[i] * t.stride + lower[i];
-        __builtin_prefetch(d->part[i]);
+        __builtin_prefetch(t.parts + d->cell[i] * t.stride + lower[i]);
         __builtin_prefetch(t.areas + d->cell[i]);
     }
 }
 
 template <int Groups>
 ACDF_LANE void end(const WavefrontTable& t, const DensitiesOf<Groups>& d, float* out) {
-    constexpr std::size_t lanes = DensitiesOf<Groups>::kLanes;
-    alignas(64) double parts[2][lanes], areas[lanes];
-    for (std::size_t i = 0; i < lanes; ++i) {
-        parts[0][i] = d.part[i][0];
-        parts[1][i] = d.part[i][1];
-        areas[i] = t.areas[d.cell[i]];
+    Vector part[Groups][2], area[Groups];
+    for (int g = 0; g < Groups; ++g) {
+        const Integer cell = widened(&d.cell[g * kWidth]);
+        gather_pairs<8>(t.parts, multiplied(cell, t.stride) + d.view[g].lower, part[g]);
+        area[g] = (Vector)gathered<8>(t.areas, cell);
     }
     for (int g = 0; g < Groups; ++g) {
-        const int lane = g * kWidth;
-        const Vector part[2] = {*(const Vector*)&parts[0][lane], *(const Vector*)&parts[1][lane]};
-        const Vector share = share_of(d.view[g], part); // NaN where no view weighs anything
+        const Vector share = share_of(d.view[g], part[g]); // NaN where no view weighs anything
         const Vector probability = select(d.valid[g] & (share > 0.0), positive(share), all(0.0));
-        store(&out[lane], density(t, probability, *(const Vector*)&areas[lane], d.place[g]));
+        store(&out[g * kWidth], density(t, probability, area[g], d.place[g]));
     }
 }
 
@@ -86,7 +84,7 @@ struct Densities : DensitiesOf<kGroups> {
 };
 
 ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const float (*wi)[3], Densities* d) {
-    for (int g = 0; g < kGroups; ++g) d->view[g] = view_of(t, load(&wo[g * kWidth]));
+    find_views(t, wo, d->view);
     find(t, wi, d);
 }
 

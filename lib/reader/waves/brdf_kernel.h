@@ -13,9 +13,10 @@
 
 namespace {
 
+using acdf::WavefrontSplit;
 using acdf::WavefrontTable;
 
-constexpr int kGroups = 3; // vectors that take turns: while one waits for its loads the others compute
+constexpr int kGroups = 24 / kWidth; // vectors that take turns: while one waits for its loads the others compute
 
 // ---- views -----------------------------------------------------------------------------------------------------
 
@@ -38,30 +39,37 @@ struct View {
     Integer lower; // the lower one of the two stored views
 };
 
-ACDF_LANE View view_of(const WavefrontTable& t, const Directions& wo) {
-    View out;
-    const Vector sin2 = wo.x * wo.x + wo.y * wo.y, length2 = sin2 + wo.z * wo.z;
-    const Integer valid = of_unit_length(length2) & (wo.z > 0.0);
-    const Vector z = select(valid, wo.z, all(1.0));
-    const Vector x2 = select(z < 1.0, 1.0 - z, all(0.0)), x = root(x2);
-    Integer low = gathered<2>(t.guide, truncated(x2 * (double)ACDF_VIEW_STEPS)) & 0xFFFF;
-    Vector node[4]; // coordinate and share of the lower view, and of the upper one
-    gather_transposed(t.nodes, low, node);
-    for (;;) {
-        const Integer more = (node[2] <= x) & (low < t.last);
-        if (!any(more)) break;
-        low -= more;
-        gather_transposed(t.nodes, low, node);
+/* Vectors of lanes take turns. */
+ACDF_LANE void find_views(const WavefrontTable& t, const float (*wo)[3], View* out) {
+    Vector x[kGroups], node[kGroups][4]; // node: coordinate and share of the lower view, and of the upper one
+    Integer valid[kGroups], more{};
+    for (int g = 0; g < kGroups; ++g) {
+        const Directions w = load(&wo[g * kWidth]);
+        const Vector sin2 = w.x * w.x + w.y * w.y, length2 = sin2 + w.z * w.z;
+        valid[g] = of_unit_length(length2) & (w.z > 0.0);
+        const Vector z = select(valid[g], w.z, all(1.0));
+        const Vector x2 = select(z < 1.0, 1.0 - z, all(0.0));
+        x[g] = root(x2);
+        out[g].lower = gathered<2>(t.guide, truncated(x2 * (double)ACDF_VIEW_STEPS)) & 0xFFFF;
+        out[g].wo = w;
+        out[g].turn[0] = select(sin2 > 0.0, w.x, all(1.0));
+        out[g].turn[1] = select(sin2 > 0.0, w.y, all(0.0));
     }
-    Vector s = (x - node[0]) / (node[2] - node[0]);
-    s = select(s > 0.0, select(s < 1.0, s, all(1.0)), all(0.0));
-    out.wo = wo;
-    out.weight[0] = select(valid, (1.0 - s) * node[1], all(0.0));
-    out.weight[1] = select(valid, s * node[3], all(0.0));
-    out.lower = low;
-    out.turn[0] = select(sin2 > 0.0, wo.x, all(1.0));
-    out.turn[1] = select(sin2 > 0.0, wo.y, all(0.0));
-    return out;
+    do {
+        more = Integer{};
+        for (int g = 0; g < kGroups; ++g) {
+            gather_transposed(t.nodes, out[g].lower, node[g]);
+            const Integer beyond = (node[g][2] <= x[g]) & (out[g].lower < t.last);
+            out[g].lower -= beyond;
+            more |= beyond;
+        }
+    } while (any(more));
+    for (int g = 0; g < kGroups; ++g) {
+        Vector s = (x[g] - node[g][0]) / (node[g][2] - node[g][0]);
+        s = select(s > 0.0, select(s < 1.0, s, all(1.0)), all(0.0));
+        out[g].weight[0] = select(valid[g], (1.0 - s) * node[g][1], all(0.0));
+        out[g].weight[1] = select(valid[g], s * node[g][3], all(0.0));
+    }
 }
 
 // ---- walks -----------------------------------------------------------------------------------------------------
@@ -71,59 +79,46 @@ struct Walk {
     Integer base, node;
 };
 
-/* The split of a lane, or the entry behind the last one for lanes that are in a tile: all of their weight goes to
- * its lower part, which changes nothing. */
-ACDF_LANE Integer split_of(const WavefrontTable& t, const Walk& s) {
-    return least(s.node, Integer{} + (t.entries - 1));
-}
-
-template <bool Top>
-ACDF_LANE Integer split_at(const WavefrontTable& t, Integer number) {
-#if ACDF_WIDTH == 8
-    if (Top) return (Integer)_mm512_permutexvar_epi64((__m512i)number, _mm512_loadu_si512(t.top));
-#endif
-    return gathered<8>(t.splits, number);
-}
-
-/* Children have higher numbers than their parents, tiles higher ones than splits; that entry's are 0. */
-ACDF_LANE void take(Walk* s, Integer upper, Integer split) {
-    s->node = most(s->node, select(upper, split >> 16, split) & 0xFFFF);
-}
-
 /* Goes on from splits whose lower parts rows give so much of theirs. Returns the lanes that go to the upper part.
  */
 ACDF_LANE Integer go(Walk* s, const Vector code[2], Integer axis1) {
     const Vector lower0 = s->weight[0] * code[0], lower1 = s->weight[1] * code[1];
     const Vector higher0 = s->weight[0] - lower0, higher1 = s->weight[1] - lower1;
     const Vector low = lower0 + lower1, high = higher0 + higher1;
-    const Integer axis = axis1 != 0;
-    const Vector x = select(axis, s->x[1], s->x[0]);
+    const Vector x = select(axis1, s->x[1], s->x[0]);
     const Integer upper = (x >= low) & (high > 0.0);
     const Vector sum = select(upper, high, low), scale = sum / s->chosen, cut = select(upper, x - low, x);
-    s->x[0] = select(axis, s->x[0] * scale, cut);
-    s->x[1] = select(axis, cut, s->x[1] * scale);
+    s->x[0] = select(axis1, s->x[0] * scale, cut);
+    s->x[1] = select(axis1, cut, s->x[1] * scale);
     s->chosen = sum;
     s->weight[0] = select(upper, higher0, lower0);
     s->weight[1] = select(upper, higher1, lower1);
     return upper;
 }
 
-template <bool Top>
-ACDF_LANE void sample_step(const WavefrontTable& t, Walk* s) {
-    const Integer at = split_of(t, *s), split = split_at<Top>(t, at), codes = gathered_words(t.codes, s->base + at);
-    const Vector code[2] = {converted(codes & 0xFFFF) * (1.0 / 65535.0), converted(codes >> 16) * (1.0 / 65535.0)};
-    take(s, go(s, code, split >> 32), split);
-}
-
-ACDF_LANE void walk(const WavefrontTable& t, Walk* s) {
-    for (std::uint32_t level = 0; level < acdf::kTopLevels; ++level)
-        for (int g = 0; g < kGroups; ++g) sample_step<true>(t, &s[g]);
+/* Lanes that are in a cell give all of their weight to the lower part of the entry behind the last split, which
+ * changes nothing. All vectors load before the first one computes: what waits for loads leaves schedulers no room
+ * for others. */
+ACDF_LANE void walk(const WavefrontTable& t, Walk* walked) {
+    const Integer end = Integer{} + (t.entries - 1);
+    Walk s[kGroups]; // else compilers store each vector twice
+    for (int g = 0; g < kGroups; ++g) s[g] = walked[g];
     for (;;) {
-        Integer open{};
-        for (int g = 0; g < kGroups; ++g) open |= s[g].node < ACDF_TILE_FLAG;
-        if (!any(open)) return;
-        for (int g = 0; g < kGroups; ++g) sample_step<false>(t, &s[g]);
+        Integer open{}, split[kGroups];
+        for (const Walk& of : s) open |= of.node < (long long)ACDF_TILE_FLAG;
+        if (!any(open)) break;
+        for (int g = 0; g < kGroups; ++g)
+            split[g] = gathered<sizeof(WavefrontSplit)>(t.splits, s[g].base + least(s[g].node, end));
+        for (int g = 0; g < kGroups; ++g) {
+            const Vector code[2] = {converted(split[g] & 0xFFFF) * (1.0 / 65535.0),
+                                    converted(split[g] & 0xFFFF0000) * (0x1p-16 / 65535.0)};
+            const Integer upper = go(&s[g], code, s[g].node > t.last_of_axis0);
+            const Unsigned children = (Unsigned)split[g] >> 32;
+            const Integer child = select(upper, (Integer)(children >> 16), (Integer)(children & 0xFFFF));
+            s[g].node = select(s[g].node > end, s[g].node, child);
+        }
     }
+    for (int g = 0; g < kGroups; ++g) walked[g] = s[g];
 }
 
 // ---- cells -----------------------------------------------------------------------------------------------------
@@ -137,14 +132,14 @@ ACDF_LANE Vector share_of(const View& view, const Vector part[2]) {
     return (view.weight[0] * part[0] + view.weight[1] * part[1]) / (view.weight[0] + view.weight[1]);
 }
 
+ACDF_LANE Vector low_word(Integer pair) { return converted(pair & 0xFFFFFFFF); }
+ACDF_LANE Vector high_word(Integer pair) { return converted((Integer)((Unsigned)pair >> 32)); }
+
 ACDF_LANE Cell cell_of(const WavefrontTable& t, const Walk& s) {
-    Cell out;
-    for (int axis = 0; axis < 2; ++axis) {
-        const Integer box = gathered<8>(t.boxes, 2 * (s.node & 0x7FFF) + axis);
-        out.low[axis] = converted(box & 0xFFFFFFFF);
-        out.high[axis] = converted(box >> 32 & 0xFFFFFFFF);
-    }
-    return out;
+    Vector sides[2];
+    gather_pairs<16>(t.boxes, s.node & 0x7FFF, sides);
+    const Integer across = (Integer)sides[0], along = (Integer)sides[1];
+    return {{low_word(across), low_word(along)}, {high_word(across), high_word(along)}};
 }
 
 struct Place {
@@ -161,9 +156,8 @@ ACDF_LANE Integer half_of(const View& view, const Directions& wi, Directions* ha
     return of_unit_length(length2) & (place->length > 0.0);
 }
 
-ACDF_LANE Integer place_of(const WavefrontTable& t, const View& view, const Directions& wi, Place* place) {
-    Directions half;
-    const Integer valid = half_of(view, wi, &half, place);
+/* The position of a half-vector. */
+ACDF_LANE void place_half(const WavefrontTable& t, const View& view, const Directions& half, Place* place) {
     const Vector below = 1.0 - 2.0 * one_if(half.z < 0.0);
     const Vector hx = below * (view.turn[0] * half.x + view.turn[1] * half.y);
     const Vector hy = below * (view.turn[0] * half.y - view.turn[1] * half.x);
@@ -172,7 +166,6 @@ ACDF_LANE Integer place_of(const WavefrontTable& t, const View& view, const Dire
     place->position[0] = t.columns * (t.mirrored ? phi : 0.5 + 0.5 * sign * phi);
     place->position[1] =
         t.rows * ((half.x * half.x + half.y * half.y) / (place->length * (place->length + absolute(half.z))));
-    return valid;
 }
 
 ACDF_LANE Vector density(const WavefrontTable& t, Vector probability, Vector area, const Place& place) {
@@ -180,35 +173,6 @@ ACDF_LANE Vector density(const WavefrontTable& t, Vector probability, Vector are
     const Vector bounded = select(pdf >= 3.402823466e38, all(3.402823466e38f), pdf);
     const Vector positive = select(pdf > 1.17549435e-38, bounded, all(1.17549435e-38f));
     return select(probability > 0.0, rounded_to_float(positive), all(0.0));
-}
-
-struct Reflection {
-    Directions wi;
-    Vector reach[2];
-};
-
-ACDF_LANE Reflection reflect(const WavefrontTable& t, const View& view, const Vector position[2], Vector sign) {
-    Reflection out;
-    const Vector cap = position[1] / t.rows, hz = 1.0 - cap, radius = root(cap * (2.0 - cap));
-    const Vector x = position[0] / t.columns;
-    const Vector scale = radius / root(view.turn[0] * view.turn[0] + view.turn[1] * view.turn[1]);
-    Vector sine, cosine;
-    sincospi(t.mirrored ? sign * x : 2.0 * x - 1.0, &sine, &cosine);
-    const Vector hx = scale * (view.turn[0] * cosine - view.turn[1] * sine);
-    const Vector hy = scale * (view.turn[1] * cosine + view.turn[0] * sine);
-    const Vector dot = 2.0 * (view.wo.x * hx + view.wo.y * hy + view.wo.z * hz);
-    out.wi.x = rounded_to_float(dot * hx - view.wo.x);
-    out.wi.y = rounded_to_float(dot * hy - view.wo.y);
-    out.wi.z = rounded_to_float(dot * hz - view.wo.z);
-    const Vector turn = 0x1p-23 / (absolute(dot) * radius), angle = turn * radius;
-    out.reach[0] = t.columns * turn;
-    out.reach[1] = t.rows * (angle * (radius + angle));
-    return out;
-}
-
-ACDF_LANE Integer inside(const Cell& cell, const Vector position[2], const Vector reach[2]) {
-    return (position[0] >= cell.low[0] + reach[0]) & (position[0] < cell.high[0] - reach[0]) &
-           (position[1] >= cell.low[1] + reach[1]) & (position[1] < cell.high[1] - reach[1]);
 }
 
 // ---- samples ---------------------------------------------------------------------------------------------------
@@ -246,44 +210,99 @@ struct Samples {
 ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const double (*u)[2], Samples* s) {
     s->wo = wo;
     s->u = u;
+    find_views(t, wo, s->view);
     for (int g = 0; g < kGroups; ++g) {
         const int lane = g * kWidth;
-        s->view[g] = view_of(t, load(&wo[lane]));
         begin_walk(t, s->view[g], every_second(u[lane]), every_second(u[lane] + 1), &s->walked[g], &s->sign[g]);
         s->walked[g].base = s->view[g].lower * t.entries;
-        s->walked[g].node = Integer{} + acdf_blend_root(&t.brdf.blend);
+        s->walked[g].node = Integer{} + t.root;
     }
     walk(t, s->walked);
 }
 
-/* Writes the samples of a vector of lanes in their cells. Returns the lanes that are left to acdf_brdf_sample. */
-ACDF_LANE unsigned end_sample(const WavefrontTable& t, const View& view, const Walk& s, const Cell& cell,
-                              Vector sign, AcdfDirectionSample* out) {
-    const Integer valid = view.weight[0] + view.weight[1] > 0.0;
-    const Integer number = s.node & 0x7FFF, at = multiplied(number, t.stride) + view.lower;
-    const Vector area = (Vector)gathered<8>(t.areas, number);
-    const Vector part[2] = {(Vector)gathered<8>(t.parts, at), (Vector)gathered<8>(t.parts + 1, at)};
-    Vector position[2];
+/* Half-vectors in cells. */
+struct Aim {
+    Vector position[2], x, cap, radius, hx, hy, hz;
+};
+
+ACDF_LANE void draw_half(const WavefrontTable& t, const Walk& s, const Cell& cell, Aim* a) {
     for (int axis = 0; axis < 2; ++axis) {
         const Vector u = select(s.x[axis] < s.chosen, s.x[axis] / s.chosen, all(1.0));
-        position[axis] = cell.low[axis] + clamp(u, 0x1p-30, 1.0 - 0x1p-30) * (cell.high[axis] - cell.low[axis]);
+        a->position[axis] = cell.low[axis] + clamp(u, 0x1p-30, 1.0 - 0x1p-30) * (cell.high[axis] - cell.low[axis]);
     }
-    const Reflection to = reflect(t, view, position, sign);
+    if (t.exact_inverse) {
+        a->x = a->position[0] * t.inverse[0];
+        a->cap = a->position[1] * t.inverse[1];
+    } else {
+        a->x = a->position[0] / t.columns;
+        a->cap = a->position[1] / t.rows;
+    }
+    a->radius = root(a->cap * (2.0 - a->cap));
+    a->hz = 1.0 - a->cap;
+}
+
+ACDF_LANE void turn_half(const WavefrontTable& t, const View& view, Vector sign, Aim* a) {
+    const Vector scale = a->radius / root(view.turn[0] * view.turn[0] + view.turn[1] * view.turn[1]);
+    Vector sine, cosine;
+    sincospi(t.mirrored ? sign * a->x : 2.0 * a->x - 1.0, &sine, &cosine);
+    a->hx = scale * (view.turn[0] * cosine - view.turn[1] * sine);
+    a->hy = scale * (view.turn[1] * cosine + view.turn[0] * sine);
+}
+
+/* Whether positions are farther from the borders of their cells than the reach of acdf_brdf_reflect, both sides
+ * times what that divides by. */
+ACDF_LANE Integer inside(const WavefrontTable& t, const Cell& cell, const Aim& a, Vector dot) {
+    const Vector reach[2] = {all(0x1p-23 * t.columns), 0x1p-23 * (a.radius * dot + 0x1p-23) * t.rows};
+    const Vector scale[2] = {dot * a.radius, dot * dot};
+    Integer out = ~Integer{};
+    for (int axis = 0; axis < 2; ++axis) {
+        const Vector low = a.position[axis] - cell.low[axis], high = cell.high[axis] - a.position[axis];
+        out &= select(low < high, low, high) * scale[axis] > reach[axis];
+    }
+    return out;
+}
+
+/* Writes the samples of a vector of lanes in their cells. Returns the lanes that are left to acdf_brdf_sample. */
+ACDF_LANE unsigned reflect(const WavefrontTable& t, const View& view, const Cell& cell, const Aim& a,
+                           const Vector part[2], AcdfDirectionSample* out) {
+    const Integer valid = view.weight[0] + view.weight[1] > 0.0;
+    const Vector dot = 2.0 * (view.wo.x * a.hx + view.wo.y * a.hy + view.wo.z * a.hz);
+    const Directions wi = {rounded_to_float(dot * a.hx - view.wo.x), rounded_to_float(dot * a.hy - view.wo.y),
+                           rounded_to_float(dot * a.hz - view.wo.z)};
     Directions half;
     Place place;
-    const Integer good = half_of(view, to.wi, &half, &place) & inside(cell, position, to.reach);
-    const Vector none = all(0.0);
-    store(out, select(valid, to.wi.x, none), select(valid, to.wi.y, none), select(valid, to.wi.z, none),
+    const Integer good = half_of(view, wi, &half, &place) & inside(t, cell, a, absolute(dot));
+    const Vector area = (cell.high[0] - cell.low[0]) * (cell.high[1] - cell.low[1]), none = all(0.0);
+    store(out, select(valid, wi.x, none), select(valid, wi.y, none), select(valid, wi.z, none),
           select(valid, density(t, positive(share_of(view, part)), area, place), none));
     return bits(valid & ~good);
 }
 
-ACDF_LANE void end(const WavefrontTable& t, const Samples& s, AcdfDirectionSample* out) {
-    for (int g = 0; g < kGroups; ++g) {
-        unsigned left = end_sample(t, s.view[g], s.walked[g], cell_of(t, s.walked[g]), s.sign[g], &out[g * kWidth]);
-        for (int lane = g * kWidth; left != 0; ++lane, left >>= 1)
-            if (left & 1) out[lane] = acdf_brdf_sample(&t.brdf, s.wo[lane], s.u[lane][0], s.u[lane][1]);
+/* Samples of vectors of lanes that have walked to those cells; `one`: all of them have the first view. They take
+ * turns at each step. Returns the lanes that are left to acdf_brdf_sample. */
+template <int Groups>
+ACDF_LANE unsigned end_samples(const WavefrontTable& t, const View* views, bool one, const Walk* walked,
+                               const Cell* cells, const Vector* signs, AcdfDirectionSample* out) {
+    Aim aim[Groups];
+    Vector part[Groups][2];
+    unsigned left = 0;
+    for (int g = 0; g < Groups; ++g) {
+        const Integer number = walked[g].node & 0x7FFF;
+        gather_pairs<8>(t.parts, multiplied(number, t.stride) + views[one ? 0 : g].lower, part[g]);
     }
+    for (int g = 0; g < Groups; ++g) draw_half(t, walked[g], cells[g], &aim[g]);
+    for (int g = 0; g < Groups; ++g) turn_half(t, views[one ? 0 : g], signs[g], &aim[g]);
+    for (int g = 0; g < Groups; ++g)
+        left |= reflect(t, views[one ? 0 : g], cells[g], aim[g], part[g], &out[g * kWidth]) << g * kWidth;
+    return left;
+}
+
+ACDF_LANE void end(const WavefrontTable& t, const Samples& s, AcdfDirectionSample* out) {
+    Cell cells[kGroups];
+    for (int g = 0; g < kGroups; ++g) cells[g] = cell_of(t, s.walked[g]);
+    unsigned left = end_samples<kGroups>(t, s.view, false, s.walked, cells, s.sign, out);
+    for (int lane = 0; left != 0; ++lane, left >>= 1)
+        if (left & 1) out[lane] = acdf_brdf_sample(&t.brdf, s.wo[lane], s.u[lane][0], s.u[lane][1]);
 }
 
 // ---- all of two arrays -----------------------------------------------------------------------------------------

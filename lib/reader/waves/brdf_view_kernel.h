@@ -27,7 +27,7 @@ ACDF_LANE void view_step(const AcdfSplit* splits, const double* codes, const Acd
     Vector part[2];
     lower_parts(codes, view, at, part);
     const Vector code[2] = {select(ended, all(1.0), part[0]), select(ended, all(1.0), part[1])};
-    const Integer upper = go(s, code, split & 7);
+    const Integer upper = go(s, code, (split & 7) != 0);
     s->node = select(ended, s->node, select(upper, split >> 48, split >> 32) & 0xFFFF);
 }
 
@@ -38,6 +38,7 @@ ACDF_LANE void view_samples(const WavefrontTable& t, const AcdfBrdf& brdf, const
     constexpr std::size_t lanes = Groups * kWidth;
     const double* codes = (const double*)acdf_brdf_words(brdf.tables, brdf.tables->codes);
     const char* boxes = (const char*)acdf_brdf_words(brdf.tables, brdf.tables->paths) + offsetof(AcdfBrdfPath, low);
+    static_assert(offsetof(AcdfBrdfPath, high) == offsetof(AcdfBrdfPath, low) + 8);
     const View of = same_view(view);
     double given[lanes][2] = {};
     AcdfDirectionSample drawn[lanes];
@@ -55,19 +56,16 @@ ACDF_LANE void view_samples(const WavefrontTable& t, const AcdfBrdf& brdf, const
         if (!any(open)) break;
         for (int g = 0; g < Groups; ++g) view_step(brdf.blend.splits, codes, view, &walked[g]);
     }
+    Cell cells[Groups];
     for (int g = 0; g < Groups; ++g) {
-        const Integer number = walked[g].node & 0x7FFF;
-        const Integer low = gathered<sizeof(AcdfBrdfPath)>(boxes, number);
-        const Integer high = gathered<sizeof(AcdfBrdfPath)>(boxes + sizeof(AcdfBrdfPath::low), number);
-        Cell cell;
-        for (int axis = 0; axis < 2; ++axis) {
-            cell.low[axis] = converted(low >> 32 * axis & 0xFFFFFFFF);
-            cell.high[axis] = converted(high >> 32 * axis & 0xFFFFFFFF);
-        }
-        unsigned left = end_sample(t, of, walked[g], cell, sign[g], &drawn[g * kWidth]);
-        for (std::size_t i = std::size_t(g) * kWidth; left != 0 && i < some; ++i, left >>= 1)
-            if (left & 1) drawn[i] = acdf_brdf_view_sample(&brdf, &view, given[i][0], given[i][1]);
+        Vector sides[2];
+        gather_pairs<sizeof(AcdfBrdfPath)>(boxes, walked[g].node & 0x7FFF, sides);
+        const Integer low = (Integer)sides[0], high = (Integer)sides[1];
+        cells[g] = {{low_word(low), high_word(low)}, {low_word(high), high_word(high)}};
     }
+    unsigned left = end_samples<Groups>(t, &of, true, walked, cells, sign, drawn);
+    for (std::size_t i = 0; left != 0 && i < some; ++i, left >>= 1)
+        if (left & 1) drawn[i] = acdf_brdf_view_sample(&brdf, &view, given[i][0], given[i][1]);
     std::memcpy(out, drawn, some * sizeof *out);
 }
 

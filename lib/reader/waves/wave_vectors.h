@@ -19,23 +19,55 @@ typedef unsigned long long Unsigned __attribute__((vector_size(8 * ACDF_WIDTH)))
 
 // ---- what the instructions are called --------------------------------------------------------------------------
 
-/* Eight bytes at base + Scale * index, one lane after the other: the instructions that gather take longer on
- * several processors, and so does to take an index out of a register. */
+/* Addresses base + Scale * index are taken from memory: the instructions that gather take longer on several
+ * processors, and so does to take an index out of a register. */
+struct Indices {
+    alignas(8 * ACDF_WIDTH) long long at[ACDF_WIDTH];
+};
+ACDF_LANE void stored(Integer index, Indices* out) {
+    *(Integer*)out->at = index;
+    asm("" : "+m"(*out)); // or compilers take them out of the register
+}
+
+/* Eight bytes at base + Scale * index. */
 template <int Scale>
 ACDF_LANE Integer gathered(const void* base, Integer index) {
-    alignas(8 * ACDF_WIDTH) long long at[ACDF_WIDTH];
-    *(Integer*)at = index;
+    Indices lanes;
+    stored(index, &lanes);
     const char* const bytes = (const char*)base;
     __m128d pair[ACDF_WIDTH / 2];
     for (int i = 0; i < ACDF_WIDTH / 2; ++i) {
-        const __m128d low = _mm_load_sd((const double*)(bytes + Scale * at[2 * i]));
-        pair[i] = _mm_loadh_pd(low, (const double*)(bytes + Scale * at[2 * i + 1]));
+        const __m128d low = _mm_load_sd((const double*)(bytes + Scale * lanes.at[2 * i]));
+        pair[i] = _mm_loadh_pd(low, (const double*)(bytes + Scale * lanes.at[2 * i + 1]));
     }
 #if ACDF_WIDTH == 8
     const __m256d low = _mm256_set_m128d(pair[1], pair[0]), high = _mm256_set_m128d(pair[3], pair[2]);
     return (Integer)_mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
 #else
     return (Integer)_mm256_set_m128d(pair[1], pair[0]);
+#endif
+}
+
+/* The same, and the eight bytes behind them. */
+template <int Scale>
+ACDF_LANE void gather_pairs(const void* base, Integer index, Vector out[2]) {
+    Indices lanes;
+    stored(index, &lanes);
+    const char* const bytes = (const char*)base;
+    __m256d row[ACDF_WIDTH / 2]; // of lanes k and k + 2; vectors of eight: of each half
+    for (int i = 0; i < ACDF_WIDTH / 2; ++i) {
+        const int k = i / 2 * 4 + i % 2;
+        row[i] = _mm256_set_m128d(_mm_loadu_pd((const double*)(bytes + Scale * lanes.at[k + 2])),
+                                  _mm_loadu_pd((const double*)(bytes + Scale * lanes.at[k])));
+    }
+#if ACDF_WIDTH == 8
+    const __m512d even = _mm512_insertf64x4(_mm512_castpd256_pd512(row[0]), row[2], 1);
+    const __m512d odd = _mm512_insertf64x4(_mm512_castpd256_pd512(row[1]), row[3], 1);
+    out[0] = (Vector)_mm512_unpacklo_pd(even, odd);
+    out[1] = (Vector)_mm512_unpackhi_pd(even, odd);
+#else
+    out[0] = (Vector)_mm256_unpacklo_pd(row[0], row[1]);
+    out[1] = (Vector)_mm256_unpackhi_pd(row[0], row[1]);
 #endif
 }
 
@@ -125,6 +157,13 @@ ACDF_LANE void store(AcdfDirectionSample* out, Vector x, Vector y, Vector z, Vec
 ACDF_LANE Integer least(Integer a, Integer b) { return a < b ? a : b; }
 ACDF_LANE Integer most(Integer a, Integer b) { return a > b ? a : b; }
 #endif
+
+ACDF_LANE Integer widened(const int* numbers) {
+    typedef int Numbers __attribute__((vector_size(4 * ACDF_WIDTH)));
+    Numbers all;
+    __builtin_memcpy(&all, numbers, sizeof all);
+    return __builtin_convertvector(all, Integer);
+}
 
 /* Of numbers in [0, 2^32). */
 ACDF_LANE Integer multiplied(Integer a, long long b) {
