@@ -33,18 +33,23 @@ ACDF_LANE void keep_points(const FastPoints<false>& p, std::size_t at, FastFinds
     stored(&f->length[at], p.length);
 }
 
-/* acdf_tile_block_at of a vector of squares. */
-ACDF_LANE Integer tile_blocks_at(const AcdfLocal& local, const FastSquares& f, std::size_t at) {
+/* acdf_tile_block_at of all squares: entries of the grid for all of them before any block. */
+ACDF_LANE void find_tile_blocks(const AcdfLocal& local, std::size_t count, const FastSquares& f, long long* node) {
     const std::uint32_t* const words = acdf_local_words(local.tables);
     const AcdfTileBlocks& t = local.tables->blocks;
     const auto grid = (long long)(std::uintptr_t)(words + t.grid),
                blocks = (long long)(std::uintptr_t)(words + t.blocks);
-    const Integer s0 = to_indices(loaded(&f.square[0][at])), s1 = to_indices(loaded(&f.square[1][at]));
-    const Integer inside = (s1 >> t.fine[1] & 3) * 4 + (s0 >> t.fine[0] & 3);
-    const Integer entry = two_bytes_at(((s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])) * 2 + grid);
-    const Integer told = -(entry >> 15);
-    const Integer finer = two_bytes_at((16 * (entry & ~told) + inside) * 2 + blocks);
-    return finer ^ ((finer ^ entry) & told);
+    alignas(64) long long inside[kRoom];
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
+        const Integer s0 = to_indices(loaded(&f.square[0][at])), s1 = to_indices(loaded(&f.square[1][at]));
+        stored(&inside[at], (s1 >> t.fine[1] & 3) * 4 + (s0 >> t.fine[0] & 3));
+        stored(&node[at], two_bytes_at(((s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])) * 2 + grid));
+    }
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
+        const Integer entry = loaded(&node[at]), told = -(entry >> 15);
+        const Integer finer = two_bytes_at((16 * (entry & ~told) + loaded(&inside[at])) * 2 + blocks);
+        stored(&node[at], finer ^ ((finer ^ entry) & told));
+    }
 }
 
 /* The squares of directions. Returns the lanes that are left to single calls. */
@@ -71,7 +76,7 @@ ACDF_LANE std::uint64_t find_squares(const AcdfLocal& local, const float (*direc
 /* The tiles of all squares. */
 ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastSquares* f) {
     alignas(64) long long node[kRoom];
-    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) stored(&node[at], tile_blocks_at(local, *f, at));
+    find_tile_blocks(local, count, *f, node);
     for (std::size_t i = 0; i < count; ++i) {
         auto at = (std::uint32_t)node[i];
         while (!(at & ACDF_TILE_FLAG)) {
@@ -81,16 +86,6 @@ ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastSq
         }
         f->tile[i] = (std::int32_t)(at & ~ACDF_TILE_FLAG);
         ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)f->tile[i]));
-    }
-}
-
-/* What rows have of the groups of all tiles is asked for. */
-ACDF_LANE void ask_for_groups(std::size_t count, FastFinds* f) {
-    for (std::size_t i = 0; i < count; ++i) {
-        f->rows.tile[i] = f->tile[i];
-        for (int row = 0; row < kRows; ++row)
-            ACDF_PREFETCH((const std::uint16_t*)f->rows.group[row][i] +
-                          (std::uint32_t)f->tile[i] / ACDF_FAST_GROUP);
     }
 }
 
@@ -116,11 +111,11 @@ ACDF_LANE void find_fast_cells(const AcdfLocal& local, std::size_t count, FastSq
 
 /* What rows have of all tiles, and which of them are lights. */
 ACDF_LANE void find_fast_rows(std::size_t count, FastFinds* f) {
-    f->lit_count = 0;
+    std::uint32_t lit = 0; // a register: else each lane waits for the one before
     for (std::size_t i = 0; i < count; ++i) {
         const auto tile = (std::uint32_t)f->tile[i];
-        f->lit[f->lit_count] = (std::uint32_t)i;
-        f->lit_count += f->cells.tile[i]->light > 0;
+        f->lit[lit] = (std::uint32_t)i;
+        lit += f->cells.tile[i]->light > 0;
         load_ends(&f->rows, i, tile / ACDF_FAST_GROUP);
         for (int row = 0; row < kRows; ++row) {
             std::uint16_t both; /* what stands before the first row of tiles is of groups */
@@ -128,6 +123,7 @@ ACDF_LANE void find_fast_rows(std::size_t count, FastFinds* f) {
             f->ends[row][i] = both;
         }
     }
+    f->lit_count = lit;
 }
 
 /* acdf_local_fast_find of a vector but for what the cell has of its tile. */
@@ -135,7 +131,7 @@ ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     FastLanes& w = f->rows;
     find_groups(&w, at);
     Ints share = {};
-    const Ints number = loaded(&w.tile[at]) & (std::int32_t)(ACDF_FAST_GROUP - 1);
+    const Ints number = loaded(&f->tile[at]) & (std::int32_t)(ACDF_FAST_GROUP - 1);
     for (int row = 0; row < kRows; ++row) {
         Ints before, end;
         loaded_ends(&f->ends[row][at], number, &before, &end);
@@ -177,17 +173,14 @@ template <class At, class Alone>
 ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Alone& alone,
                                   const float (*directions)[3], std::size_t count, float* out) {
     FastFinds f;
-    FastPoints<false> room;
     const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
     std::uint64_t lost = 0;
-    for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) {
-        const FastPoints<false>& p = at(first, lanes_there(first, count), &room);
+    at(whole, count, [&](const FastPoints<false>& p, std::size_t first) {
         keep_points(p, first, &f);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
-    }
+    });
     lost |= find_squares(local, directions, count, &f);
     find_fast_tiles(local, whole, &f);
-    ask_for_groups(whole, &f);
     find_fast_cells(local, whole, &f);
     find_fast_rows(whole, &f);
     for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) weigh_fast_tiles(first, &f);

@@ -79,10 +79,12 @@ ACDF_LANE unsigned begin_draws(const AcdfLocal& local, const FastPoints<true>& p
     stored(&d->cells.all[at], p.sum * ACDF_FAST_STEPS);
     stored(&d->below[at], Ints{});
     stored(&d->mass[at], Ints{});
+    std::uint32_t draws = d->mixed_count; // a register: else each lane waits for the one before
     for (unsigned k = 0; k < ACDF_WIDTH; ++k) {
-        d->mixed[d->mixed_count] = (std::uint32_t)(at + k);
-        d->mixed_count += others >> k & 1u;
+        d->mixed[draws] = (std::uint32_t)(at + k);
+        draws += others >> k & 1u;
     }
+    d->mixed_count = draws;
     return lost;
 }
 
@@ -233,19 +235,18 @@ template <class At, class Alone>
 ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone& alone, const double (*u)[2],
                                std::size_t count, AcdfDirectionSample* out) {
     FastDraws d;
-    FastPoints<true> room;
     const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes; // those behind the last one are not served
     std::uint64_t lost = 0;
     d.mixed_count = 0;
-    for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) {
+    at(whole, count, [&](const FastPoints<true>& p, std::size_t first) {
         const std::size_t more = lanes_there(first, count);
         double last[ACDF_WIDTH][2] = {};
         Doubles given[2];
         if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
         load_pairs(more < ACDF_WIDTH ? last : u + first, given);
         const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
-        lost |= (std::uint64_t)begin_draws(local, at(first, more, &room), v, (1u << more) - 1u, first, &d) << first;
-    }
+        lost |= (std::uint64_t)begin_draws(local, p, v, (1u << more) - 1u, first, &d) << first;
+    });
     draw_tiles(local, whole, &d);
     end_draws(local, &d, lost, alone, count, out);
 }

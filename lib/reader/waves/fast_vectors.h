@@ -157,21 +157,25 @@ ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<false>* out)
 }
 
 /* acdf_local_at of files of the fast shape. */
-template <bool Draws>
+template <int Turns, bool Draws>
 ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], FastPoints<Draws>* out) {
     const AcdfFast& fast = local.fast;
-    corners_of(local, normals, out);
-    for (int i = 0; i < kRows; ++i) {
-        out->group[i] = multiplied(out->row[i], 2ll * fast.ends) + (long long)(std::uintptr_t)fast.groups;
-        out->tile[i] = multiplied(out->row[i], fast.stride) + (long long)(std::uintptr_t)fast.tiles;
-        out->upper[i] = multiplied(out->row[i], 2ll * fast.upper_ends) + (long long)(std::uintptr_t)fast.upper;
+    corners_of<Turns>(local, normals, out);
+    for (int t = 0; t < Turns; ++t) {
+        FastPoints<Draws>& p = out[t];
+        for (int i = 0; i < kRows; ++i) {
+            p.group[i] = multiplied(p.row[i], 2ll * fast.ends) + (long long)(std::uintptr_t)fast.groups;
+            p.tile[i] = multiplied(p.row[i], fast.stride) + (long long)(std::uintptr_t)fast.tiles;
+            if (Draws)
+                p.upper[i] = multiplied(p.row[i], 2ll * fast.upper_ends) + (long long)(std::uintptr_t)fast.upper;
+        }
+        const Vector mixture = (p.weight[0] + p.weight[1]) + p.weight[2];
+        mix_rows(mixture, &p);
+        weigh_fast_lights(local, &p);
+        p.sum = p.lights + mixture;
+        if (Draws) p.step = 32767.0 * p.whole / mixture;
+        p.unit = mixture / (p.sum * (32767.0 * 255.0 * p.whole));
     }
-    const Vector mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
-    mix_rows(mixture, out);
-    weigh_fast_lights(local, out);
-    out->sum = out->lights + mixture;
-    out->step = 32767.0 * out->whole / mixture;
-    out->unit = mixture / (out->sum * (32767.0 * 255.0 * out->whole));
 }
 
 /* One point in all lanes, which serves_waves has approved. */
@@ -217,7 +221,7 @@ ACDF_LANE void keep_rows(const FastPoints<Draws>& p, std::size_t at, FastLanes* 
     for (int i = 0; i < kRows; ++i) {
         stored(&w->group[i][at], p.group[i]);
         stored(&w->tile_row[i][at], p.tile[i]);
-        stored(&w->upper[i][at], p.upper[i]);
+        if (Draws) stored(&w->upper[i][at], p.upper[i]);
         stored(&w->share[i][at], p.share[i]);
         stored(&w->end[i][at], Ints{});
     }

@@ -193,15 +193,12 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     Cells cells;
     Boxes done;
     alignas(64) double given[kRoom];
-    Points<false> room;
     std::uint64_t lost = 0;
     cells.count = count;
-    for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
-        const std::size_t more = lanes_there(first, count);
-        const Points<false>& p = at(first, more, &room);
+    at(count, count, [&](const Points<false>& p, std::size_t first) {
         keep(p, first, &seen);
-        lost |= (std::uint64_t)(~bits(p.served) & ((1u << more) - 1u)) << first;
-    }
+        lost |= (std::uint64_t)(~bits(p.served) & ((1u << lanes_there(first, count)) - 1u)) << first;
+    });
     lost |= find_all_squares(local, directions, count, &cells);
     ask_for_curves(local, cells);
     for (std::size_t i = 0; i < count; ++i) {

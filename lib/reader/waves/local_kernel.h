@@ -240,18 +240,16 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
 
 // ---- all of an array -------------------------------------------------------------------------------------------
 
-/* Draws of up to kBlock lanes; `at(lane, count, points)` sets the points of a vector from a lane on, of which
- * `count` are there; `alone(lane)` draws singly. */
+/* Draws of up to kBlock lanes; `at` as PointsOf; `alone(lane)` draws singly. */
 template <class Rows, class At, class Alone>
 ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at, const Alone& alone,
                           const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
     Walks walks;
     Cells cells;
     Boxes done;
-    Points<true> room;
     std::uint64_t lost = 0;
     walks.count = cells.count = 0;
-    for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
+    at(count, count, [&](const Points<true>& p, std::size_t first) {
         const std::size_t more = lanes_there(first, count);
         const unsigned there = (1u << more) - 1u;
         double last[ACDF_WIDTH][2] = {};
@@ -259,13 +257,12 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
         const Integer lane = numbers_from(first);
         if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
         load_pairs(more < ACDF_WIDTH ? last : u + first, given);
-        const Points<true>& p = at(first, more, &room);
         const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
         const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.lights)) & served;
         lost |= (std::uint64_t)(served ^ there) << first;
         begin_walks(p, rows, v, served ^ light, lane, local.tables->tiles.root, &walks);
         if (light) draw_lights(local, p, v, light, lane, &cells);
-    }
+    });
     for (std::size_t i = 0; i < cells.count; ++i) {
         cells.tile[i] = local.lights[cells.tile[i]].tile;
         ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)cells.tile[i]));

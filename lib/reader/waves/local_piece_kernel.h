@@ -69,19 +69,16 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
     const auto* const pieces = (const AcdfTilePiece*)(const void*)(s.tables + local.tables->pieces);
     Seen seen;
     PieceLanes lanes;
-    Points<false> room;
     float last[kSearched][3] = {};
     alignas(64) double given[kRoom], probability[kRoom];
     if (count < kSearched) std::memcpy(last, directions, count * sizeof *directions);
     std::uint32_t lost = find_places(*local.tables, s, count < kSearched ? last : directions, &lanes);
     ask_for_blocks(s, lanes.sought);
-    for (std::size_t first = 0; first < count; first += ACDF_WIDTH) {
-        const std::size_t more = lanes_there(first, count);
-        const Points<false>& p = at(first, more, &room);
+    at(count, count, [&](const Points<false>& p, std::size_t first) {
         keep(p, first, &seen);
         for (int k = 0; k < kRows; ++k) stored(&seen.row[k][first], parts_of(local, p.row[k]));
         lost |= (~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
-    }
+    });
     lost |= find_cells(s, &lanes.sought, [pieces](std::size_t piece) { ACDF_PREFETCH(pieces + piece); });
     for (std::size_t i = (count + ACDF_WIDTH - 1) / ACDF_WIDTH * ACDF_WIDTH; i < kSearched; ++i)
         for (int k = 0; k < kRows; ++k) seen.row[k][i] = seen.row[k][0];

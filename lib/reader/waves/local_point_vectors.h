@@ -110,67 +110,86 @@ ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
 }
 ACDF_LANE void weigh_each(const AcdfLocal&, Points<false>*) {}
 
-/* acdf_local_find_facet; what tables do not serve is not served. Small whole numbers are doubles. */
-ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], Corners* out) {
+/* acdf_local_find_facet of some vectors, which take turns; what tables do not serve is not served. Small whole
+ * numbers are doubles. */
+template <int Turns, class P>
+ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], P* out) {
     const double n = local.subdivisions;
-    Vector v[3], a[3], base[3], sign[3], pair[2];
-    load_transposed(normals, v);
-    const Vector sum = (absolute(v[0]) + absolute(v[1])) + absolute(v[2]);
-    Integer served = (sum > 0.0) & (sum < 0x1p1000); // below: finite floats
-    Vector down = all(n - 1.0);
-    for (int i = 0; i < 3; ++i) {
-        a[i] = absolute(v[i]) / sum * n;
-        base[i] = whole_part(a[i]);
-        down -= base[i];
-        sign[i] = one_if(v[i] < 0.0);
+    Vector sum[Turns], down[Turns], off[Turns][3];
+    Indices at[Turns];
+    for (int t = 0; t < Turns; ++t) {
+        load_transposed(normals + t * ACDF_WIDTH, out[t].normal);
+        const Vector* v = out[t].normal;
+        sum[t] = (absolute(v[0]) + absolute(v[1])) + absolute(v[2]);
     }
-    served &= (down == 0.0) | (down == 1.0);
-    const Vector octant = sign[0] + 2.0 * sign[1] + 4.0 * sign[2], back = down * (n - 1.0), step = 1.0 - 2.0 * down;
-    const Vector facet = (octant * n + (back + base[0] * step)) * n + (back + base[1] * step);
-    alignas(64) long long at[ACDF_WIDTH];
-    out->facet = truncated(select(served, facet, all(0.0)));
-    stored(at, out->facet);
-    const double* from[3][ACDF_WIDTH];
-    for (int i = 0; i < ACDF_WIDTH; ++i) {
-        const AcdfFacet& of = acdf_local_facets(local.tables)[at[i]];
-        from[0][i] = of.length;
-        from[1][i] = of.length + 2;                              // and shares
-        from[2][i] = (const double*)(const void*)(of.share + 2); // and rows
+    for (int t = 0; t < Turns; ++t) {
+        const Vector* v = out[t].normal;
+        Vector base[3], sign[3];
+        Integer served = (sum[t] > 0.0) & (sum[t] < 0x1p1000); // below: finite floats
+        down[t] = all(n - 1.0);
+        for (int i = 0; i < 3; ++i) {
+            const Vector a = absolute(v[i]) / sum[t] * n;
+            base[i] = whole_part(a);
+            down[t] -= base[i];
+            off[t][i] = a - base[i];
+            sign[i] = one_if(v[i] < 0.0);
+        }
+        served &= (down[t] == 0.0) | (down[t] == 1.0);
+        const Vector octant = sign[0] + 2.0 * sign[1] + 4.0 * sign[2], back = down[t] * (n - 1.0);
+        const Vector step = 1.0 - 2.0 * down[t];
+        const Vector facet = (octant * n + (back + base[0] * step)) * n + (back + base[1] * step);
+        out[t].facet = truncated(select(served, facet, all(0.0)));
+        out[t].served = served;
+        stored(out[t].facet, &at[t]);
     }
-    Vector length[3], share[3];
-    gather_pairs(from[0], length);
-    gather_pairs(from[1], pair);
-    length[2] = pair[0];
-    share[0] = low_floats((Integer)pair[1]);
-    share[1] = low_floats((Integer)((Unsigned)pair[1] >> 32));
-    gather_pairs(from[2], pair);
-    share[2] = low_floats((Integer)pair[0]);
-    out->row[0] = (Integer)((Unsigned)pair[0] >> 32);
-    out->row[1] = (Integer)pair[1] & 0xFFFFFFFFll;
-    out->row[2] = (Integer)((Unsigned)pair[1] >> 32);
-    for (int i = 0; i < kRows; ++i) {
-        out->weight[i] = absolute(down - (a[i] - base[i])) * length[i] * share[i];
-        served &= out->weight[i] > 0.0;
+    for (int t = 0; t < Turns; ++t) {
+        const double* from[3][ACDF_WIDTH];
+        for (int i = 0; i < ACDF_WIDTH; ++i) {
+            const AcdfFacet& of = acdf_local_facets(local.tables)[at[t].at[i]];
+            from[0][i] = of.length;
+            from[1][i] = of.length + 2;                              // and shares
+            from[2][i] = (const double*)(const void*)(of.share + 2); // and rows
+        }
+        Vector length[3], share[3], pair[2];
+        gather_pairs(from[0], length);
+        gather_pairs(from[1], pair);
+        length[2] = pair[0];
+        share[0] = low_floats((Integer)pair[1]);
+        share[1] = low_floats((Integer)((Unsigned)pair[1] >> 32));
+        gather_pairs(from[2], pair);
+        share[2] = low_floats((Integer)pair[0]);
+        out[t].row[0] = (Integer)((Unsigned)pair[0] >> 32);
+        out[t].row[1] = (Integer)pair[1] & 0xFFFFFFFFll;
+        out[t].row[2] = (Integer)((Unsigned)pair[1] >> 32);
+        for (int i = 0; i < kRows; ++i) {
+            out[t].weight[i] = absolute(down[t] - off[t][i]) * length[i] * share[i];
+            out[t].served &= out[t].weight[i] > 0.0;
+        }
+        for (int i = 0; i < kRows; ++i) out[t].row[i] &= out[t].served;
     }
-    for (int i = 0; i < kRows; ++i) out->row[i] &= served;
-    const Vector scale = n / sum, size = root((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
-    for (int i = 0; i < 3; ++i) out->normal[i] = scale * v[i];
-    out->length = scale * size;
-    out->served = served;
+    for (int t = 0; t < Turns; ++t) {
+        Vector* v = out[t].normal;
+        const Vector scale = n / sum[t], size = root((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
+        for (int i = 0; i < 3; ++i) v[i] = scale * v[i];
+        out[t].length = scale * size;
+    }
 }
 
 /* acdf_local_at by facets. */
-template <bool Draws>
+template <int Turns, bool Draws>
 ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points<Draws>* out) {
     const AcdfTileTables& tiles = local.tables->tiles;
     const auto rows = (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
-    corners_of(local, normals, out);
-    for (int i = 0; i < kRows; ++i) out->codes[i] = multiplied(out->row[i], tiles.stride) + rows;
-    weigh_each(local, out);
-    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
-    out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
-    out->sum = out->lights + out->mixture;
-    out->served &= out->sum > 0.0;
+    corners_of<Turns>(local, normals, out);
+    for (int t = 0; t < Turns; ++t) {
+        Points<Draws>& p = out[t];
+        for (int i = 0; i < kRows; ++i) p.codes[i] = multiplied(p.row[i], tiles.stride) + rows;
+        weigh_each(local, &p);
+        p.lights = facet_lights<false>(local, p, [](std::uint32_t, const Vector*) {});
+        p.mixture = (p.weight[0] + p.weight[1]) + p.weight[2];
+        p.sum = p.lights + p.mixture;
+        p.served &= p.sum > 0.0;
+    }
 }
 
 /* One point in all lanes, which serves_waves has approved. */
@@ -192,23 +211,33 @@ ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Po
     out->served = ~Integer{};
 }
 
-/// The points of a vector of normals from a lane on, of which `count` are there; and one point in all lanes.
-template <class P>
+/// Calls then(points, lane) for the points of vectors of `whole` normals, of which `count` are there; and one point
+/// in all lanes. Turns: vectors that take turns.
+template <class P, int Turns = 4>
 struct PointsOf {
     const AcdfLocal& local;
     const float (*normals)[3];
-    ACDF_LANE_MEMBER const P& operator()(std::size_t lane, std::size_t count, P* room) const {
-        float last[ACDF_WIDTH][3] = {};
-        if (count < ACDF_WIDTH) std::memcpy(last, normals + lane, count * sizeof *normals);
-        points_of(local, count < ACDF_WIDTH ? last : normals + lane, room);
-        return *room;
+    template <class Then>
+    ACDF_LANE_MEMBER void operator()(std::size_t whole, std::size_t count, const Then& then) const {
+        constexpr std::size_t lanes = Turns * ACDF_WIDTH;
+        P room[Turns];
+        for (std::size_t first = 0; first < whole; first += lanes) {
+            float last[lanes][3] = {};
+            const bool all = count - first >= lanes;
+            if (!all && first < count) std::memcpy(last, normals + first, (count - first) * sizeof *normals);
+            points_of<Turns>(local, all ? normals + first : last, room);
+            for (int t = 0; t < Turns; ++t) then(room[t], first + (std::size_t)t * ACDF_WIDTH);
+        }
     }
 };
 template <class P>
 struct OnePoint {
     P points;
     OnePoint(const AcdfLocal& local, const AcdfLocalPoint& point) { points_of(local, point, &points); }
-    ACDF_LANE_MEMBER const P& operator()(std::size_t, std::size_t, P*) const { return points; }
+    template <class Then>
+    ACDF_LANE_MEMBER void operator()(std::size_t whole, std::size_t, const Then& then) const {
+        for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) then(points, first);
+    }
 };
 
 } // namespace
