@@ -115,8 +115,14 @@ ACDF_LANE Floats select(Signed mask, Floats yes, Floats no) {
     return (Floats)(((Signed)yes & mask) | ((Signed)no & ~mask));
 }
 ACDF_LANE Floats absolute(Floats x) { return (Floats)((Words)x & 0x7FFFFFFFu); }
-ACDF_LANE Floats least(Floats a, Floats b) { return select(a < b, a, b); } /* ACDF_MIN */
-ACDF_LANE Floats most(Floats a, Floats b) { return select(a > b, a, b); }  /* ACDF_MAX */
+/* ACDF_MIN, ACDF_MAX: b, too, where both are 0 or either is NaN. */
+#if ACDF_WIDTH == 8
+ACDF_LANE Floats least(Floats a, Floats b) { return (Floats)_mm512_min_ps((__m512)a, (__m512)b); }
+ACDF_LANE Floats most(Floats a, Floats b) { return (Floats)_mm512_max_ps((__m512)a, (__m512)b); }
+#else
+ACDF_LANE Floats least(Floats a, Floats b) { return (Floats)_mm256_min_ps((__m256)a, (__m256)b); }
+ACDF_LANE Floats most(Floats a, Floats b) { return (Floats)_mm256_max_ps((__m256)a, (__m256)b); }
+#endif
 
 /* x, y and z of each lane's vector. */
 ACDF_LANE void load_vectors(const float (*w)[3], Floats out[3]) {

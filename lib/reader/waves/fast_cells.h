@@ -15,7 +15,7 @@ struct FastCells {
     alignas(64) std::int32_t index[2][kRoom]; // of the cell in its line, and of that
     alignas(64) std::int32_t ends[2][kRoom];  // two bytes, as they lie: cumulative values before and at these
     const AcdfTileRecord* tile[kRoom];
-    const std::uint8_t* list[kRoom]; // the lists of a tile, and then that of a line
+    const std::uint8_t* list[kRoom]; // of the tile's lines; draws go on to that of a line
 };
 
 /* The grid of a lane's tile. */
@@ -25,17 +25,16 @@ ACDF_LANE void enter_tile(const AcdfLocal& local, std::uint32_t tile, std::size_
     ACDF_PREFETCH(c->list[i]);
 }
 
-/* A number in the list that a lane is at. Of the first one what stands before is no cumulative value. */
-ACDF_LANE void take_end(int axis, std::uint32_t number, std::size_t i, FastCells* c) {
+/* Cumulative values around a number in a list. Of the first one what stands before is no such value. */
+ACDF_LANE std::int32_t ends_at(const std::uint8_t* list, std::uint32_t number) {
     std::uint16_t both;
-    std::memcpy(&both, c->list[i] + (std::ptrdiff_t)number - 1, 2);
-    c->ends[axis][i] = both;
-    c->index[axis][i] = (std::int32_t)number;
+    std::memcpy(&both, list + (std::ptrdiff_t)number - 1, 2);
+    return both;
 }
 
-/* Goes on to the list of a line's cells. */
-ACDF_LANE void enter_line(std::uint32_t line, std::size_t i, FastCells* c) {
-    c->list[i] += c->tile[i]->step[3] + line * c->tile[i]->step[2];
+/* The list of a line's cells. */
+ACDF_LANE const std::uint8_t* line_of(const FastCells& c, std::size_t i, std::uint32_t line) {
+    return c.list[i] + (c.tile[i]->step[3] + line * c.tile[i]->step[2]);
 }
 
 /* Cumulative values before and at some numbers. */

@@ -27,13 +27,13 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
     for (std::size_t i = 0; i < count; ++i) {
         AcdfFastShare share;
         double left[2];
-        d.rows.tile[i] = (std::int32_t)acdf_fast_cut_draw(&local, &point, &cut, u[i], left, &share);
-        ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)d.rows.tile[i]));
+        d.tile[i] = (std::int32_t)acdf_fast_cut_draw(&local, &point, &cut, u[i], left, &share);
+        ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)d.tile[i]));
         for (int axis = 0; axis < 2; ++axis) c.u[axis][i] = left[axis];
         c.of[i] = share.of;
         c.all[i] = share.all * ACDF_FAST_STEPS;
     }
-    for (std::size_t i = count; i % kLanes != 0; ++i) d.rows.tile[i] = d.rows.tile[0];
+    for (std::size_t i = count; i % kLanes != 0; ++i) d.tile[i] = d.tile[0];
     pad_lanes(count, &c);
     end_draws(
         local, &d, 0, [&](std::size_t i) { out[i] = acdf::alone::cut_sample(local, point, cut, u[i]); }, count,
@@ -47,7 +47,7 @@ ACDF_LANE void cut_density_block(const AcdfLocal& local, const AcdfLocalPoint& p
     const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
     const std::uint64_t lost = find_squares(local, directions, count, &f);
     find_fast_tiles(local, whole, &f);
-    find_fast_cells(local, whole, &f);
+    find_fast_cells(whole, &f);
     for (std::size_t i = 0; i < count; ++i) {
         const AcdfFastShare share =
             acdf_fast_cut_find(&point, &cut, (std::uint32_t)f.tile[i], f.cells.tile[i]->light);

@@ -85,14 +85,13 @@ ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastSq
             at = split.child[acdf_split_upper(&split, square)];
         }
         f->tile[i] = (std::int32_t)(at & ~ACDF_TILE_FLAG);
-        ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)f->tile[i]));
+        enter_tile(local, at & ~ACDF_TILE_FLAG, i, &f->cells);
     }
 }
 
 /* The cells of all squares in their tiles. */
-ACDF_LANE void find_fast_cells(const AcdfLocal& local, std::size_t count, FastSquares* f) {
+ACDF_LANE void find_fast_cells(std::size_t count, FastSquares* f) {
     FastCells& c = f->cells;
-    for (std::size_t i = 0; i < count; ++i) enter_tile(local, (std::uint32_t)f->tile[i], i, &c);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
         Integer shift[2];
         const FastBoxes box = boxes_of(c.tile + at, shift);
@@ -103,9 +102,8 @@ ACDF_LANE void find_fast_cells(const AcdfLocal& local, std::size_t count, FastSq
     }
     for (std::size_t i = 0; i < count; ++i) {
         const auto line = (std::uint32_t)c.index[1][i];
-        take_end(1, line, i, &c);
-        enter_line(line, i, &c);
-        take_end(0, (std::uint32_t)c.index[0][i], i, &c);
+        c.ends[1][i] = ends_at(c.list[i], line);
+        c.ends[0][i] = ends_at(line_of(c, i, line), (std::uint32_t)c.index[0][i]);
     }
 }
 
@@ -117,29 +115,25 @@ ACDF_LANE void find_fast_rows(std::size_t count, FastFinds* f) {
         f->lit[lit] = (std::uint32_t)i;
         lit += f->cells.tile[i]->light > 0;
         load_ends(&f->rows, i, tile / ACDF_FAST_GROUP);
-        for (int row = 0; row < kRows; ++row) {
-            std::uint16_t both; /* what stands before the first row of tiles is of groups */
-            std::memcpy(&both, (const std::uint8_t*)f->rows.tile_row[row][i] + tile - 1, 2);
-            f->ends[row][i] = both;
-        }
+        for (int row = 0; row < kRows; ++row) // what stands before the first row of tiles is of groups
+            f->ends[row][i] = ends_at((const std::uint8_t*)f->rows.tile_row[row][i], tile);
     }
     f->lit_count = lit;
 }
 
 /* acdf_local_fast_find of a vector but for what the cell has of its tile. */
 ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
-    FastLanes& w = f->rows;
-    find_groups(&w, at);
+    const Ints tile = loaded(&f->tile[at]), last = Ints{} + (std::int32_t)(ACDF_FAST_GROUP - 1),
+               number = tile & last;
+    const FastGroups g = find_groups(f->rows, tile > last, at);
     Ints share = {};
-    const Ints number = loaded(&f->tile[at]) & (std::int32_t)(ACDF_FAST_GROUP - 1);
     for (int row = 0; row < kRows; ++row) {
         Ints before, end;
         loaded_ends(&f->ends[row][at], number, &before, &end);
-        share += loaded(&w.part[row][at]) * (end - before);
+        share += g.part[row] * (end - before);
     }
-    const Vector whole = loaded(&w.whole[at]);
-    stored(&f->cells.of[at], loaded(&w.mass[at]) * to_doubles(share) * loaded(&w.unit[at]));
-    stored(&f->cells.all[at], select(whole > 1.0, whole, all(1.0)) * ACDF_FAST_STEPS);
+    stored(&f->cells.of[at], g.mass * to_doubles(share) * loaded(&f->rows.unit[at]));
+    stored(&f->cells.all[at], select(g.whole > 1.0, g.whole, all(1.0)) * ACDF_FAST_STEPS);
 }
 
 /* The same of a lane whose tile is a light: no row gives it any. */
@@ -181,7 +175,7 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
     });
     lost |= find_squares(local, directions, count, &f);
     find_fast_tiles(local, whole, &f);
-    find_fast_cells(local, whole, &f);
+    find_fast_cells(whole, &f);
     find_fast_rows(whole, &f);
     for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) weigh_fast_tiles(first, &f);
     for (std::size_t k = 0; k < f.lit_count; ++k) weigh_light(local, f.lit[k], &f);

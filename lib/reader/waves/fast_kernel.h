@@ -51,10 +51,13 @@ ACDF_LANE unsigned draw_lights(const AcdfLocal& local, const FastPoints<true>& p
 struct FastDraws {
     FastLanes rows;
     FastCells cells;
-    alignas(64) double x[kRoom], before[kRoom];                    // of the mixture, or of lights
-    alignas(64) long long lit[kRoom];                              // all ones: a light is drawn
+    alignas(64) double x[kRoom], before[kRoom]; // of the mixture, or of lights
+    alignas(64) long long lit[kRoom];           // all ones: a light is drawn
+    alignas(64) long long upper[kRows][kRoom];
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
-    std::uint32_t mixed[kBlock], mixed_count;                      // lanes that draw from the mixture
+    alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom]; // part: weights in the group
+    alignas(64) double group_mass[kRoom], group_below[kRoom], whole[kRoom];  // of groups
+    std::uint32_t mixed[kBlock], mixed_count;                                // lanes that draw from the mixture
 };
 
 /* Begins the lanes of a vector: their tiles, where they draw lights, and else what they look for. Returns those
@@ -68,13 +71,18 @@ ACDF_LANE unsigned begin_draws(const AcdfLocal& local, const FastPoints<true>& p
     const unsigned lights = bits(lit) & there, others = bits(p.served & ~lit) & there;
     unsigned lost = ~bits(p.served) & there;
     keep_rows(p, at, &d->rows);
+    for (int i = 0; i < kRows; ++i) {
+        stored(&d->upper[i][at], p.upper[i]);
+        stored(&d->rows.end[i][at], Ints{});
+    }
+    stored(&d->number[at], Ints{});
     stored(&d->cells.of[at], all(0.0));
     stored(&d->x[at], select(lit, x, mixed));
     stored(&d->before[at], all(0.0));
     stored(&d->at[at], to_integers(mixed));
     stored(&d->lit[at], lit);
-    stored(&d->rows.tile[at], Ints{});
-    if (lights) lost |= draw_lights(local, p, x, lights, &d->cells.of[at], &d->before[at], &d->rows.tile[at]);
+    stored(&d->tile[at], Ints{});
+    if (lights) lost |= draw_lights(local, p, x, lights, &d->cells.of[at], &d->before[at], &d->tile[at]);
     stored(&d->cells.u[1][at], u[1]);
     stored(&d->cells.all[at], p.sum * ACDF_FAST_STEPS);
     stored(&d->below[at], Ints{});
@@ -93,12 +101,12 @@ ACDF_LANE void search_groups(FastDraws* d) {
     FastLanes& w = d->rows;
     for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
         const std::uint32_t i = d->mixed[k];
-        const std::uint16_t* const upper[kRows] = {(const std::uint16_t*)w.upper[0][i],
-                                                   (const std::uint16_t*)w.upper[1][i],
-                                                   (const std::uint16_t*)w.upper[2][i]};
+        const std::uint16_t* const upper[kRows] = {(const std::uint16_t*)d->upper[0][i],
+                                                   (const std::uint16_t*)d->upper[1][i],
+                                                   (const std::uint16_t*)d->upper[2][i]};
         const std::uint32_t first =
             16u * search_words(upper, 0, w.share[0][i] | w.share[1][i] << 16, w.share[2][i], d->at[i]);
-        w.number[i] = (std::int32_t)first;
+        d->number[i] = (std::int32_t)first;
         for (int row = 0; row < kRows; ++row) ACDF_PREFETCH((const std::uint16_t*)w.group[row][i] + first);
     }
     for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
@@ -106,41 +114,45 @@ ACDF_LANE void search_groups(FastDraws* d) {
         const std::uint16_t* const group[kRows] = {(const std::uint16_t*)w.group[0][i],
                                                    (const std::uint16_t*)w.group[1][i],
                                                    (const std::uint16_t*)w.group[2][i]};
-        const std::uint32_t number = search_words(group, (std::uint32_t)w.number[i],
+        const std::uint32_t number = search_words(group, (std::uint32_t)d->number[i],
                                                   w.share[0][i] | w.share[1][i] << 16, w.share[2][i], d->at[i]);
         load_ends(&w, i, number);
+        d->number[i] = (std::int32_t)number;
     }
 }
 
 /* acdf_fast_tile_of of the same. */
 ACDF_LANE void search_tiles(const AcdfLocal& local, FastDraws* d) {
-    FastLanes& w = d->rows;
+    const FastLanes& w = d->rows;
     for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
-        const std::uint32_t i = d->mixed[k], first = ACDF_FAST_GROUP * (std::uint32_t)w.number[i];
+        const std::uint32_t i = d->mixed[k], first = ACDF_FAST_GROUP * (std::uint32_t)d->number[i];
         Sixteen ends;
         std::int32_t sum[4 + 16];
         ends.mix(sixteen_widened((const std::uint8_t*)w.tile_row[0][i] + first),
                  sixteen_widened((const std::uint8_t*)w.tile_row[1][i] + first),
-                 sixteen_widened((const std::uint8_t*)w.tile_row[2][i] + first), w.part[0][i] | w.part[1][i] << 16,
-                 w.part[2][i]);
+                 sixteen_widened((const std::uint8_t*)w.tile_row[2][i] + first),
+                 d->part[0][i] | d->part[1][i] << 16, d->part[2][i]);
         const std::uint32_t tile = acdf_lowest_bit(ends.above(d->at[i])) / Sixteen::kBits;
         sum[3] = 0;
         ends.store(sum + 4);
         d->below[i] = sum[3 + tile];
         d->mass[i] = sum[4 + tile] - sum[3 + tile];
-        w.tile[i] = (std::int32_t)(first + tile);
+        d->tile[i] = (std::int32_t)(first + tile);
         ACDF_PREFETCH(acdf_local_tile(local.tables, first + tile));
     }
 }
 
 /* acdf_fast_draw_tile of all lanes; of those that draw a light it is told before. */
 ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* d) {
-    FastLanes& w = d->rows;
     alignas(64) double y[kRoom];
     search_groups(d);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        find_groups(&w, at);
-        const Vector scaled_u = scaled(loaded(&d->cells.u[1][at]), 255.0 * loaded(&w.whole[at]));
+        const FastGroups g = find_groups(d->rows, loaded(&d->number[at]) > 0, at);
+        for (int i = 0; i < kRows; ++i) stored(&d->part[i][at], g.part[i]);
+        stored(&d->group_mass[at], g.mass);
+        stored(&d->group_below[at], g.below);
+        stored(&d->whole[at], g.whole);
+        const Vector scaled_u = scaled(loaded(&d->cells.u[1][at]), 255.0 * g.whole);
         stored(&y[at], scaled_u);
         stored(&d->at[at], to_integers(scaled_u));
     }
@@ -148,14 +160,15 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
         FastCells& c = d->cells;
         const Integer lit = loaded(&d->lit[at]);
-        const Vector of_group = loaded(&w.mass[at]), of_tile = to_doubles(loaded(&d->mass[at]));
-        const Vector light = loaded(&c.of[at]), below = select(lit, loaded(&d->before[at]), loaded(&w.below[at]));
+        const Vector of_group = loaded(&d->group_mass[at]), of_tile = to_doubles(loaded(&d->mass[at]));
+        const Vector light = loaded(&c.of[at]),
+                     below = select(lit, loaded(&d->before[at]), loaded(&d->group_below[at]));
         const Vector left = (loaded(&d->x[at]) - below) / select(lit, light, of_group);
         const Vector in_group = (loaded(&y[at]) - to_doubles(loaded(&d->below[at]))) / of_tile;
         stored(&c.u[0][at], select(lit, unit_interval(left), left));
         stored(&c.u[1][at], select(lit, loaded(&c.u[1][at]), in_group));
-        stored(&c.of[at], select(lit, light, of_group * of_tile * loaded(&w.unit[at])));
-        stored(&c.all[at], select(lit, loaded(&c.all[at]), loaded(&w.whole[at]) * ACDF_FAST_STEPS));
+        stored(&c.of[at], select(lit, light, of_group * of_tile * loaded(&d->rows.unit[at])));
+        stored(&c.all[at], select(lit, loaded(&c.all[at]), loaded(&d->whole[at]) * ACDF_FAST_STEPS));
     }
 }
 
@@ -166,7 +179,7 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
     FastCells& c = d->cells;
     alignas(64) double z[2][kRoom];
     alignas(64) std::int32_t least[2][kRoom];
-    for (std::size_t i = 0; i < count; ++i) enter_tile(local, (std::uint32_t)d->rows.tile[i], i, &c);
+    for (std::size_t i = 0; i < count; ++i) enter_tile(local, (std::uint32_t)d->tile[i], i, &c);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH)
         for (int axis = 0; axis < 2; ++axis) {
             const Vector scaled_u = scaled(loaded(&c.u[axis][at]), all(255.0));
@@ -175,11 +188,16 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
         }
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t line = end_at_least(c.list[i], least[1][i]);
-        take_end(1, line, i, &c);
-        enter_line(line, i, &c);
+        c.ends[1][i] = ends_at(c.list[i], line);
+        c.index[1][i] = (std::int32_t)line;
+        c.list[i] = line_of(c, i, line);
         ACDF_PREFETCH(c.list[i]);
     }
-    for (std::size_t i = 0; i < count; ++i) take_end(0, end_at_least(c.list[i], least[0][i]), i, &c);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t cell = end_at_least(c.list[i], least[0][i]);
+        c.ends[0][i] = ends_at(c.list[i], cell);
+        c.index[0][i] = (std::int32_t)cell;
+    }
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH)
         for (int axis = 0; axis < 2; ++axis) {
             Ints before, end;

@@ -122,6 +122,7 @@ ACDF_LANE std::uint32_t end_at_least(const std::uint8_t* ends, std::int32_t leas
 /// Points of the fast shape. What AcdfFastMixture and AcdfLocalPoint have of it, and addresses.
 template <bool Draws>
 struct FastPoints : Corners {
+    static constexpr bool kDraws = Draws;
     Integer group[kRows], tile[kRows], upper[kRows];
     Ints share[kRows]; // AcdfFastMixture::weight
     Vector whole, lights, sum, step, unit, light[Draws ? ACDF_MAX_LIGHTS : 1],
@@ -156,26 +157,22 @@ ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<false>* out)
     out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
 }
 
-/* acdf_local_at of files of the fast shape. */
-template <int Turns, bool Draws>
-ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], FastPoints<Draws>* out) {
+/* acdf_local_at of files of the fast shape, but for its corners. */
+template <bool Draws>
+ACDF_LANE void set_points(const AcdfLocal& local, FastPoints<Draws>* out) {
     const AcdfFast& fast = local.fast;
-    corners_of<Turns>(local, normals, out);
-    for (int t = 0; t < Turns; ++t) {
-        FastPoints<Draws>& p = out[t];
-        for (int i = 0; i < kRows; ++i) {
-            p.group[i] = multiplied(p.row[i], 2ll * fast.ends) + (long long)(std::uintptr_t)fast.groups;
-            p.tile[i] = multiplied(p.row[i], fast.stride) + (long long)(std::uintptr_t)fast.tiles;
-            if (Draws)
-                p.upper[i] = multiplied(p.row[i], 2ll * fast.upper_ends) + (long long)(std::uintptr_t)fast.upper;
-        }
-        const Vector mixture = (p.weight[0] + p.weight[1]) + p.weight[2];
-        mix_rows(mixture, &p);
-        weigh_fast_lights(local, &p);
-        p.sum = p.lights + mixture;
-        if (Draws) p.step = 32767.0 * p.whole / mixture;
-        p.unit = mixture / (p.sum * (32767.0 * 255.0 * p.whole));
+    for (int i = 0; i < kRows; ++i) {
+        out->group[i] = multiplied(out->row[i], 2ll * fast.ends) + (long long)(std::uintptr_t)fast.groups;
+        out->tile[i] = multiplied(out->row[i], fast.stride) + (long long)(std::uintptr_t)fast.tiles;
+        if (Draws)
+            out->upper[i] = multiplied(out->row[i], 2ll * fast.upper_ends) + (long long)(std::uintptr_t)fast.upper;
     }
+    const Vector mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
+    mix_rows(mixture, out);
+    weigh_fast_lights(local, out);
+    out->sum = out->lights + mixture;
+    if (Draws) out->step = 32767.0 * out->whole / mixture;
+    out->unit = mixture / (out->sum * (32767.0 * 255.0 * out->whole));
 }
 
 /* One point in all lanes, which serves_waves has approved. */
@@ -209,10 +206,9 @@ ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoin
 /// Lanes of a block in the fast shape; `end` of groups: cumulative values before and at the group's end, as they
 /// lie.
 struct FastLanes {
-    alignas(64) long long group[kRows][kRoom], tile_row[kRows][kRoom], upper[kRows][kRoom];
-    alignas(64) std::int32_t share[kRows][kRoom], end[kRows][kRoom], inner[kRoom]; // inner: 0 of first groups
-    alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom];       // part: weights in the group
-    alignas(64) double mass[kRoom], below[kRoom], whole[kRoom], unit[kRoom];       // of groups, but for unit
+    alignas(64) long long group[kRows][kRoom], tile_row[kRows][kRoom];
+    alignas(64) std::int32_t share[kRows][kRoom], end[kRows][kRoom];
+    alignas(64) double unit[kRoom];
 };
 
 /* Begins lanes: what their points have of rows. */
@@ -221,12 +217,8 @@ ACDF_LANE void keep_rows(const FastPoints<Draws>& p, std::size_t at, FastLanes* 
     for (int i = 0; i < kRows; ++i) {
         stored(&w->group[i][at], p.group[i]);
         stored(&w->tile_row[i][at], p.tile[i]);
-        if (Draws) stored(&w->upper[i][at], p.upper[i]);
         stored(&w->share[i][at], p.share[i]);
-        stored(&w->end[i][at], Ints{});
     }
-    stored(&w->inner[at], Ints{});
-    stored(&w->number[at], Ints{});
     stored(&w->unit[at], p.unit);
 }
 
@@ -235,30 +227,34 @@ ACDF_LANE void load_ends(FastLanes* w, std::size_t lane, std::uint32_t number) {
     const std::uint32_t inner = number > 0;
     for (int i = 0; i < kRows; ++i)
         std::memcpy(&w->end[i][lane], (const std::uint16_t*)w->group[i][lane] + (number - inner), 4);
-    w->inner[lane] = -(std::int32_t)inner;
-    w->number[lane] = (std::int32_t)number;
 }
 
-/* acdf_fast_find_group of a vector. */
-ACDF_LANE void find_groups(FastLanes* w, std::size_t at) {
-    Ints part[kRows], mass = {}, below = {}, whole = {};
-    const Ints inner = loaded(&w->inner[at]);
+/// Groups of a vector: the weights of rows in them, what all have of them, and of those before.
+struct FastGroups {
+    Ints part[kRows];
+    Vector mass, below, whole; // whole: of weights
+};
+
+/* acdf_fast_find_group of a vector of groups; inner: all ones where a group is not the first. */
+ACDF_LANE FastGroups find_groups(const FastLanes& w, Ints inner, std::size_t at) {
+    FastGroups out;
+    Ints mass = {}, below = {}, whole = {};
     for (int i = 0; i < kRows; ++i) {
-        const Ints ends = loaded(&w->end[i][at]), share = loaded(&w->share[i][at]);
+        const Ints ends = loaded(&w.end[i][at]), share = loaded(&w.share[i][at]);
         const Ints before = ends & inner & 0xFFFF, end = (ends >> (inner & 16)) & 0xFFFF;
-        part[i] = (end - before) * share;
-        mass += part[i];
+        out.part[i] = (end - before) * share;
+        mass += out.part[i];
         below += before * share;
     }
     const Ints shift = shift_of(mass), most = ((Ints{} + 1) << shift) - 1;
-    for (int i = 0; i < kRows; ++i) {
-        part[i] = (part[i] + most) >> shift;
-        whole += part[i];
-        stored(&w->part[i][at], part[i]);
+    for (Ints& part : out.part) {
+        part = (part + most) >> shift;
+        whole += part;
     }
-    stored(&w->mass[at], to_doubles(mass));
-    stored(&w->below[at], to_doubles(below));
-    stored(&w->whole[at], to_doubles(whole));
+    out.mass = to_doubles(mass);
+    out.below = to_doubles(below);
+    out.whole = to_doubles(whole);
+    return out;
 }
 
 } // namespace

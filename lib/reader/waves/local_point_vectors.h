@@ -7,6 +7,7 @@
 #include <acdf/local.h>
 
 #include <cstring>
+#include <type_traits>
 
 namespace {
 
@@ -22,6 +23,7 @@ struct Corners {
 /// Of lanes that are not served the rows are some of the table, and all else is any number.
 template <bool Draws>
 struct Points : Corners {
+    static constexpr bool kDraws = Draws;
     Integer codes[kRows]; // addresses of those of the rows
     Vector lights, mixture, sum, light[Draws ? ACDF_MAX_LIGHTS : 1];
 };
@@ -112,8 +114,8 @@ ACDF_LANE void weigh_each(const AcdfLocal&, Points<false>*) {}
 
 /* acdf_local_find_facet of some vectors, which take turns; what tables do not serve is not served. Small whole
  * numbers are doubles. */
-template <int Turns, class P>
-ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], P* out) {
+template <int Turns, class At>
+ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], At* out) {
     const double n = local.subdivisions;
     Vector sum[Turns], down[Turns], off[Turns][3];
     Indices at[Turns];
@@ -175,21 +177,17 @@ ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], P* 
     }
 }
 
-/* acdf_local_at by facets. */
-template <int Turns, bool Draws>
-ACDF_LANE void points_of(const AcdfLocal& local, const float (*normals)[3], Points<Draws>* out) {
+/* acdf_local_at by facets, but for its corners. */
+template <bool Draws>
+ACDF_LANE void set_points(const AcdfLocal& local, Points<Draws>* out) {
     const AcdfTileTables& tiles = local.tables->tiles;
     const auto rows = (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
-    corners_of<Turns>(local, normals, out);
-    for (int t = 0; t < Turns; ++t) {
-        Points<Draws>& p = out[t];
-        for (int i = 0; i < kRows; ++i) p.codes[i] = multiplied(p.row[i], tiles.stride) + rows;
-        weigh_each(local, &p);
-        p.lights = facet_lights<false>(local, p, [](std::uint32_t, const Vector*) {});
-        p.mixture = (p.weight[0] + p.weight[1]) + p.weight[2];
-        p.sum = p.lights + p.mixture;
-        p.served &= p.sum > 0.0;
-    }
+    for (int i = 0; i < kRows; ++i) out->codes[i] = multiplied(out->row[i], tiles.stride) + rows;
+    weigh_each(local, out);
+    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
+    out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
+    out->sum = out->lights + out->mixture;
+    out->served &= out->sum > 0.0;
 }
 
 /* One point in all lanes, which serves_waves has approved. */
@@ -220,13 +218,23 @@ struct PointsOf {
     template <class Then>
     ACDF_LANE_MEMBER void operator()(std::size_t whole, std::size_t count, const Then& then) const {
         constexpr std::size_t lanes = Turns * ACDF_WIDTH;
-        P room[Turns];
+        std::conditional_t<P::kDraws, P, Corners> room[Turns];
         for (std::size_t first = 0; first < whole; first += lanes) {
             float last[lanes][3] = {};
             const bool all = count - first >= lanes;
             if (!all && first < count) std::memcpy(last, normals + first, (count - first) * sizeof *normals);
-            points_of<Turns>(local, all ? normals + first : last, room);
-            for (int t = 0; t < Turns; ++t) then(room[t], first + (std::size_t)t * ACDF_WIDTH);
+            corners_of<Turns>(local, all ? normals + first : last, room);
+            if constexpr (P::kDraws) {
+                for (P& points : room) set_points(local, &points);
+                for (int t = 0; t < Turns; ++t) then(room[t], first + (std::size_t)t * ACDF_WIDTH);
+            } else {
+                for (int t = 0; t < Turns; ++t) { // what densities need of a point stays in registers
+                    P points;
+                    (Corners&)points = room[t];
+                    set_points(local, &points);
+                    then(points, first + (std::size_t)t * ACDF_WIDTH);
+                }
+            }
         }
     }
 };
