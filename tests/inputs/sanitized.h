@@ -19,3 +19,7 @@ inline const bool kSanitized = false;
 inline int repeated(int times) { return kSanitized ? (times + 11) / 12 : times; }
 
 } // namespace acdf_test
+
+/// Skips the rest of a test under sanitizers: others run the same code, and only numbers differ.
+#define ACDF_NOT_SANITIZED()                                                                                       \
+    if (acdf_test::kSanitized) GTEST_SKIP() << "the same code as elsewhere: only numbers differ"

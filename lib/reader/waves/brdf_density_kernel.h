@@ -59,7 +59,6 @@ ACDF_LANE void find(const WavefrontTable& t, const float (*wi)[3], DensitiesOf<G
         const int line = borders_below(t.borders[1], step[1][i], square[1][i]);
         d->cell[i] = t.grid[line * t.columns_between + column];
         __builtin_prefetch(t.parts + d->cell[i] * t.stride + lower[i]);
-        __builtin_prefetch(t.areas + d->cell[i]);
     }
 }
 

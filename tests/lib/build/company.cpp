@@ -62,6 +62,7 @@ TEST(Company, DensitiesIntegrateToOneAndAreThoseOfSamples) {
 }
 
 TEST(Company, BrightnessDoesNotCount) {
+    ACDF_NOT_SANITIZED();
     const Vector up{0.0f, 0.0f, 1.0f};
     for (const Kind& kind : kinds) {
         Probe light = probe(
@@ -111,6 +112,7 @@ TEST(Company, VarianceIsThatOfTheSlowReference) {
 }
 
 TEST(Company, LocalFilesComeNearWaterFillingOfEachNormal) {
+    ACDF_NOT_SANITIZED();
     const std::vector<Probe> all = probes();
     for (const std::size_t i : {std::size_t{3}, std::size_t{5}}) {
         Made with, alone;

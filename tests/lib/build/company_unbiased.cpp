@@ -87,6 +87,7 @@ public:
 };
 
 TEST(CompanyUnbiased, AtEachOf200NormalsForEveryProbeFitAndCompany) {
+    ACDF_NOT_SANITIZED();
     Scores all;
     std::mt19937_64 random(77);
     const std::vector<Probe> compared = compared_probes();

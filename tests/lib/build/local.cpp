@@ -100,6 +100,7 @@ TEST(LocalFiles, FastOnesFillAndKeepTheirBudget) {
 
 /// More tiles take nothing from grids: a larger file is hardly ever worse, and never by much.
 TEST(LocalFiles, FastOnesGainByBytes) {
+    ACDF_NOT_SANITIZED();
     std::mt19937 rng(3);
     std::lognormal_distribution<double> noise(0.0, 1.5);
     const Target noisy = acdf_test::texel_target(64, 32, [&](std::uint32_t, std::uint32_t) { return noise(rng); });
@@ -170,6 +171,7 @@ TEST(LocalFiles, TargetVarianceIsSearchedForAmongSizesThatBinsLeave) {
 }
 
 TEST(LocalFiles, TargetVarianceIsReachedByNoMoreThanItTakes) {
+    ACDF_NOT_SANITIZED();
     build::LocalOptions options;
     const double goal = acdf_test::kSanitized ? 0.05 : 0.03; // a smaller file is found as this one is
     options.goal = {Goal::Kind::variance, 0, 0, goal};
@@ -332,6 +334,7 @@ double dense_mean(const NormalBins& bins, std::size_t bin, const std::vector<com
 }
 
 TEST(LocalFiles, MeanOverABinIsGoodToAFewPerCent) {
+    ACDF_NOT_SANITIZED();
     const NormalBins bins = compress::latlong_bins(12, 6);
     const std::vector<compress::LightPoint> light = compress::light_points(lit_probe());
     for (std::size_t bin : {14u, 30u, 66u}) {

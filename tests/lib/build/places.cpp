@@ -191,7 +191,10 @@ void expect_unbiased(const Built& built, const Wall& wall, int count) {
     EXPECT_NEAR(std::sqrt(square / count), 1.0, std::max(0.2, 4.8 / std::sqrt(2.0 * count)));
 }
 
-TEST(PlaceFiles, AreUnbiased) { expect_unbiased(placed(), Wall(), 1000); }
+TEST(PlaceFiles, AreUnbiased) {
+    ACDF_NOT_SANITIZED();
+    expect_unbiased(placed(), Wall(), 1000);
+}
 TEST(PlaceFiles, AreUnbiasedWhereTheWallIsGone) { expect_unbiased(placed(), {1.0, 0.0, 0.0, 0.0}, 300); }
 TEST(PlaceFiles, AreUnbiasedWhereTheWallStandsElsewhere) { expect_unbiased(placed(), {-2.0, -1.0, 4.0, 3.0}, 300); }
 
@@ -264,6 +267,7 @@ TEST(PlaceFiles, LoseNothingThatANormalMaySee) {
 }
 
 TEST(PlaceFiles, AreTheSameForAnyNumberOfThreads) {
+    ACDF_NOT_SANITIZED();
     for (int threads : {1, 3}) {
         builder::Local again;
         builder::Control control;

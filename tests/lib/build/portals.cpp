@@ -199,7 +199,10 @@ void expect_as_summed(const RoomFile& made, const Room& room, int count, double 
     }
 }
 
-TEST(PortalFiles, AreUnbiased) { expect_as_summed(windowed(), {kWindow}, 200, 0.2); }
+TEST(PortalFiles, AreUnbiased) {
+    ACDF_NOT_SANITIZED();
+    expect_as_summed(windowed(), {kWindow}, 200, 0.2);
+}
 TEST(PortalFiles, AreUnbiasedWhereHalfOfTheWindowIsShut) { expect_as_summed(windowed(), {kHalf}, 100, 0.3); }
 /// What comes in there is drawn rarely: means of so few samples are far from normal.
 TEST(PortalFiles, AreUnbiasedWhereADoorIsOpened) { expect_as_summed(windowed(), {kWindow, kDoor}, 100, 1.0); }
@@ -216,6 +219,7 @@ double mean_variance(const RoomFile& made) {
 }
 
 TEST(PortalFiles, HaveLessNoiseThanPlacesAlone) {
+    ACDF_NOT_SANITIZED();
     const RoomFile places(of_room({}));
     EXPECT_TRUE(places.view().has_places());
     EXPECT_FALSE(places.view().has_portals());

@@ -77,6 +77,7 @@ TEST(PartitionGrowth, WhatIsForgottenChangesNoTreeAndNoNews) {
 }
 
 TEST(PartitionGrowth, WhatABoundOnWeightsNeedsIsNotForgotten) {
+    ACDF_NOT_SANITIZED();
     const double heaviest = 2.0;
     for (const Target& target : {noise(), lights()}) {
         Partition whole = partition_of(target), forgetful = partition_of(target);
@@ -208,6 +209,7 @@ struct Bins {
 };
 
 TEST(TreeSizer, TellsTheBytesThatEncodingMakes) {
+    ACDF_NOT_SANITIZED();
     const std::vector<Target> targets{noise(), lights()};
     for (const double most_ratio : {kNoBound, 1.01}) {
         Bins bins(targets, 1e-7);

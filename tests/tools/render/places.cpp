@@ -90,6 +90,7 @@ void expect_as_summed(Viewed& scene, const std::vector<std::vector<std::string>>
 }
 
 TEST(RenderPlaces, AreAsSummedBehindAWall) {
+    ACDF_NOT_SANITIZED();
     Viewed scene(test::small_scene("\"full-cdf\""));
     expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"visibility:8x4"}, {"places:24KiB", "cosine"}});
 }
@@ -101,6 +102,7 @@ TEST(RenderPlaces, AreAsSummedInARoom) {
 
 /// Wherever light is, from any place and for any normal, it may be drawn.
 TEST(RenderPlaces, LoseNoLightAnywhere) {
+    ACDF_NOT_SANITIZED();
     for (const std::string& text : {test::small_scene("\"full-cdf\""), test::mesh_scene("room.obj")}) {
         Viewed scene(text);
         const auto point = scene.parts({"places:24KiB"}).parts[0].of_material[0]->point_sampler();

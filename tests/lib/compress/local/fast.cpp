@@ -1,6 +1,7 @@
 // The fast shape of local environment maps: what fits of it must do. Its density is tested with that of other maps.
 #include "build/accuracy/local.h"
 #include "tests/inputs/local_maps.h"
+#include "tests/inputs/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -40,6 +41,7 @@ double variance(const Target& target, LocalShape shape, std::uint32_t tiles, std
 
 /// With as many tiles, and what is in them as fine as it can be, rounding to steps is what differs.
 TEST(FastShape, IsNearlyAsAccurateAsTheSmallOne) {
+    ACDF_NOT_SANITIZED();
     for (const Target& target : {suns_target(256, 128), octahedral(suns_target(128, 128))}) {
         const double small = variance(target, LocalShape::small, 300, 30000);
         const double fast = variance(target, LocalShape::fast, 300, 60000);

@@ -215,6 +215,7 @@ TEST(LocalFit, LightsAreSmallAndTold) {
 /// A sky that ends at the horizon: normals below see so little of it that all of it would alarm, and tiles are not
 /// spent on more lights than there may be.
 TEST(LocalFit, TilesAreNotSpentOnLightsInVain) {
+    ACDF_NOT_SANITIZED();
     const Target sky = sphere_target(256, 128, [](double, double z) { return z > -0.02 ? 1.0 + z : 0.0; });
     const NormalBins bins = octahedral_bins(12);
     const Worth worths = worth(sky, bins, irradiance(light_points(sky), bins));

@@ -6,6 +6,7 @@
 #include "measure/samplers/product_samplers.h"
 #include "measure/samplers/product_warp.h"
 #include "measure/surface_frame.h"
+#include "tests/inputs/sanitized.h"
 
 namespace {
 
@@ -193,6 +194,7 @@ double exact_variance(const acdf::measure::LightSampler& sampler, const LocalMap
 // Geometric means over points, where groups of tiles are weighed: of few parts beside light and BRDF half and half,
 // and of many beside few.
 TEST(Product, WeighingGroupsAndOpeningThemIsLessNoise) {
+    ACDF_NOT_SANITIZED();
     constexpr int kPoints = 24;
     double all[3] = {0.0, 0.0, 0.0};
     for (const Light& light : lights())
