@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kRows = 3; // of nearly all normals: those on edges of triangles have fewer
 
-/// The corners around normals, with the numbers of their rows: 0 in lanes that are not served, and all else is any
-/// number there.
+/// The corners around normals, with the numbers of their rows in the lower halves: of lanes that are not served
+/// those of any normal, and all else is any number there.
 struct Corners {
     Integer served, row[kRows], facet;
     Vector weight[kRows], normal[3], length;
@@ -126,20 +126,19 @@ ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], At*
     }
     for (int t = 0; t < Turns; ++t) {
         const Vector* v = out[t].normal;
-        Vector base[3], sign[3];
-        Integer served = (sum[t] > 0.0) & (sum[t] < 0x1p1000); // below: finite floats
+        Vector base[3];
         down[t] = all(n - 1.0);
         for (int i = 0; i < 3; ++i) {
             const Vector a = absolute(v[i]) / sum[t] * n;
             base[i] = whole_part(a);
             down[t] -= base[i];
             off[t][i] = a - base[i];
-            sign[i] = one_if(v[i] < 0.0);
         }
-        served &= (down[t] == 0.0) | (down[t] == 1.0);
-        const Vector octant = sign[0] + 2.0 * sign[1] + 4.0 * sign[2], back = down[t] * (n - 1.0);
-        const Vector step = 1.0 - 2.0 * down[t];
-        const Vector facet = (octant * n + (back + base[0] * step)) * n + (back + base[1] * step);
+        const Integer served = (down[t] == 0.0) | (down[t] == 1.0); // not NaN, as of floats that are not finite
+        const Vector back = down[t] * (n - 1.0), step = 1.0 - 2.0 * down[t];
+        const Vector octant =
+            (only(v[0] < 0.0, n * n) + only(v[1] < 0.0, 2.0 * n * n)) + only(v[2] < 0.0, 4.0 * n * n);
+        const Vector facet = octant + ((back + base[0] * step) * n + (back + base[1] * step));
         out[t].facet = truncated(select(served, facet, all(0.0)));
         out[t].served = served;
         stored(out[t].facet, &at[t]);
@@ -161,13 +160,11 @@ ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], At*
         gather_pairs(from[2], pair);
         share[2] = low_floats((Integer)pair[0]);
         out[t].row[0] = (Integer)((Unsigned)pair[0] >> 32);
-        out[t].row[1] = (Integer)pair[1] & 0xFFFFFFFFll;
+        out[t].row[1] = (Integer)pair[1];
         out[t].row[2] = (Integer)((Unsigned)pair[1] >> 32);
-        for (int i = 0; i < kRows; ++i) {
-            out[t].weight[i] = absolute(down[t] - off[t][i]) * length[i] * share[i];
-            out[t].served &= out[t].weight[i] > 0.0;
-        }
-        for (int i = 0; i < kRows; ++i) out[t].row[i] &= out[t].served;
+        Vector* const weight = out[t].weight;
+        for (int i = 0; i < kRows; ++i) weight[i] = absolute(down[t] - off[t][i]) * length[i] * share[i];
+        out[t].served &= least(least(weight[0], weight[1]), weight[2]) > 0.0;
     }
     for (int t = 0; t < Turns; ++t) {
         Vector* v = out[t].normal;

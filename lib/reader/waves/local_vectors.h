@@ -195,6 +195,13 @@ ACDF_LANE Vector above_zero(Vector x) {
     return (Vector)_mm256_max_pd((__m256d)x, _mm256_setzero_pd());
 #endif
 }
+ACDF_LANE Vector least(Vector a, Vector b) {
+#if ACDF_WIDTH == 8
+    return (Vector)_mm512_min_pd((__m512d)a, (__m512d)b);
+#else
+    return (Vector)_mm256_min_pd((__m256d)a, (__m256d)b);
+#endif
+}
 ACDF_LANE Vector whole_part(Vector x) { // of x in [0, 2^31)
 #if ACDF_WIDTH == 8
     return (Vector)_mm512_roundscale_pd((__m512d)x, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);

@@ -129,7 +129,13 @@ ACDF_LANE Integer truncated(Vector x) { return (Integer)_mm256_cvtepi32_epi64(_m
 ACDF_LANE Vector converted(Integer i) { return (Vector)(i | 0x4330000000000000) - 0x1p52; }
 ACDF_LANE unsigned bits(Integer mask) { return (unsigned)_mm256_movemask_pd((__m256d)mask); }
 ACDF_LANE void load_transposed(const float (*v)[3], Vector out[3]) {
-    for (int i = 0; i < 3; ++i) out[i] = (Vector)_mm256_cvtps_pd(_mm_setr_ps(v[0][i], v[1][i], v[2][i], v[3][i]));
+    const float* floats = (const float*)v; // x y z x, y z x y, z x y z
+    const __m128 a = _mm_loadu_ps(floats), b = _mm_loadu_ps(floats + 4), c = _mm_loadu_ps(floats + 8);
+    const __m128 xy = _mm_shuffle_ps(b, c, _MM_SHUFFLE(2, 1, 3, 2)),
+                 yz = _mm_shuffle_ps(a, b, _MM_SHUFFLE(1, 0, 2, 1));
+    out[0] = (Vector)_mm256_cvtps_pd(_mm_shuffle_ps(a, xy, _MM_SHUFFLE(2, 0, 3, 0)));
+    out[1] = (Vector)_mm256_cvtps_pd(_mm_shuffle_ps(yz, xy, _MM_SHUFFLE(3, 1, 2, 0)));
+    out[2] = (Vector)_mm256_cvtps_pd(_mm_shuffle_ps(yz, c, _MM_SHUFFLE(3, 0, 3, 1)));
 }
 ACDF_LANE void gather_transposed(const double* base, Integer index, Vector out[4]) {
     alignas(32) long long at[4];
@@ -183,7 +189,9 @@ ACDF_LANE Vector unit_interval(Vector u) {
     return select((u > 0.0) & (u <= 0x1.fffffffffffffp1023), select(u < 1.0, u, all(1.0)), all(0.0));
 }
 ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1000)); }
-ACDF_LANE Vector one_if(Integer mask) { return (Vector)(mask & 0x3FF0000000000000); }
+/* x, or 0. */
+ACDF_LANE Vector only(Integer mask, double x) { return (Vector)(mask & (Integer)all(x)); }
+ACDF_LANE Vector one_if(Integer mask) { return only(mask, 1.0); }
 /* Loads the four bytes behind each, too. */
 ACDF_LANE Integer gathered_words(const std::uint32_t* base, Integer index) {
     return gathered<4>(base, index) & 0xFFFFFFFF;
