@@ -4,6 +4,7 @@
 #include "waves/fast_cells.h"
 #include "waves/local.h"
 #include "waves/local_blocks_kernel.h"
+#include "waves/local_light_vectors.h"
 #include "waves/row_vectors.h"
 
 #include <algorithm>
@@ -20,17 +21,26 @@ struct FastSquares {
 /// The same where rows are mixed.
 struct FastFinds : FastSquares {
     FastLanes rows;
+    LightLanes lights;
     alignas(64) std::int32_t ends[kRows][kRoom]; // of a tile in its group, as they lie
-    alignas(64) double sum[kRoom], normal[3][kRoom], length[kRoom];
-    std::uint32_t lit[kBlock], lit_count; // lanes whose tiles are lights
+    alignas(64) double whole[kRoom];             // of points
+    std::uint32_t lit[kBlock], lit_count;        // lanes whose tiles are lights
 };
 
 /* The points of a vector. */
 ACDF_LANE void keep_points(const FastPoints<false>& p, std::size_t at, FastFinds* f) {
     keep_rows(p, at, &f->rows);
-    stored(&f->sum[at], p.sum);
-    for (int i = 0; i < 3; ++i) stored(&f->normal[i][at], p.normal[i]);
-    stored(&f->length[at], p.length);
+    keep_lights(p, at, &f->lights);
+    stored(&f->whole[at], p.whole);
+}
+
+/* What other lights change of points. */
+ACDF_LANE void end_points(const AcdfLocal& local, FastFinds* f) {
+    add_other_lights(local, &f->lights, [f](const long long* lane, Integer at, Vector mixture, Vector sum) {
+        alignas(64) double unit[ACDF_WIDTH];
+        stored(unit, unit_of(mixture, sum, (Vector)gathered<8>(f->whole, at)));
+        for (int i = 0; i < ACDF_WIDTH; ++i) f->rows.unit[lane[i]] = unit[i];
+    });
 }
 
 /* acdf_tile_block_at of all squares: entries of the grid for all of them before any block. */
@@ -140,10 +150,10 @@ ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
 ACDF_LANE void weigh_light(const AcdfLocal& local, std::size_t i, FastFinds* f) {
     const std::uint32_t k = f->cells.tile[i]->light - 1u;
     AcdfLocalPoint point;
-    for (int axis = 0; axis < 3; ++axis) point.normal[axis] = f->normal[axis][i];
-    point.length = f->length[i];
+    for (int axis = 0; axis < 3; ++axis) point.normal[axis] = f->lights.normal[axis][i];
+    point.length = f->lights.length[i];
     f->cells.of[i] = acdf_tabled_weight(&local, &point, k);
-    f->cells.all[i] = f->sum[i] * ACDF_FAST_STEPS;
+    f->cells.all[i] = f->lights.sum[i] * ACDF_FAST_STEPS;
 }
 
 /* The densities of lanes whose cells are known. */
@@ -173,6 +183,7 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
         keep_points(p, first, &f);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
     });
+    end_points(local, &f);
     lost |= find_squares(local, directions, count, &f);
     find_fast_tiles(local, whole, &f);
     find_fast_cells(whole, &f);

@@ -125,8 +125,9 @@ struct FastPoints : Corners {
     static constexpr bool kDraws = Draws;
     Integer group[kRows], tile[kRows], upper[kRows];
     Ints share[kRows]; // AcdfFastMixture::weight
-    Vector whole, lights, sum, step, unit, light[Draws ? ACDF_MAX_LIGHTS : 1],
+    Vector whole, mixture, lights, sum, step, unit, light[Draws ? ACDF_MAX_LIGHTS : 1],
         light_end[Draws ? ACDF_MAX_LIGHTS : 1];
+    Integer others;    // of densities, in the lower halves: AcdfFacet::others, whose lights are not in any sum yet
     std::uint32_t lit; // as AcdfLocalPoint has them
     std::uint8_t pair[ACDF_MAX_LIGHTS / 2];
 };
@@ -140,7 +141,7 @@ ACDF_LANE void mix_rows(Vector mixture, FastPoints<Draws>* out) {
     out->whole = to_doubles(whole);
 }
 
-/* acdf_local_tabled_lights; of densities only their sum. */
+/* acdf_local_tabled_lights; of densities only the sum of those above the horizons of all. */
 ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<true>* out) {
     Vector end = all(0.0);
     out->lit = 0;
@@ -154,7 +155,14 @@ ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<true>* out) 
     });
 }
 ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<false>* out) {
-    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
+    const Facets of = facets_of(local, *out);
+    out->lights = of.whole;
+    out->others = of.others;
+}
+
+/* What densities need of the sum of all. */
+ACDF_LANE Vector unit_of(Vector mixture, Vector sum, Vector whole) {
+    return mixture / (sum * (32767.0 * 255.0 * whole));
 }
 
 /* acdf_local_at of files of the fast shape, but for its corners. */
@@ -167,12 +175,12 @@ ACDF_LANE void set_points(const AcdfLocal& local, FastPoints<Draws>* out) {
         if (Draws)
             out->upper[i] = multiplied(out->row[i], 2ll * fast.upper_ends) + (long long)(std::uintptr_t)fast.upper;
     }
-    const Vector mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
-    mix_rows(mixture, out);
+    out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
+    mix_rows(out->mixture, out);
     weigh_fast_lights(local, out);
-    out->sum = out->lights + mixture;
-    if (Draws) out->step = 32767.0 * out->whole / mixture;
-    out->unit = mixture / (out->sum * (32767.0 * 255.0 * out->whole));
+    out->sum = out->lights + out->mixture;
+    if (Draws) out->step = 32767.0 * out->whole / out->mixture;
+    out->unit = unit_of(out->mixture, out->sum, out->whole);
 }
 
 /* One point in all lanes, which serves_waves has approved. */
@@ -195,6 +203,8 @@ ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoin
     out->length = all(point.length);
     out->whole = all(mix.whole);
     out->lights = all(point.lights);
+    out->others = Integer{};
+    out->mixture = all(0.0); // of others alone
     out->sum = all(point.sum);
     out->step = all(point.step);
     out->unit = all(point.unit);

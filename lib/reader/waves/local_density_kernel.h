@@ -4,6 +4,7 @@
 #include "waves/local.h"
 #include "waves/local_blocks_kernel.h"
 #include "waves/local_curve_vectors.h"
+#include "waves/local_light_vectors.h"
 #include "waves/row_vectors.h"
 
 #include <algorithm>
@@ -82,8 +83,8 @@ ACDF_LANE std::uint64_t find_all_squares(const AcdfLocal& local, const float (*d
 // ---- probabilities ---------------------------------------------------------------------------------------------
 
 /// Points of lanes.
-struct Seen {
-    alignas(64) double weight[kRows][kRoom], mixture[kRoom], sum[kRoom], normal[3][kRoom], length[kRoom];
+struct Seen : LightLanes {
+    alignas(64) double weight[kRows][kRoom];
     alignas(64) long long row[kRows][kRoom];
 };
 
@@ -91,11 +92,12 @@ ACDF_LANE void keep(const Points<false>& p, std::size_t at, Seen* seen) {
     for (int i = 0; i < kRows; ++i) {
         stored(&seen->weight[i][at], p.weight[i]);
         stored(&seen->row[i][at], p.codes[i]);
-        stored(&seen->normal[i][at], p.normal[i]);
     }
-    stored(&seen->mixture[at], p.mixture);
-    stored(&seen->sum[at], p.sum);
-    stored(&seen->length[at], p.length);
+    keep_lights(p, at, seen);
+}
+
+ACDF_LANE void end_points(const AcdfLocal& local, Seen* seen) {
+    add_other_lights(local, seen, [](const long long*, Integer, Vector, Vector) {});
 }
 
 /* What the mixture gives to the tile of a lane: acdf_tile_share_rows. */
@@ -199,6 +201,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
         keep(p, first, &seen);
         lost |= (std::uint64_t)(~bits(p.served) & ((1u << lanes_there(first, count)) - 1u)) << first;
     });
+    end_points(local, &seen);
     lost |= find_all_squares(local, directions, count, &cells);
     ask_for_curves(local, cells);
     for (std::size_t i = 0; i < count; ++i) {

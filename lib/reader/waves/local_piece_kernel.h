@@ -79,6 +79,7 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
         for (int k = 0; k < kRows; ++k) stored(&seen.row[k][first], parts_of(local, p.row[k]));
         lost |= (~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
     });
+    end_points(local, &seen);
     lost |= find_cells(s, &lanes.sought, [pieces](std::size_t piece) { ACDF_PREFETCH(pieces + piece); });
     for (std::size_t i = (count + ACDF_WIDTH - 1) / ACDF_WIDTH * ACDF_WIDTH; i < kSearched; ++i)
         for (int k = 0; k < kRows; ++k) seen.row[k][i] = seen.row[k][0];

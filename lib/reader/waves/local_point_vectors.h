@@ -25,6 +25,7 @@ template <bool Draws>
 struct Points : Corners {
     static constexpr bool kDraws = Draws;
     Integer codes[kRows]; // addresses of those of the rows
+    Integer others;       // of densities, in the lower halves: AcdfFacet::others, which sums leave out
     Vector lights, mixture, sum, light[Draws ? ACDF_MAX_LIGHTS : 1];
 };
 
@@ -66,17 +67,17 @@ ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
     return out;
 }
 
-/* acdf_facet_lights. Facets of neighbouring lanes may differ: `weighed(k, weight)` is told the weights of a pair
- * that any lane has of others, or `Each`: that any may see, and k counts these. */
-template <bool Each, class Weighed>
-ACDF_LANE Vector facet_lights(const AcdfLocal& local, const Corners& at, const Weighed& weighed) {
-    const Facets of = facets_of(local, at);
+/* What the pairs of `left` give to normals that have them among others; `weighed(k, weight)` is told their weights.
+ */
+template <class Weighed>
+ACDF_LANE Vector other_lights(const AcdfLocal& local, const Corners& at, Integer others, std::uint32_t left,
+                              const Weighed& weighed) {
     const AcdfLightPair* const pair = acdf_local_lights(local.tables);
     const Vector inverse = 1.0 / at.length;
     Vector sum[2] = {all(0.0), all(0.0)};
-    for (std::uint32_t left = Each ? of.lit : of.any; left; left &= left - 1) {
+    for (; left; left &= left - 1) {
         const std::uint32_t k = acdf_lowest_bit(left);
-        const Mask is_other = negative(of.others << (63 - k));
+        const Mask is_other = negative(others << (63 - k));
         Vector weight[2];
         for (std::uint32_t i = 0; i < 2; ++i) {
             weight[i] = pair_weight(at, pair[k], i, inverse);
@@ -84,7 +85,15 @@ ACDF_LANE Vector facet_lights(const AcdfLocal& local, const Corners& at, const W
         }
         weighed(k, weight);
     }
-    return of.whole + (sum[0] + sum[1]);
+    return sum[0] + sum[1];
+}
+
+/* acdf_facet_lights. Facets of neighbouring lanes may differ: `weighed(k, weight)` is told the weights of a pair
+ * that any lane has of others, or `Each`: that any may see, and k counts these. */
+template <bool Each, class Weighed>
+ACDF_LANE Vector facet_lights(const AcdfLocal& local, const Corners& at, const Weighed& weighed) {
+    const Facets of = facets_of(local, at);
+    return of.whole + other_lights(local, at, of.others, Each ? of.lit : of.any, weighed);
 }
 
 /* The weight of each light, as acdf_light_weight has it. The horizon cuts few lights: those are weighed again. */
@@ -110,7 +119,17 @@ ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
                                out->light[k]);
     }
 }
-ACDF_LANE void weigh_each(const AcdfLocal&, Points<false>*) {}
+
+/* All lights, and of densities those that all normals of a triangle see. */
+ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<true>* out) {
+    weigh_each(local, out);
+    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
+}
+ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<false>* out) {
+    const Facets of = facets_of(local, *out);
+    out->lights = of.whole;
+    out->others = of.others;
+}
 
 /* acdf_local_find_facet of some vectors, which take turns; what tables do not serve is not served. Small whole
  * numbers are doubles. */
@@ -180,8 +199,7 @@ ACDF_LANE void set_points(const AcdfLocal& local, Points<Draws>* out) {
     const AcdfTileTables& tiles = local.tables->tiles;
     const auto rows = (long long)(std::uintptr_t)acdf_tile_row(acdf_local_words(local.tables), &tiles, 0);
     for (int i = 0; i < kRows; ++i) out->codes[i] = multiplied(out->row[i], tiles.stride) + rows;
-    weigh_each(local, out);
-    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
+    weigh_lights(local, out);
     out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
     out->sum = out->lights + out->mixture;
     out->served &= out->sum > 0.0;
@@ -199,8 +217,9 @@ ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Po
         out->normal[i] = all(point.normal[i]);
     }
     out->length = all(point.length);
-    weigh_each(local, out);
+    if constexpr (Draws) weigh_each(local, out);
     out->lights = all(point.lights);
+    out->others = Integer{};
     out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
     out->sum = all(point.sum);
     out->served = ~Integer{};
