@@ -46,36 +46,28 @@ ACDF_LANE void loaded_ends(const std::int32_t* ends, Ints number, Ints* before, 
 
 /// Boxes of a vector of tiles or cells.
 struct FastBoxes {
-    Integer low[2], high[2];
+    Ints low[2], high[2];
 };
 
 /* The boxes of tiles, and the shifts of their grids. */
-ACDF_LANE FastBoxes boxes_of(const AcdfTileRecord* const* tile, Integer shift[2]) {
-    FastBoxes out;
-    const double* from[ACDF_WIDTH];
-    Vector corner[2];
-    Integer at;
-    std::memcpy(&at, tile, sizeof at);
-    for (int i = 0; i < ACDF_WIDTH; ++i) from[i] = (const double*)(const void*)tile[i];
-    gather_pairs(from, corner);
-    const Integer steps = loaded_at(at + (long long)offsetof(AcdfTileRecord, step));
-    for (int axis = 0; axis < 2; ++axis) {
-        shift[axis] = steps >> 16 * axis & 0xFFFF;
-        out.low[axis] = (Integer)corner[0] >> 32 * axis & 0xFFFFFFFF;
-        out.high[axis] = (Integer)corner[1] >> 32 * axis & 0xFFFFFFFF;
-    }
-    return out;
+ACDF_LANE FastBoxes boxes_of(const AcdfTileRecord* const* tile, Ints shift[2]) {
+    static_assert(offsetof(AcdfTileRecord, low) == 0 && offsetof(AcdfTileRecord, high) == 8);
+    Ints side[4];
+    gather_fours(tile, side);
+    const Ints steps = words_at(tile, offsetof(AcdfTileRecord, step));
+    shift[0] = steps & 0xFFFF;
+    shift[1] = (steps >> 16) & 0xFFFF;
+    return {{side[0], side[1]}, {side[2], side[3]}};
 }
 
 /* acdf_fast_narrow */
 ACDF_LANE FastBoxes narrowed(const FastCells& c, std::size_t at) {
-    Integer shift[2];
+    Ints shift[2];
     FastBoxes box = boxes_of(c.tile + at, shift);
     for (int axis = 0; axis < 2; ++axis) {
-        const Integer size = (Integer{} + 1) << shift[axis];
-        box.low[axis] += to_indices(loaded(&c.index[axis][at])) << shift[axis];
-        const Integer left = box.high[axis] - box.low[axis];
-        box.high[axis] = box.low[axis] + select(left < size, left, size);
+        const Ints size = (Ints{} + 1) << shift[axis];
+        box.low[axis] += loaded(&c.index[axis][at]) << shift[axis];
+        box.high[axis] = box.low[axis] + least(box.high[axis] - box.low[axis], size);
     }
     return box;
 }
@@ -83,9 +75,10 @@ ACDF_LANE FastBoxes narrowed(const FastCells& c, std::size_t at) {
 /* What acdf_grid_height says of cells; on the lat-long grid z becomes what it is at their borders. */
 ACDF_LANE Vector heights_of(const AcdfLocal& local, const FastBoxes& box, Vector z[2]) {
     const double* const heights = acdf_local_heights(local.tables);
-    if (local.tables->octahedral) return 2.0 * converted(box.high[1] - box.low[1]) / (double)local.environment.rows;
-    z[0] = (Vector)loaded_from(heights, box.low[1]);
-    z[1] = (Vector)loaded_from(heights, box.high[1]);
+    if (local.tables->octahedral)
+        return 2.0 * to_doubles(box.high[1] - box.low[1]) / (double)local.environment.rows;
+    z[0] = (Vector)gathered<8>(heights, to_indices(box.low[1]));
+    z[1] = (Vector)gathered<8>(heights, to_indices(box.high[1]));
     return z[0] - z[1];
 }
 
@@ -96,7 +89,7 @@ ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const 
     for (int axis = 0; axis < 2; ++axis)
         loaded_ends(&c.ends[axis][at], loaded(&c.index[axis][at]), &before[axis], &end[axis]);
     const Vector of = loaded(&c.of[at]) * to_doubles((end[0] - before[0]) * (end[1] - before[1]));
-    const Vector width = converted(box.high[0] - box.low[0]);
+    const Vector width = to_doubles(box.high[0] - box.low[0]);
     const Vector pdf =
         of * (double)local.environment.columns / (2.0 * ACDF_PI * width * (loaded(&c.all[at]) * height));
     const Vector least = select(of > 0.0, all(1.17549435e-38), all(0.0));

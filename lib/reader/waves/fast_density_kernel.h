@@ -103,12 +103,10 @@ ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastSq
 ACDF_LANE void find_fast_cells(std::size_t count, FastSquares* f) {
     FastCells& c = f->cells;
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        Integer shift[2];
+        Ints shift[2];
         const FastBoxes box = boxes_of(c.tile + at, shift);
-        for (int axis = 0; axis < 2; ++axis) {
-            const Integer square = to_indices(loaded(&f->square[axis][at]));
-            stored(&c.index[axis][at], __builtin_convertvector((square - box.low[axis]) >> shift[axis], Ints));
-        }
+        for (int axis = 0; axis < 2; ++axis)
+            stored(&c.index[axis][at], (loaded(&f->square[axis][at]) - box.low[axis]) >> shift[axis]);
     }
     for (std::size_t i = 0; i < count; ++i) {
         const auto line = (std::uint32_t)c.index[1][i];

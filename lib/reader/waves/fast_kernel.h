@@ -214,14 +214,14 @@ ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastCells& c, st
     const double columns = local.environment.columns, rows = local.environment.rows;
     const FastBoxes box = narrowed(c, at);
     const Vector u[2] = {loaded(&c.u[0][at]), loaded(&c.u[1][at])};
-    const Vector low[2] = {converted(box.low[0]), converted(box.low[1])};
+    const Vector low[2] = {to_doubles(box.low[0]), to_doubles(box.low[1])};
     Vector z[2];
     const Vector height = heights_of(local, box, z);
     if (local.tables->octahedral) {
-        const Vector width[2] = {converted(box.high[0] - box.low[0]), converted(box.high[1] - box.low[1])};
+        const Vector width[2] = {to_doubles(box.high[0] - box.low[0]), to_doubles(box.high[1] - box.low[1])};
         fold_direction(columns, rows, low, width, u, half, out);
     } else {
-        row_direction(columns, low[0], converted(box.high[0]), z[0], z[1], u, half, out);
+        row_direction(columns, low[0], to_doubles(box.high[0]), z[0], z[1], u, half, out);
     }
     return fast_density(local, c, box, height, at);
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 namespace {
 
@@ -23,6 +24,54 @@ ACDF_LANE void stored(std::int32_t* to, Ints x) { __builtin_memcpy(to, &x, sizeo
 ACDF_LANE Vector to_doubles(Ints x) { return __builtin_convertvector(x, Vector); }
 ACDF_LANE Ints to_integers(Vector x) { return __builtin_convertvector(x, Ints); } // rounded towards 0
 ACDF_LANE Integer to_indices(Ints x) { return __builtin_convertvector(x, Integer); }
+
+#if ACDF_WIDTH == 8
+ACDF_LANE Ints least(Ints a, Ints b) { return (Ints)_mm256_min_epi32((__m256i)a, (__m256i)b); }
+#else
+ACDF_LANE Ints least(Ints a, Ints b) { return (Ints)_mm_min_epi32((__m128i)a, (__m128i)b); }
+#endif
+
+ACDF_LANE __m128i four_words(const void* at) { return _mm_loadu_si128((const __m128i*)at); }
+
+/* The first four words at each address. */
+template <class T>
+ACDF_LANE void gather_fours(const T* const* at, Ints out[4]) {
+#if ACDF_WIDTH == 8
+    __m256i row[4], half[4];
+    for (int i = 0; i < 4; ++i) row[i] = _mm256_set_m128i(four_words(at[i + 4]), four_words(at[i]));
+    for (int i = 0; i < 2; ++i) {
+        half[i] = _mm256_unpacklo_epi32(row[2 * i], row[2 * i + 1]);
+        half[2 + i] = _mm256_unpackhi_epi32(row[2 * i], row[2 * i + 1]);
+    }
+    for (int i = 0; i < 2; ++i) {
+        out[2 * i] = (Ints)_mm256_unpacklo_epi64(half[2 * i], half[2 * i + 1]);
+        out[2 * i + 1] = (Ints)_mm256_unpackhi_epi64(half[2 * i], half[2 * i + 1]);
+    }
+#else
+    __m128i half[4];
+    for (int i = 0; i < 2; ++i) {
+        const __m128i even = four_words(at[2 * i]), odd = four_words(at[2 * i + 1]);
+        half[i] = _mm_unpacklo_epi32(even, odd);
+        half[2 + i] = _mm_unpackhi_epi32(even, odd);
+    }
+    for (int i = 0; i < 2; ++i) {
+        out[2 * i] = (Ints)_mm_unpacklo_epi64(half[2 * i], half[2 * i + 1]);
+        out[2 * i + 1] = (Ints)_mm_unpackhi_epi64(half[2 * i], half[2 * i + 1]);
+    }
+#endif
+}
+
+/* The word at an offset from each. */
+template <class T>
+ACDF_LANE Ints words_at(const T* const* at, std::size_t offset) {
+    Ints out;
+    for (int i = 0; i < ACDF_WIDTH; ++i) {
+        std::int32_t word;
+        std::memcpy(&word, (const char*)at[i] + offset, sizeof word);
+        out[i] = word;
+    }
+    return out;
+}
 
 /* acdf_fast_scaled */
 ACDF_LANE Vector scaled(Vector u, Vector whole) {
