@@ -44,20 +44,21 @@ ACDF_LANE void end_points(const AcdfLocal& local, FastFinds* f) {
 }
 
 /* acdf_tile_block_at of all squares: entries of the grid for all of them before any block. */
-ACDF_LANE void find_tile_blocks(const AcdfLocal& local, std::size_t count, const FastSquares& f, long long* node) {
+ACDF_LANE void find_tile_blocks(const AcdfLocal& local, std::size_t count, const FastSquares& f,
+                                std::int32_t* node) {
     const std::uint32_t* const words = acdf_local_words(local.tables);
     const AcdfTileBlocks& t = local.tables->blocks;
-    const auto grid = (long long)(std::uintptr_t)(words + t.grid),
-               blocks = (long long)(std::uintptr_t)(words + t.blocks);
-    alignas(64) long long inside[kRoom];
+    const auto* const grid = (const std::uint16_t*)(const void*)(words + t.grid);
+    const auto* const blocks = (const std::uint16_t*)(const void*)(words + t.blocks);
+    alignas(64) std::int32_t inside[kRoom];
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        const Integer s0 = to_indices(loaded(&f.square[0][at])), s1 = to_indices(loaded(&f.square[1][at]));
+        const Ints s0 = loaded(&f.square[0][at]), s1 = loaded(&f.square[1][at]);
         stored(&inside[at], (s1 >> t.fine[1] & 3) * 4 + (s0 >> t.fine[0] & 3));
-        stored(&node[at], two_bytes_at(((s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])) * 2 + grid));
+        stored(&node[at], two_bytes_of(grid, (s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])));
     }
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        const Integer entry = loaded(&node[at]), told = -(entry >> 15);
-        const Integer finer = two_bytes_at((16 * (entry & ~told) + loaded(&inside[at])) * 2 + blocks);
+        const Ints entry = loaded(&node[at]), told = -(entry >> 15);
+        const Ints finer = two_bytes_of(blocks, (entry & ~told) * 16 + loaded(&inside[at]));
         stored(&node[at], finer ^ ((finer ^ entry) & told));
     }
 }
@@ -85,7 +86,7 @@ ACDF_LANE std::uint64_t find_squares(const AcdfLocal& local, const float (*direc
 
 /* The tiles of all squares. */
 ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastSquares* f) {
-    alignas(64) long long node[kRoom];
+    alignas(64) std::int32_t node[kRoom];
     find_tile_blocks(local, count, *f, node);
     for (std::size_t i = 0; i < count; ++i) {
         auto at = (std::uint32_t)node[i];

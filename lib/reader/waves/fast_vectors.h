@@ -61,6 +61,20 @@ ACDF_LANE void gather_fours(const T* const* at, Ints out[4]) {
 #endif
 }
 
+/* Elements of an array of two bytes each. */
+ACDF_LANE Ints two_bytes_of(const std::uint16_t* base, Ints index) {
+    __m128i value = _mm_setzero_si128(); /* not by memory: a vector would wait for what is stored in parts */
+#define ACDF_INSERT(i) value = _mm_insert_epi16(value, (std::int16_t)base[(std::uint32_t)index[i]], i)
+    ACDF_INSERT(0), ACDF_INSERT(1), ACDF_INSERT(2), ACDF_INSERT(3);
+#if ACDF_WIDTH == 8
+    ACDF_INSERT(4), ACDF_INSERT(5), ACDF_INSERT(6), ACDF_INSERT(7);
+    return (Ints)_mm256_cvtepu16_epi32(value);
+#else
+    return (Ints)_mm_cvtepu16_epi32(value);
+#endif
+#undef ACDF_INSERT
+}
+
 /* The word at an offset from each. */
 template <class T>
 ACDF_LANE Ints words_at(const T* const* at, std::size_t offset) {
