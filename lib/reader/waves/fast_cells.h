@@ -37,9 +37,8 @@ ACDF_LANE const std::uint8_t* line_of(const FastCells& c, std::size_t i, std::ui
     return c.list[i] + (c.tile[i]->step[3] + line * c.tile[i]->step[2]);
 }
 
-/* Cumulative values before and at some numbers. */
-ACDF_LANE void loaded_ends(const std::int32_t* ends, Ints number, Ints* before, Ints* end) {
-    const Ints both = loaded(ends);
+/* Cumulative values before and at some numbers, of both as they lie. */
+ACDF_LANE void split_ends(Ints both, Ints number, Ints* before, Ints* end) {
     *before = both & 0xFF & (number > 0);
     *end = both >> 8;
 }
@@ -87,7 +86,7 @@ ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const 
                               std::size_t at) {
     Ints before[2], end[2];
     for (int axis = 0; axis < 2; ++axis)
-        loaded_ends(&c.ends[axis][at], loaded(&c.index[axis][at]), &before[axis], &end[axis]);
+        split_ends(loaded(&c.ends[axis][at]), loaded(&c.index[axis][at]), &before[axis], &end[axis]);
     const Vector of = loaded(&c.of[at]) * to_doubles((end[0] - before[0]) * (end[1] - before[1]));
     const Vector width = to_doubles(box.high[0] - box.low[0]);
     const Vector pdf =

@@ -22,9 +22,8 @@ struct FastSquares {
 struct FastFinds : FastSquares {
     FastLanes rows;
     LightLanes lights;
-    alignas(64) std::int32_t ends[kRows][kRoom]; // of a tile in its group, as they lie
-    alignas(64) double whole[kRoom];             // of points
-    std::uint32_t lit[kBlock], lit_count;        // lanes whose tiles are lights
+    alignas(64) double whole[kRoom]; // of points
+    std::uint64_t lit = 0;           // lanes whose tiles are lights
 };
 
 /* The points of a vector. */
@@ -116,33 +115,32 @@ ACDF_LANE void find_fast_cells(std::size_t count, FastSquares* f) {
     }
 }
 
-/* What rows have of all tiles, and which of them are lights. */
-ACDF_LANE void find_fast_rows(std::size_t count, FastFinds* f) {
-    std::uint32_t lit = 0; // a register: else each lane waits for the one before
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto tile = (std::uint32_t)f->tile[i];
-        f->lit[lit] = (std::uint32_t)i;
-        lit += f->cells.tile[i]->light > 0;
-        load_ends(&f->rows, i, tile / ACDF_FAST_GROUP);
-        for (int row = 0; row < kRows; ++row) // what stands before the first row of tiles is of groups
-            f->ends[row][i] = ends_at((const std::uint8_t*)f->rows.tile_row[row][i], tile);
-    }
-    f->lit_count = lit;
-}
-
-/* acdf_local_fast_find of a vector but for what the cell has of its tile. */
+/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are lights are told. */
 ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
+    Ints ends[kRows], around[kRows]; // of groups, and of tiles in theirs
+    for (int row = 0; row < kRows; ++row) {
+        for (int i = 0; i < ACDF_WIDTH; ++i) {
+            const std::size_t lane = at + (std::size_t)i;
+            ends[row][i] = ends_of(f->rows, row, lane, (std::uint32_t)f->tile[lane] / ACDF_FAST_GROUP);
+        }
+        around[row] = two_bytes([&](int i) { // what stands before the first row of tiles is of groups
+            const std::size_t lane = at + (std::size_t)i;
+            return ends_at((const std::uint8_t*)f->rows.tile_row[row][lane], (std::uint32_t)f->tile[lane]);
+        });
+    }
     const Ints tile = loaded(&f->tile[at]), last = Ints{} + (std::int32_t)(ACDF_FAST_GROUP - 1),
                number = tile & last;
-    const FastGroups g = find_groups(f->rows, tile > last, at);
+    const FastGroups g = find_groups(f->rows, ends, tile > last, at);
     Ints share = {};
     for (int row = 0; row < kRows; ++row) {
         Ints before, end;
-        loaded_ends(&f->ends[row][at], number, &before, &end);
+        split_ends(around[row], number, &before, &end);
         share += g.part[row] * (end - before);
     }
     stored(&f->cells.of[at], g.mass * to_doubles(share) * loaded(&f->rows.unit[at]));
     stored(&f->cells.all[at], select(g.whole > 1.0, g.whole, all(1.0)) * ACDF_FAST_STEPS);
+    const Ints light = words_at(&f->cells.tile[at], offsetof(AcdfTileRecord, depth)) >> 16;
+    f->lit |= (std::uint64_t)lanes(has(to_indices(light), 0xFFFF)) << at;
 }
 
 /* The same of a lane whose tile is a light: no row gives it any. */
@@ -186,9 +184,8 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
     lost |= find_squares(local, directions, count, &f);
     find_fast_tiles(local, whole, &f);
     find_fast_cells(whole, &f);
-    find_fast_rows(whole, &f);
     for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) weigh_fast_tiles(first, &f);
-    for (std::size_t k = 0; k < f.lit_count; ++k) weigh_light(local, f.lit[k], &f);
+    for (; f.lit; f.lit &= f.lit - 1) weigh_light(local, (std::size_t)__builtin_ctzll(f.lit), &f);
     store_densities(local, f.cells, count, out);
     leave_alone(lost, count, alone);
 }

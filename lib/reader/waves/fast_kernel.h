@@ -55,6 +55,7 @@ struct FastDraws {
     alignas(64) long long lit[kRoom];           // all ones: a light is drawn
     alignas(64) long long upper[kRows][kRoom];
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
+    alignas(64) std::int32_t end[kRows][kRoom];                              // of groups, as they lie
     alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom]; // part: weights in the group
     alignas(64) double group_mass[kRoom], group_below[kRoom], whole[kRoom];  // of groups
     std::uint32_t mixed[kBlock], mixed_count;                                // lanes that draw from the mixture
@@ -73,7 +74,7 @@ ACDF_LANE unsigned begin_draws(const AcdfLocal& local, const FastPoints<true>& p
     keep_rows(p, at, &d->rows);
     for (int i = 0; i < kRows; ++i) {
         stored(&d->upper[i][at], p.upper[i]);
-        stored(&d->rows.end[i][at], Ints{});
+        stored(&d->end[i][at], Ints{});
     }
     stored(&d->number[at], Ints{});
     stored(&d->cells.of[at], all(0.0));
@@ -116,7 +117,7 @@ ACDF_LANE void search_groups(FastDraws* d) {
                                                    (const std::uint16_t*)w.group[2][i]};
         const std::uint32_t number = search_words(group, (std::uint32_t)d->number[i],
                                                   w.share[0][i] | w.share[1][i] << 16, w.share[2][i], d->at[i]);
-        load_ends(&w, i, number);
+        for (int row = 0; row < kRows; ++row) d->end[row][i] = ends_of(w, row, i, number);
         d->number[i] = (std::int32_t)number;
     }
 }
@@ -147,7 +148,8 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
     alignas(64) double y[kRoom];
     search_groups(d);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        const FastGroups g = find_groups(d->rows, loaded(&d->number[at]) > 0, at);
+        const Ints ends[kRows] = {loaded(&d->end[0][at]), loaded(&d->end[1][at]), loaded(&d->end[2][at])};
+        const FastGroups g = find_groups(d->rows, ends, loaded(&d->number[at]) > 0, at);
         for (int i = 0; i < kRows; ++i) stored(&d->part[i][at], g.part[i]);
         stored(&d->group_mass[at], g.mass);
         stored(&d->group_below[at], g.below);
@@ -201,7 +203,7 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH)
         for (int axis = 0; axis < 2; ++axis) {
             Ints before, end;
-            loaded_ends(&c.ends[axis][at], loaded(&c.index[axis][at]), &before, &end);
+            split_ends(loaded(&c.ends[axis][at]), loaded(&c.index[axis][at]), &before, &end);
             stored(&c.u[axis][at], (loaded(&z[axis][at]) - to_doubles(before)) / to_doubles(end - before));
         }
 }

@@ -61,10 +61,11 @@ ACDF_LANE void gather_fours(const T* const* at, Ints out[4]) {
 #endif
 }
 
-/* Elements of an array of two bytes each. */
-ACDF_LANE Ints two_bytes_of(const std::uint16_t* base, Ints index) {
+/* Two bytes of each lane: at(i) of lane i. */
+template <class At>
+ACDF_LANE Ints two_bytes(const At& at) {
     __m128i value = _mm_setzero_si128(); /* not by memory: a vector would wait for what is stored in parts */
-#define ACDF_INSERT(i) value = _mm_insert_epi16(value, (std::int16_t)base[(std::uint32_t)index[i]], i)
+#define ACDF_INSERT(i) value = _mm_insert_epi16(value, (std::int16_t)at(i), i)
     ACDF_INSERT(0), ACDF_INSERT(1), ACDF_INSERT(2), ACDF_INSERT(3);
 #if ACDF_WIDTH == 8
     ACDF_INSERT(4), ACDF_INSERT(5), ACDF_INSERT(6), ACDF_INSERT(7);
@@ -73,6 +74,10 @@ ACDF_LANE Ints two_bytes_of(const std::uint16_t* base, Ints index) {
     return (Ints)_mm_cvtepu16_epi32(value);
 #endif
 #undef ACDF_INSERT
+}
+/* Elements of an array. */
+ACDF_LANE Ints two_bytes_of(const std::uint16_t* base, Ints index) {
+    return two_bytes([&](int i) { return base[(std::uint32_t)index[i]]; });
 }
 
 /* The word at an offset from each. */
@@ -276,11 +281,10 @@ ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoin
 
 // ---- what rows give --------------------------------------------------------------------------------------------
 
-/// Lanes of a block in the fast shape; `end` of groups: cumulative values before and at the group's end, as they
-/// lie.
+/// What lanes of a block in the fast shape have of their rows.
 struct FastLanes {
     alignas(64) long long group[kRows][kRoom], tile_row[kRows][kRoom];
-    alignas(64) std::int32_t share[kRows][kRoom], end[kRows][kRoom];
+    alignas(64) std::int32_t share[kRows][kRoom];
     alignas(64) double unit[kRoom];
 };
 
@@ -295,12 +299,6 @@ ACDF_LANE void keep_rows(const FastPoints<Draws>& p, std::size_t at, FastLanes* 
     stored(&w->unit[at], p.unit);
 }
 
-/* What rows give to the group of a lane. */
-ACDF_LANE void load_ends(FastLanes* w, std::size_t lane, std::uint32_t number) {
-    const std::uint32_t inner = number > 0;
-    for (int i = 0; i < kRows; ++i)
-        std::memcpy(&w->end[i][lane], (const std::uint16_t*)w->group[i][lane] + (number - inner), 4);
-}
 
 /// Groups of a vector: the weights of rows in them, what all have of them, and of those before.
 struct FastGroups {
@@ -308,12 +306,20 @@ struct FastGroups {
     Vector mass, below, whole; // whole: of weights
 };
 
-/* acdf_fast_find_group of a vector of groups; inner: all ones where a group is not the first. */
-ACDF_LANE FastGroups find_groups(const FastLanes& w, Ints inner, std::size_t at) {
+/* What a row gives to the group of a lane: cumulative values before and at its end, as they lie; of the first one those
+ * at its end and the next one's. */
+ACDF_LANE std::int32_t ends_of(const FastLanes& w, int row, std::size_t lane, std::uint32_t number) {
+    std::int32_t both;
+    std::memcpy(&both, (const std::uint16_t*)w.group[row][lane] + (number - (number > 0)), sizeof both);
+    return both;
+}
+
+/* acdf_fast_find_group of a vector of groups by their ends; inner: all ones where a group is not the first. */
+ACDF_LANE FastGroups find_groups(const FastLanes& w, const Ints given[kRows], Ints inner, std::size_t at) {
     FastGroups out;
     Ints mass = {}, below = {}, whole = {};
     for (int i = 0; i < kRows; ++i) {
-        const Ints ends = loaded(&w.end[i][at]), share = loaded(&w.share[i][at]);
+        const Ints ends = given[i], share = loaded(&w.share[i][at]);
         const Ints before = ends & inner & 0xFFFF, end = (ends >> (inner & 16)) & 0xFFFF;
         out.part[i] = (end - before) * share;
         mass += out.part[i];
