@@ -13,7 +13,6 @@ namespace {
 struct FastCells {
     alignas(64) double u[2][kRoom], of[kRoom], all[kRoom];
     alignas(64) std::int32_t index[2][kRoom]; // of the cell in its line, and of that
-    alignas(64) std::int32_t ends[2][kRoom];  // two bytes, as they lie: cumulative values before and at these
     const AcdfTileRecord* tile[kRoom];
     const std::uint8_t* list[kRoom]; // of the tile's lines; draws go on to that of a line
 };
@@ -81,12 +80,12 @@ ACDF_LANE Vector heights_of(const AcdfLocal& local, const FastBoxes& box, Vector
     return z[0] - z[1];
 }
 
-/* acdf_local_fast_density of a vector of cells of such heights. */
-ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const FastBoxes& box, Vector height,
-                              std::size_t at) {
+/* acdf_local_fast_density of a vector of cells of such heights; ends: as ends_at tells them on each axis. */
+ACDF_LANE Vector fast_density(const AcdfLocal& local, const FastCells& c, const Ints ends[2], const FastBoxes& box,
+                              Vector height, std::size_t at) {
     Ints before[2], end[2];
     for (int axis = 0; axis < 2; ++axis)
-        split_ends(loaded(&c.ends[axis][at]), loaded(&c.index[axis][at]), &before[axis], &end[axis]);
+        split_ends(ends[axis], loaded(&c.index[axis][at]), &before[axis], &end[axis]);
     const Vector of = loaded(&c.of[at]) * to_doubles((end[0] - before[0]) * (end[1] - before[1]));
     const Vector width = to_doubles(box.high[0] - box.low[0]);
     const Vector pdf =

@@ -108,11 +108,18 @@ ACDF_LANE void find_fast_cells(std::size_t count, FastSquares* f) {
         for (int axis = 0; axis < 2; ++axis)
             stored(&c.index[axis][at], (loaded(&f->square[axis][at]) - box.low[axis]) >> shift[axis]);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto line = (std::uint32_t)c.index[1][i];
-        c.ends[1][i] = ends_at(c.list[i], line);
-        c.ends[0][i] = ends_at(line_of(c, i, line), (std::uint32_t)c.index[0][i]);
-    }
+}
+
+/* Cumulative values around the cells of a vector of lanes in their lists. */
+ACDF_LANE void load_ends(const FastCells& c, std::size_t at, Ints ends[2]) {
+    ends[0] = two_bytes([&](int i) {
+        const std::size_t lane = at + (std::size_t)i;
+        return ends_at(line_of(c, lane, (std::uint32_t)c.index[1][lane]), (std::uint32_t)c.index[0][lane]);
+    });
+    ends[1] = two_bytes([&](int i) {
+        const std::size_t lane = at + (std::size_t)i;
+        return ends_at(c.list[lane], (std::uint32_t)c.index[1][lane]);
+    });
 }
 
 /* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are lights are told. */
@@ -161,7 +168,9 @@ ACDF_LANE void store_densities(const AcdfLocal& local, const FastCells& c, std::
             const std::size_t lane = first + ACDF_WIDTH * half;
             const FastBoxes box = narrowed(c, lane);
             Vector z[2];
-            pdf[half] = fast_density(local, c, box, heights_of(local, box, z), lane);
+            Ints ends[2];
+            load_ends(c, lane, ends);
+            pdf[half] = fast_density(local, c, ends, box, heights_of(local, box, z), lane);
         }
         const Floats told = to_floats((Doubles)pdf[0], (Doubles)pdf[1]);
         if (count - first >= kLanes) std::memcpy(out + first, &told, sizeof told);

@@ -55,7 +55,7 @@ struct FastDraws {
     alignas(64) long long lit[kRoom];           // all ones: a light is drawn
     alignas(64) long long upper[kRows][kRoom];
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
-    alignas(64) std::int32_t end[kRows][kRoom];                              // of groups, as they lie
+    alignas(64) std::int32_t end[kRows][kRoom], ends[2][kRoom];              // of groups, of cells; as they lie
     alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom]; // part: weights in the group
     alignas(64) double group_mass[kRoom], group_below[kRoom], whole[kRoom];  // of groups
     std::uint32_t mixed[kBlock], mixed_count;                                // lanes that draw from the mixture
@@ -190,20 +190,20 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
         }
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t line = end_at_least(c.list[i], least[1][i]);
-        c.ends[1][i] = ends_at(c.list[i], line);
+        d->ends[1][i] = ends_at(c.list[i], line);
         c.index[1][i] = (std::int32_t)line;
         c.list[i] = line_of(c, i, line);
         ACDF_PREFETCH(c.list[i]);
     }
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t cell = end_at_least(c.list[i], least[0][i]);
-        c.ends[0][i] = ends_at(c.list[i], cell);
+        d->ends[0][i] = ends_at(c.list[i], cell);
         c.index[0][i] = (std::int32_t)cell;
     }
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH)
         for (int axis = 0; axis < 2; ++axis) {
             Ints before, end;
-            split_ends(loaded(&c.ends[axis][at]), loaded(&c.index[axis][at]), &before, &end);
+            split_ends(loaded(&d->ends[axis][at]), loaded(&c.index[axis][at]), &before, &end);
             stored(&c.u[axis][at], (loaded(&z[axis][at]) - to_doubles(before)) / to_doubles(end - before));
         }
 }
@@ -211,8 +211,9 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
 // ---- directions ------------------------------------------------------------------------------------------------
 
 /* Half of some directions up to where floats go on; densities as acdf_local_fast_density has them. */
-ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastCells& c, std::size_t at, int half,
+ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastDraws& d, std::size_t at, int half,
                                   Drawn* out) {
+    const FastCells& c = d.cells;
     const double columns = local.environment.columns, rows = local.environment.rows;
     const FastBoxes box = narrowed(c, at);
     const Vector u[2] = {loaded(&c.u[0][at]), loaded(&c.u[1][at])};
@@ -225,7 +226,8 @@ ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastCells& c, st
     } else {
         row_direction(columns, low[0], to_doubles(box.high[0]), z[0], z[1], u, half, out);
     }
-    return fast_density(local, c, box, height, at);
+    const Ints ends[2] = {loaded(&d.ends[0][at]), loaded(&d.ends[1][at])};
+    return fast_density(local, c, ends, box, height, at);
 }
 
 /* The draws of lanes whose tiles are drawn, but for those of a mask and others that are left to single calls. */
@@ -241,7 +243,7 @@ ACDF_LANE void end_draws(const AcdfLocal& local, FastDraws* d, std::uint64_t los
         const std::size_t more = std::min(count - first, kLanes);
         AcdfDirectionSample last[kLanes];
         for (int half = 0; half < 2; ++half)
-            pdf[half] = begin_directions(local, d->cells, first + ACDF_WIDTH * (std::size_t)half, half, &drawn);
+            pdf[half] = begin_directions(local, *d, first + ACDF_WIDTH * (std::size_t)half, half, &drawn);
         const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, drawn, direction);
         store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), more < kLanes ? last : out + first);
         if (more < kLanes) std::memcpy(out + first, last, more * sizeof *out);

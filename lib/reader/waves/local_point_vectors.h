@@ -16,7 +16,7 @@ constexpr int kRows = 3; // of nearly all normals: those on edges of triangles h
 /// The corners around normals, with the numbers of their rows in the lower halves: of lanes that are not served
 /// those of any normal, and all else is any number there.
 struct Corners {
-    Integer served, row[kRows], facet;
+    Integer served, row[kRows], facet; // facet: in which byte of all it begins
     Vector weight[kRows], normal[3], length;
 };
 
@@ -38,6 +38,10 @@ ACDF_LANE Vector pair_weight(const Corners& at, const AcdfLightPair& pair, std::
     return choose(less(absolute(height), radius), cut, pair.share[i] * above_zero(height));
 }
 
+ACDF_LANE const AcdfFacet& facet_at(const AcdfLocal& local, long long byte) {
+    return *(const AcdfFacet*)(const void*)((const char*)(const void*)acdf_local_facets(local.tables) + byte);
+}
+
 /// What facets of lanes tell of their lights.
 struct Facets {
     Vector whole;           // acdf_facet_whole
@@ -46,7 +50,6 @@ struct Facets {
 };
 
 ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
-    const AcdfFacet* const facets = acdf_local_facets(local.tables);
     alignas(64) long long facet[ACDF_WIDTH];
     const double* from[2][ACDF_WIDTH];
     Vector low[2], high[2];
@@ -54,7 +57,7 @@ ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
     out.any = out.lit = 0;
     stored(facet, at.facet);
     for (int i = 0; i < ACDF_WIDTH; ++i) {
-        const AcdfFacet& of = facets[facet[i]];
+        const AcdfFacet& of = facet_at(local, facet[i]);
         from[0][i] = of.whole;
         from[1][i] = of.whole + 2;
         out.any |= of.others;
@@ -158,14 +161,14 @@ ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], At*
         const Vector octant =
             (only(v[0] < 0.0, n * n) + only(v[1] < 0.0, 2.0 * n * n)) + only(v[2] < 0.0, 4.0 * n * n);
         const Vector facet = octant + ((back + base[0] * step) * n + (back + base[1] * step));
-        out[t].facet = truncated(select(served, facet, all(0.0)));
+        out[t].facet = truncated(select(served, facet * (double)sizeof(AcdfFacet), all(0.0))); // below 2^31
         out[t].served = served;
         stored(out[t].facet, &at[t]);
     }
     for (int t = 0; t < Turns; ++t) {
         const double* from[3][ACDF_WIDTH];
         for (int i = 0; i < ACDF_WIDTH; ++i) {
-            const AcdfFacet& of = acdf_local_facets(local.tables)[at[t].at[i]];
+            const AcdfFacet& of = facet_at(local, at[t].at[i]);
             from[0][i] = of.length;
             from[1][i] = of.length + 2;                              // and shares
             from[2][i] = (const double*)(const void*)(of.share + 2); // and rows
