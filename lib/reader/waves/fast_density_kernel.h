@@ -42,24 +42,28 @@ ACDF_LANE void end_points(const AcdfLocal& local, FastFinds* f) {
     });
 }
 
-/* acdf_tile_block_at of all squares: entries of the grid for all of them before any block. */
-ACDF_LANE void find_tile_blocks(const AcdfLocal& local, std::size_t count, const FastSquares& f,
-                                std::int32_t* node) {
+/* acdf_tile_block_at of all squares: entries of the grid for all of them before any block. Returns the lanes that
+ * are told a split instead of a tile. */
+ACDF_LANE std::uint64_t find_tile_blocks(const AcdfLocal& local, std::size_t count, FastSquares* f) {
     const std::uint32_t* const words = acdf_local_words(local.tables);
     const AcdfTileBlocks& t = local.tables->blocks;
     const auto* const grid = (const std::uint16_t*)(const void*)(words + t.grid);
     const auto* const blocks = (const std::uint16_t*)(const void*)(words + t.blocks);
     alignas(64) std::int32_t inside[kRoom];
+    std::uint64_t split = 0;
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        const Ints s0 = loaded(&f.square[0][at]), s1 = loaded(&f.square[1][at]);
+        const Ints s0 = loaded(&f->square[0][at]), s1 = loaded(&f->square[1][at]);
         stored(&inside[at], (s1 >> t.fine[1] & 3) * 4 + (s0 >> t.fine[0] & 3));
-        stored(&node[at], two_bytes_of(grid, (s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])));
+        stored(&f->tile[at], two_bytes_of(grid, (s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])));
     }
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        const Ints entry = loaded(&node[at]), told = -(entry >> 15);
+        const Ints entry = loaded(&f->tile[at]), told = -(entry >> 15);
         const Ints finer = two_bytes_of(blocks, (entry & ~told) * 16 + loaded(&inside[at]));
-        stored(&node[at], finer ^ ((finer ^ entry) & told));
+        const Ints node = finer ^ ((finer ^ entry) & told);
+        stored(&f->tile[at], node & (std::int32_t)~ACDF_TILE_FLAG);
+        split |= (std::uint64_t)sign_bits(~(node << 16)) << at;
     }
+    return split;
 }
 
 /* The squares of directions. Returns the lanes that are left to single calls. */
@@ -85,18 +89,17 @@ ACDF_LANE std::uint64_t find_squares(const AcdfLocal& local, const float (*direc
 
 /* The tiles of all squares. */
 ACDF_LANE void find_fast_tiles(const AcdfLocal& local, std::size_t count, FastSquares* f) {
-    alignas(64) std::int32_t node[kRoom];
-    find_tile_blocks(local, count, *f, node);
-    for (std::size_t i = 0; i < count; ++i) {
-        auto at = (std::uint32_t)node[i];
-        while (!(at & ACDF_TILE_FLAG)) {
-            const std::uint32_t square[2] = {(std::uint32_t)f->square[0][i], (std::uint32_t)f->square[1][i]};
-            const AcdfSplit& split = local.blend.splits[at];
-            at = split.child[acdf_split_upper(&split, square)];
-        }
-        f->tile[i] = (std::int32_t)(at & ~ACDF_TILE_FLAG);
-        enter_tile(local, at & ~ACDF_TILE_FLAG, i, &f->cells);
+    for (std::uint64_t left = find_tile_blocks(local, count, f); left; left &= left - 1) {
+        const auto i = (std::size_t)__builtin_ctzll(left);
+        const std::uint32_t square[2] = {(std::uint32_t)f->square[0][i], (std::uint32_t)f->square[1][i]};
+        auto node = (std::uint32_t)f->tile[i];
+        do {
+            const AcdfSplit& split = local.blend.splits[node];
+            node = split.child[acdf_split_upper(&split, square)];
+        } while (!(node & ACDF_TILE_FLAG));
+        f->tile[i] = (std::int32_t)(node & ~ACDF_TILE_FLAG);
     }
+    for (std::size_t i = 0; i < count; ++i) enter_tile(local, (std::uint32_t)f->tile[i], i, &f->cells);
 }
 
 /* The cells of all squares in their tiles. */
@@ -122,7 +125,8 @@ ACDF_LANE void load_ends(const FastCells& c, std::size_t at, Ints ends[2]) {
     });
 }
 
-/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are lights are told. */
+/* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are lights are
+ * told. */
 ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     Ints ends[kRows], around[kRows]; // of groups, and of tiles in theirs
     for (int row = 0; row < kRows; ++row) {

@@ -55,7 +55,7 @@ struct FastDraws {
     alignas(64) long long lit[kRoom];           // all ones: a light is drawn
     alignas(64) long long upper[kRows][kRoom];
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
-    alignas(64) std::int32_t end[kRows][kRoom], ends[2][kRoom];              // of groups, of cells; as they lie
+    alignas(64) std::int32_t end[kRows][kRoom], ends[2][kRoom];    // of groups, of cells; as they lie
     alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom]; // part: weights in the group
     alignas(64) double group_mass[kRoom], group_below[kRoom], whole[kRoom];  // of groups
     std::uint32_t mixed[kBlock], mixed_count;                                // lanes that draw from the mixture

@@ -25,6 +25,15 @@ ACDF_LANE Vector to_doubles(Ints x) { return __builtin_convertvector(x, Vector);
 ACDF_LANE Ints to_integers(Vector x) { return __builtin_convertvector(x, Ints); } // rounded towards 0
 ACDF_LANE Integer to_indices(Ints x) { return __builtin_convertvector(x, Integer); }
 
+/* Their highest bits. */
+ACDF_LANE unsigned sign_bits(Ints x) {
+#if ACDF_WIDTH == 8
+    return (unsigned)_mm256_movemask_ps((__m256)x);
+#else
+    return (unsigned)_mm_movemask_ps((__m128)x);
+#endif
+}
+
 #if ACDF_WIDTH == 8
 ACDF_LANE Ints least(Ints a, Ints b) { return (Ints)_mm256_min_epi32((__m256i)a, (__m256i)b); }
 #else
@@ -299,15 +308,14 @@ ACDF_LANE void keep_rows(const FastPoints<Draws>& p, std::size_t at, FastLanes* 
     stored(&w->unit[at], p.unit);
 }
 
-
 /// Groups of a vector: the weights of rows in them, what all have of them, and of those before.
 struct FastGroups {
     Ints part[kRows];
     Vector mass, below, whole; // whole: of weights
 };
 
-/* What a row gives to the group of a lane: cumulative values before and at its end, as they lie; of the first one those
- * at its end and the next one's. */
+/* What a row gives to the group of a lane: cumulative values before and at its end, as they lie; of the first one
+ * those at its end and the next one's. */
 ACDF_LANE std::int32_t ends_of(const FastLanes& w, int row, std::size_t lane, std::uint32_t number) {
     std::int32_t both;
     std::memcpy(&both, (const std::uint16_t*)w.group[row][lane] + (number - (number > 0)), sizeof both);
