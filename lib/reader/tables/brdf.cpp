@@ -152,7 +152,7 @@ std::size_t BrdfTablesMaker::lay_out(AcdfBrdfTables& out, bool grid, u32 guess_b
 /// nothing is left that tables are made for.
 bool BrdfTablesMaker::choose(AcdfBrdfTables& out) const {
     const bool grid = between() <= 256 * std::size_t{cells()} && 4 * lay_out(out, true, 0) <= most_bytes_;
-    u32 bits = guesses_ && is_power_of_two(brdf_.columns) && is_power_of_two(brdf_.rows) ? kMostGuessBits : 0;
+    u32 bits = guesses_ && has_exact_inverses(brdf_) ? kMostGuessBits : 0;
     while (bits && 4 * lay_out(out, grid, bits) > most_bytes_) bits = bits > kLeastGuessBits ? bits - 1 : 0;
     return 4 * lay_out(out, grid, bits) <= most_bytes_ && (grid || bits || !guesses_);
 }
@@ -276,6 +276,10 @@ void BrdfTablesMaker::add_parts(const std::uint8_t* row, u32 node, double produc
 }
 
 } // namespace
+
+bool has_exact_inverses(const AcdfBrdf& brdf) noexcept {
+    return is_power_of_two(brdf.columns) && is_power_of_two(brdf.rows);
+}
 
 bool can_have_tables(const AcdfBrdf& brdf) noexcept {
     return brdf.blend.tiles && !brdf.blend.roots && brdf.views->phi_count == 1 &&

@@ -12,6 +12,9 @@ namespace acdf {
 /// Whether a BRDF can have tables: it is isotropic, without a diffuse floor, and its bins share cells.
 bool can_have_tables(const AcdfBrdf& brdf) noexcept;
 
+/// Whether AcdfBrdfTables::inverse is exact.
+bool has_exact_inverses(const AcdfBrdf& brdf) noexcept;
+
 /// The tables of such a BRDF, in `block`, which the caller gives back, of at most `most_bytes`; null where they
 /// would take more, and where memory fails. Guesses are left out where there is no room for them, and unless asked
 /// for.

@@ -63,7 +63,6 @@ Arrays arrays_in(char* block, const AcdfBrdf& brdf, std::size_t& bytes) {
     return out;
 }
 
-bool is_power_of_two(u32 x) { return x != 0 && (x & (x - 1)) == 0; }
 bool is_split(u32 child) { return !(child & ACDF_TILE_FLAG); }
 
 u32 axis_of(const AcdfSplit& split) { return split.place & 7u; }
@@ -129,7 +128,7 @@ void add_runtime_tables(const AcdfBrdf& brdf, const AcdfBrdfTables& tables, Wave
     out->columns = brdf.columns;
     out->rows = brdf.rows;
     std::copy(tables.inverse, tables.inverse + 2, out->inverse);
-    out->exact_inverse = is_power_of_two(brdf.columns) && is_power_of_two(brdf.rows);
+    out->exact_inverse = has_exact_inverses(brdf);
     out->mirrored = acdf_brdf_mirrored(&brdf) != 0;
     const auto array = [&](auto*& at, u32 words) {
         at = static_cast<std::remove_reference_t<decltype(at)>>(acdf_brdf_words(&tables, words));

@@ -115,32 +115,25 @@ ACDF_LANE void find_fast_cells(std::size_t count, FastSquares* f) {
 
 /* Cumulative values around the cells of a vector of lanes in their lists. */
 ACDF_LANE void load_ends(const FastCells& c, std::size_t at, Ints ends[2]) {
-    ends[0] = two_bytes([&](int i) {
-        const std::size_t lane = at + (std::size_t)i;
-        return ends_at(line_of(c, lane, (std::uint32_t)c.index[1][lane]), (std::uint32_t)c.index[0][lane]);
-    });
-    ends[1] = two_bytes([&](int i) {
-        const std::size_t lane = at + (std::size_t)i;
-        return ends_at(c.list[lane], (std::uint32_t)c.index[1][lane]);
-    });
+    const std::int32_t *cell = c.index[0] + at, *line = c.index[1] + at;
+    ends[0] = two_bytes_of(
+        [&](std::size_t i) { return ends_at(line_of(c, at + i, (std::uint32_t)line[i]), (std::uint32_t)cell[i]); });
+    ends[1] = two_bytes_of([&](std::size_t i) { return ends_at(c.list[at + i], (std::uint32_t)line[i]); });
 }
 
 /* acdf_local_fast_find of a vector but for what the cell has of its tile. Its lanes whose tiles are lights are
  * told. */
 ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     Ints ends[kRows], around[kRows]; // of groups, and of tiles in theirs
+    const std::int32_t* const tiles = f->tile + at;
     for (int row = 0; row < kRows; ++row) {
-        for (int i = 0; i < ACDF_WIDTH; ++i) {
-            const std::size_t lane = at + (std::size_t)i;
-            ends[row][i] = ends_of(f->rows, row, lane, (std::uint32_t)f->tile[lane] / ACDF_FAST_GROUP);
-        }
-        around[row] = two_bytes([&](int i) { // what stands before the first row of tiles is of groups
-            const std::size_t lane = at + (std::size_t)i;
-            return ends_at((const std::uint8_t*)f->rows.tile_row[row][lane], (std::uint32_t)f->tile[lane]);
+        for (std::size_t i = 0; i < ACDF_WIDTH; ++i)
+            ends[row][i] = ends_of(f->rows, row, at + i, (std::uint32_t)tiles[i] / ACDF_FAST_GROUP);
+        around[row] = two_bytes_of([&](std::size_t i) { // what stands before the first row of tiles is of groups
+            return ends_at((const std::uint8_t*)f->rows.tile_row[row][at + i], (std::uint32_t)tiles[i]);
         });
     }
-    const Ints tile = loaded(&f->tile[at]), last = Ints{} + (std::int32_t)(ACDF_FAST_GROUP - 1),
-               number = tile & last;
+    const Ints tile = loaded(tiles), last = Ints{} + (std::int32_t)(ACDF_FAST_GROUP - 1), number = tile & last;
     const FastGroups g = find_groups(f->rows, ends, tile > last, at);
     Ints share = {};
     for (int row = 0; row < kRows; ++row) {
@@ -191,7 +184,7 @@ ACDF_LANE void fast_density_block(const AcdfLocal& local, const At& at, const Al
     std::uint64_t lost = 0;
     at(whole, count, [&](const FastPoints<false>& p, std::size_t first) {
         keep_points(p, first, &f);
-        lost |= (std::uint64_t)(~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
+        lost |= not_served(p, first);
     });
     end_points(local, &f);
     lost |= find_squares(local, directions, count, &f);

@@ -262,11 +262,8 @@ ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone
     d.mixed_count = 0;
     at(whole, count, [&](const FastPoints<true>& p, std::size_t first) {
         const std::size_t more = lanes_there(first, count);
-        double last[ACDF_WIDTH][2] = {};
-        Doubles given[2];
-        if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
-        load_pairs(more < ACDF_WIDTH ? last : u + first, given);
-        const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
+        Vector v[2];
+        numbers_of(u + first, more, v);
         lost |= (std::uint64_t)begin_draws(local, p, v, (1u << more) - 1u, first, &d) << first;
     });
     draw_tiles(local, whole, &d);

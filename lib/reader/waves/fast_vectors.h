@@ -72,21 +72,16 @@ ACDF_LANE void gather_fours(const T* const* at, Ints out[4]) {
 
 /* Two bytes of each lane: at(i) of lane i. */
 template <class At>
-ACDF_LANE Ints two_bytes(const At& at) {
-    __m128i value = _mm_setzero_si128(); /* not by memory: a vector would wait for what is stored in parts */
-#define ACDF_INSERT(i) value = _mm_insert_epi16(value, (std::int16_t)at(i), i)
-    ACDF_INSERT(0), ACDF_INSERT(1), ACDF_INSERT(2), ACDF_INSERT(3);
+ACDF_LANE Ints two_bytes_of(const At& at) {
 #if ACDF_WIDTH == 8
-    ACDF_INSERT(4), ACDF_INSERT(5), ACDF_INSERT(6), ACDF_INSERT(7);
-    return (Ints)_mm256_cvtepu16_epi32(value);
+    return (Ints)_mm256_cvtepu16_epi32(two_bytes(at));
 #else
-    return (Ints)_mm_cvtepu16_epi32(value);
+    return (Ints)_mm_cvtepu16_epi32(two_bytes(at));
 #endif
-#undef ACDF_INSERT
 }
 /* Elements of an array. */
 ACDF_LANE Ints two_bytes_of(const std::uint16_t* base, Ints index) {
-    return two_bytes([&](int i) { return base[(std::uint32_t)index[i]]; });
+    return two_bytes_of([&](std::size_t i) { return base[(std::uint32_t)index[i]]; });
 }
 
 /* The word at an offset from each. */
@@ -231,11 +226,7 @@ ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<true>* out) 
         out->lit += 2;
     });
 }
-ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<false>* out) {
-    const Facets of = facets_of(local, *out);
-    out->lights = of.whole;
-    out->others = of.others;
-}
+ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<false>* out) { leave_others(local, out); }
 
 /* What densities need of the sum of all. */
 ACDF_LANE Vector unit_of(Vector mixture, Vector sum, Vector whole) {

@@ -8,12 +8,22 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace {
 
 /* How many lanes of a vector from a lane on are there. */
 ACDF_LANE std::size_t lanes_there(std::size_t first, std::size_t count) {
     return std::min<std::size_t>(count - std::min(first, count), ACDF_WIDTH);
+}
+
+/* The numbers of a vector of lanes, of which `count` are there, in [0, 1]. */
+ACDF_LANE void numbers_of(const double (*u)[2], std::size_t count, Vector out[2]) {
+    double last[ACDF_WIDTH][2] = {};
+    Doubles given[2];
+    if (count < ACDF_WIDTH) std::memcpy(last, u, count * sizeof *u);
+    load_pairs(count < ACDF_WIDTH ? last : u, given);
+    for (int axis = 0; axis < 2; ++axis) out[axis] = unit_interval((Vector)given[axis]);
 }
 
 /* Calls alone(i) for the lanes of a mask, of which `count` are there. */

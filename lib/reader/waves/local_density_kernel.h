@@ -199,7 +199,7 @@ ACDF_LANE void density_block(const AcdfLocal& local, const At& at, const Alone& 
     cells.count = count;
     at(count, count, [&](const Points<false>& p, std::size_t first) {
         keep(p, first, &seen);
-        lost |= (std::uint64_t)(~bits(p.served) & ((1u << lanes_there(first, count)) - 1u)) << first;
+        lost |= not_served(p, first);
     });
     end_points(local, &seen);
     lost |= find_all_squares(local, directions, count, &cells);

@@ -252,12 +252,9 @@ ACDF_LANE void draw_block(const AcdfLocal& local, const Rows& rows, const At& at
     at(count, count, [&](const Points<true>& p, std::size_t first) {
         const std::size_t more = lanes_there(first, count);
         const unsigned there = (1u << more) - 1u;
-        double last[ACDF_WIDTH][2] = {};
-        Doubles given[2];
         const Integer lane = numbers_from(first);
-        if (more < ACDF_WIDTH) std::memcpy(last, u + first, more * sizeof *u);
-        load_pairs(more < ACDF_WIDTH ? last : u + first, given);
-        const Vector v[2] = {unit_interval((Vector)given[0]), unit_interval((Vector)given[1])};
+        Vector v[2];
+        numbers_of(u + first, more, v);
         const unsigned served = bits(p.served) & there, light = bits((Integer)(v[0] * p.sum < p.lights)) & served;
         lost |= (std::uint64_t)(served ^ there) << first;
         begin_walks(p, rows, v, served ^ light, lane, local.tables->tiles.root, &walks);

@@ -77,7 +77,7 @@ ACDF_LANE void piece_block(const AcdfLocal& local, const Search& s, const At& at
     at(count, count, [&](const Points<false>& p, std::size_t first) {
         keep(p, first, &seen);
         for (int k = 0; k < kRows; ++k) stored(&seen.row[k][first], parts_of(local, p.row[k]));
-        lost |= (~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
+        lost |= (std::uint32_t)not_served(p, first);
     });
     end_points(local, &seen);
     lost |= find_cells(s, &lanes.sought, [pieces](std::size_t piece) { ACDF_PREFETCH(pieces + piece); });

@@ -11,7 +11,8 @@
 
 namespace {
 
-constexpr int kRows = 3; // of nearly all normals: those on edges of triangles have fewer
+constexpr int kTurns = 4; // vectors of normals that take turns
+constexpr int kRows = 3;  // of nearly all normals: those on edges of triangles have fewer
 
 /// The corners around normals, with the numbers of their rows in the lower halves: of lanes that are not served
 /// those of any normal, and all else is any number there.
@@ -19,6 +20,11 @@ struct Corners {
     Integer served, row[kRows], facet; // facet: in which byte of all it begins
     Vector weight[kRows], normal[3], length;
 };
+
+/* Lanes of a vector from one on that are left to single calls, those behind the last one, too. */
+ACDF_LANE std::uint64_t not_served(const Corners& p, std::size_t first) {
+    return (std::uint64_t)(~bits(p.served) & ((1u << ACDF_WIDTH) - 1u)) << first;
+}
 
 /// Of lanes that are not served the rows are some of the table, and all else is any number.
 template <bool Draws>
@@ -91,6 +97,15 @@ ACDF_LANE Vector other_lights(const AcdfLocal& local, const Corners& at, Integer
     return sum[0] + sum[1];
 }
 
+/* Of points for densities: the lights above the horizons of all normals of a triangle, and which others there are.
+ */
+template <class P>
+ACDF_LANE void leave_others(const AcdfLocal& local, P* out) {
+    const Facets of = facets_of(local, *out);
+    out->lights = of.whole;
+    out->others = of.others;
+}
+
 /* acdf_facet_lights. Facets of neighbouring lanes may differ: `weighed(k, weight)` is told the weights of a pair
  * that any lane has of others, or `Each`: that any may see, and k counts these. */
 template <bool Each, class Weighed>
@@ -128,25 +143,21 @@ ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<true>* out) {
     weigh_each(local, out);
     out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
 }
-ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<false>* out) {
-    const Facets of = facets_of(local, *out);
-    out->lights = of.whole;
-    out->others = of.others;
-}
+ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<false>* out) { leave_others(local, out); }
 
-/* acdf_local_find_facet of some vectors, which take turns; what tables do not serve is not served. Small whole
+/* acdf_local_find_facet of kTurns vectors; what tables do not serve is not served. Small whole
  * numbers are doubles. */
-template <int Turns, class At>
+template <class At>
 ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], At* out) {
     const double n = local.subdivisions;
-    Vector sum[Turns], down[Turns], off[Turns][3];
-    Indices at[Turns];
-    for (int t = 0; t < Turns; ++t) {
+    Vector sum[kTurns], down[kTurns], off[kTurns][3];
+    Indices at[kTurns];
+    for (int t = 0; t < kTurns; ++t) {
         load_transposed(normals + t * ACDF_WIDTH, out[t].normal);
         const Vector* v = out[t].normal;
         sum[t] = (absolute(v[0]) + absolute(v[1])) + absolute(v[2]);
     }
-    for (int t = 0; t < Turns; ++t) {
+    for (int t = 0; t < kTurns; ++t) {
         const Vector* v = out[t].normal;
         Vector base[3];
         down[t] = all(n - 1.0);
@@ -163,9 +174,9 @@ ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], At*
         const Vector facet = octant + ((back + base[0] * step) * n + (back + base[1] * step));
         out[t].facet = truncated(select(served, facet * (double)sizeof(AcdfFacet), all(0.0))); // below 2^31
         out[t].served = served;
-        stored(out[t].facet, &at[t]);
+        stored(&at[t], out[t].facet);
     }
-    for (int t = 0; t < Turns; ++t) {
+    for (int t = 0; t < kTurns; ++t) {
         const double* from[3][ACDF_WIDTH];
         for (int i = 0; i < ACDF_WIDTH; ++i) {
             const AcdfFacet& of = facet_at(local, at[t].at[i]);
@@ -188,7 +199,7 @@ ACDF_LANE void corners_of(const AcdfLocal& local, const float (*normals)[3], At*
         for (int i = 0; i < kRows; ++i) weight[i] = absolute(down[t] - off[t][i]) * length[i] * share[i];
         out[t].served &= least(least(weight[0], weight[1]), weight[2]) > 0.0;
     }
-    for (int t = 0; t < Turns; ++t) {
+    for (int t = 0; t < kTurns; ++t) {
         Vector* v = out[t].normal;
         const Vector scale = n / sum[t], size = root((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
         for (int i = 0; i < 3; ++i) v[i] = scale * v[i];
@@ -229,25 +240,25 @@ ACDF_LANE void points_of(const AcdfLocal& local, const AcdfLocalPoint& point, Po
 }
 
 /// Calls then(points, lane) for the points of vectors of `whole` normals, of which `count` are there; and one point
-/// in all lanes. Turns: vectors that take turns.
-template <class P, int Turns = 4>
+/// in all lanes.
+template <class P>
 struct PointsOf {
     const AcdfLocal& local;
     const float (*normals)[3];
     template <class Then>
     ACDF_LANE_MEMBER void operator()(std::size_t whole, std::size_t count, const Then& then) const {
-        constexpr std::size_t lanes = Turns * ACDF_WIDTH;
-        std::conditional_t<P::kDraws, P, Corners> room[Turns];
+        constexpr std::size_t lanes = kTurns * ACDF_WIDTH;
+        std::conditional_t<P::kDraws, P, Corners> room[kTurns];
         for (std::size_t first = 0; first < whole; first += lanes) {
             float last[lanes][3] = {};
             const bool all = count - first >= lanes;
-            if (!all && first < count) std::memcpy(last, normals + first, (count - first) * sizeof *normals);
-            corners_of<Turns>(local, all ? normals + first : last, room);
+            if (!all) std::memcpy(last, normals + first, (count - first) * sizeof *normals);
+            corners_of(local, all ? normals + first : last, room);
             if constexpr (P::kDraws) {
                 for (P& points : room) set_points(local, &points);
-                for (int t = 0; t < Turns; ++t) then(room[t], first + (std::size_t)t * ACDF_WIDTH);
+                for (int t = 0; t < kTurns; ++t) then(room[t], first + (std::size_t)t * ACDF_WIDTH);
             } else {
-                for (int t = 0; t < Turns; ++t) { // what densities need of a point stays in registers
+                for (int t = 0; t < kTurns; ++t) { // what densities need of a point stays in registers
                     P points;
                     (Corners&)points = room[t];
                     set_points(local, &points);

@@ -109,36 +109,32 @@ ACDF_LANE void pointers_of(Integer address, const T* out[ACDF_WIDTH]) {
     }
 #endif
 }
-ACDF_LANE Integer two_bytes_at(Integer address) {
-    const std::uint16_t* at[ACDF_WIDTH];
+/* Two bytes of each lane next to each other: at(i) of lane i. */
+template <class At>
+ACDF_LANE __m128i two_bytes(const At& at) {
     __m128i value = _mm_setzero_si128(); /* not by memory: a vector would wait for what is stored in parts */
-    pointers_of(address, at);
-#define ACDF_INSERT(i) value = _mm_insert_epi16(value, (std::int16_t)*at[i], i)
+#define ACDF_INSERT(i) value = _mm_insert_epi16(value, (std::int16_t)at(std::size_t{i}), i)
     ACDF_INSERT(0), ACDF_INSERT(1), ACDF_INSERT(2), ACDF_INSERT(3);
 #if ACDF_WIDTH == 8
     ACDF_INSERT(4), ACDF_INSERT(5), ACDF_INSERT(6), ACDF_INSERT(7);
+#endif
+#undef ACDF_INSERT
+    return value;
+}
+ACDF_LANE Integer two_bytes_at(Integer address) {
+    const std::uint16_t* from[ACDF_WIDTH];
+    pointers_of(address, from);
+    const __m128i value = two_bytes([&](std::size_t i) { return *from[i]; });
+#if ACDF_WIDTH == 8
     return (Integer)_mm512_cvtepu16_epi64(value);
 #else
     return (Integer)_mm256_cvtepu16_epi64(value);
 #endif
-#undef ACDF_INSERT
 }
 
 // ---- pairs of doubles, and packed lanes ------------------------------------------------------------------------
 
 #if ACDF_WIDTH == 8
-/* The two doubles at each address. */
-ACDF_LANE void gather_pairs(const double* const* at, Vector out[2]) {
-    __m512d half[2]; // of even and of odd lanes
-    for (int i = 0; i < 2; ++i) {
-        half[i] = _mm512_castpd128_pd512(_mm_loadu_pd(at[i]));
-        half[i] = _mm512_insertf64x2(half[i], _mm_loadu_pd(at[2 + i]), 1);
-        half[i] = _mm512_insertf64x2(half[i], _mm_loadu_pd(at[4 + i]), 2);
-        half[i] = _mm512_insertf64x2(half[i], _mm_loadu_pd(at[6 + i]), 3);
-    }
-    out[0] = (Vector)_mm512_unpacklo_pd(half[0], half[1]);
-    out[1] = (Vector)_mm512_unpackhi_pd(half[0], half[1]);
-}
 /* The floats in the lower halves. */
 ACDF_LANE Vector low_floats(Integer x) {
     return (Vector)_mm512_cvtps_pd(_mm256_castsi256_ps(_mm512_cvtepi64_epi32((__m512i)x)));
@@ -148,12 +144,6 @@ ACDF_LANE void store_packed(double* out, Vector x, unsigned mask) {
     _mm512_storeu_pd(out, _mm512_maskz_compress_pd((__mmask8)mask, (__m512d)x));
 }
 #else
-ACDF_LANE void gather_pairs(const double* const* at, Vector out[2]) {
-    const __m256d even = _mm256_set_m128d(_mm_loadu_pd(at[2]), _mm_loadu_pd(at[0]));
-    const __m256d odd = _mm256_set_m128d(_mm_loadu_pd(at[3]), _mm_loadu_pd(at[1]));
-    out[0] = (Vector)_mm256_unpacklo_pd(even, odd);
-    out[1] = (Vector)_mm256_unpackhi_pd(even, odd);
-}
 ACDF_LANE Vector low_floats(Integer x) {
     const __m256i low = _mm256_permutevar8x32_epi32((__m256i)x, _mm256_setr_epi32(0, 2, 4, 6, 0, 0, 0, 0));
     return (Vector)_mm256_cvtps_pd(_mm_castsi128_ps(_mm256_castsi256_si128(low)));

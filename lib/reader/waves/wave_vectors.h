@@ -24,16 +24,16 @@ typedef unsigned long long Unsigned __attribute__((vector_size(8 * ACDF_WIDTH)))
 struct Indices {
     alignas(8 * ACDF_WIDTH) long long at[ACDF_WIDTH];
 };
-ACDF_LANE void stored(Integer index, Indices* out) {
-    *(Integer*)out->at = index;
-    asm("" : "+m"(*out)); // or compilers take them out of the register
+ACDF_LANE void stored(Indices* to, Integer index) {
+    *(Integer*)to->at = index;
+    asm("" : "+m"(*to)); // or compilers take them out of the register
 }
 
 /* Eight bytes at base + Scale * index. */
 template <int Scale>
 ACDF_LANE Integer gathered(const void* base, Integer index) {
     Indices lanes;
-    stored(index, &lanes);
+    stored(&lanes, index);
     const char* const bytes = (const char*)base;
     __m128d pair[ACDF_WIDTH / 2];
     for (int i = 0; i < ACDF_WIDTH / 2; ++i) {
@@ -48,27 +48,35 @@ ACDF_LANE Integer gathered(const void* base, Integer index) {
 #endif
 }
 
-/* The same, and the eight bytes behind them. */
+/* The two doubles at each address. */
+#if ACDF_WIDTH == 8
+ACDF_LANE void gather_pairs(const double* const* at, Vector out[2]) {
+    __m512d half[2]; // of even and of odd lanes
+    for (int i = 0; i < 2; ++i) {
+        half[i] = _mm512_castpd128_pd512(_mm_loadu_pd(at[i]));
+        half[i] = _mm512_insertf64x2(half[i], _mm_loadu_pd(at[2 + i]), 1);
+        half[i] = _mm512_insertf64x2(half[i], _mm_loadu_pd(at[4 + i]), 2);
+        half[i] = _mm512_insertf64x2(half[i], _mm_loadu_pd(at[6 + i]), 3);
+    }
+    out[0] = (Vector)_mm512_unpacklo_pd(half[0], half[1]);
+    out[1] = (Vector)_mm512_unpackhi_pd(half[0], half[1]);
+}
+#else
+ACDF_LANE void gather_pairs(const double* const* at, Vector out[2]) {
+    const __m256d even = _mm256_set_m128d(_mm_loadu_pd(at[2]), _mm_loadu_pd(at[0]));
+    const __m256d odd = _mm256_set_m128d(_mm_loadu_pd(at[3]), _mm_loadu_pd(at[1]));
+    out[0] = (Vector)_mm256_unpacklo_pd(even, odd);
+    out[1] = (Vector)_mm256_unpackhi_pd(even, odd);
+}
+#endif
+/* Eight bytes at base + Scale * index, and the eight behind them. */
 template <int Scale>
 ACDF_LANE void gather_pairs(const void* base, Integer index, Vector out[2]) {
     Indices lanes;
-    stored(index, &lanes);
-    const char* const bytes = (const char*)base;
-    __m256d row[ACDF_WIDTH / 2]; // of lanes k and k + 2; vectors of eight: of each half
-    for (int i = 0; i < ACDF_WIDTH / 2; ++i) {
-        const int k = i / 2 * 4 + i % 2;
-        row[i] = _mm256_set_m128d(_mm_loadu_pd((const double*)(bytes + Scale * lanes.at[k + 2])),
-                                  _mm_loadu_pd((const double*)(bytes + Scale * lanes.at[k])));
-    }
-#if ACDF_WIDTH == 8
-    const __m512d even = _mm512_insertf64x4(_mm512_castpd256_pd512(row[0]), row[2], 1);
-    const __m512d odd = _mm512_insertf64x4(_mm512_castpd256_pd512(row[1]), row[3], 1);
-    out[0] = (Vector)_mm512_unpacklo_pd(even, odd);
-    out[1] = (Vector)_mm512_unpackhi_pd(even, odd);
-#else
-    out[0] = (Vector)_mm256_unpacklo_pd(row[0], row[1]);
-    out[1] = (Vector)_mm256_unpackhi_pd(row[0], row[1]);
-#endif
+    stored(&lanes, index);
+    const double* at[ACDF_WIDTH];
+    for (int i = 0; i < ACDF_WIDTH; ++i) at[i] = (const double*)((const char*)base + Scale * lanes.at[i]);
+    gather_pairs(at, out);
 }
 
 #if ACDF_WIDTH == 8
@@ -192,9 +200,5 @@ ACDF_LANE Vector positive(Vector p) { return select(p > 0x1p-1000, p, all(0x1p-1
 /* x, or 0. */
 ACDF_LANE Vector only(Integer mask, double x) { return (Vector)(mask & (Integer)all(x)); }
 ACDF_LANE Vector one_if(Integer mask) { return only(mask, 1.0); }
-/* Loads the four bytes behind each, too. */
-ACDF_LANE Integer gathered_words(const std::uint32_t* base, Integer index) {
-    return gathered<4>(base, index) & 0xFFFFFFFF;
-}
 
 } // namespace

@@ -51,7 +51,7 @@ TEST(BrdfWeights, AreBoundedAtNextToNoCost) {
 }
 
 TEST(BrdfWeights, StayBelowANumber) {
-    if (kSanitized) GTEST_SKIP() << "the same code with another number";
+    ACDF_NOT_SANITIZED();
     acdf::build::BrdfFileOptions options = few_views(5.0);
     const auto brdf = make_brdf(std::make_unique<BrightHorizon>(), options);
     EXPECT_LE(brdf->made.accuracy.max_weight, 5.0);
@@ -60,7 +60,7 @@ TEST(BrdfWeights, StayBelowANumber) {
 }
 
 TEST(BrdfWeights, TwiceTheBytesMakeLessNoise) {
-    if (kSanitized) GTEST_SKIP() << "the same code, on more of it";
+    ACDF_NOT_SANITIZED();
     double variance = std::numeric_limits<double>::infinity(), worst = variance;
     for (const std::uint64_t kib : {8u, 16u}) { // with more views and more cells
         const auto brdf = make_brdf(std::make_unique<BrightHorizon>(), budget(kib << 10));

@@ -46,7 +46,6 @@ std::vector<Probe> compared_probes() {
                            "beach_probe.hdr", "courtyard.exr", "studio.exr",        "sunset.exr"};
     std::vector<Probe> out;
     for (const char* name : names) {
-        if (acdf_test::kSanitized && out.size() == 1) break;
         if (Probe real = real_probe(name); !real.radiance.empty()) out.push_back(std::move(real));
         else if (out.size() < 2) out.push_back(synthetic[out.size()]);
     }

@@ -215,7 +215,7 @@ TEST(TreeSizer, TellsTheBytesThatEncodingMakes) {
         Bins bins(targets, 1e-7);
         TreeSizer sizer(3, most_ratio);
         SizedTree last;
-        for (double price = 1e-2; price > 4e-8; price *= acdf_test::kSanitized ? 0.3 : 0.7) {
+        for (double price = 1e-2; price > 4e-8; price *= 0.7) {
             SCOPED_TRACE(price);
             const std::vector<PrunedBin> pruned = bins.at(price);
             const SizedTree tree = sizer.tree(pruned, price, {&last});

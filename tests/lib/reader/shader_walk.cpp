@@ -24,8 +24,8 @@ namespace {
 
 using namespace acdf_test;
 
-// Of a density: what floats round on the way to a leaf; and of a light that hardly rises above the horizon.
 const std::uint32_t kStep = kSanitized ? 3 : 1; // from seed to seed
+// Of a density: what floats round on the way to a leaf; and of a light that hardly rises above the horizon.
 constexpr double kNear = 1e-5, kRounded = 1e-3;
 
 using Vector = std::array<float, 3>;

@@ -177,7 +177,7 @@ std::string mirrored_room() {
 }
 
 TEST(MeshPlaces, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
-    if (acdf_test::kSanitized) GTEST_SKIP() << "the same code as of other meshes";
+    ACDF_NOT_SANITIZED();
     MeshFolder folder;
     write_text(folder / "pbrt.obj", mirrored_room());
     folder.room_file("z.acdf");
@@ -236,7 +236,7 @@ TEST(MeshPlaces, ArePlotted) {
 
 /// A file of the mesh itself and one that is made for the picture serve it as well as those of a mesh with z up.
 TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
-    if (acdf_test::kSanitized) GTEST_SKIP() << "the same code as of other meshes";
+    ACDF_NOT_SANITIZED();
     MeshFolder folder;
     write_text(folder / "y.obj", room(true));
     write_text(folder / "y.json", mesh_scene("y.obj", R"(, "up": "y")"));
@@ -262,7 +262,6 @@ TEST(MeshRivals, OfRoomsAreUnbiased) {
     write_text(folder / "y.obj", room(true));
     write_text(folder / "y.json", mesh_scene("y.obj", R"(, "up": "y")"));
     for (const std::string scene : {"scene.json", "y.json"}) {
-        if (acdf_test::kSanitized && scene == "y.json") break; // the same code
         const Result result =
             folder.render(scene, "out-" + scene,
                           {"--sampler", "full-cdf", "--sampler", "portals", "--sampler", "portals:uniform",
@@ -280,7 +279,7 @@ TEST(MeshRivals, OfRoomsAreUnbiased) {
 
 /// A room in two files is one scene: what one of them hides from places on the other is known.
 TEST(MeshPlaces, OfSeveralFilesAreThoseOfAllTogether) {
-    if (acdf_test::kSanitized) GTEST_SKIP() << "the same code as of other meshes";
+    ACDF_NOT_SANITIZED();
     MeshFolder folder;
     const std::string whole = room(), points = whole.substr(0, whole.find('f')),
                       faces = whole.substr(points.size());
