@@ -64,7 +64,7 @@ typedef struct AcdfLocalTables {
     uint32_t group_hearts; /* of the fast shape: u8, of each row and group its tile that gets most, as many of a row
                               as it has ends; 0: there are more than cuts have */
     uint32_t group_angles; /* f32: the solid angle of each group, and 0 up to as many as a row has ends */
-    uint32_t reserved[7];
+    uint32_t reserved[2];
 } AcdfLocalTables;
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalTables) % 64 == 0); /* arrays are aligned */
 

@@ -38,23 +38,28 @@ struct GridBits {
 /// Calls fill(node, entries) for all entries that lie in a node: with the tile that holds them, or the first split
 /// that cuts them. A path passes at most ACDF_MAX_SPLITS_DEEP splits.
 template <class Fill>
-void divide(const AcdfBlend& blend, std::uint32_t node, const Entries& entries, const std::uint32_t shift[2],
+void divide(const AcdfBlend& blend, std::uint32_t node, Entries entries, const std::uint32_t shift[2],
             const Fill& fill) {
-    if (entries.low[0] >= entries.high[0] || entries.low[1] >= entries.high[1]) return;
-    if (node & ACDF_TILE_FLAG) return fill(node, entries);
-    const AcdfSplit& split = blend.splits[node];
-    const std::uint32_t axis = split.place & 7u, position = split.place >> 3;
-    const std::uint32_t below = position >> shift[axis],
-                        above = below + ((below << shift[axis]) < position ? 1 : 0);
-    Entries part = entries;
-    part.high[axis] = std::min(entries.high[axis], below);
-    divide(blend, split.child[0], part, shift, fill);
-    part.low[axis] = std::max(entries.low[axis], below);
-    part.high[axis] = std::min(entries.high[axis], above);
-    if (part.low[axis] < part.high[axis]) fill(node, part);
-    part.low[axis] = std::max(entries.low[axis], above);
-    part.high[axis] = entries.high[axis];
-    divide(blend, split.child[1], part, shift, fill);
+    while (!(node & ACDF_TILE_FLAG)) {
+        const AcdfSplit& split = blend.splits[node];
+        const std::uint32_t axis = split.place & 7u, position = split.place >> 3;
+        const std::uint32_t below = position >> shift[axis],
+                            above = below + ((below << shift[axis]) < position ? 1 : 0);
+        if (below >= entries.high[axis] || above <= entries.low[axis]) { // all are on one side
+            node = split.child[above <= entries.low[axis]];
+            continue;
+        }
+        Entries part = entries;
+        part.high[axis] = below;
+        if (part.low[axis] < below) divide(blend, split.child[0], part, shift, fill);
+        part.low[axis] = below;
+        part.high[axis] = above;
+        if (below < above) fill(node, part);
+        if (above >= entries.high[axis]) return;
+        entries.low[axis] = above;
+        node = split.child[1];
+    }
+    fill(node, entries);
 }
 
 } // namespace acdf

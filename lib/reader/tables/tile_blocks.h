@@ -21,12 +21,27 @@ public:
     std::size_t place(std::uint32_t* words, std::size_t at, AcdfTileBlocks& out) const noexcept;
 
 private:
-    void fill(std::uint32_t node, const Entries& entries);
-    void add_block(std::uint32_t node, std::uint32_t column, std::uint32_t row);
+    /// An entry of the grid, or of a block.
+    struct Entry {
+        const std::uint32_t* shift; ///< bits of positions that are finer
+        std::uint32_t column, row;
+    };
+    /// An entry that one split cuts, between two tiles.
+    struct Cut {
+        std::uint32_t place;
+        std::uint16_t lower, upper;
+        std::uint32_t level, block;
+    };
+    bool fill(const Entries& all, std::uint32_t levels) noexcept;
+    std::uint32_t finer(std::uint32_t node, const Entry& entry, std::uint32_t level);
+    std::uint32_t uncut(std::uint32_t node, const Entries& positions) const;
+    std::uint32_t add_block(std::uint32_t node, const Entry& entry, std::uint32_t level);
 
     AcdfBlend blend_ = {};
     AcdfTileBlocks tables_ = {};
     Growable<std::uint16_t> grid_, blocks_;
+    Cut recent_[1024];       ///< by what is in them
+    bool overflows_ = false; ///< there are more blocks than numbers
 };
 
 } // namespace acdf

@@ -42,24 +42,28 @@ ACDF_LANE void end_points(const AcdfLocal& local, FastFinds* f) {
     });
 }
 
-/* acdf_tile_block_at of all squares: entries of the grid for all of them before any block. Returns the lanes that
- * are told a split instead of a tile. */
+/* acdf_tile_block_at of all squares: each level for all of them before the next. Returns the lanes that are told a
+ * split instead of a tile. */
 ACDF_LANE std::uint64_t find_tile_blocks(const AcdfLocal& local, std::size_t count, FastSquares* f) {
     const std::uint32_t* const words = acdf_local_words(local.tables);
     const AcdfTileBlocks& t = local.tables->blocks;
     const auto* const grid = (const std::uint16_t*)(const void*)(words + t.grid);
     const auto* const blocks = (const std::uint16_t*)(const void*)(words + t.blocks);
-    alignas(64) std::int32_t inside[kRoom];
     std::uint64_t split = 0;
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
         const Ints s0 = loaded(&f->square[0][at]), s1 = loaded(&f->square[1][at]);
-        stored(&inside[at], (s1 >> t.fine[1] & 3) * 4 + (s0 >> t.fine[0] & 3));
         stored(&f->tile[at], two_bytes_of(grid, (s1 >> t.shift[1] << t.bits0) + (s0 >> t.shift[0])));
     }
+    for (std::uint32_t level = 0; level < t.levels; ++level)
+        for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
+            const Ints s0 = loaded(&f->square[0][at]), s1 = loaded(&f->square[1][at]);
+            const Ints inside = (s1 >> t.fine[level][1] & 3) * 4 + (s0 >> t.fine[level][0] & 3);
+            const Ints entry = loaded(&f->tile[at]), told = -(entry >> 15);
+            const Ints finer = two_bytes_of(blocks, (entry & ~told) * 16 + inside);
+            stored(&f->tile[at], finer ^ ((finer ^ entry) & told));
+        }
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
-        const Ints entry = loaded(&f->tile[at]), told = -(entry >> 15);
-        const Ints finer = two_bytes_of(blocks, (entry & ~told) * 16 + loaded(&inside[at]));
-        const Ints node = finer ^ ((finer ^ entry) & told);
+        const Ints node = loaded(&f->tile[at]);
         stored(&f->tile[at], node & (std::int32_t)~ACDF_TILE_FLAG);
         split |= (std::uint64_t)sign_bits(~(node << 16)) << at;
     }

@@ -110,8 +110,9 @@ struct LocalSpec {
             put32(out, split.axis | split.position << 3);
             for (std::uint32_t child : split.child) put16(out, child);
         }
+        const std::vector<std::uint32_t> starts = fast ? fast->roots() : std::vector<std::uint32_t>();
         if (fast)
-            for (std::size_t t = 0; t < tiles; ++t) put32(out, fast->roots()[t]);
+            for (std::size_t t = 0; t < tiles; ++t) put32(out, starts[t]);
         for (int curve : fast ? std::vector<int>() : tile_curves)
             put32(out, curve < 0 ? no_root : tree.starts[static_cast<std::size_t>(curve)]);
         return out;

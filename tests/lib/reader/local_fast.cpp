@@ -173,13 +173,15 @@ std::uint32_t walked_from(const AcdfLocal& local, std::uint32_t node, const std:
     return node;
 }
 
-// Of each square of the grid: tables find the tile, or a split on the way to it, and both happen.
+// Of each square of the grid: tables find the tile, or a split on the way to it, and both happen, by all levels of
+// blocks that there can be.
 TEST(FastShape, TablesFindTheTilesOfSquares) {
-    int at_once = 0, walked = 0;
+    int at_once = 0, walked = 0, files[ACDF_TILE_BLOCK_LEVELS + 1] = {};
     for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
         const FastFile loaded(random_fast(seed), true);
         const AcdfLocal local = loaded.file.local().data();
         ASSERT_NE(local.tables, nullptr);
+        ++files[local.tables->blocks.levels];
         for (std::uint32_t row = 0; row < local.environment.rows; row += acdf_test::kSanitized ? 5 : 1)
             for (std::uint32_t column = 0; column < local.environment.columns; ++column) {
                 const std::uint32_t square[2] = {column, row};
@@ -193,17 +195,21 @@ TEST(FastShape, TablesFindTheTilesOfSquares) {
     }
     EXPECT_GT(at_once, 1000);
     EXPECT_GT(walked, 100);
+    EXPECT_EQ(files[0], 0);
+    for (int levels = 1; levels <= ACDF_TILE_BLOCK_LEVELS; ++levels) EXPECT_GT(files[levels], 10) << levels;
 }
 
-// The same where all entries of the grid, as many as it can have, are cut.
-TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
+// The same where all entries of the grid, as many as it can have, are cut: along one axis by cuts that many entries
+// share, then along both, where there are more blocks of several levels than numbers.
+void find_tiles_where_all_is_cut(std::uint32_t across, std::uint32_t along, std::uint32_t levels) {
     RandomOptions options;
     options.columns = options.rows = 65536;
     options.tilts = options.long_curves = false;
     options.octahedral = true;
-    const FastFile loaded(RandomFast(5, options).make_cut_evenly(256, 8), true);
+    const FastFile loaded(RandomFast(5, options).make_cut_evenly(across, along), true);
     const AcdfLocal local = loaded.file.local().data();
     ASSERT_NE(local.tables, nullptr);
+    EXPECT_EQ(local.tables->blocks.levels, levels);
     for (std::uint32_t row = 0; row < 65536; row += acdf_test::kSanitized ? 8191 : 509)
         for (std::uint32_t column = 0; column < 65536; column += 61) {
             const std::uint32_t square[2] = {column, row};
@@ -212,6 +218,12 @@ TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
             ASSERT_EQ(walked_from(local, node, square), walked_from(local, acdf_blend_root(&local.blend), square))
                 << column << ", " << row;
         }
+}
+
+TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
+    find_tiles_where_all_is_cut(256, 8, ACDF_TILE_BLOCK_LEVELS);
+    find_tiles_where_all_is_cut(70, 70, 2);
+    find_tiles_where_all_is_cut(127, 101, 1);
 }
 
 TEST(FastShape, StrataStayStrata) {
