@@ -2,6 +2,7 @@
 
 acdf::Instructions acdf::instructions_of_this_processor() noexcept {
 #if ACDF_WAVEFRONT_X86
+    if (!__builtin_cpu_supports("bmi") || !__builtin_cpu_supports("bmi2")) return Instructions::none;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512bw"))
         return Instructions::avx512;

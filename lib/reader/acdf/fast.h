@@ -51,11 +51,13 @@ typedef struct AcdfFastMixture {
  * drawn, it is left open. */
 ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, int i, uint32_t row,
                                    const int draws) {
+    int k;
     mix->group[i] = fast->groups + (size_t)row * fast->ends;
     mix->tile[i] = fast->tiles + (size_t)row * fast->stride;
     if (!draws) return;
     mix->upper[i] = fast->upper ? fast->upper + (size_t)row * fast->upper_ends : 0;
     ACDF_PREFETCH(fast->upper ? mix->upper[i] : mix->group[i]);
+    for (k = 0; fast->upper && k < 128; k += 32) ACDF_PREFETCH(mix->group[i] + k); /* of most files all */
 }
 
 /* The power of two that takes a positive number, of at least 1e-300 and at most 1e300, to between 2^13 and 2^14. */

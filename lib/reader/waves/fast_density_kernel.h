@@ -131,8 +131,9 @@ ACDF_LANE void weigh_fast_tiles(std::size_t at, FastFinds* f) {
     Ints ends[kRows], around[kRows]; // of groups, and of tiles in theirs
     const std::int32_t* const tiles = f->tile + at;
     for (int row = 0; row < kRows; ++row) {
-        for (std::size_t i = 0; i < ACDF_WIDTH; ++i)
-            ends[row][i] = ends_of(f->rows, row, at + i, (std::uint32_t)tiles[i] / ACDF_FAST_GROUP);
+        ends[row] = words_of([&](std::size_t i) {
+            return ends_of(f->rows, row, at + i, (std::uint32_t)tiles[i] / ACDF_FAST_GROUP);
+        });
         around[row] = two_bytes_of([&](std::size_t i) { // what stands before the first row of tiles is of groups
             return ends_at((const std::uint8_t*)f->rows.tile_row[row][at + i], (std::uint32_t)tiles[i]);
         });

@@ -84,16 +84,22 @@ ACDF_LANE Ints two_bytes_of(const std::uint16_t* base, Ints index) {
     return two_bytes_of([&](std::size_t i) { return base[(std::uint32_t)index[i]]; });
 }
 
+/* A word of each lane: at(i) of lane i. */
+template <class At>
+ACDF_LANE Ints words_of(const At& at) {
+    Ints out = {};
+    for (std::size_t i = 0; i < ACDF_WIDTH; ++i) out[i] = at(i);
+    return out;
+}
+
 /* The word at an offset from each. */
 template <class T>
 ACDF_LANE Ints words_at(const T* const* at, std::size_t offset) {
-    Ints out;
-    for (int i = 0; i < ACDF_WIDTH; ++i) {
+    return words_of([&](std::size_t i) {
         std::int32_t word;
         std::memcpy(&word, (const char*)at[i] + offset, sizeof word);
-        out[i] = word;
-    }
-    return out;
+        return word;
+    });
 }
 
 /* acdf_fast_scaled */
