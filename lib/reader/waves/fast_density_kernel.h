@@ -4,7 +4,6 @@
 #include "waves/fast_cells.h"
 #include "waves/local.h"
 #include "waves/local_blocks_kernel.h"
-#include "waves/local_light_vectors.h"
 #include "waves/row_vectors.h"
 
 #include <algorithm>
@@ -19,28 +18,9 @@ struct FastSquares {
 };
 
 /// The same where rows are mixed.
-struct FastFinds : FastSquares {
-    FastLanes rows;
-    LightLanes lights;
-    alignas(64) double whole[kRoom]; // of points
-    std::uint64_t lit = 0;           // lanes whose tiles are lights
+struct FastFinds : FastSquares, FastPointLanes {
+    std::uint64_t lit = 0; // lanes whose tiles are lights
 };
-
-/* The points of a vector. */
-ACDF_LANE void keep_points(const FastPoints<false>& p, std::size_t at, FastFinds* f) {
-    keep_rows(p, at, &f->rows);
-    keep_lights(p, at, &f->lights);
-    stored(&f->whole[at], p.whole);
-}
-
-/* What other lights change of points. */
-ACDF_LANE void end_points(const AcdfLocal& local, FastFinds* f) {
-    add_other_lights(local, &f->lights, [f](const long long* lane, Integer at, Vector mixture, Vector sum) {
-        alignas(64) double unit[ACDF_WIDTH];
-        stored(unit, unit_of(mixture, sum, (Vector)gathered<8>(f->whole, at)));
-        for (int i = 0; i < ACDF_WIDTH; ++i) f->rows.unit[lane[i]] = unit[i];
-    });
-}
 
 /* acdf_tile_block_at of all squares: each level for all of them before the next. Returns the lanes that are told a
  * split instead of a tile. */

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "waves/fast_cells.h"
+#include "waves/fast_light_vectors.h"
 #include "waves/local.h"
 #include "waves/local_blocks_kernel.h"
 #include "waves/row_vectors.h"
@@ -13,95 +14,80 @@
 
 namespace {
 
-// ---- lights ----------------------------------------------------------------------------------------------------
-
-/* How many sums up to lights are not above x. */
-ACDF_LANE Integer lights_passed(const FastPoints<true>& p, Vector x) {
-    Integer passed = {};
-    for (std::uint32_t k = 0; k < p.lit; k += 2) passed -= (p.light_end[k] <= x) + (p.light_end[k + 1] <= x);
-    return passed;
-}
-
-/* acdf_local_fast_light of the lanes of a mask, by x; their elements of `weight` and `before` become the light's
- * and the sum up to the one before, of `tile` its tile. Returns the lanes that it does not tell: those next to
- * borders. */
-ACDF_LANE unsigned draw_lights(const AcdfLocal& local, const FastPoints<true>& p, Vector x, unsigned mask,
-                               double* weight, double* before, std::int32_t* tile) {
-    alignas(64) long long passed[ACDF_WIDTH];
-    unsigned lost = 0;
-    stored(passed, lights_passed(p, x));
-    for (; mask; mask &= mask - 1) {
-        const std::uint32_t lane = acdf_lowest_bit(mask), k = (std::uint32_t)passed[lane];
-        if (k >= p.lit || !(p.light[k][lane] > 0.0)) {
-            lost |= 1u << lane;
-            continue;
-        }
-        weight[lane] = p.light[k][lane];
-        before[lane] = k > 0 ? p.light_end[k - 1][lane] : 0.0;
-        const std::uint32_t number = 2u * p.pair[k / 2] + k % 2;
-        tile[lane] = (std::int32_t)local.lights[number].tile;
-        ACDF_PREFETCH(acdf_local_tile(local.tables, local.lights[number].tile));
-    }
-    return lost;
-}
-
 // ---- tiles -----------------------------------------------------------------------------------------------------
 
 /// Draws of a block.
-struct FastDraws {
-    FastLanes rows;
+struct FastDraws : FastPointLanes {
     FastCells cells;
+    std::uint64_t lit, mixed;                   // lanes that draw lights, and those that draw from the mixture
     alignas(64) double x[kRoom], before[kRoom]; // of the mixture, or of lights
-    alignas(64) long long lit[kRoom];           // all ones: a light is drawn
-    alignas(64) long long upper[kRows][kRoom];
+    alignas(64) double step[kRoom];             // AcdfLocalPoint::step
+    alignas(64) long long upper[kRows][kRoom], is_lit[kRoom];      // is_lit: all ones, or 0
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
     alignas(64) std::int32_t end[kRows][kRoom], ends[2][kRoom];    // of groups, of cells; as they lie
     alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom]; // part: weights in the group
-    alignas(64) double group_mass[kRoom], group_below[kRoom], whole[kRoom];  // of groups
-    std::uint32_t mixed[kBlock], mixed_count;                                // lanes that draw from the mixture
+    alignas(64) double group_mass[kRoom], group_below[kRoom], group_whole[kRoom];
 };
 
-/* Begins the lanes of a vector: their tiles, where they draw lights, and else what they look for. Returns those
- * that are left to single calls. */
-ACDF_LANE unsigned begin_draws(const AcdfLocal& local, const FastPoints<true>& p, const Vector u[2], unsigned there,
-                               std::size_t at, FastDraws* d) {
-    const Vector x = u[0] * p.sum, of_mixture = (x - p.lights) * p.step;
-    const Vector most = 32767.0 * p.whole * (1.0 - 0x1p-53);
+/* Draws of points of a vector from a lane on. */
+ACDF_LANE void keep_draws(const FastPoints<true>& p, std::size_t at, FastDraws* d) {
+    keep_points(p, at, d);
+    stored(&d->step[at], p.step);
+    for (int i = 0; i < kRows; ++i) stored(&d->upper[i][at], p.upper[i]);
+}
+
+/* Begins the lanes of a vector by their numbers: where they draw lights, and else what they look for. */
+ACDF_LANE void begin_draws(const Vector u[2], std::size_t at, FastDraws* d) {
+    const Vector sum = loaded(&d->lights.sum[at]), lights = loaded(&d->lights.lights[at]);
+    const Vector x = u[0] * sum, of_mixture = (x - lights) * loaded(&d->step[at]);
+    const Vector most = 32767.0 * loaded(&d->whole[at]) * (1.0 - 0x1p-53);
     const Vector mixed = select(of_mixture < most, of_mixture, most);
-    const Integer lit = p.served & (x < p.lights);
-    const unsigned lights = bits(lit) & there, others = bits(p.served & ~lit) & there;
-    unsigned lost = ~bits(p.served) & there;
-    keep_rows(p, at, &d->rows);
-    for (int i = 0; i < kRows; ++i) {
-        stored(&d->upper[i][at], p.upper[i]);
-        stored(&d->end[i][at], Ints{});
-    }
+    const Integer is_lit = x < lights;
+    for (int i = 0; i < kRows; ++i) stored(&d->end[i][at], Ints{});
     stored(&d->number[at], Ints{});
     stored(&d->cells.of[at], all(0.0));
-    stored(&d->x[at], select(lit, x, mixed));
+    stored(&d->x[at], select(is_lit, x, mixed));
     stored(&d->before[at], all(0.0));
     stored(&d->at[at], to_integers(mixed));
-    stored(&d->lit[at], lit);
+    stored(&d->is_lit[at], is_lit);
     stored(&d->tile[at], Ints{});
-    if (lights) lost |= draw_lights(local, p, x, lights, &d->cells.of[at], &d->before[at], &d->tile[at]);
     stored(&d->cells.u[1][at], u[1]);
-    stored(&d->cells.all[at], p.sum * ACDF_FAST_STEPS);
+    stored(&d->cells.all[at], sum * ACDF_FAST_STEPS);
     stored(&d->below[at], Ints{});
     stored(&d->mass[at], Ints{});
-    std::uint32_t draws = d->mixed_count; // a register: else each lane waits for the one before
-    for (unsigned k = 0; k < ACDF_WIDTH; ++k) {
-        d->mixed[draws] = (std::uint32_t)(at + k);
-        draws += others >> k & 1u;
+    d->lit |= (std::uint64_t)bits(is_lit) << at;
+}
+
+/* acdf_local_fast_light of the lanes that draw lights. Returns those that it does not tell: next to borders. */
+template <class At>
+ACDF_LANE std::uint64_t draw_lights(const AcdfLocal& local, const At& at, FastDraws* d) {
+    std::uint64_t lost = 0;
+    for (std::uint64_t left = d->lit; left;) {
+        alignas(64) long long lane[ACDF_WIDTH], number[ACDF_WIDTH];
+        alignas(64) double weight[ACDF_WIDTH], before[ACDF_WIDTH];
+        left = next_lanes(left, lane);
+        LightDraws draws(gathered_doubles(d->x, loaded(lane)));
+        offer_lights(local, at, *d, lane, &draws);
+        stored(number, draws.number);
+        stored(weight, draws.weight);
+        stored(before, draws.before);
+        for (int i = 0; i < ACDF_WIDTH; ++i) {
+            const std::uint32_t tile = local.lights[number[i]].tile;
+            ACDF_PREFETCH(acdf_local_tile(local.tables, tile));
+            d->tile[lane[i]] = (std::int32_t)tile;
+            d->cells.of[lane[i]] = weight[i];
+            d->before[lane[i]] = before[i];
+            lost |= (std::uint64_t) !(weight[i] > 0.0) << lane[i];
+        }
     }
-    d->mixed_count = draws;
     return lost;
 }
 
 /* acdf_fast_group_of of all lanes that draw from the mixture. */
 ACDF_LANE void search_groups(FastDraws* d) {
     FastLanes& w = d->rows;
-    for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
-        const std::uint32_t i = d->mixed[k];
+    for (std::uint64_t left = d->mixed; left; left &= left - 1) {
+        const auto i = (std::uint32_t)__builtin_ctzll(left);
         const std::uint16_t* const upper[kRows] = {(const std::uint16_t*)d->upper[0][i],
                                                    (const std::uint16_t*)d->upper[1][i],
                                                    (const std::uint16_t*)d->upper[2][i]};
@@ -110,8 +96,8 @@ ACDF_LANE void search_groups(FastDraws* d) {
         d->number[i] = (std::int32_t)first;
         for (int row = 0; row < kRows; ++row) ACDF_PREFETCH((const std::uint16_t*)w.group[row][i] + first);
     }
-    for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
-        const std::uint32_t i = d->mixed[k];
+    for (std::uint64_t left = d->mixed; left; left &= left - 1) {
+        const auto i = (std::uint32_t)__builtin_ctzll(left);
         const std::uint16_t* const group[kRows] = {(const std::uint16_t*)w.group[0][i],
                                                    (const std::uint16_t*)w.group[1][i],
                                                    (const std::uint16_t*)w.group[2][i]};
@@ -125,8 +111,8 @@ ACDF_LANE void search_groups(FastDraws* d) {
 /* acdf_fast_tile_of of the same. */
 ACDF_LANE void search_tiles(const AcdfLocal& local, FastDraws* d) {
     const FastLanes& w = d->rows;
-    for (std::uint32_t k = 0; k < d->mixed_count; ++k) {
-        const std::uint32_t i = d->mixed[k], first = ACDF_FAST_GROUP * (std::uint32_t)d->number[i];
+    for (std::uint64_t left = d->mixed; left; left &= left - 1) {
+        const auto i = (std::uint32_t)__builtin_ctzll(left), first = ACDF_FAST_GROUP * (std::uint32_t)d->number[i];
         Sixteen ends;
         std::int32_t sum[4 + 16];
         ends.mix(sixteen_widened((const std::uint8_t*)w.tile_row[0][i] + first),
@@ -153,7 +139,7 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
         for (int i = 0; i < kRows; ++i) stored(&d->part[i][at], g.part[i]);
         stored(&d->group_mass[at], g.mass);
         stored(&d->group_below[at], g.below);
-        stored(&d->whole[at], g.whole);
+        stored(&d->group_whole[at], g.whole);
         const Vector scaled_u = scaled(loaded(&d->cells.u[1][at]), 255.0 * g.whole);
         stored(&y[at], scaled_u);
         stored(&d->at[at], to_integers(scaled_u));
@@ -161,7 +147,7 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
     search_tiles(local, d);
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
         FastCells& c = d->cells;
-        const Integer lit = loaded(&d->lit[at]);
+        const Integer lit = loaded(&d->is_lit[at]);
         const Vector of_group = loaded(&d->group_mass[at]), of_tile = to_doubles(loaded(&d->mass[at]));
         const Vector light = loaded(&c.of[at]),
                      below = select(lit, loaded(&d->before[at]), loaded(&d->group_below[at]));
@@ -170,7 +156,7 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
         stored(&c.u[0][at], select(lit, unit_interval(left), left));
         stored(&c.u[1][at], select(lit, loaded(&c.u[1][at]), in_group));
         stored(&c.of[at], select(lit, light, of_group * of_tile * loaded(&d->rows.unit[at])));
-        stored(&c.all[at], select(lit, loaded(&c.all[at]), loaded(&d->whole[at]) * ACDF_FAST_STEPS));
+        stored(&c.all[at], select(lit, loaded(&c.all[at]), loaded(&d->group_whole[at]) * ACDF_FAST_STEPS));
     }
 }
 
@@ -259,13 +245,21 @@ ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone
     FastDraws d;
     const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes; // those behind the last one are not served
     std::uint64_t lost = 0;
-    d.mixed_count = 0;
     at(whole, count, [&](const FastPoints<true>& p, std::size_t first) {
-        const std::size_t more = lanes_there(first, count);
-        Vector v[2];
-        numbers_of(u + first, more, v);
-        lost |= (std::uint64_t)begin_draws(local, p, v, (1u << more) - 1u, first, &d) << first;
+        keep_draws(p, first, &d);
+        lost |= not_served(p, first);
     });
+    end_points(local, &d);
+    d.lit = 0;
+    for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) {
+        Vector v[2];
+        numbers_of(u + first, lanes_there(first, count), v);
+        begin_draws(v, first, &d);
+    }
+    const std::uint64_t there = (count < kBlock ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0}) & ~lost;
+    d.mixed = ~d.lit & there;
+    d.lit &= there;
+    lost |= draw_lights(local, at, &d);
     draw_tiles(local, whole, &d);
     end_draws(local, &d, lost, alone, count, out);
 }

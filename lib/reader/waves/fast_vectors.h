@@ -3,7 +3,7 @@
 // Internal linkage: see local_kernel.h.
 #pragma once
 
-#include "waves/local_tile_vectors.h"
+#include "waves/local_light_vectors.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -197,17 +197,15 @@ ACDF_LANE std::uint32_t end_at_least(const std::uint8_t* ends, std::int32_t leas
 
 // ---- shading points --------------------------------------------------------------------------------------------
 
-/// Points of the fast shape. What AcdfFastMixture and AcdfLocalPoint have of it, and addresses.
+/// Points of the fast shape: what AcdfFastMixture and AcdfLocalPoint have of it, and addresses. Lights are those
+/// that LightLanes do not add.
 template <bool Draws>
 struct FastPoints : Corners {
-    static constexpr bool kDraws = Draws;
-    Integer group[kRows], tile[kRows], upper[kRows];
+    static constexpr bool kEach = false;
+    Integer group[kRows], tile[kRows], upper[Draws ? kRows : 1];
     Ints share[kRows]; // AcdfFastMixture::weight
-    Vector whole, mixture, lights, sum, step, unit, light[Draws ? ACDF_MAX_LIGHTS : 1],
-        light_end[Draws ? ACDF_MAX_LIGHTS : 1];
-    Integer others;    // of densities, in the lower halves: AcdfFacet::others, whose lights are not in any sum yet
-    std::uint32_t lit; // as AcdfLocalPoint has them
-    std::uint8_t pair[ACDF_MAX_LIGHTS / 2];
+    Vector whole, mixture, lights, sum, step, unit;
+    Integer others; // in the lower halves, AcdfFacet::others
 };
 
 /* acdf_fast_mix */
@@ -219,22 +217,7 @@ ACDF_LANE void mix_rows(Vector mixture, FastPoints<Draws>* out) {
     out->whole = to_doubles(whole);
 }
 
-/* acdf_local_tabled_lights; of densities only the sum of those above the horizons of all. */
-ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<true>* out) {
-    Vector end = all(0.0);
-    out->lit = 0;
-    out->lights = facet_lights<true>(local, *out, [&](std::uint32_t k, const Vector* weight) {
-        const std::uint32_t at = out->lit;
-        for (std::uint32_t i = 0; i < 2; ++i) out->light[at + i] = weight[i];
-        out->light_end[at] = weight[0] + end;
-        out->light_end[at + 1] = end = (weight[1] + weight[0]) + end;
-        out->pair[at / 2] = (std::uint8_t)k;
-        out->lit += 2;
-    });
-}
-ACDF_LANE void weigh_fast_lights(const AcdfLocal& local, FastPoints<false>* out) { leave_others(local, out); }
-
-/* What densities need of the sum of all. */
+/* Of the sum of all. */
 ACDF_LANE Vector unit_of(Vector mixture, Vector sum, Vector whole) {
     return mixture / (sum * (32767.0 * 255.0 * whole));
 }
@@ -251,7 +234,7 @@ ACDF_LANE void set_points(const AcdfLocal& local, FastPoints<Draws>* out) {
     }
     out->mixture = (out->weight[0] + out->weight[1]) + out->weight[2];
     mix_rows(out->mixture, out);
-    weigh_fast_lights(local, out);
+    leave_others(local, out);
     out->sum = out->lights + out->mixture;
     if (Draws) out->step = 32767.0 * out->whole / out->mixture;
     out->unit = unit_of(out->mixture, out->sum, out->whole);
@@ -264,14 +247,8 @@ ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoin
     for (int i = 0; i < kRows; ++i) {
         out->group[i] = Integer{} + (long long)(std::uintptr_t)mix.group[i];
         out->tile[i] = Integer{} + (long long)(std::uintptr_t)mix.tile[i];
-        out->upper[i] = Integer{} + (long long)(std::uintptr_t)mix.upper[i];
+        if (Draws) out->upper[i] = Integer{} + (long long)(std::uintptr_t)mix.upper[i];
         out->share[i] = Ints{} + mix.weight[i];
-    }
-    out->lit = Draws ? point.lit : 0;
-    for (std::uint32_t i = 0; i < out->lit; ++i) {
-        out->light[i] = all(point.light[i]);
-        out->light_end[i] = all(point.light_end[i]);
-        out->pair[i / 2] = point.pair[i / 2];
     }
     for (int i = 0; i < 3; ++i) out->normal[i] = all(point.normal[i]);
     out->length = all(point.length);
@@ -294,15 +271,35 @@ struct FastLanes {
     alignas(64) double unit[kRoom];
 };
 
-/* Begins lanes: what their points have of rows. */
+/// What lanes have of their points.
+struct FastPointLanes {
+    FastLanes rows;
+    LightLanes lights;
+    alignas(64) double whole[kRoom];
+    alignas(64) long long facet[kRoom]; // of draws: in which byte of all it begins
+};
+
+/* Those of a vector from a lane on. */
 template <bool Draws>
-ACDF_LANE void keep_rows(const FastPoints<Draws>& p, std::size_t at, FastLanes* w) {
+ACDF_LANE void keep_points(const FastPoints<Draws>& p, std::size_t at, FastPointLanes* l) {
     for (int i = 0; i < kRows; ++i) {
-        stored(&w->group[i][at], p.group[i]);
-        stored(&w->tile_row[i][at], p.tile[i]);
-        stored(&w->share[i][at], p.share[i]);
+        stored(&l->rows.group[i][at], p.group[i]);
+        stored(&l->rows.tile_row[i][at], p.tile[i]);
+        stored(&l->rows.share[i][at], p.share[i]);
     }
-    stored(&w->unit[at], p.unit);
+    stored(&l->rows.unit[at], p.unit);
+    keep_lights(p, at, &l->lights);
+    stored(&l->whole[at], p.whole);
+    if (Draws) stored(&l->facet[at], p.facet);
+}
+
+/* What other lights change of them. */
+ACDF_LANE void end_points(const AcdfLocal& local, FastPointLanes* l) {
+    add_other_lights(local, &l->lights, [l](const long long* lane, Integer at, Vector mixture, Vector sum) {
+        alignas(64) double unit[ACDF_WIDTH];
+        stored(unit, unit_of(mixture, sum, (Vector)gathered<8>(l->whole, at)));
+        for (int i = 0; i < ACDF_WIDTH; ++i) l->rows.unit[lane[i]] = unit[i];
+    });
 }
 
 /// Groups of a vector: the weights of rows in them, what all have of them, and of those before.

@@ -29,9 +29,9 @@ ACDF_LANE std::uint64_t not_served(const Corners& p, std::size_t first) {
 /// Of lanes that are not served the rows are some of the table, and all else is any number.
 template <bool Draws>
 struct Points : Corners {
-    static constexpr bool kDraws = Draws;
-    Integer codes[kRows]; // addresses of those of the rows
-    Integer others;       // of densities, in the lower halves: AcdfFacet::others, which sums leave out
+    static constexpr bool kEach = Draws; // whether they have the weight of each light
+    Integer codes[kRows];                // addresses of those of the rows
+    Integer others; // of densities, in the lower halves: AcdfFacet::others, which sums leave out
     Vector lights, mixture, sum, light[Draws ? ACDF_MAX_LIGHTS : 1];
 };
 
@@ -50,9 +50,9 @@ ACDF_LANE const AcdfFacet& facet_at(const AcdfLocal& local, long long byte) {
 
 /// What facets of lanes tell of their lights.
 struct Facets {
-    Vector whole;           // acdf_facet_whole
-    Integer others;         // in the lower halves, AcdfFacet::others
-    std::uint32_t any, lit; // what any lane has of others, and of those that are seen
+    Vector whole;      // acdf_facet_whole
+    Integer others;    // in the lower halves, AcdfFacet::others
+    std::uint32_t any; // what any lane has of these
 };
 
 ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
@@ -60,14 +60,13 @@ ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
     const double* from[2][ACDF_WIDTH];
     Vector low[2], high[2];
     Facets out;
-    out.any = out.lit = 0;
+    out.any = 0;
     stored(facet, at.facet);
     for (int i = 0; i < ACDF_WIDTH; ++i) {
         const AcdfFacet& of = facet_at(local, facet[i]);
         from[0][i] = of.whole;
         from[1][i] = of.whole + 2;
         out.any |= of.others;
-        out.lit |= of.seen;
     }
     gather_pairs(from[0], low);
     gather_pairs(from[1], high);
@@ -76,42 +75,26 @@ ACDF_LANE Facets facets_of(const AcdfLocal& local, const Corners& at) {
     return out;
 }
 
-/* What the pairs of `left` give to normals that have them among others; `weighed(k, weight)` is told their weights.
- */
-template <class Weighed>
-ACDF_LANE Vector other_lights(const AcdfLocal& local, const Corners& at, Integer others, std::uint32_t left,
-                              const Weighed& weighed) {
+/* What the pairs of `left` give to normals that have them among others. */
+ACDF_LANE Vector other_lights(const AcdfLocal& local, const Corners& at, Integer others, std::uint32_t left) {
     const AcdfLightPair* const pair = acdf_local_lights(local.tables);
     const Vector inverse = 1.0 / at.length;
     Vector sum[2] = {all(0.0), all(0.0)};
     for (; left; left &= left - 1) {
         const std::uint32_t k = acdf_lowest_bit(left);
         const Mask is_other = negative(others << (63 - k));
-        Vector weight[2];
-        for (std::uint32_t i = 0; i < 2; ++i) {
-            weight[i] = pair_weight(at, pair[k], i, inverse);
-            sum[i] += choose(is_other, weight[i], all(0.0));
-        }
-        weighed(k, weight);
+        for (std::uint32_t i = 0; i < 2; ++i)
+            sum[i] += choose(is_other, pair_weight(at, pair[k], i, inverse), all(0.0));
     }
     return sum[0] + sum[1];
 }
 
-/* Of points for densities: the lights above the horizons of all normals of a triangle, and which others there are.
- */
+/* The lights above the horizons of all normals of a triangle, and which others there are. */
 template <class P>
 ACDF_LANE void leave_others(const AcdfLocal& local, P* out) {
     const Facets of = facets_of(local, *out);
     out->lights = of.whole;
     out->others = of.others;
-}
-
-/* acdf_facet_lights. Facets of neighbouring lanes may differ: `weighed(k, weight)` is told the weights of a pair
- * that any lane has of others, or `Each`: that any may see, and k counts these. */
-template <bool Each, class Weighed>
-ACDF_LANE Vector facet_lights(const AcdfLocal& local, const Corners& at, const Weighed& weighed) {
-    const Facets of = facets_of(local, at);
-    return of.whole + other_lights(local, at, of.others, Each ? of.lit : of.any, weighed);
 }
 
 /* The weight of each light, as acdf_light_weight has it. The horizon cuts few lights: those are weighed again. */
@@ -141,7 +124,8 @@ ACDF_LANE void weigh_each(const AcdfLocal& local, Points<true>* out) {
 /* All lights, and of densities those that all normals of a triangle see. */
 ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<true>* out) {
     weigh_each(local, out);
-    out->lights = facet_lights<false>(local, *out, [](std::uint32_t, const Vector*) {});
+    const Facets of = facets_of(local, *out);
+    out->lights = of.whole + other_lights(local, *out, of.others, of.any); // acdf_facet_lights
 }
 ACDF_LANE void weigh_lights(const AcdfLocal& local, Points<false>* out) { leave_others(local, out); }
 
@@ -248,17 +232,17 @@ struct PointsOf {
     template <class Then>
     ACDF_LANE_MEMBER void operator()(std::size_t whole, std::size_t count, const Then& then) const {
         constexpr std::size_t lanes = kTurns * ACDF_WIDTH;
-        std::conditional_t<P::kDraws, P, Corners> room[kTurns];
+        std::conditional_t<P::kEach, P, Corners> room[kTurns];
         for (std::size_t first = 0; first < whole; first += lanes) {
             float last[lanes][3] = {};
             const bool all = count - first >= lanes;
             if (!all) std::memcpy(last, normals + first, (count - first) * sizeof *normals);
             corners_of(local, all ? normals + first : last, room);
-            if constexpr (P::kDraws) {
+            if constexpr (P::kEach) {
                 for (P& points : room) set_points(local, &points);
                 for (int t = 0; t < kTurns; ++t) then(room[t], first + (std::size_t)t * ACDF_WIDTH);
             } else {
-                for (int t = 0; t < kTurns; ++t) { // what densities need of a point stays in registers
+                for (int t = 0; t < kTurns; ++t) { // which stays in registers
                     P points;
                     (Corners&)points = room[t];
                     set_points(local, &points);
@@ -270,8 +254,9 @@ struct PointsOf {
 };
 template <class P>
 struct OnePoint {
+    const AcdfLocalPoint& point;
     P points;
-    OnePoint(const AcdfLocal& local, const AcdfLocalPoint& point) { points_of(local, point, &points); }
+    OnePoint(const AcdfLocal& local, const AcdfLocalPoint& at) : point(at) { points_of(local, at, &points); }
     template <class Then>
     ACDF_LANE_MEMBER void operator()(std::size_t whole, std::size_t, const Then& then) const {
         for (std::size_t first = 0; first < whole; first += ACDF_WIDTH) then(points, first);
