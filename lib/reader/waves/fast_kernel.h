@@ -25,7 +25,8 @@ struct FastDraws : FastPointLanes {
     alignas(64) long long upper[kRows][kRoom], is_lit[kRoom];      // is_lit: all ones, or 0
     alignas(64) std::int32_t at[kRoom], below[kRoom], mass[kRoom]; // at: x or what is next; the others of tiles
     alignas(64) std::int32_t end[kRows][kRoom], ends[2][kRoom];    // of groups, of cells; as they lie
-    alignas(64) std::int32_t part[kRows][kRoom], number[kRoom], tile[kRoom]; // part: weights in the group
+    alignas(64) std::int32_t number[kRoom], tile[kRoom];
+    alignas(64) std::int32_t pair[kRoom], last[kRoom]; // weights of the first two rows, and of the third
     alignas(64) double group_mass[kRoom], group_below[kRoom], group_whole[kRoom];
 };
 
@@ -33,6 +34,8 @@ struct FastDraws : FastPointLanes {
 ACDF_LANE void keep_draws(const FastPoints<true>& p, std::size_t at, FastDraws* d) {
     keep_points(p, at, d);
     stored(&d->step[at], p.step);
+    stored(&d->pair[at], p.share[0] | p.share[1] << 16);
+    stored(&d->last[at], p.share[2]);
     for (int i = 0; i < kRows; ++i) stored(&d->upper[i][at], p.upper[i]);
 }
 
@@ -91,18 +94,16 @@ ACDF_LANE void search_groups(FastDraws* d) {
         const std::uint16_t* const upper[kRows] = {(const std::uint16_t*)d->upper[0][i],
                                                    (const std::uint16_t*)d->upper[1][i],
                                                    (const std::uint16_t*)d->upper[2][i]};
-        const std::uint32_t first =
-            16u * search_words(upper, 0, w.share[0][i] | w.share[1][i] << 16, w.share[2][i], d->at[i]);
+        const std::uint32_t first = 16u * search_words(upper, 0, d->pair[i], d->last[i], d->at[i]);
         d->number[i] = (std::int32_t)first;
-        for (int row = 0; row < kRows; ++row) ACDF_PREFETCH((const std::uint16_t*)w.group[row][i] + first);
     }
     for (std::uint64_t left = d->mixed; left; left &= left - 1) {
         const auto i = (std::uint32_t)__builtin_ctzll(left);
         const std::uint16_t* const group[kRows] = {(const std::uint16_t*)w.group[0][i],
                                                    (const std::uint16_t*)w.group[1][i],
                                                    (const std::uint16_t*)w.group[2][i]};
-        const std::uint32_t number = search_words(group, (std::uint32_t)d->number[i],
-                                                  w.share[0][i] | w.share[1][i] << 16, w.share[2][i], d->at[i]);
+        const std::uint32_t number =
+            search_words(group, (std::uint32_t)d->number[i], d->pair[i], d->last[i], d->at[i]);
         for (int row = 0; row < kRows; ++row) d->end[row][i] = ends_of(w, row, i, number);
         d->number[i] = (std::int32_t)number;
     }
@@ -117,8 +118,7 @@ ACDF_LANE void search_tiles(const AcdfLocal& local, FastDraws* d) {
         std::int32_t sum[4 + 16];
         ends.mix(sixteen_widened((const std::uint8_t*)w.tile_row[0][i] + first),
                  sixteen_widened((const std::uint8_t*)w.tile_row[1][i] + first),
-                 sixteen_widened((const std::uint8_t*)w.tile_row[2][i] + first),
-                 d->part[0][i] | d->part[1][i] << 16, d->part[2][i]);
+                 sixteen_widened((const std::uint8_t*)w.tile_row[2][i] + first), d->pair[i], d->last[i]);
         const std::uint32_t tile = acdf_lowest_bit(ends.above(d->at[i])) / Sixteen::kBits;
         sum[3] = 0;
         ends.store(sum + 4);
@@ -136,7 +136,8 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
     for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
         const Ints ends[kRows] = {loaded(&d->end[0][at]), loaded(&d->end[1][at]), loaded(&d->end[2][at])};
         const FastGroups g = find_groups(d->rows, ends, loaded(&d->number[at]) > 0, at);
-        for (int i = 0; i < kRows; ++i) stored(&d->part[i][at], g.part[i]);
+        stored(&d->pair[at], g.part[0] | g.part[1] << 16); // in the group from now on
+        stored(&d->last[at], g.part[2]);
         stored(&d->group_mass[at], g.mass);
         stored(&d->group_below[at], g.below);
         stored(&d->group_whole[at], g.whole);

@@ -6,16 +6,18 @@
 
 namespace {
 
-/// Lanes that draw lights by x of the sum of weights: the light whose weights up to it are above x, those before it
-/// not, its weight and the sum before it; weight 0 where there is none.
+/// Lanes that draw lights by x of the sum of weights: the first light that takes that sum above x, its weight and
+/// the sum before it; weight 0 where there is none.
 struct LightDraws {
     Vector x, weight = all(0.0), before = all(0.0);
     Integer number = {};
+    Mask passed = no_lanes(); // those that have theirs
 
     ACDF_LANE_MEMBER explicit LightDraws(Vector at) : x(at) {}
-    /* A light, or none of them. */
+    /* The next light: sums never fall. */
     ACDF_LANE_MEMBER void offer(std::uint32_t light, Vector its_weight, Vector begin, Vector end) {
-        const Mask is = without(less(x, end), less(x, begin));
+        const Mask above = less(x, end), is = without(above, passed);
+        passed = above;
         weight = choose(is, its_weight, weight);
         before = choose(is, begin, before);
         number = choose(is, Integer{} + (long long)light, number);

@@ -26,6 +26,7 @@ ACDF_LANE Mask both(Mask a, Mask b) { return _kand_mask8(a, b); }
 ACDF_LANE Mask either(Mask a, Mask b) { return _kor_mask8(a, b); }
 ACDF_LANE Mask without(Mask a, Mask b) { return _kandn_mask8(b, a); } /* a and not b */
 ACDF_LANE Mask all_lanes() { return 0xFF; }
+ACDF_LANE Mask no_lanes() { return 0; }
 ACDF_LANE unsigned lanes(Mask mask) { return mask; }
 ACDF_LANE Vector choose(Mask mask, Vector yes, Vector no) {
     return (Vector)_mm512_mask_blend_pd(mask, (__m512d)no, (__m512d)yes);
@@ -36,6 +37,7 @@ ACDF_LANE Integer choose(Mask mask, Integer yes, Integer no) {
 #else
 typedef __m256d Mask;
 ACDF_LANE Mask all_lanes() { return (Mask)_mm256_set1_epi64x(-1); }
+ACDF_LANE Mask no_lanes() { return _mm256_setzero_pd(); }
 ACDF_LANE Mask less(Vector a, Vector b) { return _mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_LT_OQ); }
 ACDF_LANE Mask equal(Integer a, Integer b) { return (Mask)_mm256_cmpeq_epi64((__m256i)a, (__m256i)b); }
 ACDF_LANE Mask without(Mask a, Mask b) { return _mm256_andnot_pd(b, a); }
