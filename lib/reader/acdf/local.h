@@ -112,7 +112,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     double p;
-    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, u);
+    if (point->what == ACDF_LOCAL_FAST) return acdf_local_fast_sample(local, point, 1, u);
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
@@ -158,7 +158,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLoca
     double u[2];
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
-    out = acdf_local_fast_sample(local, point, u);
+    out = acdf_local_fast_sample(local, point, 1, u);
     return acdf_returned(&out);
 }
 
@@ -170,11 +170,34 @@ ACDF_FN AcdfDirectionSample acdf_local_sample_at(const AcdfLocal* local, const A
                                               : acdf_local_any_sample_at(local, point, u0, u1);
 }
 
-/* The same for a normal that serves once. */
-ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
+/* The same for a normal that serves once, by a point as others have it. */
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_new_sample(const AcdfLocal* local, const float normal[3],
+                                                                  double u0, double u1) {
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     return acdf_local_sample_at(local, &point, u0, u1);
+}
+/* And of the fast shape with tables, by one that nobody else sees: what is in registers stays there. */
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_new_fast_sample(const AcdfLocal* local, const float normal[3],
+                                                                   double u0, double u1) {
+    AcdfLocalPoint point;
+    AcdfDirectionSample out;
+    double u[2];
+    acdf_local_no_rows(normal, &point);
+    if (local->cosine_share != 0.0 || !local->tables->facets ||
+        !acdf_local_fast_corners(local, point.surface, 1, &point))
+        return acdf_local_any_new_sample(local, normal, u0, u1);
+    acdf_local_fast_sum(local, 0, &point);
+    if (point.what != ACDF_LOCAL_FAST) return acdf_local_any_new_sample(local, normal, u0, u1);
+    u[0] = acdf_unit_interval(u0);
+    u[1] = acdf_unit_interval(u1);
+    out = acdf_local_fast_sample(local, &point, 0, u);
+    return acdf_returned(&out);
+}
+/* In any. */
+ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {
+    return local->tables && local->fast.grid ? acdf_local_new_fast_sample(local, normal, u0, u1)
+                                             : acdf_local_any_new_sample(local, normal, u0, u1);
 }
 
 /* Integral of the light above the horizon times the cosine, interpolated between bins; where those of the normal

@@ -73,25 +73,100 @@ ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
     return 2u * point->pair[i / 2] + i % 2;
 }
 
-/* Of those the one that x of the sum of weights draws, and what is left of x as a number in [0, 1]. */
-ACDF_INLINE uint32_t acdf_local_fast_light(const AcdfLocalPoint* point, double x, double* u) {
+/* A light that is drawn: its number, its weight, and the sum of those before it. */
+typedef struct AcdfDrawnLight {
+    uint32_t number;
+    double weight, before;
+} AcdfDrawnLight;
+
+/* Of those that a point has weighed the one that x of their sum draws. */
+ACDF_INLINE AcdfDrawnLight acdf_local_fast_light(const AcdfLocalPoint* point, double x) {
     uint32_t i = acdf_local_fast_passed(point, x);
+    AcdfDrawnLight out;
     while (i >= point->lit || !(point->light[i] > 0.0)) --i; /* x is the whole of them, or rounded to it */
-    *u = acdf_unit_interval((x - (i > 0 ? point->light_end[i - 1] : 0.0)) / point->light[i]);
-    return i;
+    out.number = acdf_local_lit(point, i);
+    out.weight = point->light[i];
+    out.before = i > 0 ? point->light_end[i - 1] : 0.0;
+    return out;
 }
 
-/* Draws a cell; u and range as in acdf_tree_sample. Returns its probability. */
-ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
-                                               AcdfRange* range) {
+/* The same where they are not weighed, but their facet is known: the first one that takes the sum of
+ * acdf_local_tabled_lights above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes that.
+ */
+ACDF_INLINE AcdfDrawnLight acdf_local_facet_light(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
+                                                  double* whole) {
+    const AcdfLightPair* pairs = acdf_local_lights(local->tables);
+    uint32_t left = point->facet->seen;
+    AcdfDrawnLight out = {0, 0.0, 0.0};
+#ifdef ACDF_SSE2
+    const AcdfHorizon horizon = acdf_horizon(point);
+    const __m128d inverse = _mm_set1_pd(1.0 / point->length), zero = _mm_setzero_pd(), at = _mm_set1_pd(x);
+    __m128d end = zero;
+    for (; left; left &= left - 1) {
+        const uint32_t k = acdf_lowest_bit(left);
+        const __m128d both = acdf_pair_weights(&horizon, pairs + k, inverse), before = end;
+        uint32_t above;
+        end = _mm_add_pd(_mm_add_pd(both, _mm_unpacklo_pd(zero, both)), end);
+        above = (uint32_t)_mm_movemask_pd(_mm_cmplt_pd(at, end));
+        if (above > 0) {
+            const uint32_t second = (uint32_t)(above != 3);
+            out.number = 2 * k + second;
+            out.weight = _mm_cvtsd_f64(second ? _mm_unpackhi_pd(both, both) : both);
+            out.before = _mm_cvtsd_f64(second ? end : before);
+            return out;
+        }
+        end = _mm_unpackhi_pd(end, end);
+    }
+    *whole = _mm_cvtsd_f64(end);
+#else
+    const double inverse = 1.0 / point->length;
+    double end = 0.0;
+    for (; left; left &= left - 1) {
+        const uint32_t k = acdf_lowest_bit(left);
+        const double first = acdf_pair_weight(point, pairs + k, 0, inverse),
+                     second = acdf_pair_weight(point, pairs + k, 1, inverse);
+        const double middle = first + end, last = (second + first) + end;
+        if (x < last) {
+            const uint32_t is_second = (uint32_t) !(x < middle);
+            out.number = 2 * k + is_second;
+            out.weight = is_second ? second : first;
+            out.before = is_second ? middle : end;
+            return out;
+        }
+        end = last;
+    }
+    *whole = end;
+#endif
+    return out;
+}
+
+/* The light that x of the sum of weights draws at a point, of which none is known but a facet if `weighed` is 0;
+ * what is left of x as a number in [0, 1]. */
+ACDF_INLINE AcdfDrawnLight acdf_local_draw_fast_light(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                      const int weighed, double x, double* u) {
+    AcdfDrawnLight out;
+    double whole = 0.0;
+    if (weighed) out = acdf_local_fast_light(point, x);
+    else {
+        out = acdf_local_facet_light(local, point, x, &whole);
+        if (!(out.weight > 0.0)) out = acdf_local_facet_light(local, point, whole * (1.0 - 0x1p-53), &whole);
+    }
+    *u = acdf_unit_interval((x - out.before) / out.weight);
+    return out;
+}
+
+/* Draws a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
+ * weight of each light, or a facet. */
+ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                               const int weighed, double* u, AcdfRange* range) {
     const double x = u[0] * point->sum;
     AcdfFastShare share;
     AcdfFastGrid grid;
     uint32_t tile;
     if (x < point->lights || point->mix.count == 0) {
-        const uint32_t i = acdf_local_fast_light(point, x, u);
-        tile = local->lights[acdf_local_lit(point, i)].tile;
-        share.of = point->light[i];
+        const AcdfDrawnLight light = acdf_local_draw_fast_light(local, point, weighed, x, u);
+        tile = local->lights[light.number].tile;
+        share.of = light.weight;
         share.all = point->sum * ACDF_FAST_STEPS;
     } else {
         const double most = 32767.0 * point->fast.whole * (1.0 - 0x1p-53);
@@ -161,14 +236,14 @@ ACDF_INLINE AcdfDirectionSample acdf_local_fast_place(const AcdfLocal* local, co
     return out;
 }
 
-/* acdf_local_row_sample of this shape. */
+/* acdf_local_row_sample of this shape; `weighed` as above. */
 ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
-                                                       double* u) {
+                                                       const int weighed, double* u) {
     const AcdfGrid grid = acdf_environment_grid(&local->environment);
     AcdfRange range[2];
     AcdfFastShare share;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    share = acdf_local_fast_draw(local, point, u, range);
+    share = acdf_local_fast_draw(local, point, weighed, u, range);
     return acdf_local_fast_place(local, &grid, range, u, &share);
 }
 

@@ -226,6 +226,32 @@ TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
     find_tiles_where_all_is_cut(127, 101, 1);
 }
 
+// A draw for a normal that serves once is that at its point, to the bit: also where lights end.
+TEST(FastShape, DrawsOfANormalAreThoseOfItsPoint) {
+    int lit = 0;
+    for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
+        const FastFile loaded(random_fast(seed), true);
+        const acdf::LocalEnvironmentView view = loaded.file.local();
+        std::mt19937_64 rng(seed);
+        for (int i = 0; i < 60; ++i) {
+            const Normal normal = normal_of_any_length(rng);
+            const AcdfLocalPoint point = view.at(normal.data());
+            const double border = point.sum > 0.0 ? point.lights / point.sum : 0.5;
+            double below = border;
+            lit += point.lights > 0.0;
+            for (const double u0 :
+                 {0.0, 1.0, border, below = std::nextafter(below, 0.0), below = std::nextafter(below, 0.0),
+                                    uniform(rng) * border, uniform(rng)}) {
+                const double u1 = uniform(rng);
+                const AcdfDirectionSample once = view.sample(normal.data(), u0, u1),
+                                          at = view.sample(point, u0, u1);
+                ASSERT_EQ(std::memcmp(&once, &at, sizeof at), 0) << "seed " << seed << ", " << i << ", " << u0;
+            }
+        }
+    }
+    EXPECT_GT(lit, 1000);
+}
+
 TEST(FastShape, StrataStayStrata) {
     const FastFile loaded(random_fast(7), true);
     const acdf::LocalEnvironmentView view = loaded.file.local();
