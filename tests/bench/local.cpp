@@ -69,6 +69,14 @@ Candidate each(const LocalEnvironmentView& view, const Questions& q, std::size_t
             }};
 }
 
+/// Draws at a normal that serves once.
+Candidate draw_each(const LocalEnvironmentView& view, const Questions& q) {
+    return {"", [&](std::size_t first, std::size_t count) {
+                for (std::size_t i = first; i < first + count; ++i)
+                    keep(view.sample(q.normals[i].data(), q.u[i][0], q.u[i][1]));
+            }};
+}
+
 /// Densities at a normal that serves once.
 Candidate density_each(const LocalEnvironmentView& view, const Questions& q, const Directions& directions) {
     return {"", [&](std::size_t first, std::size_t count) {
@@ -139,12 +147,13 @@ bool run(const char* path) {
         static_cast<unsigned long long>(tables.table_bytes()), columns, columns / 2);
     Compared all = {full, plain, fast};
     const auto nothing = [](const auto&, const AcdfLocalPoint& point, std::size_t) { keep(point); };
-    const auto draw_of = [](const Questions& of) {
-        return [&of](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
-            keep(view.sample(point, of.u[k][0], of.u[k][1]));
-        };
+    const auto draw = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
+        keep(view.sample(point, q.u[k][0], q.u[k][1]));
     };
-    const auto draw = draw_of(q);
+    const auto both = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
+        keep(view.sample(point, q.u[k][0], q.u[k][1]));
+        keep(view.pdf(point, q.anywhere[k].data()));
+    };
     const auto drawn = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.pdf(point, q.drawn[k].data()));
     };
@@ -180,25 +189,33 @@ bool run(const char* path) {
                           densities.data());
         };
     };
-    const auto at_points_of = [](const Questions& asked, std::size_t shared, const auto& ask) {
-        return [&asked, shared, ask](const LocalEnvironmentView& view) { return each(view, asked, shared, ask); };
+    const auto full_both = [&](std::size_t i) {
+        full_draw(i);
+        full_anywhere(i);
     };
-    const auto at_points = [&](std::size_t shared, const auto& ask) { return at_points_of(q, shared, ask); };
+    const auto at_points = [&](std::size_t shared, const auto& ask) {
+        return [&q, shared, ask](const LocalEnvironmentView& view) { return each(view, q, shared, ask); };
+    };
+    const auto draw_once = [](const Questions& of) {
+        return [&of](const LocalEnvironmentView& view) { return draw_each(view, of); };
+    };
     const auto once = [&q](const Directions& directions) {
         return [&](const LocalEnvironmentView& view) { return density_each(view, q, directions); };
     };
     report("shading point (full table: a draw)", all, at_points(1, nothing), full_draw, nullptr);
-    report("shading point and draw", all, at_points(1, draw), full_draw, draws);
+    report("draw at a normal of its own", all, draw_once(q), full_draw, draws);
     report("one of 16 draws at a point", all, at_points(kShared, draw), full_draw, shared_draws);
     report("density of a uniform direction at a normal of its own", all, once(q.anywhere), full_anywhere,
            of(q.anywhere));
     report("density of a drawn direction at a normal of its own", all, once(q.drawn), full_drawn, of(q.drawn));
     report("one of 16 densities at a point", all, at_points(kShared, drawn), full_drawn, shared_densities);
+    report("shading point, draw, and density of another direction (full table: both)", all, at_points(1, both),
+           full_both, nullptr);
     const Questions coherent(plain, true);
-    report("shading point and draw, coherent normals and numbers", all,
-           at_points_of(coherent, 1, draw_of(coherent)), full_draw_of(coherent), draws_of(coherent));
+    report("draw, coherent normals and numbers", all, draw_once(coherent), full_draw_of(coherent),
+           draws_of(coherent));
     all.evicted = true;
-    report("shading point and draw, caches evicted", all, at_points(1, draw), full_draw, draws);
+    report("draw at a normal of its own, caches evicted", all, draw_once(q), full_draw, draws);
     report("density of a uniform direction at a normal of its own, caches evicted", all, once(q.anywhere),
            full_anywhere, of(q.anywhere));
     return true;
@@ -232,7 +249,7 @@ bool count(char** arguments, const char* how) {
         const std::size_t k = i % kCalls;
         const float* const normal = q.normals[k].data();
         if (what == 'd') keep(view.pdf(normal, q.anywhere[k].data()));
-        else if (what == 'r') keep(view.sample(view.at(normal), q.u[k][0], q.u[k][1]));
+        else if (what == 'r') keep(view.sample(normal, q.u[k][0], q.u[k][1]));
         else keep(view.at(normal));
     }
     return true;

@@ -18,7 +18,7 @@ local_file spruit_sunrise_4k.exr fast_wide --shape fast
 . "$here/instructions.sh"
 {
     "$build/tests/bench/bench_local" "$work"/{small,large,octahedral,wide,fast,fast_wide}.acdf
-    printf '\n| instructions, 1 MiB, noon_grass | shading point | and a draw | and a density |\n|---|---|---|---|\n'
+    printf '\n| instructions, 1 MiB, noon_grass | shading point | draw | density |\n|---|---|---|---|\n'
     for how in tables walk; do
         if [ $how = walk ]; then options=(walk); else options=(); fi
         printf '| by %s' $how

@@ -17,9 +17,7 @@ float local_pdf(const AcdfLocal& local, const AcdfLocalPoint& point, const float
 }
 
 AcdfDirectionSample local_sample(const AcdfLocal& local, const float normal[3], const double u[2]) noexcept {
-    AcdfLocalPoint point;
-    acdf_local_at(&local, normal, &point);
-    return local_sample(local, point, u);
+    return acdf_local_sample(&local, normal, u[0], u[1]);
 }
 float local_pdf(const AcdfLocal& local, const float normal[3], const float w[3]) noexcept {
     return acdf_local_pdf(&local, normal, w);
