@@ -94,6 +94,19 @@ ACDF_INLINE float acdf_row_pdf(const double* z, uint32_t columns, const AcdfRang
     return acdf_cell_pdf(p, range[0].high - range[0].low, columns, z[range[1].low] - z[range[1].high], 1.0);
 }
 
+/* A number of quarters of a turn, from -2 to 2, rounded as acdf_sincospi does, as a double as well: what waits for
+ * that has no way through the other registers. */
+ACDF_INLINE double acdf_row_quarters(double x, int32_t* quarter) {
+#ifdef ACDF_SSE2
+    const __m128i four = _mm_cvttpd_epi32(_mm_set_sd(x + 4.5));
+    *quarter = _mm_cvtsi128_si32(four) - 4;
+    return _mm_cvtsd_f64(_mm_cvtepi32_pd(four)) - 4.0;
+#else
+    *quarter = (int32_t)(x + 4.5) - 4;
+    return (double)*quarter;
+#endif
+}
+
 /* The direction of acdf_sphere_place but for the rounding of floats. Returns 0, and leaves `out`, next to the
  * borders of a cell or to a pole, and where there are tilts. */
 ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const AcdfRange range[2], const double u[2],
@@ -105,14 +118,15 @@ ACDF_INLINE int acdf_row_direction(const double* z, uint32_t columns, const Acdf
     const double from_north = z0 - height, from_south = height - z1;
     const double least = from_north < from_south ? from_north : from_south; /* in one instruction */
     const double turn = 1.0 - x * (2.0 / (double)columns);                  /* the quotient waits for nothing */
-    const int32_t quarter = (int32_t)(2.0 * turn + 4.5) - 4;                /* as in acdf_sincospi */
+    int32_t quarter;
+    const double quarters = acdf_row_quarters(2.0 * turn, &quarter);
     AcdfVector d;
     /* The sine of the angle to the pole is below sqrt(2 cap). */
     if (west < border || (double)range[0].high - x < border || cap < from_pole ||
         least * least < 2.0 * ACDF_FLOAT_BORDER * ACDF_FLOAT_BORDER * cap || range[0].tilt != 0.0 ||
         range[1].tilt != 0.0)
         return 0;
-    d = acdf_piece_direction((float)((turn - 0.5 * quarter) * ACDF_PI), (float)cap, (uint32_t)quarter & 3u,
+    d = acdf_piece_direction((float)((turn - 0.5 * quarters) * ACDF_PI), (float)cap, (uint32_t)quarter & 3u,
                              (uint32_t)(height < 0.0));
     out[0] = d.x;
     out[1] = d.y;
