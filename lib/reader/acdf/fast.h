@@ -56,8 +56,8 @@ ACDF_INLINE void acdf_fast_set_row(const AcdfFast* fast, AcdfFastMixture* mix, i
     mix->tile[i] = fast->tiles + (size_t)row * fast->stride;
     if (!draws) return;
     mix->upper[i] = fast->upper ? fast->upper + (size_t)row * fast->upper_ends : 0;
-    ACDF_PREFETCH(fast->upper ? mix->upper[i] : mix->group[i]);
-    for (k = 0; fast->upper && k < 128; k += 32) ACDF_PREFETCH(mix->group[i] + k); /* of most files all */
+    if (fast->upper) ACDF_PREFETCH(mix->upper[i]);
+    for (k = 0; k < 128; k += 32) ACDF_PREFETCH(mix->group[i] + k); /* of most files all */
 }
 
 /* The power of two that takes a positive number, of at least 1e-300 and at most 1e300, to between 2^13 and 2^14. */

@@ -151,15 +151,20 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
     out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
     return acdf_returned(&out);
 }
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLocal* local,
-                                                                  const AcdfLocalPoint* point, double u0,
-                                                                  double u1) {
+/* The latter; `weighed` as acdf_local_fast_draw has it. */
+ACDF_INLINE AcdfDirectionSample acdf_local_only_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
+                                                            const int weighed, double u0, double u1) {
     AcdfDirectionSample out;
     double u[2];
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
-    out = acdf_local_fast_sample(local, point, 1, u);
+    out = acdf_local_fast_sample(local, point, weighed, u);
     return acdf_returned(&out);
+}
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_fast_sample_at(const AcdfLocal* local,
+                                                                  const AcdfLocalPoint* point, double u0,
+                                                                  double u1) {
+    return acdf_local_only_fast_sample(local, point, 1, u0, u1);
 }
 
 /* Draws a direction; u0 (phi) and u1 (theta) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and no
@@ -181,18 +186,13 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_new_sample(const AcdfLoca
 ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_new_fast_sample(const AcdfLocal* local, const float normal[3],
                                                                    double u0, double u1) {
     AcdfLocalPoint point;
-    AcdfDirectionSample out;
-    double u[2];
     acdf_local_no_rows(normal, &point);
     if (local->cosine_share != 0.0 || !local->tables->facets ||
         !acdf_local_fast_corners(local, point.surface, 1, &point))
         return acdf_local_any_new_sample(local, normal, u0, u1);
     acdf_local_fast_sum(local, 0, &point);
     if (point.what != ACDF_LOCAL_FAST) return acdf_local_any_new_sample(local, normal, u0, u1);
-    u[0] = acdf_unit_interval(u0);
-    u[1] = acdf_unit_interval(u1);
-    out = acdf_local_fast_sample(local, &point, 0, u);
-    return acdf_returned(&out);
+    return acdf_local_only_fast_sample(local, &point, 0, u0, u1);
 }
 /* In any. */
 ACDF_FN AcdfDirectionSample acdf_local_sample(const AcdfLocal* local, const float normal[3], double u0, double u1) {

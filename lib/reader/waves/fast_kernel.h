@@ -257,7 +257,7 @@ ACDF_LANE void draw_fast_block(const AcdfLocal& local, const At& at, const Alone
         numbers_of(u + first, lanes_there(first, count), v);
         begin_draws(v, first, &d);
     }
-    const std::uint64_t there = (count < kBlock ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0}) & ~lost;
+    const std::uint64_t there = first_lanes(count) & ~lost;
     d.mixed = ~d.lit & there;
     d.lit &= there;
     lost |= draw_lights(local, at, &d);

@@ -252,6 +252,7 @@ ACDF_LANE void points_of(const AcdfLocal&, const AcdfLocalPoint& point, FastPoin
     }
     for (int i = 0; i < 3; ++i) out->normal[i] = all(point.normal[i]);
     out->length = all(point.length);
+    out->facet = Integer{}; // any: the point has its lights
     out->whole = all(mix.whole);
     out->lights = all(point.lights);
     out->others = Integer{};
@@ -297,7 +298,7 @@ ACDF_LANE void keep_points(const FastPoints<Draws>& p, std::size_t at, FastPoint
 ACDF_LANE void end_points(const AcdfLocal& local, FastPointLanes* l) {
     add_other_lights(local, &l->lights, [l](const long long* lane, Integer at, Vector mixture, Vector sum) {
         alignas(64) double unit[ACDF_WIDTH];
-        stored(unit, unit_of(mixture, sum, (Vector)gathered<8>(l->whole, at)));
+        stored(unit, unit_of(mixture, sum, gathered_doubles(l->whole, at)));
         for (int i = 0; i < ACDF_WIDTH; ++i) l->rows.unit[lane[i]] = unit[i];
     });
 }

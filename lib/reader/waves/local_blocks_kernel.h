@@ -26,11 +26,15 @@ ACDF_LANE void numbers_of(const double (*u)[2], std::size_t count, Vector out[2]
     for (int axis = 0; axis < 2; ++axis) out[axis] = unit_interval((Vector)given[axis]);
 }
 
+/* So many lanes of a block. */
+ACDF_LANE std::uint64_t first_lanes(std::size_t count) {
+    return count < kBlock ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
+}
+
 /* Calls alone(i) for the lanes of a mask, of which `count` are there. */
 template <class Alone>
 ACDF_LANE void leave_alone(std::uint64_t lost, std::size_t count, const Alone& alone) {
-    if (count < kBlock) lost &= (std::uint64_t{1} << count) - 1;
-    for (; lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
+    for (lost &= first_lanes(count); lost; lost &= lost - 1) alone((std::size_t)__builtin_ctzll(lost));
 }
 
 /* Calls block(points, alone, in, count, out) for up to Size lanes at a time. points(first): those of the lanes from
