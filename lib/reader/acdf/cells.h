@@ -74,8 +74,9 @@ ACDF_INLINE const AcdfPiece* acdf_piece_of(const uint32_t* pieces, uint32_t numb
  * others.
  */
 ACDF_INLINE int acdf_number_steps(double u0, double u1, uint64_t n[2]) {
-    const double shifted[2] = {u0 + 1.0, u1 + 1.0};
-    memcpy(n, shifted, sizeof shifted);
+    const double shifted0 = u0 + 1.0, shifted1 = u1 + 1.0;
+    memcpy(&n[0], &shifted0, sizeof shifted0);
+    memcpy(&n[1], &shifted1, sizeof shifted1);
     n[0] ^= 0x3FF0000000000000u;
     n[1] ^= 0x3FF0000000000000u;
     return (n[0] | n[1]) >> 52 == 0;
