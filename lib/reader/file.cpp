@@ -218,7 +218,7 @@ void File::make_tables(const TreeSurvey& survey) noexcept {
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
     if (kind() == ACDF_KIND_TABLE)
-        entries_ = make_table_entries(table().data(), description_->bin_count, most, allocator_, owned_[2]);
+        entries_ = make_table_entries(table().data(), description_->bin_count, survey, most, allocator_, owned_[2]);
 }
 
 void File::make_environment_tables(const TreeSurvey& checked, std::size_t most_bytes) noexcept {

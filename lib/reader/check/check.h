@@ -70,7 +70,7 @@ struct Parts {
     AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
-    class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing, of an environment
+    class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing
     AcdfBlock inflated = {};            ///< of the inflated chunks, from take_block; the caller gives it back
 };
 

@@ -153,7 +153,7 @@ public:
     explicit Preorder(const CheckedTree& tree) : tree_(tree), roots_(tree), work_(u64{2} * tree.units) {
         for (u32 axis = 0; axis < ACDF_MAX_AXES; ++axis)
             if (tree.sampled(axis)) resolution_[axis] = tree.parts.axes[axis].resolution;
-        if (tree.kind == ACDF_KIND_ENVIRONMENT) survey_ = tree.parts.survey;
+        if (tree.kind == ACDF_KIND_ENVIRONMENT || tree.kind == ACDF_KIND_TABLE) survey_ = tree.parts.survey;
     }
 
     bool is_right() {

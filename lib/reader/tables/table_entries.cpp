@@ -20,6 +20,7 @@ constexpr u32 kMostEntryBits = 12;         // of entries along an axis
 constexpr double kNumberBorder = 0x1p-40;  // of random numbers: what is nearer to one, rounding may carry across
 constexpr u32 kFewestEntryUnits = 1 << 14; // of a tree whose tables need more than a large page
 constexpr u32 kMostPath = 64;              // curves
+constexpr u32 kFewCells = 16;              // below a curve: how they lie there is not looked at
 
 /// An axis of what a path through the tree has led to.
 struct ReachedSide {
@@ -31,35 +32,38 @@ struct ReachedSide {
 struct Reached {
     double probability = 1.0;
     ReachedSide side[ACDF_MAX_AXES];
+};
 
-    /// Becomes segment i of a curve: that, or a part of probability 0. `above`: what the curve divides, its side
-    /// there.
-    void narrow(const AcdfCurve& curve, u32 i, double of_all, const ReachedSide& above) {
-        const u32 axis = acdf_curve_axis(&curve), code = ACDF_CURVE_POSITION_CODE(curve.header);
-        const u32 from = acdf_curve_cumulative(&curve, i), to = acdf_curve_cumulative(&curve, i + 1);
-        const double maximum = acdf_curve_maximum(&curve), width = above.high - above.low;
-        const u32 origin = code == 0 ? above.first : 0;
-        const bool is_last = i + 1 == curve.segments;
-        probability =
-            of_all > 0.0 && to > from ? acdf_positive(of_all * (static_cast<double>(to - from) / maximum)) : 0.0;
-        side[axis].low = above.low + width * (from / maximum);
-        side[axis].high = is_last ? above.high : above.low + width * (to / maximum);
-        side[axis].first = i == 0 ? above.first : origin + acdf_load(curve.positions, i - 1, code);
-        side[axis].last = is_last ? above.last : origin + acdf_load(curve.positions, i, code);
+/// A part of what a curve divides, in its cumulative values.
+struct Part {
+    u32 width;
+    double of; ///< the maximum
+    double probability(double of_all) const {
+        return of_all > 0.0 && width > 0 ? acdf_positive(of_all * (width / of)) : 0.0;
     }
 };
 
-/// Calls each(i, link) for the segments of a curve, which `reached` becomes one after the other; link: to what is
-/// below, 0 where that is a cell. False as soon as that is. Then `reached` is what it was.
+/// Calls each(i, link, part) for the segments of a curve, the sides of which `reached` takes one after the other;
+/// link: to what is below, 0 where that is a cell. False as soon as that is. Then `reached` is what it was.
 template <class Each>
 bool each_segment(const AcdfCurve& curve, Reached& reached, const Each& each) {
     ReachedSide& side = reached.side[acdf_curve_axis(&curve)];
     const ReachedSide above = side;
-    const double of_all = reached.probability;
+    const double of_all = reached.probability, maximum = acdf_curve_maximum(&curve), width = above.high - above.low;
+    const u32 code = ACDF_CURVE_POSITION_CODE(curve.header), origin = code == 0 ? above.first : 0;
     bool all = true;
+    u32 from = 0;
+    side.high = above.low;
+    side.last = above.first;
     for (u32 i = 0; all && i < curve.segments; ++i) {
-        reached.narrow(curve, i, of_all, above);
-        all = each(i, reached.probability > 0.0 ? acdf_curve_link(&curve, i) : 0);
+        const bool is_last = i + 1 == curve.segments;
+        const u32 to = acdf_curve_cumulative(&curve, i + 1);
+        side.low = side.high;
+        side.first = side.last;
+        side.high = is_last ? above.high : above.low + width * (to / maximum);
+        side.last = is_last ? above.last : origin + acdf_load(curve.positions, i, code);
+        all = each(i, of_all > 0.0 && to > from ? acdf_curve_link(&curve, i) : 0, Part{to - from, maximum});
+        from = to;
     }
     side = above;
     reached.probability = of_all;
@@ -68,9 +72,21 @@ bool each_segment(const AcdfCurve& curve, Reached& reached, const Each& each) {
 
 /// How wide cells are, and how many: by which grids are made.
 struct Widths {
-    /// Sums of the logarithms of their parts of an axis.
+    /// Sums of the logarithms of their positions and of their parts of the random numbers.
     double place[ACDF_MAX_AXES] = {}, number[ACDF_MAX_AXES] = {};
     std::size_t cells = 0;
+
+    /// What such a sum tells of cells becomes as many parts, as logarithms tell.
+    void divide(u32 axis, double sum) {
+        place[axis] -= sum;
+        number[axis] -= sum;
+    }
+};
+
+/// Positions along an axis that a path through the tree has led to, and these logarithms.
+struct ReachedWidth {
+    u32 first = 0, last = 1;
+    double place = 0.0, number = 0.0;
 };
 
 // The logarithm of a positive number, linear between powers of two.
@@ -82,10 +98,11 @@ double logarithm(double x) {
 
 class EntriesMaker {
 public:
-    EntriesMaker(const AcdfTable& table, u32 bin_count, std::size_t most_bytes, Scratch* scratch)
-        : table_(table), bin_count_(bin_count), most_bytes_(most_bytes), first_axis_(table.indexed_count),
-          axes_(acdf_table_sampled_count(&table)), widths_(scratch), bins_(scratch), grids_(scratch),
-          curves_(scratch), steps_(scratch), densities_(scratch) {}
+    EntriesMaker(const AcdfTable& table, u32 bin_count, const TreeSurvey& survey, std::size_t most_bytes,
+                 Scratch* scratch)
+        : table_(table), survey_(survey), bin_count_(bin_count), most_bytes_(most_bytes),
+          first_axis_(table.indexed_count), axes_(acdf_table_sampled_count(&table)), widths_(scratch),
+          bins_(scratch), grids_(scratch), curves_(scratch), steps_(scratch), densities_(scratch) {}
 
     /// False where there can be none.
     bool measure();
@@ -95,12 +112,14 @@ public:
 
 private:
     Reached whole() const;
-    bool measure(u32 at, Reached& reached, Widths& widths);
-    /// Adds those of some cells along an axis.
-    void add_widths(const Reached& cell, u32 axis, double times, Widths& widths) const;
+    bool measure(u32 at, ReachedWidth* reached, Widths& widths);
+    bool measure_bin(u32 bin, Widths& widths);
+    /// Whether so many more segments may be passed.
+    bool pass(std::size_t segments);
+    u32 cells_below(u32 at, u32 header) const;
     void lay_out(const Widths& widths, AcdfEntryBin& bin) const;
     bool visit(u32 at, Reached& reached, u32 depth);
-    bool add_cell(const Reached& reached);
+    bool add_cell(const Reached& reached, double probability_of_all, const Part& part);
     bool add_curve(u32 at, const Reached& reached, u32 depth);
     /// Whether any entry lies in what is reached, which then leads to `entry`.
     bool fill_places(const Reached& reached, u32 entry);
@@ -111,6 +130,7 @@ private:
     std::size_t words() const;
 
     const AcdfTable& table_;
+    const TreeSurvey& survey_;
     u32 bin_count_;
     std::size_t most_bytes_;
     u32 first_axis_, axes_;
@@ -133,32 +153,78 @@ Reached EntriesMaker::whole() const {
     return out;
 }
 
-void EntriesMaker::add_widths(const Reached& cell, u32 axis, double times, Widths& widths) const {
-    const ReachedSide& side = cell.side[first_axis_ + axis];
-    const double part = static_cast<double>(side.last - side.first) / resolution(axis);
-    widths.place[axis] += times * logarithm(part);
-    if (side.high > side.low)
-        widths.number[axis] += times * logarithm(side.high - side.low); // others are not drawn
+// A path passes at most 64 curves. False where curves have tilts, or are shared so often that passing all of them
+// is more work than in proportion to the tree. How a few cells divide what is above them is not looked at: each
+// axis as much as the others, but that of a curve without children.
+bool EntriesMaker::measure(u32 at, ReachedWidth* reached, Widths& widths) {
+    const AcdfCurve curve = acdf_curve_at(table_.tree, at);
+    const u32 axis = acdf_curve_axis(&curve) - first_axis_, code = ACDF_CURVE_POSITION_CODE(curve.header);
+    if (curve.tilts || !pass(curve.segments)) return false;
+    ReachedWidth& side = reached[axis];
+    const ReachedWidth above = side;
+    const double of_all = above.number - logarithm(acdf_curve_maximum(&curve));
+    const u32 origin = code == 0 ? above.first : 0;
+    double places = 0.0, numbers = 0.0, divided = 0.0;
+    std::size_t cells = 0;
+    u32 from = 0;
+    side.last = above.first;
+    for (u32 i = 0; i < curve.segments; ++i) {
+        const u32 to = acdf_curve_cumulative(&curve, i + 1), link = to > from ? acdf_curve_link(&curve, i) : 0;
+        side.first = side.last;
+        side.last = i + 1 == curve.segments ? above.last : origin + acdf_load(curve.positions, i, code);
+        side.place = logarithm(side.last - side.first);
+        side.number = to > from ? of_all + logarithm(to - from) : 0.0; // no number leads there
+        from = to;
+        u32 below = 1;
+        if (link > 0) {
+            const u32 header = reinterpret_cast<const std::uint16_t*>(table_.tree)[at + link];
+            below = cells_below(at + link, header);
+            if (below > kFewCells) {
+                if (!measure(at + link, reached, widths)) return false;
+                continue;
+            }
+            if (!pass(below)) return false;
+            const double by = below * logarithm(below);
+            if (TreeSurvey::ends(header)) widths.divide((header & ACDF_CURVE_AXIS_MASK) - first_axis_, by);
+            else divided += by / axes_;
+        }
+        places += below * side.place;
+        numbers += below * side.number;
+        cells += below;
+    }
+    side = above;
+    widths.place[axis] += places;
+    widths.number[axis] += numbers;
+    for (u32 other = 0; other < axes_; ++other) { // all of them are alike there
+        widths.divide(other, divided);
+        if (other == axis) continue;
+        widths.place[other] += static_cast<double>(cells) * reached[other].place;
+        widths.number[other] += static_cast<double>(cells) * reached[other].number;
+    }
+    widths.cells += cells;
+    return true;
 }
 
-// A path passes at most 64 curves. False where curves have tilts, or are shared so often that passing all of them
-// is more work than in proportion to the tree.
-bool EntriesMaker::measure(u32 at, Reached& reached, Widths& widths) {
-    const AcdfCurve curve = acdf_curve_at(table_.tree, at);
-    const u32 axis = acdf_curve_axis(&curve) - first_axis_;
-    if (curve.tilts || steps_left_ < curve.segments) return false;
-    steps_left_ -= curve.segments;
-    std::size_t cells = 0;
-    const bool all = each_segment(curve, reached, [&](u32, u32 link) {
-        if (link > 0) return measure(at + link, reached, widths);
-        add_widths(reached, axis, 1.0, widths);
-        ++cells;
-        return true;
-    });
-    for (u32 other = 0; other < axes_; ++other) // all cells of a curve are alike there
-        if (other != axis) add_widths(reached, other, static_cast<double>(cells), widths);
-    widths.cells += cells;
-    return all;
+bool EntriesMaker::pass(std::size_t segments) {
+    const bool enough = segments <= steps_left_;
+    steps_left_ -= enough ? segments : 0;
+    return enough;
+}
+
+u32 EntriesMaker::cells_below(u32 at, u32 header) const {
+    return survey_.done() ? survey_.cells(at, header) : TreeSurvey::kMany;
+}
+
+bool EntriesMaker::measure_bin(u32 bin, Widths& widths) {
+    ReachedWidth all[ACDF_MAX_AXES];
+    for (u32 axis = 0; axis < axes_; ++axis) {
+        all[axis].last = resolution(axis);
+        all[axis].place = logarithm(resolution(axis));
+    }
+    if (!measure(table_.bins[bin].root, all, widths)) return false;
+    for (u32 axis = 0; axis < axes_; ++axis)
+        widths.place[axis] -= static_cast<double>(widths.cells) * all[axis].place;
+    return true;
 }
 
 // Entries along each axis: about as many times finer than its cells as along the others.
@@ -259,14 +325,15 @@ bool EntriesMaker::add_curve(u32 at, const Reached& reached, u32 depth) {
 }
 
 // A cell, where entries lie in it.
-bool EntriesMaker::add_cell(const Reached& reached) {
+bool EntriesMaker::add_cell(const Reached& reached, double of_all, const Part& part) {
     if (!fill_places(reached, static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL)) return true;
+    const double probability = part.probability(of_all);
     AcdfTablePlace place = {};
     for (u32 axis = first_axis_; axis < table_.axis_count; ++axis) {
         place.range[axis].low = reached.side[axis].first;
         place.range[axis].high = reached.side[axis].last;
     }
-    densities_.add(reached.probability > 0.0 ? acdf_table_density(&table_, reached.probability, &place) : 0.0);
+    densities_.add(probability > 0.0 ? acdf_table_density(&table_, probability, &place) : 0.0);
     return !densities_.failed();
 }
 
@@ -278,12 +345,14 @@ bool EntriesMaker::visit(u32 at, Reached& reached, u32 depth) {
     if (!add_curve(at, reached, depth)) return false;
     const AcdfCurve curve = acdf_curve_at(table_.tree, at);
     const u32 maximum = acdf_curve_maximum(&curve);
+    const double of_all = reached.probability;
     if (maximum > 0xFFFF || depth == kMostPath) return true; // what is below is walked
-    return each_segment(curve, reached, [&](u32 i, u32 link) {
-        if (link == 0) return add_cell(reached);
-        const u32 low = acdf_curve_cumulative(&curve, i), width = acdf_curve_cumulative(&curve, i + 1) - low;
-        path_[depth] = {static_cast<std::uint16_t>(maximum), static_cast<std::uint16_t>(low),
-                        static_cast<std::uint16_t>(width),
+    return each_segment(curve, reached, [&](u32 i, u32 link, const Part& part) {
+        if (link == 0) return add_cell(reached, of_all, part);
+        reached.probability = part.probability(of_all);
+        path_[depth] = {static_cast<std::uint16_t>(maximum),
+                        static_cast<std::uint16_t>(acdf_curve_cumulative(&curve, i)),
+                        static_cast<std::uint16_t>(part.width),
                         static_cast<std::uint16_t>(acdf_curve_axis(&curve) - first_axis_)};
         return visit(at + link, reached, depth + 1);
     });
@@ -295,8 +364,7 @@ bool EntriesMaker::measure() {
         return false;
     for (u32 bin = 0; bin < bin_count_; ++bin) {
         if (!(table_.bins[bin].share > 0.0f)) continue;
-        Reached all = whole();
-        if (!measure(table_.bins[bin].root, all, widths_[bin])) return false;
+        if (!measure_bin(bin, widths_[bin])) return false;
         cells_ += widths_[bin].cells >= kFewestBinCells ? widths_[bin].cells : 0;
     }
     return cells_ > 0;
@@ -356,10 +424,11 @@ AcdfEntries* EntriesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& b
 
 } // namespace
 
-AcdfEntries* make_table_entries(const AcdfTable& table, u32 bin_count, std::size_t most_bytes,
-                                const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
+AcdfEntries* make_table_entries(const AcdfTable& table, u32 bin_count, const TreeSurvey& survey,
+                                std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
     Scratch pages;
-    EntriesMaker maker(table, bin_count, most_bytes, table.tree_units >= kFewestEntryUnits ? &pages : nullptr);
+    EntriesMaker maker(table, bin_count, survey, most_bytes,
+                       table.tree_units >= kFewestEntryUnits ? &pages : nullptr);
     return maker.measure() && maker.make() ? maker.assemble(allocator, block) : nullptr;
 }
 

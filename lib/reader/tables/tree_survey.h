@@ -10,7 +10,7 @@
 
 namespace acdf {
 
-/// Of the tree of an environment.
+/// Of the trees of an environment or a table.
 class TreeSurvey {
 public:
     /// More cells below a curve than are told apart.

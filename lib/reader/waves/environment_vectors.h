@@ -65,9 +65,21 @@ ACDF_LANE Floats load_eights(const float* base, const std::uint32_t* lane) {
     return (Floats)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(base + 8 * std::size_t{lane[0]})),
                                       _mm256_load_ps(base + 8 * std::size_t{lane[4]}), 1);
 }
+/* The first half of both, and the second. */
+ACDF_LANE Floats low_fours(Floats a, Floats b) { return (Floats)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0x44); }
+ACDF_LANE Floats high_fours(Floats a, Floats b) { return (Floats)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0xEE); }
 /* Every second group of four floats of both. */
 ACDF_LANE Floats even_fours(Floats a, Floats b) { return (Floats)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0x88); }
 ACDF_LANE Floats odd_fours(Floats a, Floats b) { return (Floats)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0xDD); }
+/* Four floats of each row, from row to row, then the four after them, and so on. */
+ACDF_LANE void store_rows(const Floats row[4], float* out) {
+    const Floats low[2] = {low_fours(row[0], row[1]), low_fours(row[2], row[3])};
+    const Floats high[2] = {high_fours(row[0], row[1]), high_fours(row[2], row[3])};
+    _mm512_storeu_ps(out, (__m512)even_fours(low[0], low[1]));
+    _mm512_storeu_ps(out + 16, (__m512)odd_fours(low[0], low[1]));
+    _mm512_storeu_ps(out + 32, (__m512)even_fours(high[0], high[1]));
+    _mm512_storeu_ps(out + 48, (__m512)odd_fours(high[0], high[1]));
+}
 #else
 ACDF_LANE Floats root(Floats x) { return (Floats)_mm256_sqrt_ps((__m256)x); }
 ACDF_LANE std::uint32_t bits(Signed mask) { return (std::uint32_t)_mm256_movemask_ps((__m256)mask); }
@@ -108,6 +120,12 @@ ACDF_LANE Floats even_fours(Floats a, Floats b) {
 }
 ACDF_LANE Floats odd_fours(Floats a, Floats b) {
     return (Floats)_mm256_permute2f128_ps((__m256)a, (__m256)b, 0x31);
+}
+ACDF_LANE void store_rows(const Floats row[4], float* out) {
+    _mm256_storeu_ps(out, (__m256)even_fours(row[0], row[1]));
+    _mm256_storeu_ps(out + 8, (__m256)even_fours(row[2], row[3]));
+    _mm256_storeu_ps(out + 16, (__m256)odd_fours(row[0], row[1]));
+    _mm256_storeu_ps(out + 24, (__m256)odd_fours(row[2], row[3]));
 }
 #endif
 
@@ -155,18 +173,13 @@ ACDF_LANE void load_pieces(const AcdfPiece* pieces, const std::uint32_t* cell, F
 }
 
 ACDF_LANE void store_samples(const Floats direction[3], Floats pdf, AcdfDirectionSample* out) {
-    alignas(64) float to[4][kLanes];
-    for (int k = 0; k < 3; ++k) *(Floats*)to[k] = direction[k];
-    *(Floats*)to[3] = pdf;
-    for (std::size_t i = 0; i < kLanes; i += 4) {
-        __m128 a = _mm_load_ps(&to[0][i]), b = _mm_load_ps(&to[1][i]), c = _mm_load_ps(&to[2][i]);
-        __m128 d = _mm_load_ps(&to[3][i]);
-        _MM_TRANSPOSE4_PS(a, b, c, d);
-        _mm_storeu_ps((float*)&out[i], a);
-        _mm_storeu_ps((float*)&out[i + 1], b);
-        _mm_storeu_ps((float*)&out[i + 2], c);
-        _mm_storeu_ps((float*)&out[i + 3], d);
-    }
+    const Floats xy[2] = {unpacked_low(direction[0], direction[1]), unpacked_high(direction[0], direction[1])};
+    const Floats zp[2] = {unpacked_low(direction[2], pdf), unpacked_high(direction[2], pdf)};
+    const Floats row[4] = {
+        /* lane k of each four */
+        shuffled<_MM_SHUFFLE(1, 0, 1, 0)>(xy[0], zp[0]), shuffled<_MM_SHUFFLE(3, 2, 3, 2)>(xy[0], zp[0]),
+        shuffled<_MM_SHUFFLE(1, 0, 1, 0)>(xy[1], zp[1]), shuffled<_MM_SHUFFLE(3, 2, 3, 2)>(xy[1], zp[1])};
+    store_rows(row, (float*)out);
 }
 
 } // namespace
