@@ -51,6 +51,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/moved.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/parallel.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_queue.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_rating.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/pieces.h

@@ -40,6 +40,7 @@ acdf::LoadOptions of(const AcdfLoadOptions& from) {
     if (from.max_inflated_bytes > 0) options.limits.max_inflated_bytes = from.max_inflated_bytes;
     options.tables = !from.plain;
     options.allocator = from.allocator;
+    options.parallel = from.parallel;
     return options;
 }
 

@@ -204,24 +204,25 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
     loaded.metadata_count_ = parts.metadata_count;
-    if (options.tables) loaded.make_tables(survey);
+    if (options.tables) loaded.make_tables(survey, options.parallel);
     file = std::move(loaded);
     return status;
 }
 
 // They are only for speed: where there is no memory for them, the file is as good without.
-void File::make_tables(const TreeSurvey& survey) noexcept {
+void File::make_tables(const TreeSurvey& survey, const AcdfParallel& parallel) noexcept {
     const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
-    if (kind() == ACDF_KIND_ENVIRONMENT) make_environment_tables(survey, most);
+    if (kind() == ACDF_KIND_ENVIRONMENT) make_environment_tables(survey, most, parallel);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
     if (kind() == ACDF_KIND_TABLE)
         entries_ = make_table_entries(table().data(), description_->bin_count, survey, most, allocator_, owned_[2]);
 }
 
-void File::make_environment_tables(const TreeSurvey& checked, std::size_t most_bytes) noexcept {
+void File::make_environment_tables(const TreeSurvey& checked, std::size_t most_bytes,
+                                   const AcdfParallel& parallel) noexcept {
     constexpr u32 fewest_cells = 1 << 12; // tables of fewer need less than a large page
     Scratch pages;
     const AcdfEnvironment data = environment().data();
@@ -231,7 +232,7 @@ void File::make_environment_tables(const TreeSurvey& checked, std::size_t most_b
     cells_ = make_cells(data, survey, most_bytes, allocator_, owned_[2], scratch);
     if (cells_) return;
     pages.clear();
-    groups_ = make_groups(data, survey, most_bytes, allocator_, owned_[2], scratch);
+    groups_ = make_groups(data, survey, most_bytes, allocator_, owned_[2], scratch, Instructions::avx512, parallel);
 }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {

@@ -16,6 +16,7 @@
 
 #include <acdf/allocator.h>
 #include <acdf/moved.h>
+#include <acdf/parallel.h>
 #include <acdf/views.h>
 
 #include <cstddef>
@@ -63,6 +64,8 @@ struct LoadOptions {
     /// Where the memory comes from that an open file keeps; by default the C library. It must stay usable until the
     /// file is gone. What is needed for a moment, while bytes are checked, is the C library's.
     AcdfAllocator allocator = {};
+    /// Threads of yours that help to make the tables of large environments; by default none.
+    AcdfParallel parallel = {};
 };
 
 /// A key or value of the metadata: UTF-8, not terminated.
@@ -165,8 +168,9 @@ private:
     AcdfAllocator allocator_ = {};
     AcdfBlock owned_[3] = {}; // the file's bytes; inflated chunks; runtime tables
 
-    void make_tables(const TreeSurvey& survey) noexcept;
-    void make_environment_tables(const TreeSurvey& survey, std::size_t most_bytes) noexcept;
+    void make_tables(const TreeSurvey& survey, const AcdfParallel& parallel) noexcept;
+    void make_environment_tables(const TreeSurvey& survey, std::size_t most_bytes,
+                                 const AcdfParallel& parallel) noexcept;
     void release() noexcept;
 };
 

@@ -1,6 +1,7 @@
 // Writes what draws and densities look up of the cells of groups (acdf/groups.h).
 #pragma once
 
+#include "in_parallel.h"
 #include "tables/sides.h"
 
 #include <acdf/groups.h>
@@ -35,10 +36,27 @@ struct GroupCells {
     std::uint32_t *boxes, *more;
     AcdfGroupCell* cells;
     float* densities;
+
+    /// Of groups [first, last).
+    GroupCells part(std::size_t first, std::size_t last) const noexcept {
+        const std::size_t from = groups[first].cells, to = last < count ? groups[last].cells : cell_count;
+        return {environment,
+                heights,
+                sines,
+                curves,
+                runs + first,
+                groups + first,
+                last - first,
+                to - from,
+                boxes + first * ACDF_GROUP_WORDS,
+                more + std::size_t{groups[first].more} * ACDF_GROUP_WORDS,
+                cells + from,
+                densities + from};
+    }
 };
 
 /// By the best instructions that the processor has, up to `most`: the same bits by any.
-void write_group_cells(const GroupCells& cells, Instructions most) noexcept;
+void write_group_cells(const GroupCells& cells, Instructions most, const AcdfParallel& parallel) noexcept;
 #if ACDF_WAVEFRONT_X86
 void write_group_cells_avx2(const GroupCells& cells) noexcept;
 void write_group_cells_avx512(const GroupCells& cells) noexcept;

@@ -46,9 +46,10 @@ std::size_t about(std::size_t cells, std::size_t most_cells) {
 
 class GroupsMaker {
 public:
-    GroupsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, Scratch* scratch, Instructions most)
-        : environment_(environment), survey_(survey), scratch_(scratch), instructions_(most), curves_(scratch),
-          runs_(scratch), groups_(scratch), numbers_(scratch), places_(scratch) {}
+    GroupsMaker(const AcdfEnvironment& environment, const TreeSurvey& survey, Scratch* scratch, Instructions most,
+                const AcdfParallel& parallel)
+        : environment_(environment), survey_(survey), scratch_(scratch), instructions_(most), parallel_(parallel),
+          curves_(scratch), runs_(scratch), groups_(scratch), numbers_(scratch), places_(scratch) {}
 
     AcdfGroups* make(std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block);
 
@@ -88,6 +89,7 @@ private:
     const TreeSurvey& survey_;
     Scratch* scratch_;
     Instructions instructions_;
+    const AcdfParallel& parallel_;
     Growable<double> heights_, sines_; ///< of each border between rows: of the angle to the pole
     u32 key_bits_ = 0, shift_[2] = {0, 0}, most_cells_ = 0;
     u32 cells_ = 0, more_ = 0; ///< of the groups so far: cells, blocks beside the first one of each
@@ -260,16 +262,16 @@ AcdfGroups* GroupsMaker::assemble(const SquaresMaker& numbers, const SquaresMake
                        groups_.size(), cells_, tables + out->boxes, tables + out->more,
                        reinterpret_cast<AcdfGroupCell*>(tables + out->cells),
                        reinterpret_cast<float*>(tables + out->densities)},
-                      instructions_);
+                      instructions_, parallel_);
     return out;
 }
 
 } // namespace
 
 AcdfGroups* make_groups(const AcdfEnvironment& environment, const TreeSurvey& survey, std::size_t most_bytes,
-                        const AcdfAllocator& allocator, AcdfBlock& block, Scratch* scratch,
-                        Instructions most) noexcept {
-    GroupsMaker maker(environment, survey, scratch, most);
+                        const AcdfAllocator& allocator, AcdfBlock& block, Scratch* scratch, Instructions most,
+                        const AcdfParallel& parallel) noexcept {
+    GroupsMaker maker(environment, survey, scratch, most, parallel);
     return maker.make(most_bytes, allocator, block);
 }
 

@@ -7,14 +7,19 @@
 
 #include "compress/store/store.h"
 
+#include <acdf/acdf.h>
+
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
+#include <thread>
 
 namespace {
 
@@ -164,24 +169,38 @@ TEST(RuntimeTables, ServeFilesOfAnySize) {
 
 // Words of the tables of an environment that `make` makes, by some instructions: one of acdf::make_cells and
 // acdf::make_groups.
-template <class Tables>
-std::vector<std::uint32_t>
-words_by(Tables* (*make)(const AcdfEnvironment&, const acdf::TreeSurvey&, std::size_t, const AcdfAllocator&,
-                         AcdfBlock&, acdf::Scratch*, acdf::Instructions) noexcept,
-         const AcdfEnvironment& environment, acdf::Instructions most, std::size_t most_bytes) {
+template <class Tables, class... Parallel>
+std::vector<std::uint32_t> words_by(Tables* (*make)(const AcdfEnvironment&, const acdf::TreeSurvey&, std::size_t,
+                                                    const AcdfAllocator&, AcdfBlock&, acdf::Scratch*,
+                                                    acdf::Instructions, const Parallel&...) noexcept,
+                                    const AcdfEnvironment& environment, acdf::Instructions most,
+                                    std::size_t most_bytes, const Parallel&... parallel) {
     const acdf::TreeSurvey survey(environment, environment.tree_units);
     AcdfBlock block = {};
     std::vector<std::uint32_t> words;
-    const Tables* const tables = make(environment, survey, most_bytes, {}, block, nullptr, most);
+    const Tables* const tables = make(environment, survey, most_bytes, {}, block, nullptr, most, parallel...);
     const auto* const first = reinterpret_cast<const std::uint32_t*>(tables);
     if (tables) words.assign(first, first + tables->words);
     acdf::give_block({}, block);
     return words;
 }
 
+// Two threads, from the last task to the first. `of`: an int, which counts how often it is asked.
+void backwards(void* of, std::size_t count, void (*task)(void* of, std::size_t i), void* of_task) {
+    std::atomic<std::size_t> left{count};
+    const auto work = [&] {
+        for (std::size_t i = left; i > 0;)
+            if (left.compare_exchange_weak(i, i - 1)) task(of_task, --i);
+    };
+    std::thread other(work);
+    work();
+    other.join();
+    ++*static_cast<int*>(of);
+}
+
 // Bit for bit, of cells that lie in their lanes and of those that go on in the next block.
-TEST(RuntimeTables, AreTheSameByAnyInstructions) {
-    int compared = 0, of_cells = 0;
+TEST(RuntimeTables, AreTheSameByAnyInstructionsAndThreads) {
+    int compared = 0, of_cells = 0, asked = 0;
     const auto compare = [&](const std::vector<std::uint8_t>& bytes) {
         const EnvironmentPair pair(bytes, Tables::own);
         const AcdfEnvironment environment = pair.plain.environment().data();
@@ -191,9 +210,13 @@ TEST(RuntimeTables, AreTheSameByAnyInstructions) {
         for (const auto instructions : {acdf::Instructions::avx2, acdf::Instructions::avx512})
             ASSERT_EQ(cells, words_by(acdf::make_cells, environment, instructions, any));
         for (const std::size_t most : {std::size_t{1} << 14, std::size_t{1} << 16, 40 * bytes.size()}) {
-            const auto plain = words_by(acdf::make_groups, environment, acdf::Instructions::none, most);
-            for (const auto instructions : {acdf::Instructions::avx2, acdf::Instructions::avx512})
-                ASSERT_EQ(plain, words_by(acdf::make_groups, environment, instructions, most));
+            const AcdfParallel alone = {}, together = {backwards, &asked};
+            const auto plain = words_by(acdf::make_groups, environment, acdf::Instructions::none, most, alone);
+            for (const auto instructions :
+                 {acdf::Instructions::none, acdf::Instructions::avx2, acdf::Instructions::avx512}) {
+                ASSERT_EQ(plain, words_by(acdf::make_groups, environment, instructions, most, alone));
+                ASSERT_EQ(plain, words_by(acdf::make_groups, environment, instructions, most, together));
+            }
             compared += !plain.empty();
         }
     };
@@ -210,7 +233,34 @@ TEST(RuntimeTables, AreTheSameByAnyInstructions) {
         compare(stored(square ? octahedral(noise_target(512, 256, 9)) : studio(512), options));
     }
     EXPECT_GT(compared, 100);
+    EXPECT_EQ(asked, 3 * compared);
     EXPECT_EQ(of_cells, 62);
+}
+
+// As a file is opened, from C++ and C.
+TEST(RuntimeTables, AreMadeByTheCallersThreads) {
+    acdf::compress::FitOptions fit;
+    fit.goal.cells = 24000;
+    const std::vector<std::uint8_t> bytes = stored(studio(512), fit);
+    int asked = 0;
+    acdf::LoadOptions options;
+    options.parallel = {backwards, &asked};
+    acdf::File alone, together;
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), alone).ok());
+    ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), together, options).ok());
+    EXPECT_EQ(asked, 1);
+    AcdfMove memory[2][ACDF_MAX_MOVES];
+    ASSERT_EQ(alone.memory(memory[0]), 2);
+    ASSERT_EQ(together.memory(memory[1]), 2);
+    ASSERT_EQ(memory[0][1].bytes, memory[1][1].bytes);
+    EXPECT_EQ(std::memcmp(memory[0][1].from, memory[1][1].from, memory[0][1].bytes), 0);
+    AcdfLoadOptions of_c = {};
+    of_c.parallel = options.parallel;
+    AcdfFile* const file = acdf_from_memory_with(bytes.data(), bytes.size(), &of_c, nullptr);
+    ASSERT_TRUE(file);
+    EXPECT_EQ(asked, 2);
+    EXPECT_EQ(acdf_table_bytes(file), alone.table_bytes());
+    acdf_close(file);
 }
 
 // Two cells, of which one ends just before phi = 3/4 pi, where pieces of the other begin to count azimuths anew.
