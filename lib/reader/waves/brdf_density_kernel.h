@@ -78,9 +78,7 @@ ACDF_LANE void end(const WavefrontTable& t, const DensitiesOf<Groups>& d, float*
 }
 
 /* A block of them. */
-struct Densities : DensitiesOf<kGroups> {
-    static constexpr bool kWaits = true;
-};
+using Densities = DensitiesOf<kGroups>;
 
 ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const float (*wi)[3], Densities* d) {
     find_views(t, wo, d->view);

@@ -16,7 +16,7 @@ namespace {
 using acdf::WavefrontSplit;
 using acdf::WavefrontTable;
 
-constexpr int kGroups = 24 / kWidth; // vectors that take turns: while one waits for its loads the others compute
+constexpr int kGroups = 6; // vectors that take turns: while one waits for its loads the others compute
 
 // ---- views -----------------------------------------------------------------------------------------------------
 
@@ -199,13 +199,24 @@ constexpr std::size_t kBlock = kGroups * kWidth;
 
 /* A block of lanes whose cells are drawn. */
 struct Samples {
-    static constexpr bool kWaits = false; // walks wait for memory at every step
     View view[kGroups];
     Walk walked[kGroups];
     Vector sign[kGroups];
     const float (*wo)[3];
     const double (*u)[2];
 };
+
+/* Boxes of cells, and what views give to them. */
+ACDF_LANE void ask_for_cells(const WavefrontTable& t, const Walk& walked, Integer lower) {
+    const Integer number = walked.node & 0x7FFF;
+    Indices box, part;
+    stored(&box, number * 16);
+    stored(&part, (multiplied(number, t.stride) + lower) * 8);
+    for (int i = 0; i < kWidth; ++i) {
+        __builtin_prefetch((const char*)t.boxes + box.at[i]);
+        __builtin_prefetch((const char*)t.parts + part.at[i]);
+    }
+}
 
 ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const double (*u)[2], Samples* s) {
     s->wo = wo;
@@ -218,6 +229,7 @@ ACDF_LANE void begin(const WavefrontTable& t, const float (*wo)[3], const double
         s->walked[g].node = Integer{} + t.root;
     }
     walk(t, s->walked);
+    for (int g = 0; g < kGroups; ++g) ask_for_cells(t, s->walked[g], s->view[g].lower);
 }
 
 /* Half-vectors in cells. */
@@ -281,11 +293,11 @@ ACDF_LANE unsigned reflect(const WavefrontTable& t, const View& view, const Cell
 /* Samples of vectors of lanes that have walked to those cells; `one`: all of them have the first view. They take
  * turns at each step. Returns the lanes that are left to acdf_brdf_sample. */
 template <int Groups>
-ACDF_LANE unsigned end_samples(const WavefrontTable& t, const View* views, bool one, const Walk* walked,
-                               const Cell* cells, const Vector* signs, AcdfDirectionSample* out) {
+ACDF_LANE std::uint64_t end_samples(const WavefrontTable& t, const View* views, bool one, const Walk* walked,
+                                    const Cell* cells, const Vector* signs, AcdfDirectionSample* out) {
     Aim aim[Groups];
     Vector part[Groups][2];
-    unsigned left = 0;
+    std::uint64_t left = 0;
     for (int g = 0; g < Groups; ++g) {
         const Integer number = walked[g].node & 0x7FFF;
         gather_pairs<8>(t.parts, multiplied(number, t.stride) + views[one ? 0 : g].lower, part[g]);
@@ -293,14 +305,15 @@ ACDF_LANE unsigned end_samples(const WavefrontTable& t, const View* views, bool 
     for (int g = 0; g < Groups; ++g) draw_half(t, walked[g], cells[g], &aim[g]);
     for (int g = 0; g < Groups; ++g) turn_half(t, views[one ? 0 : g], signs[g], &aim[g]);
     for (int g = 0; g < Groups; ++g)
-        left |= reflect(t, views[one ? 0 : g], cells[g], aim[g], part[g], &out[g * kWidth]) << g * kWidth;
+        left |= (std::uint64_t)reflect(t, views[one ? 0 : g], cells[g], aim[g], part[g], &out[g * kWidth])
+                << g * kWidth;
     return left;
 }
 
 ACDF_LANE void end(const WavefrontTable& t, const Samples& s, AcdfDirectionSample* out) {
     Cell cells[kGroups];
     for (int g = 0; g < kGroups; ++g) cells[g] = cell_of(t, s.walked[g]);
-    unsigned left = end_samples<kGroups>(t, s.view, false, s.walked, cells, s.sign, out);
+    std::uint64_t left = end_samples<kGroups>(t, s.view, false, s.walked, cells, s.sign, out);
     for (int lane = 0; left != 0; ++lane, left >>= 1)
         if (left & 1) out[lane] = acdf_brdf_sample(&t.brdf, s.wo[lane], s.u[lane][0], s.u[lane][1]);
 }
@@ -316,20 +329,19 @@ ACDF_LANE void prefetch_block(const T* all, std::size_t first) {
         __builtin_prefetch((const void*)((std::uintptr_t)all + sizeof(T) * first + i));
 }
 
-/* Blocks that wait for memory end after the next one began. What does not fill a block is copied to the front of
- * one. */
+/* Blocks end after the next one began: what they asked for has come then. What does not fill a block is copied to
+ * the front of one. */
 template <class Block, class A, class B, class Out>
 ACDF_LANE void for_blocks(const WavefrontTable& t, const A* a, const B* b, std::size_t count, Out* out) {
-    constexpr std::size_t behind = Block::kWaits ? 1 : 0;
-    Block blocks[behind + 1];
+    Block blocks[2];
     const std::size_t whole = count / kBlock, done = whole * kBlock, left = count - done;
-    for (std::size_t i = 0; i < whole + behind; ++i) {
+    for (std::size_t i = 0; i < whole + 1; ++i) {
         const std::size_t ahead = (i + kBlocksAhead) * kBlock;
         prefetch_block(a, ahead);
         prefetch_block(b, ahead);
         prefetch_block(out, ahead);
-        if (i < whole) begin(t, a + i * kBlock, b + i * kBlock, &blocks[i % (behind + 1)]);
-        if (i >= behind) end(t, blocks[(i - behind) % (behind + 1)], out + (i - behind) * kBlock);
+        if (i < whole) begin(t, a + i * kBlock, b + i * kBlock, &blocks[i % 2]);
+        if (i >= 1) end(t, blocks[(i - 1) % 2], out + (i - 1) * kBlock);
     }
     if (left == 0) return;
     A last_a[kBlock] = {};

@@ -63,7 +63,7 @@ ACDF_LANE void view_samples(const WavefrontTable& t, const AcdfBrdf& brdf, const
         const Integer low = (Integer)sides[0], high = (Integer)sides[1];
         cells[g] = {{low_word(low), high_word(low)}, {low_word(high), high_word(high)}};
     }
-    unsigned left = end_samples<Groups>(t, &of, true, walked, cells, sign, drawn);
+    std::uint64_t left = end_samples<Groups>(t, &of, true, walked, cells, sign, drawn);
     for (std::size_t i = 0; left != 0 && i < some; ++i, left >>= 1)
         if (left & 1) drawn[i] = acdf_brdf_view_sample(&brdf, &view, given[i][0], given[i][1]);
     std::memcpy(out, drawn, some * sizeof *out);
