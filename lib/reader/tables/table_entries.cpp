@@ -1,6 +1,7 @@
 #include "tables/table_entries.h"
 
 #include "memory.h"
+#include "tables/entry_widths.h"
 #include "tables/growable.h"
 
 #include <algorithm>
@@ -20,12 +21,18 @@ constexpr u32 kMostEntryBits = 12;         // of entries along an axis
 constexpr double kNumberBorder = 0x1p-40;  // of random numbers: what is nearer to one, rounding may carry across
 constexpr u32 kFewestEntryUnits = 1 << 14; // of a tree whose tables need more than a large page
 constexpr u32 kMostPath = 64;              // curves
-constexpr u32 kFewCells = 16;              // below a curve: how they lie there is not looked at
+
+/// Entries of a grid along an axis.
+struct EntrySpan {
+    u32 first = 0, last = 0;
+    bool any() const { return first < last; }
+};
 
 /// An axis of what a path through the tree has led to.
 struct ReachedSide {
     double low = 0.0, high = 1.0; ///< random numbers
     u32 first = 0, last = 1;      ///< positions
+    EntrySpan places, numbers;    ///< that lie in it
 };
 
 /// And all of them.
@@ -70,32 +77,6 @@ bool each_segment(const AcdfCurve& curve, Reached& reached, const Each& each) {
     return all;
 }
 
-/// How wide cells are, and how many: by which grids are made.
-struct Widths {
-    /// Sums of the logarithms of their positions and of their parts of the random numbers.
-    double place[ACDF_MAX_AXES] = {}, number[ACDF_MAX_AXES] = {};
-    std::size_t cells = 0;
-
-    /// What such a sum tells of cells becomes as many parts, as logarithms tell.
-    void divide(u32 axis, double sum) {
-        place[axis] -= sum;
-        number[axis] -= sum;
-    }
-};
-
-/// Positions along an axis that a path through the tree has led to, and these logarithms.
-struct ReachedWidth {
-    u32 first = 0, last = 1;
-    double place = 0.0, number = 0.0;
-};
-
-// The logarithm of a positive number, linear between powers of two.
-double logarithm(double x) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &x, sizeof bits);
-    return static_cast<double>(bits) * 0x1p-52 - 1023.0;
-}
-
 class EntriesMaker {
 public:
     EntriesMaker(const AcdfTable& table, u32 bin_count, const TreeSurvey& survey, std::size_t most_bytes,
@@ -112,19 +93,22 @@ public:
 
 private:
     Reached whole() const;
-    bool measure(u32 at, ReachedWidth* reached, Widths& widths);
-    bool measure_bin(u32 bin, Widths& widths);
-    /// Whether so many more segments may be passed.
-    bool pass(std::size_t segments);
-    u32 cells_below(u32 at, u32 header) const;
-    void lay_out(const Widths& widths, AcdfEntryBin& bin) const;
-    bool visit(u32 at, Reached& reached, u32 depth);
+    void lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const;
+    /// Of the grids over positions and over random numbers: whether any entry lies in what is reached.
+    struct Found {
+        bool places, numbers;
+    };
+    bool visit(u32 at, Reached& reached, Found found, u32 depth);
     bool add_cell(const Reached& reached, double probability_of_all, const Part& part);
     bool add_curve(u32 at, const Reached& reached, u32 depth);
-    /// Whether any entry lies in what is reached, which then leads to `entry`.
-    bool fill_places(const Reached& reached, u32 entry);
-    bool fill_numbers(const Reached& reached, u32 entry);
-    bool fill(const std::size_t (*span)[2], u32 AcdfEntryAxis::*stride, u32* grid, u32 entry) const;
+    u32 add_path(u32 depth);
+    /// The entries along an axis that lie in its side.
+    void find_entries(u32 axis, ReachedSide& side) const;
+    /// What is reached leads to `entry`, by all entries that lie in it.
+    void fill_places(const Reached& reached, u32 entry);
+    void fill_numbers(const Reached& reached, u32 entry);
+    void fill(const Reached& reached, EntrySpan ReachedSide::*entries, u32 AcdfEntryAxis::*stride, u32* grid,
+              u32 entry) const;
     u32 resolution(u32 axis) const { return table_.axes[first_axis_ + axis].resolution; }
     std::size_t curve_words() const { return sizeof(AcdfEntryCurve) / 4 + 2 * std::size_t{axes_}; }
     std::size_t words() const;
@@ -135,14 +119,14 @@ private:
     std::size_t most_bytes_;
     u32 first_axis_, axes_;
     double entries_a_cell_ = 0.0;
-    std::size_t cells_ = 0;      ///< of all bins
-    std::size_t steps_left_ = 0; ///< segments that may still be passed
-    Growable<Widths> widths_;    ///< of each bin
+    std::size_t cells_ = 0;        ///< of all bins
+    Growable<EntryWidths> widths_; ///< of each bin
     Growable<AcdfEntryBin> bins_;
     Growable<u32> grids_, curves_; ///< curves: curve_words() each
     Growable<AcdfEntryStep> steps_;
     Growable<double> densities_;
     AcdfEntryStep path_[kMostPath];
+    u32 path_at_[kMostPath + 1];        ///< where so many of them stand
     const AcdfEntryBin* bin_ = nullptr; ///< that is entered
     u32 curve_count_ = 0;
 };
@@ -150,85 +134,12 @@ private:
 Reached EntriesMaker::whole() const {
     Reached out;
     for (u32 axis = 0; axis < table_.axis_count; ++axis) out.side[axis].last = table_.axes[axis].resolution;
+    for (u32 axis = 0; axis < axes_; ++axis) find_entries(axis, out.side[first_axis_ + axis]);
     return out;
 }
 
-// A path passes at most 64 curves. False where curves have tilts, or are shared so often that passing all of them
-// is more work than in proportion to the tree. How a few cells divide what is above them is not looked at: each
-// axis as much as the others, but that of a curve without children.
-bool EntriesMaker::measure(u32 at, ReachedWidth* reached, Widths& widths) {
-    const AcdfCurve curve = acdf_curve_at(table_.tree, at);
-    const u32 axis = acdf_curve_axis(&curve) - first_axis_, code = ACDF_CURVE_POSITION_CODE(curve.header);
-    if (curve.tilts || !pass(curve.segments)) return false;
-    ReachedWidth& side = reached[axis];
-    const ReachedWidth above = side;
-    const double of_all = above.number - logarithm(acdf_curve_maximum(&curve));
-    const u32 origin = code == 0 ? above.first : 0;
-    double places = 0.0, numbers = 0.0, divided = 0.0;
-    std::size_t cells = 0;
-    u32 from = 0;
-    side.last = above.first;
-    for (u32 i = 0; i < curve.segments; ++i) {
-        const u32 to = acdf_curve_cumulative(&curve, i + 1), link = to > from ? acdf_curve_link(&curve, i) : 0;
-        side.first = side.last;
-        side.last = i + 1 == curve.segments ? above.last : origin + acdf_load(curve.positions, i, code);
-        side.place = logarithm(side.last - side.first);
-        side.number = to > from ? of_all + logarithm(to - from) : 0.0; // no number leads there
-        from = to;
-        u32 below = 1;
-        if (link > 0) {
-            const u32 header = reinterpret_cast<const std::uint16_t*>(table_.tree)[at + link];
-            below = cells_below(at + link, header);
-            if (below > kFewCells) {
-                if (!measure(at + link, reached, widths)) return false;
-                continue;
-            }
-            if (!pass(below)) return false;
-            const double by = below * logarithm(below);
-            if (TreeSurvey::ends(header)) widths.divide((header & ACDF_CURVE_AXIS_MASK) - first_axis_, by);
-            else divided += by / axes_;
-        }
-        places += below * side.place;
-        numbers += below * side.number;
-        cells += below;
-    }
-    side = above;
-    widths.place[axis] += places;
-    widths.number[axis] += numbers;
-    for (u32 other = 0; other < axes_; ++other) { // all of them are alike there
-        widths.divide(other, divided);
-        if (other == axis) continue;
-        widths.place[other] += static_cast<double>(cells) * reached[other].place;
-        widths.number[other] += static_cast<double>(cells) * reached[other].number;
-    }
-    widths.cells += cells;
-    return true;
-}
-
-bool EntriesMaker::pass(std::size_t segments) {
-    const bool enough = segments <= steps_left_;
-    steps_left_ -= enough ? segments : 0;
-    return enough;
-}
-
-u32 EntriesMaker::cells_below(u32 at, u32 header) const {
-    return survey_.done() ? survey_.cells(at, header) : TreeSurvey::kMany;
-}
-
-bool EntriesMaker::measure_bin(u32 bin, Widths& widths) {
-    ReachedWidth all[ACDF_MAX_AXES];
-    for (u32 axis = 0; axis < axes_; ++axis) {
-        all[axis].last = resolution(axis);
-        all[axis].place = logarithm(resolution(axis));
-    }
-    if (!measure(table_.bins[bin].root, all, widths)) return false;
-    for (u32 axis = 0; axis < axes_; ++axis)
-        widths.place[axis] -= static_cast<double>(widths.cells) * all[axis].place;
-    return true;
-}
-
 // Entries along each axis: about as many times finer than its cells as along the others.
-void EntriesMaker::lay_out(const Widths& widths, AcdfEntryBin& bin) const {
+void EntriesMaker::lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const {
     const auto cells = static_cast<double>(widths.cells);
     const auto share_out = [&](const double* width, const u32* most, u32* bits) {
         for (double entries = 2.0; entries <= entries_a_cell_ * cells; entries *= 2.0) {
@@ -264,52 +175,54 @@ void EntriesMaker::lay_out(const Widths& widths, AcdfEntryBin& bin) const {
     bin.numbers = numbers;
 }
 
-// Writes an entry in the spans of all axes; false where they are empty.
-bool EntriesMaker::fill(const std::size_t (*span)[2], u32 AcdfEntryAxis::*stride, u32* grid, u32 entry) const {
+void EntriesMaker::fill(const Reached& reached, EntrySpan ReachedSide::*entries, u32 AcdfEntryAxis::*stride,
+                        u32* grid, u32 entry) const {
+    const auto span = [&](u32 axis) -> const EntrySpan& { return reached.side[first_axis_ + axis].*entries; };
     std::size_t at[ACDF_MAX_AXES];
-    for (u32 axis = 0; axis < axes_; ++axis) {
-        if (span[axis][0] >= span[axis][1]) return false;
-        at[axis] = span[axis][0];
-    }
+    for (u32 axis = 0; axis < axes_; ++axis) at[axis] = span(axis).first;
     const u32 last = axes_ - 1; // entries along it are next to each other
     for (;;) {
         std::size_t line = 0;
         for (u32 axis = 0; axis < last; ++axis) line += at[axis] * bin_->axes[axis].*stride;
-        std::fill(grid + line + span[last][0], grid + line + span[last][1], entry);
+        std::fill(grid + line + span(last).first, grid + line + span(last).last, entry);
         u32 axis = last;
-        while (axis > 0 && ++at[axis - 1] == span[axis - 1][1]) --axis, at[axis] = span[axis][0];
-        if (axis == 0) return true;
+        while (axis > 0 && ++at[axis - 1] == span(axis - 1).last) --axis, at[axis] = span(axis).first;
+        if (axis == 0) return;
     }
 }
 
-bool EntriesMaker::fill_places(const Reached& reached, u32 entry) {
-    std::size_t span[ACDF_MAX_AXES][2];
-    for (u32 axis = 0; axis < axes_; ++axis) {
-        const u32 a = first_axis_ + axis, shift = bin_->axes[axis].shift;
-        const std::size_t step = std::size_t{1} << shift, last = reached.side[a].last;
-        span[axis][0] = (reached.side[a].first + step - 1) >> shift;
-        span[axis][1] = last == resolution(axis) ? ((last - 1) >> shift) + 1 : last >> shift;
-    }
-    return fill(span, &AcdfEntryAxis::place_stride, &grids_[bin_->places], entry);
+void EntriesMaker::fill_places(const Reached& reached, u32 entry) {
+    fill(reached, &ReachedSide::places, &AcdfEntryAxis::place_stride, &grids_[bin_->places], entry);
 }
 
-bool EntriesMaker::fill_numbers(const Reached& reached, u32 entry) {
-    std::size_t span[ACDF_MAX_AXES][2];
-    for (u32 axis = 0; axis < axes_; ++axis) {
-        const u32 a = first_axis_ + axis, steps = bin_->axes[axis].number_steps;
-        const double low = reached.side[a].low, high = reached.side[a].high;
-        span[axis][0] = low == 0.0 ? 0 : static_cast<std::size_t>(std::ceil((low + kNumberBorder) * steps));
-        span[axis][1] =
-            high == 1.0 ? steps : static_cast<std::size_t>(std::floor(std::max(high - kNumberBorder, 0.0) * steps));
-    }
-    return fill(span, &AcdfEntryAxis::number_stride, &grids_[bin_->numbers], entry);
+void EntriesMaker::fill_numbers(const Reached& reached, u32 entry) {
+    fill(reached, &ReachedSide::numbers, &AcdfEntryAxis::number_stride, &grids_[bin_->numbers], entry);
+}
+
+void EntriesMaker::find_entries(u32 axis, ReachedSide& side) const {
+    const u32 shift = bin_->axes[axis].shift, steps = bin_->axes[axis].number_steps;
+    const auto round_up = [](double x) { return static_cast<u32>(x) + (static_cast<u32>(x) < x); };
+    const double low = (side.low + kNumberBorder) * steps, high = std::max(side.high - kNumberBorder, 0.0) * steps;
+    side.places.first = static_cast<u32>((std::uint64_t{side.first} + (std::uint64_t{1} << shift) - 1) >> shift);
+    side.places.last = side.last == resolution(axis) ? ((side.last - 1) >> shift) + 1 : side.last >> shift;
+    side.numbers.first = side.low == 0.0 ? 0 : round_up(low);
+    side.numbers.last = side.high == 1.0 ? steps : static_cast<u32>(high);
+}
+
+// Where so many steps stand. Those of the curve above are not written again if they are the newest ones.
+u32 EntriesMaker::add_path(u32 depth) {
+    const auto end = static_cast<u32>(steps_.size());
+    const bool goes_on = depth > 0 && path_at_[depth - 1] + depth - 1 == end;
+    path_at_[depth] = goes_on ? path_at_[depth - 1] : end;
+    for (u32 i = goes_on ? depth - 1 : 0; i < depth; ++i) steps_.add(path_[i]);
+    return path_at_[depth];
 }
 
 bool EntriesMaker::add_curve(u32 at, const Reached& reached, u32 depth) {
     AcdfEntryCurve curve = {};
     curve.probability = reached.probability;
     curve.at = at;
-    curve.first = static_cast<u32>(steps_.size());
+    curve.first = add_path(depth);
     curve.count = depth;
     u32* out = curves_.add(curve_words(), 0);
     if (!out) return false;
@@ -319,14 +232,13 @@ bool EntriesMaker::add_curve(u32 at, const Reached& reached, u32 depth) {
         *out++ = reached.side[first_axis_ + axis].first;
         *out++ = reached.side[first_axis_ + axis].last;
     }
-    for (u32 i = 0; i < depth; ++i) steps_.add(path_[i]);
     ++curve_count_;
     return !steps_.failed() && curves_.bytes() + steps_.bytes() <= most_bytes_;
 }
 
-// A cell, where entries lie in it.
+// A cell in which entries lie.
 bool EntriesMaker::add_cell(const Reached& reached, double of_all, const Part& part) {
-    if (!fill_places(reached, static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL)) return true;
+    fill_places(reached, static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
     const double probability = part.probability(of_all);
     AcdfTablePlace place = {};
     for (u32 axis = first_axis_; axis < table_.axis_count; ++axis) {
@@ -337,34 +249,37 @@ bool EntriesMaker::add_cell(const Reached& reached, double of_all, const Part& p
     return !densities_.failed();
 }
 
-// A curve that is reached by so many steps, where entries lie in what it divides, and what is below it.
-bool EntriesMaker::visit(u32 at, Reached& reached, u32 depth) {
-    const u32 number = curve_count_;
-    const bool any_place = fill_places(reached, number), any_number = fill_numbers(reached, number);
-    if (!any_place && !any_number) return true;
+// A curve that is reached by so many steps, in what it divides entries lie, and what is below it.
+bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
+    if (found.places) fill_places(reached, curve_count_);
+    if (found.numbers) fill_numbers(reached, curve_count_);
     if (!add_curve(at, reached, depth)) return false;
     const AcdfCurve curve = acdf_curve_at(table_.tree, at);
-    const u32 maximum = acdf_curve_maximum(&curve);
+    const u32 axis = acdf_curve_axis(&curve) - first_axis_, maximum = acdf_curve_maximum(&curve);
     const double of_all = reached.probability;
     if (maximum > 0xFFFF || depth == kMostPath) return true; // what is below is walked
     return each_segment(curve, reached, [&](u32 i, u32 link, const Part& part) {
-        if (link == 0) return add_cell(reached, of_all, part);
+        ReachedSide& side = reached.side[first_axis_ + axis];
+        find_entries(axis, side);
+        const Found below = {found.places && side.places.any(), found.numbers && side.numbers.any()};
+        if (link == 0) return !below.places || add_cell(reached, of_all, part);
+        if (!below.places && !below.numbers) return true;
         reached.probability = part.probability(of_all);
         path_[depth] = {static_cast<std::uint16_t>(maximum),
                         static_cast<std::uint16_t>(acdf_curve_cumulative(&curve, i)),
-                        static_cast<std::uint16_t>(part.width),
-                        static_cast<std::uint16_t>(acdf_curve_axis(&curve) - first_axis_)};
-        return visit(at + link, reached, depth + 1);
+                        static_cast<std::uint16_t>(part.width), static_cast<std::uint16_t>(axis)};
+        return visit(at + link, reached, below, depth + 1);
     });
 }
 
 bool EntriesMaker::measure() {
-    steps_left_ = 2 * std::size_t{table_.tree_units} + 64;
-    if (bin_count_ * (sizeof(Widths) + sizeof(AcdfEntryBin)) > most_bytes_ || !widths_.add(bin_count_, Widths{}))
+    EntryWidthsFinder finder(table_, survey_);
+    if (bin_count_ * (sizeof(EntryWidths) + sizeof(AcdfEntryBin)) > most_bytes_ ||
+        !widths_.add(bin_count_, EntryWidths{}))
         return false;
     for (u32 bin = 0; bin < bin_count_; ++bin) {
         if (!(table_.bins[bin].share > 0.0f)) continue;
-        if (!measure_bin(bin, widths_[bin])) return false;
+        if (!finder.find(table_.bins[bin].root, widths_[bin])) return false;
         cells_ += widths_[bin].cells >= kFewestBinCells ? widths_[bin].cells : 0;
     }
     return cells_ > 0;
@@ -388,7 +303,7 @@ bool EntriesMaker::make() {
         bins_[bin].places = static_cast<u32>(grids_.size());
         bins_[bin].numbers = bin_->places + places;
         Reached all = whole();
-        if (!grids_.add(std::size_t{places} + numbers, 0) || !visit(table_.bins[bin].root, all, 0) ||
+        if (!grids_.add(std::size_t{places} + numbers, 0) || !visit(table_.bins[bin].root, all, {true, true}, 0) ||
             4 * words() > most_bytes_)
             return false;
     }

@@ -1,0 +1,97 @@
+#include "tables/entry_widths.h"
+
+#include <cstring>
+
+namespace acdf {
+
+namespace {
+
+using u32 = std::uint32_t;
+
+constexpr u32 kFewCells = 16; // below a curve: how they lie there is not looked at
+
+// Of a positive number.
+double logarithm(double x) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    return static_cast<double>(bits) * 0x1p-52 - 1023.0;
+}
+
+} // namespace
+
+EntryWidthsFinder::EntryWidthsFinder(const AcdfTable& table, const TreeSurvey& survey) noexcept
+    : table_(table), survey_(survey), first_axis_(table.indexed_count), axes_(acdf_table_sampled_count(&table)),
+      segments_left_(2 * std::size_t{table.tree_units} + 64) {}
+
+bool EntryWidthsFinder::find(u32 root, EntryWidths& out) noexcept {
+    Reached all[ACDF_MAX_AXES];
+    for (u32 axis = 0; axis < axes_; ++axis) {
+        all[axis].last = table_.axes[first_axis_ + axis].resolution;
+        all[axis].place = logarithm(all[axis].last);
+    }
+    if (!add(root, all, out)) return false;
+    for (u32 axis = 0; axis < axes_; ++axis) out.place[axis] -= static_cast<double>(out.cells) * all[axis].place;
+    return true;
+}
+
+bool EntryWidthsFinder::pass(std::size_t segments) noexcept {
+    const bool enough = segments <= segments_left_;
+    segments_left_ -= enough ? segments : 0;
+    return enough;
+}
+
+u32 EntryWidthsFinder::cells_below(u32 at, u32 header) const noexcept {
+    return survey_.done() ? survey_.cells(at, header) : TreeSurvey::kMany;
+}
+
+// Those below a curve. A path passes at most 64 curves.
+bool EntryWidthsFinder::add(u32 at, Reached* reached, EntryWidths& out) noexcept {
+    const AcdfCurve curve = acdf_curve_at(table_.tree, at);
+    const u32 axis = acdf_curve_axis(&curve) - first_axis_, code = ACDF_CURVE_POSITION_CODE(curve.header);
+    if (curve.tilts || !pass(curve.segments)) return false;
+    Reached& side = reached[axis];
+    const Reached above = side;
+    const double of_all = above.number - logarithm(acdf_curve_maximum(&curve));
+    const u32 origin = code == 0 ? above.first : 0;
+    double places = 0.0, numbers = 0.0, divided = 0.0;
+    std::size_t cells = 0;
+    u32 from = 0;
+    side.last = above.first;
+    for (u32 i = 0; i < curve.segments; ++i) {
+        const u32 to = acdf_curve_cumulative(&curve, i + 1), link = to > from ? acdf_curve_link(&curve, i) : 0;
+        side.first = side.last;
+        side.last = i + 1 == curve.segments ? above.last : origin + acdf_load(curve.positions, i, code);
+        side.place = logarithm(side.last - side.first);
+        side.number = to > from ? of_all + logarithm(to - from) : 0.0; // no number leads there
+        from = to;
+        u32 below = 1;
+        if (link > 0) {
+            const u32 header = reinterpret_cast<const std::uint16_t*>(table_.tree)[at + link];
+            below = cells_below(at + link, header);
+            if (below > kFewCells) {
+                if (!add(at + link, reached, out)) return false;
+                continue;
+            }
+            if (!pass(below)) return false;
+            const double by = below * logarithm(below);
+            if (TreeSurvey::ends(header)) out.divide((header & ACDF_CURVE_AXIS_MASK) - first_axis_, by);
+            else divided += by / axes_;
+        }
+        places += below * side.place;
+        numbers += below * side.number;
+        cells += below;
+    }
+    side = above;
+    out.place[axis] += places;
+    out.number[axis] += numbers;
+    for (u32 other = 0; other < axes_; ++other) { // all of them are alike there
+        out.divide(other, divided);
+        if (other == axis) continue;
+        out.place[other] += static_cast<double>(cells) * reached[other].place;
+        out.number[other] += static_cast<double>(cells) * reached[other].number;
+    }
+    out.cells += cells;
+    return true;
+}
+
+} // namespace acdf
