@@ -162,7 +162,7 @@ public:
         while (next_ < tree_.units)
             if (!curve()) return false;
         const bool right = open_count_ == 0 && !has_root_ && curves_ <= tree_.units / 2 + 1;
-        if (right && survey_) survey_->end(cells_ + 1);
+        if (right && survey_) survey_->end(cells_);
         return right;
     }
 
@@ -187,6 +187,7 @@ private:
             if (range_[axis].low > range_[axis].high || range_[axis].high >= 0x80000000u) return false;
         }
         tilted_ = 0;
+        ++cells_;
         return true;
     }
 
@@ -292,7 +293,7 @@ private:
     const CheckedTree& tree_;
     TreeRoots roots_;
     TreeSurvey* survey_ = nullptr;       ///< null: none is made
-    u32 cells_ = 0;                      ///< of the curves so far, less the one that there is without any
+    u32 cells_ = 0;                      ///< of the trees so far, had they no more curves
     u64 work_;                           ///< links that may be looked at in vain
     u32 resolution_[ACDF_MAX_AXES] = {}; ///< 0: not sampled
     Inherited range_[ACDF_MAX_AXES] = {};

@@ -26,6 +26,7 @@ public:
     bool done() const noexcept { return done_; }
     /// Twice the units of the tree, and some.
     std::size_t most_steps() const noexcept { return most_steps_; }
+    /// Of all trees.
     std::uint32_t cells() const noexcept { return cells_; }
     /// Below the curve at `at`, which has a header; at most kMany.
     std::uint32_t cells(std::uint32_t at, std::uint32_t header) const noexcept {

@@ -212,11 +212,9 @@ TEST(RuntimeTables, AreTheSameByAnyInstructionsAndThreads) {
         for (const std::size_t most : {std::size_t{1} << 14, std::size_t{1} << 16, 40 * bytes.size()}) {
             const AcdfParallel alone = {}, together = {backwards, &asked};
             const auto plain = words_by(acdf::make_groups, environment, acdf::Instructions::none, most, alone);
-            for (const auto instructions :
-                 {acdf::Instructions::none, acdf::Instructions::avx2, acdf::Instructions::avx512}) {
+            for (const auto instructions : {acdf::Instructions::avx2, acdf::Instructions::avx512})
                 ASSERT_EQ(plain, words_by(acdf::make_groups, environment, instructions, most, alone));
-                ASSERT_EQ(plain, words_by(acdf::make_groups, environment, instructions, most, together));
-            }
+            ASSERT_EQ(plain, words_by(acdf::make_groups, environment, acdf::Instructions::avx512, most, together));
             compared += !plain.empty();
         }
     };
@@ -233,7 +231,7 @@ TEST(RuntimeTables, AreTheSameByAnyInstructionsAndThreads) {
         compare(stored(square ? octahedral(noise_target(512, 256, 9)) : studio(512), options));
     }
     EXPECT_GT(compared, 100);
-    EXPECT_EQ(asked, 3 * compared);
+    EXPECT_EQ(asked, compared);
     EXPECT_EQ(of_cells, 62);
 }
 

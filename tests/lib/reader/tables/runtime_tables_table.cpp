@@ -2,6 +2,10 @@
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/reader/table_random.h"
 
+#include "reader/check/check.h"
+#include "reader/memory.h"
+#include "reader/tables/entry_widths.h"
+
 #include <acdf/builder.h>
 #include <acdf/reader.h>
 
@@ -88,22 +92,72 @@ TEST(TableEntries, GiveTheSameBits) {
     EXPECT_GT(with_tables, 30);
 }
 
-TEST(TableEntries, OfBinsGiveTheSameBits) {
+// Six bins, of which that of index 1, 1 has no share.
+std::vector<std::uint8_t> table_of_bins() {
     compress::Cascade cascade;
     RandomTableTree tree(3, {60, 70}, 2, false);
     for (int bin = 0; bin < 6; ++bin) tree.add_bin(cascade);
     std::vector<float> shares(6, 0.2f);
-    shares[4] = 0.0f; // index 1, 1: nothing there
-    AsWalked pair(table_file(cascade,
-                             {axis("i", 2, 0, 2, ACDF_AXIS_INDEXED), axis("j", 3, 0, 3, ACDF_AXIS_INDEXED),
-                              axis("x", 60, 0, 1), axis("y", 70, 2, 1)},
-                             shares));
+    shares[4] = 0.0f;
+    return table_file(cascade,
+                      {axis("i", 2, 0, 2, ACDF_AXIS_INDEXED), axis("j", 3, 0, 3, ACDF_AXIS_INDEXED),
+                       axis("x", 60, 0, 1), axis("y", 70, 2, 1)},
+                      shares);
+}
+
+TEST(TableEntries, OfBinsGiveTheSameBits) {
+    AsWalked pair(table_of_bins());
     ASSERT_TRUE(pair.has_tables());
     std::mt19937_64 random(4);
     for (std::uint32_t bin = 0; bin < 6; ++bin) {
         const std::uint32_t index[2] = {bin / 3, bin % 3};
         pair.check(index, 500, random);
     }
+}
+
+std::uint64_t cells_below(const AcdfTable& table, std::uint32_t at) {
+    const AcdfCurve curve = acdf_curve_at(table.tree, at);
+    std::uint64_t cells = 0;
+    for (std::uint32_t i = 0; i < curve.segments; ++i) {
+        const std::uint32_t link = acdf_curve_link(&curve, i);
+        cells += link == 0 ? 1 : cells_below(table, at + link);
+    }
+    return cells;
+}
+
+// Counted while the file is checked, and by whoever asks how wide cells are, with that and without. Returns whether
+// it was counted.
+bool expect_counts(const std::vector<std::uint8_t>& bytes) {
+    File file;
+    Parts parts;
+    TreeSurvey survey;
+    const TreeSurvey none;
+    EXPECT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+    parts.survey = &survey;
+    check(bytes.data(), bytes.size(), Limits(), nullptr, nullptr, parts);
+    give_block({}, parts.inflated);
+    if (!survey.done()) return false;
+    const AcdfTable table = file.table().data();
+    EntryWidthsFinder by_survey(table, survey), by_walk(table, none);
+    std::uint64_t all = 0;
+    for (std::uint32_t bin = 0; bin < file.description().bin_count; ++bin) {
+        const std::uint32_t root = table.bins[bin].root;
+        const std::uint64_t cells = cells_below(table, root);
+        EntryWidths surveyed, walked;
+        EXPECT_TRUE(by_survey.find(root, surveyed) && by_walk.find(root, walked));
+        EXPECT_EQ(surveyed.cells, cells);
+        EXPECT_EQ(walked.cells, cells);
+        all += cells;
+    }
+    EXPECT_EQ(survey.cells(), all);
+    return true;
+}
+
+TEST(TableEntries, CellsAreCountedWhileFilesAreChecked) {
+    int counted = expect_counts(table_of_bins());
+    for (const Space& space : spaces())
+        for (std::uint64_t seed = 0; seed < 16; ++seed) counted += expect_counts(random_table(space, seed, false));
+    EXPECT_GT(counted, 30);
 }
 
 // A table as they are in use: entries of half of all points are cells.
