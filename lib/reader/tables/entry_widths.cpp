@@ -1,5 +1,7 @@
 #include "tables/entry_widths.h"
 
+#include "tables/curve_segments.h"
+
 #include <cstring>
 
 namespace acdf {
@@ -47,25 +49,24 @@ u32 EntryWidthsFinder::cells_below(u32 at, u32 header) const noexcept {
 // Those below a curve. A path passes at most 64 curves.
 bool EntryWidthsFinder::add(u32 at, Reached* reached, EntryWidths& out) noexcept {
     const AcdfCurve curve = acdf_curve_at(table_.tree, at);
-    const u32 axis = acdf_curve_axis(&curve) - first_axis_, code = ACDF_CURVE_POSITION_CODE(curve.header);
+    const u32 axis = acdf_curve_axis(&curve) - first_axis_;
     if (curve.tilts || !pass(curve.segments)) return false;
     Reached& side = reached[axis];
     const Reached above = side;
-    const double of_all = above.number - logarithm(acdf_curve_maximum(&curve));
-    const u32 origin = code == 0 ? above.first : 0;
+    CurveSegments segments(curve, above.first, above.last);
+    const double of_all = above.number - logarithm(segments.maximum());
     double places = 0.0, numbers = 0.0, divided = 0.0;
     std::size_t cells = 0;
-    u32 from = 0;
-    side.last = above.first;
-    for (u32 i = 0; i < curve.segments; ++i) {
-        const u32 to = acdf_curve_cumulative(&curve, i + 1), link = to > from ? acdf_curve_link(&curve, i) : 0;
-        side.first = side.last;
-        side.last = i + 1 == curve.segments ? above.last : origin + acdf_load(curve.positions, i, code);
+    while (segments.number() < curve.segments) {
+        const u32 link = segments.link();
+        const CurveSegment segment = segments.next();
+        const u32 part = segment.to - segment.from;
+        side.first = segment.first;
+        side.last = segment.last;
         side.place = logarithm(side.last - side.first);
-        side.number = to > from ? of_all + logarithm(to - from) : 0.0; // no number leads there
-        from = to;
+        side.number = part > 0 ? of_all + logarithm(part) : 0.0; // no number leads there
         u32 below = 1;
-        if (link > 0) {
+        if (link > 0 && part > 0) {
             const u32 header = reinterpret_cast<const std::uint16_t*>(table_.tree)[at + link];
             below = cells_below(at + link, header);
             if (below > kFewCells) {

@@ -166,7 +166,7 @@ bool GroupsMaker::gather(u32 at, const Cell& above) {
     const u32 axis = parts.axis(), other = 1 - axis;
     const bool narrow_across = is_narrow(other, above.first[other], above.last[other]);
     Group group = {{kNoCurve, 0, 0}, 0, above};
-    CellSegment end = {};
+    CurveSegment end = {};
     const auto add_group = [&] {
         if (group.run.curve == kNoCurve) {
             group.run.curve = static_cast<u32>(curves_.size());
@@ -177,7 +177,7 @@ bool GroupsMaker::gather(u32 at, const Cell& above) {
     };
     for (u32 i = 0; i < curve.segments; ++i) {
         const u32 link = parts.link(), cells = cells_of(at, link);
-        const CellSegment segment = parts.segment();
+        const CurveSegment segment = parts.segment();
         const bool narrow = narrow_across && is_narrow(axis, segment.first, segment.last);
         if (group.cells > 0 && narrow && group.cells + cells <= most_cells_ &&
             segment.last - group.box.first[axis] <= most_steps(axis)) {

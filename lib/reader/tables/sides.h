@@ -1,6 +1,7 @@
 // Cells of trees as parts of the eight pieces of the sphere, or as boxes of the octahedral square (acdf/cells.h).
 #pragma once
 
+#include "tables/curve_segments.h"
 #include "tables/growable.h"
 
 #include <acdf/cells.h>
@@ -39,39 +40,24 @@ struct CellPart {
     }
 };
 
-/// A segment of a curve as it is stored.
-struct CellSegment {
-    std::uint32_t from, to;    ///< cumulative values
-    std::uint32_t first, last; ///< positions
-};
-
-/// The segments of a curve in the cell `above` that it divides, one after the other. What is the same for all is
-/// kept by value: it is not to be read again after each store.
+/// The segments of a curve in the cell `above` that it divides, one after the other, as parts of that.
 class CellParts {
 public:
     CellParts(const AcdfCurve& curve, const Cell& above)
-        : curve_(curve), axis_(acdf_curve_axis(&curve)), cumulative_code_(ACDF_CURVE_CUMULATIVE_CODE(curve.header)),
-          position_code_(ACDF_CURVE_POSITION_CODE(curve.header)), maximum_(acdf_curve_maximum(&curve)),
-          all_(maximum_), low_(above.low[axis_]), high_(above.high[axis_]), width_(high_ - low_),
-          end_(above.last[axis_]),
-          origin_(position_code_ == 0 ? above.first[axis_] : 0), border_{0, above.first[axis_]} {}
+        : axis_(acdf_curve_axis(&curve)), tilts_(reinterpret_cast<const std::int16_t*>(curve.tilts)),
+          segments_(curve, above.first[axis_], above.last[axis_]), all_(segments_.maximum()),
+          low_(above.low[axis_]), high_(above.high[axis_]), width_(high_ - low_) {}
     std::uint32_t axis() const { return axis_; }
-    /// The distance to the child of the next segment; 0: it ends.
-    std::uint32_t link() const { return acdf_curve_link(&curve_, next_); }
-    CellSegment segment() {
-        const Border from = border_;
-        ++next_;
-        border_ = next_ < curve_.segments ? border(next_) : Border{maximum_, end_};
-        return {from.cumulative, border_.cumulative, from.position, border_.position};
-    }
+    std::uint32_t link() const { return segments_.link(); }
+    CurveSegment segment() { return segments_.next(); }
     /// Random numbers of a segment.
-    double low(const CellSegment& segment) const { return low_ + width_ * (segment.from / all_); }
-    double high(const CellSegment& segment) const { return high(segment, segment.to / all_); }
+    double low(const CurveSegment& segment) const { return low_ + width_ * (segment.from / all_); }
+    double high(const CurveSegment& segment) const { return high(segment, segment.to / all_); }
     /// All of the next segment. Only where each of those before was asked for so: one division less.
     CellPart next() {
-        const std::uint32_t i = next_;
+        const std::uint32_t i = segments_.number();
         const double from = from_;
-        const CellSegment segment = this->segment();
+        const CurveSegment segment = segments_.next();
         from_ = segment.to / all_;
         return {static_cast<double>(segment.to - segment.from) / all_,
                 low_ + width_ * from,
@@ -79,10 +65,10 @@ public:
                 segment.first,
                 segment.last,
                 segment.to == segment.from,
-                curve_.tilts && reinterpret_cast<const std::int16_t*>(curve_.tilts)[i] != 0};
+                tilts_ && tilts_[i] != 0};
     }
     /// What a segment leaves of the cell, where nothing is tilted.
-    Cell cell(const Cell& above, const CellSegment& segment) const {
+    Cell cell(const Cell& above, const CurveSegment& segment) const {
         return CellPart{static_cast<double>(segment.to - segment.from) / all_,
                         low(segment),
                         high(segment),
@@ -94,24 +80,15 @@ public:
     }
 
 private:
-    struct Border {
-        std::uint32_t cumulative, position;
-    };
-    double high(const CellSegment& segment, double part) const {
-        return segment.to != maximum_ ? low_ + width_ * part : high_;
-    }
-    Border border(std::uint32_t i) const {
-        return {acdf_load(curve_.cumulative, i - 1, cumulative_code_),
-                origin_ + acdf_load(curve_.positions, i - 1, position_code_)};
+    double high(const CurveSegment& segment, double part) const {
+        return segment.to != segments_.maximum() ? low_ + width_ * part : high_;
     }
 
-    AcdfCurve curve_;
-    std::uint32_t axis_, cumulative_code_, position_code_, maximum_;
+    std::uint32_t axis_;
+    const std::int16_t* tilts_;
+    CurveSegments segments_;
     double all_; ///< the maximum
-    std::uint32_t next_ = 0;
     double low_, high_, width_;
-    std::uint32_t end_, origin_;
-    Border border_;
     double from_ = 0.0; ///< the part of all at which the next segment begins
 };
 

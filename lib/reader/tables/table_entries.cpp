@@ -1,11 +1,11 @@
 #include "tables/table_entries.h"
 
 #include "memory.h"
+#include "tables/curve_segments.h"
 #include "tables/entry_widths.h"
 #include "tables/growable.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <new>
 
@@ -41,52 +41,15 @@ struct Reached {
     ReachedSide side[ACDF_MAX_AXES];
 };
 
-/// A part of what a curve divides, in its cumulative values.
-struct Part {
-    u32 width;
-    double of; ///< the maximum
-    double probability(double of_all) const {
-        return of_all > 0.0 && width > 0 ? acdf_positive(of_all * (width / of)) : 0.0;
-    }
-};
-
-/// Calls each(i, link, part) for the segments of a curve, the sides of which `reached` takes one after the other;
-/// link: to what is below, 0 where that is a cell. False as soon as that is. Then `reached` is what it was.
-template <class Each>
-bool each_segment(const AcdfCurve& curve, Reached& reached, const Each& each) {
-    ReachedSide& side = reached.side[acdf_curve_axis(&curve)];
-    const ReachedSide above = side;
-    const double of_all = reached.probability, maximum = acdf_curve_maximum(&curve), width = above.high - above.low;
-    const u32 code = ACDF_CURVE_POSITION_CODE(curve.header), origin = code == 0 ? above.first : 0;
-    bool all = true;
-    u32 from = 0;
-    side.high = above.low;
-    side.last = above.first;
-    for (u32 i = 0; all && i < curve.segments; ++i) {
-        const bool is_last = i + 1 == curve.segments;
-        const u32 to = acdf_curve_cumulative(&curve, i + 1);
-        side.low = side.high;
-        side.first = side.last;
-        side.high = is_last ? above.high : above.low + width * (to / maximum);
-        side.last = is_last ? above.last : origin + acdf_load(curve.positions, i, code);
-        all = each(i, of_all > 0.0 && to > from ? acdf_curve_link(&curve, i) : 0, Part{to - from, maximum});
-        from = to;
-    }
-    side = above;
-    reached.probability = of_all;
-    return all;
-}
-
 class EntriesMaker {
 public:
-    EntriesMaker(const AcdfTable& table, u32 bin_count, const TreeSurvey& survey, std::size_t most_bytes,
-                 Scratch* scratch)
-        : table_(table), survey_(survey), bin_count_(bin_count), most_bytes_(most_bytes),
-          first_axis_(table.indexed_count), axes_(acdf_table_sampled_count(&table)), widths_(scratch),
-          bins_(scratch), grids_(scratch), curves_(scratch), steps_(scratch), densities_(scratch) {}
+    EntriesMaker(const AcdfTable& table, u32 bin_count, std::size_t most_bytes, Scratch* scratch)
+        : table_(table), bin_count_(bin_count), most_bytes_(most_bytes), first_axis_(table.indexed_count),
+          axes_(acdf_table_sampled_count(&table)), widths_(scratch), bins_(scratch), grids_(scratch),
+          curves_(scratch), steps_(scratch), densities_(scratch) {}
 
     /// False where there can be none.
-    bool measure();
+    bool measure(const TreeSurvey& survey);
     /// False where they take more than most_bytes.
     bool make();
     AcdfEntries* assemble(const AcdfAllocator& allocator, AcdfBlock& block) const;
@@ -99,7 +62,7 @@ private:
         bool places, numbers;
     };
     bool visit(u32 at, Reached& reached, Found found, u32 depth);
-    bool add_cell(const Reached& reached, double probability_of_all, const Part& part);
+    bool add_cell(const Reached& reached);
     bool add_curve(u32 at, const Reached& reached, u32 depth);
     u32 add_path(u32 depth);
     /// The entries along an axis that lie in its side.
@@ -114,7 +77,6 @@ private:
     std::size_t words() const;
 
     const AcdfTable& table_;
-    const TreeSurvey& survey_;
     u32 bin_count_;
     std::size_t most_bytes_;
     u32 first_axis_, axes_;
@@ -237,15 +199,14 @@ bool EntriesMaker::add_curve(u32 at, const Reached& reached, u32 depth) {
 }
 
 // A cell in which entries lie.
-bool EntriesMaker::add_cell(const Reached& reached, double of_all, const Part& part) {
+bool EntriesMaker::add_cell(const Reached& reached) {
     fill_places(reached, static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
-    const double probability = part.probability(of_all);
     AcdfTablePlace place = {};
     for (u32 axis = first_axis_; axis < table_.axis_count; ++axis) {
         place.range[axis].low = reached.side[axis].first;
         place.range[axis].high = reached.side[axis].last;
     }
-    densities_.add(probability > 0.0 ? acdf_table_density(&table_, probability, &place) : 0.0);
+    densities_.add(reached.probability > 0.0 ? acdf_table_density(&table_, reached.probability, &place) : 0.0);
     return !densities_.failed();
 }
 
@@ -255,25 +216,39 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
     if (found.numbers) fill_numbers(reached, curve_count_);
     if (!add_curve(at, reached, depth)) return false;
     const AcdfCurve curve = acdf_curve_at(table_.tree, at);
-    const u32 axis = acdf_curve_axis(&curve) - first_axis_, maximum = acdf_curve_maximum(&curve);
+    const u32 axis = acdf_curve_axis(&curve);
+    ReachedSide& side = reached.side[axis];
+    const ReachedSide above = side;
     const double of_all = reached.probability;
+    CurveSegments segments(curve, above.first, above.last);
+    const double maximum = segments.maximum(), width = above.high - above.low;
     if (maximum > 0xFFFF || depth == kMostPath) return true; // what is below is walked
-    return each_segment(curve, reached, [&](u32 i, u32 link, const Part& part) {
-        ReachedSide& side = reached.side[first_axis_ + axis];
-        find_entries(axis, side);
+    bool all = true;
+    side.high = above.low;
+    while (all && segments.number() < curve.segments) {
+        const u32 link = segments.link();
+        const CurveSegment segment = segments.next();
+        const u32 part = segment.to - segment.from;
+        side.low = side.high;
+        side.high = segments.number() == curve.segments ? above.high : above.low + width * (segment.to / maximum);
+        side.first = segment.first;
+        side.last = segment.last;
+        find_entries(axis - first_axis_, side);
+        const bool divided = link > 0 && part > 0;
         const Found below = {found.places && side.places.any(), found.numbers && side.numbers.any()};
-        if (link == 0) return !below.places || add_cell(reached, of_all, part);
-        if (!below.places && !below.numbers) return true;
-        reached.probability = part.probability(of_all);
-        path_[depth] = {static_cast<std::uint16_t>(maximum),
-                        static_cast<std::uint16_t>(acdf_curve_cumulative(&curve, i)),
-                        static_cast<std::uint16_t>(part.width), static_cast<std::uint16_t>(axis)};
-        return visit(at + link, reached, below, depth + 1);
-    });
+        if (!below.places && !(divided && below.numbers)) continue;
+        reached.probability = part > 0 ? acdf_positive(of_all * (part / maximum)) : 0.0;
+        path_[depth] = {static_cast<std::uint16_t>(maximum), static_cast<std::uint16_t>(segment.from),
+                        static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(axis - first_axis_)};
+        all = divided ? visit(at + link, reached, below, depth + 1) : add_cell(reached);
+    }
+    side = above;
+    reached.probability = of_all;
+    return all;
 }
 
-bool EntriesMaker::measure() {
-    EntryWidthsFinder finder(table_, survey_);
+bool EntriesMaker::measure(const TreeSurvey& survey) {
+    EntryWidthsFinder finder(table_, survey);
     if (bin_count_ * (sizeof(EntryWidths) + sizeof(AcdfEntryBin)) > most_bytes_ ||
         !widths_.add(bin_count_, EntryWidths{}))
         return false;
@@ -342,9 +317,8 @@ AcdfEntries* EntriesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& b
 AcdfEntries* make_table_entries(const AcdfTable& table, u32 bin_count, const TreeSurvey& survey,
                                 std::size_t most_bytes, const AcdfAllocator& allocator, AcdfBlock& block) noexcept {
     Scratch pages;
-    EntriesMaker maker(table, bin_count, survey, most_bytes,
-                       table.tree_units >= kFewestEntryUnits ? &pages : nullptr);
-    return maker.measure() && maker.make() ? maker.assemble(allocator, block) : nullptr;
+    EntriesMaker maker(table, bin_count, most_bytes, table.tree_units >= kFewestEntryUnits ? &pages : nullptr);
+    return maker.measure(survey) && maker.make() ? maker.assemble(allocator, block) : nullptr;
 }
 
 } // namespace acdf

@@ -206,12 +206,16 @@ struct Samples {
     const double (*u)[2];
 };
 
-/* Boxes of cells, and what views give to them. */
+/* What views give to the cells of lanes: numbers in t.parts. */
+ACDF_LANE Integer parts_of(const WavefrontTable& t, const Walk& walked, Integer lower) {
+    return multiplied(walked.node & 0x7FFF, t.stride) + lower;
+}
+
+/* The boxes of cells, and those. */
 ACDF_LANE void ask_for_cells(const WavefrontTable& t, const Walk& walked, Integer lower) {
-    const Integer number = walked.node & 0x7FFF;
     Indices box, part;
-    stored(&box, number * 16);
-    stored(&part, (multiplied(number, t.stride) + lower) * 8);
+    stored(&box, (walked.node & 0x7FFF) * 16);
+    stored(&part, parts_of(t, walked, lower) * 8);
     for (int i = 0; i < kWidth; ++i) {
         __builtin_prefetch((const char*)t.boxes + box.at[i]);
         __builtin_prefetch((const char*)t.parts + part.at[i]);
@@ -298,10 +302,8 @@ ACDF_LANE std::uint64_t end_samples(const WavefrontTable& t, const View* views, 
     Aim aim[Groups];
     Vector part[Groups][2];
     std::uint64_t left = 0;
-    for (int g = 0; g < Groups; ++g) {
-        const Integer number = walked[g].node & 0x7FFF;
-        gather_pairs<8>(t.parts, multiplied(number, t.stride) + views[one ? 0 : g].lower, part[g]);
-    }
+    for (int g = 0; g < Groups; ++g)
+        gather_pairs<8>(t.parts, parts_of(t, walked[g], views[one ? 0 : g].lower), part[g]);
     for (int g = 0; g < Groups; ++g) draw_half(t, walked[g], cells[g], &aim[g]);
     for (int g = 0; g < Groups; ++g) turn_half(t, views[one ? 0 : g], signs[g], &aim[g]);
     for (int g = 0; g < Groups; ++g)
