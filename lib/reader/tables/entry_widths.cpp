@@ -10,7 +10,7 @@ namespace {
 
 using u32 = std::uint32_t;
 
-constexpr u32 kFewCells = 16; // below a curve: how they lie there is not looked at
+constexpr u32 kFewCells = 64; // below a curve: how they lie there is not looked at
 
 // Of a positive number.
 double logarithm(double x) {

@@ -17,6 +17,7 @@ using u32 = std::uint32_t;
 
 constexpr u32 kFewestBinCells = 16;        // of a bin whose tree is not walked from its root
 constexpr double kEntriesACell = 8.0;      // of each grid, at most
+constexpr double kNumberEntries = 0x1p16;  // at most: draws wait for memory as long as more of them save
 constexpr u32 kMostEntryBits = 12;         // of entries along an axis
 constexpr double kNumberBorder = 0x1p-40;  // of random numbers: what is nearer to one, rounding may carry across
 constexpr u32 kFewestEntryUnits = 1 << 14; // of a tree whose tables need more than a large page
@@ -63,15 +64,15 @@ private:
     };
     bool visit(u32 at, Reached& reached, Found found, u32 depth);
     bool add_cell(const Reached& reached);
-    bool add_curve(u32 at, const Reached& reached, u32 depth);
+    bool add_curve(u32 at, const Reached& reached, Found found, u32 depth);
     u32 add_path(u32 depth);
-    /// The entries along an axis that lie in its side.
-    void find_entries(u32 axis, ReachedSide& side) const;
-    /// What is reached leads to `entry`, by all entries that lie in it.
-    void fill_places(const Reached& reached, u32 entry);
-    void fill_numbers(const Reached& reached, u32 entry);
-    void fill(const Reached& reached, EntrySpan ReachedSide::*entries, u32 AcdfEntryAxis::*stride, u32* grid,
-              u32 entry) const;
+    /// The entries along an axis that lie in its side: whether there are any.
+    bool find_places(u32 axis, ReachedSide& side) const;
+    bool find_numbers(u32 axis, ReachedSide& side) const;
+    /// Entries of what is reached, of those `along` an axis only a span, lead to `entry`.
+    void fill_places(const Reached& reached, u32 along, EntrySpan span, u32 entry);
+    void fill_numbers(const Reached& reached, u32 along, EntrySpan span, u32 entry);
+    void fill(const EntrySpan* spans, u32 AcdfEntryAxis::*stride, u32* grid, u32 entry) const;
     u32 resolution(u32 axis) const { return table_.axes[first_axis_ + axis].resolution; }
     std::size_t curve_words() const { return sizeof(AcdfEntryCurve) / 4 + 2 * std::size_t{axes_}; }
     std::size_t words() const;
@@ -96,15 +97,18 @@ private:
 Reached EntriesMaker::whole() const {
     Reached out;
     for (u32 axis = 0; axis < table_.axis_count; ++axis) out.side[axis].last = table_.axes[axis].resolution;
-    for (u32 axis = 0; axis < axes_; ++axis) find_entries(axis, out.side[first_axis_ + axis]);
+    for (u32 axis = 0; axis < axes_; ++axis) {
+        find_places(axis, out.side[first_axis_ + axis]);
+        find_numbers(axis, out.side[first_axis_ + axis]);
+    }
     return out;
 }
 
 // Entries along each axis: about as many times finer than its cells as along the others.
 void EntriesMaker::lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const {
-    const auto cells = static_cast<double>(widths.cells);
-    const auto share_out = [&](const double* width, const u32* most, u32* bits) {
-        for (double entries = 2.0; entries <= entries_a_cell_ * cells; entries *= 2.0) {
+    const auto cells = static_cast<double>(widths.cells), all_entries = entries_a_cell_ * cells;
+    const auto share_out = [&](double some, const double* width, const u32* most, u32* bits) {
+        for (double entries = 2.0; entries <= some; entries *= 2.0) {
             u32 next = axes_;
             for (u32 axis = 0; axis < axes_; ++axis)
                 if (bits[axis] < most[axis] &&
@@ -119,9 +123,9 @@ void EntriesMaker::lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const {
         while (std::uint64_t{1} << all[axis] < resolution(axis)) ++all[axis];
         most[axis] = std::min(all[axis], kMostEntryBits);
     }
-    share_out(widths.place, most, place);
+    share_out(all_entries, widths.place, most, place);
     std::fill(most, most + axes_, kMostEntryBits);
-    share_out(widths.number, most, number);
+    share_out(std::min(all_entries, kNumberEntries), widths.number, most, number);
     u32 places = 1, numbers = 1;
     for (u32 axis = axes_; axis-- > 0;) {
         AcdfEntryAxis& a = bin.axes[axis];
@@ -137,38 +141,51 @@ void EntriesMaker::lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const {
     bin.numbers = numbers;
 }
 
-void EntriesMaker::fill(const Reached& reached, EntrySpan ReachedSide::*entries, u32 AcdfEntryAxis::*stride,
-                        u32* grid, u32 entry) const {
-    const auto span = [&](u32 axis) -> const EntrySpan& { return reached.side[first_axis_ + axis].*entries; };
+// spans: of each axis.
+void EntriesMaker::fill(const EntrySpan* spans, u32 AcdfEntryAxis::*stride, u32* grid, u32 entry) const {
     std::size_t at[ACDF_MAX_AXES];
-    for (u32 axis = 0; axis < axes_; ++axis) at[axis] = span(axis).first;
+    for (u32 axis = 0; axis < axes_; ++axis) at[axis] = spans[axis].first;
     const u32 last = axes_ - 1; // entries along it are next to each other
     for (;;) {
         std::size_t line = 0;
         for (u32 axis = 0; axis < last; ++axis) line += at[axis] * bin_->axes[axis].*stride;
-        std::fill(grid + line + span(last).first, grid + line + span(last).last, entry);
+        std::fill(grid + line + spans[last].first, grid + line + spans[last].last, entry);
         u32 axis = last;
-        while (axis > 0 && ++at[axis - 1] == span(axis - 1).last) --axis, at[axis] = span(axis).first;
+        while (axis > 0 && ++at[axis - 1] == spans[axis - 1].last) --axis, at[axis] = spans[axis].first;
         if (axis == 0) return;
     }
 }
 
-void EntriesMaker::fill_places(const Reached& reached, u32 entry) {
-    fill(reached, &ReachedSide::places, &AcdfEntryAxis::place_stride, &grids_[bin_->places], entry);
+void EntriesMaker::fill_places(const Reached& reached, u32 along, EntrySpan span, u32 entry) {
+    if (!span.any()) return;
+    EntrySpan spans[ACDF_MAX_AXES];
+    for (u32 axis = 0; axis < axes_; ++axis) spans[axis] = reached.side[first_axis_ + axis].places;
+    spans[along] = span;
+    fill(spans, &AcdfEntryAxis::place_stride, &grids_[bin_->places], entry);
 }
 
-void EntriesMaker::fill_numbers(const Reached& reached, u32 entry) {
-    fill(reached, &ReachedSide::numbers, &AcdfEntryAxis::number_stride, &grids_[bin_->numbers], entry);
+void EntriesMaker::fill_numbers(const Reached& reached, u32 along, EntrySpan span, u32 entry) {
+    if (!span.any()) return;
+    EntrySpan spans[ACDF_MAX_AXES];
+    for (u32 axis = 0; axis < axes_; ++axis) spans[axis] = reached.side[first_axis_ + axis].numbers;
+    spans[along] = span;
+    fill(spans, &AcdfEntryAxis::number_stride, &grids_[bin_->numbers], entry);
 }
 
-void EntriesMaker::find_entries(u32 axis, ReachedSide& side) const {
-    const u32 shift = bin_->axes[axis].shift, steps = bin_->axes[axis].number_steps;
-    const auto round_up = [](double x) { return static_cast<u32>(x) + (static_cast<u32>(x) < x); };
-    const double low = (side.low + kNumberBorder) * steps, high = std::max(side.high - kNumberBorder, 0.0) * steps;
+bool EntriesMaker::find_places(u32 axis, ReachedSide& side) const {
+    const u32 shift = bin_->axes[axis].shift;
     side.places.first = static_cast<u32>((std::uint64_t{side.first} + (std::uint64_t{1} << shift) - 1) >> shift);
     side.places.last = side.last == resolution(axis) ? ((side.last - 1) >> shift) + 1 : side.last >> shift;
+    return side.places.any();
+}
+
+bool EntriesMaker::find_numbers(u32 axis, ReachedSide& side) const {
+    const u32 steps = bin_->axes[axis].number_steps;
+    const auto round_up = [](double x) { return static_cast<u32>(x) + (static_cast<u32>(x) < x); };
+    const double low = (side.low + kNumberBorder) * steps, high = std::max(side.high - kNumberBorder, 0.0) * steps;
     side.numbers.first = side.low == 0.0 ? 0 : round_up(low);
     side.numbers.last = side.high == 1.0 ? steps : static_cast<u32>(high);
+    return side.numbers.any();
 }
 
 // Where so many steps stand. Those of the curve above are not written again if they are the newest ones.
@@ -180,12 +197,15 @@ u32 EntriesMaker::add_path(u32 depth) {
     return path_at_[depth];
 }
 
-bool EntriesMaker::add_curve(u32 at, const Reached& reached, u32 depth) {
+// The way to it is asked for by random numbers alone.
+bool EntriesMaker::add_curve(u32 at, const Reached& reached, Found found, u32 depth) {
     AcdfEntryCurve curve = {};
     curve.probability = reached.probability;
     curve.at = at;
-    curve.first = add_path(depth);
-    curve.count = depth;
+    if (found.numbers) {
+        curve.first = add_path(depth);
+        curve.count = depth;
+    }
     u32* out = curves_.add(curve_words(), 0);
     if (!out) return false;
     std::memcpy(out, &curve, sizeof curve);
@@ -200,7 +220,8 @@ bool EntriesMaker::add_curve(u32 at, const Reached& reached, u32 depth) {
 
 // A cell in which entries lie.
 bool EntriesMaker::add_cell(const Reached& reached) {
-    fill_places(reached, static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
+    fill_places(reached, 0, reached.side[first_axis_].places,
+                static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
     AcdfTablePlace place = {};
     for (u32 axis = first_axis_; axis < table_.axis_count; ++axis) {
         place.range[axis].low = reached.side[axis].first;
@@ -210,11 +231,11 @@ bool EntriesMaker::add_cell(const Reached& reached) {
     return !densities_.failed();
 }
 
-// A curve that is reached by so many steps, in what it divides entries lie, and what is below it.
+// A curve that is reached by so many steps, in what it divides entries lie, and what is below it. Each entry is
+// filled once: those between what goes on below it lead to the curve.
 bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
-    if (found.places) fill_places(reached, curve_count_);
-    if (found.numbers) fill_numbers(reached, curve_count_);
-    if (!add_curve(at, reached, depth)) return false;
+    const u32 number = curve_count_;
+    if (!add_curve(at, reached, found, depth)) return false;
     const AcdfCurve curve = acdf_curve_at(table_.tree, at);
     const u32 axis = acdf_curve_axis(&curve);
     ReachedSide& side = reached.side[axis];
@@ -222,10 +243,17 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
     const double of_all = reached.probability;
     CurveSegments segments(curve, above.first, above.last);
     const double maximum = segments.maximum(), width = above.high - above.low;
-    if (maximum > 0xFFFF || depth == kMostPath) return true; // what is below is walked
+    EntrySpan places = above.places, numbers = above.numbers; // that are left
+    const auto fill_places_to = [&](u32 end) {
+        if (found.places) fill_places(reached, axis - first_axis_, {places.first, end}, number);
+    };
+    const auto fill_numbers_to = [&](u32 end) {
+        if (found.numbers) fill_numbers(reached, axis - first_axis_, {numbers.first, end}, number);
+    };
+    const bool walked = maximum > 0xFFFF || depth == kMostPath; // what is below
     bool all = true;
     side.high = above.low;
-    while (all && segments.number() < curve.segments) {
+    while (all && !walked && segments.number() < curve.segments) {
         const u32 link = segments.link();
         const CurveSegment segment = segments.next();
         const u32 part = segment.to - segment.from;
@@ -233,15 +261,25 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
         side.high = segments.number() == curve.segments ? above.high : above.low + width * (segment.to / maximum);
         side.first = segment.first;
         side.last = segment.last;
-        find_entries(axis - first_axis_, side);
         const bool divided = link > 0 && part > 0;
-        const Found below = {found.places && side.places.any(), found.numbers && side.numbers.any()};
-        if (!below.places && !(divided && below.numbers)) continue;
+        const Found below = {found.places && find_places(axis - first_axis_, side),
+                             found.numbers && divided && find_numbers(axis - first_axis_, side)};
+        if (!below.places && !below.numbers) continue;
+        if (below.places) {
+            fill_places_to(side.places.first);
+            places.first = side.places.last;
+        }
+        if (below.numbers) {
+            fill_numbers_to(side.numbers.first);
+            numbers.first = side.numbers.last;
+        }
         reached.probability = part > 0 ? acdf_positive(of_all * (part / maximum)) : 0.0;
         path_[depth] = {static_cast<std::uint16_t>(maximum), static_cast<std::uint16_t>(segment.from),
                         static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(axis - first_axis_)};
         all = divided ? visit(at + link, reached, below, depth + 1) : add_cell(reached);
     }
+    fill_places_to(places.last);
+    fill_numbers_to(numbers.last);
     side = above;
     reached.probability = of_all;
     return all;
@@ -267,7 +305,7 @@ bool EntriesMaker::make() {
     entries_a_cell_ = kEntriesACell;
     while (about(entries_a_cell_) > most) entries_a_cell_ /= 2.0;
     const std::size_t some = cells_ / 4; // curves, usually
-    if (!densities_.reserve(cells_) || !curves_.reserve(some * curve_words()) || !steps_.reserve(8 * some))
+    if (!curves_.reserve(some * curve_words()) || !steps_.reserve(2 * some) || !densities_.reserve(some))
         return false;
     if (!bins_.add(bin_count_, AcdfEntryBin{}) || !grids_.add(16, 0)) return false; // so that none begins at 0
     for (u32 bin = 0; bin < bin_count_; ++bin) {

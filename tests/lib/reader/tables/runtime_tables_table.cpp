@@ -160,6 +160,131 @@ TEST(TableEntries, CellsAreCountedWhileFilesAreChecked) {
     EXPECT_GT(counted, 30);
 }
 
+/// A box of positions or of random numbers of each sampled axis.
+template <class T>
+struct EntryBox {
+    T low[ACDF_MAX_AXES], high[ACDF_MAX_AXES];
+};
+
+/// What an entry is to lead to: the deepest curve that holds all of it, or (of positions alone) a cell.
+struct LedTo {
+    std::uint32_t at;
+    bool cell;
+};
+
+// Segment i of a curve, of positions from `low` to `high`; and of random numbers.
+EntryBox<std::uint32_t> part_of(const AcdfCurve& curve, std::uint32_t i, EntryBox<std::uint32_t> of) {
+    const std::uint32_t axis = acdf_curve_axis(&curve);
+    AcdfRange range = {of.low[axis], of.high[axis], 0.0};
+    acdf_curve_narrow(&curve, i, &range);
+    of.low[axis] = range.low;
+    of.high[axis] = range.high;
+    return of;
+}
+EntryBox<double> part_of(const AcdfCurve& curve, std::uint32_t i, EntryBox<double> of) {
+    const std::uint32_t axis = acdf_curve_axis(&curve);
+    const double low = of.low[axis], width = of.high[axis] - low, all = acdf_curve_maximum(&curve);
+    of.low[axis] = low + width * (acdf_curve_cumulative(&curve, i) / all);
+    if (i + 1 < curve.segments) of.high[axis] = low + width * (acdf_curve_cumulative(&curve, i + 1) / all);
+    return of;
+}
+
+template <class T>
+bool holds(const EntryBox<T>& box, const EntryBox<T>& entry, std::uint32_t axis, T border) {
+    return box.low[axis] + border <= entry.low[axis] && entry.high[axis] <= box.high[axis] - border;
+}
+
+template <class T>
+LedTo led_to(const AcdfTable& table, std::uint32_t root, const EntryBox<T>& whole, const EntryBox<T>& entry,
+             T border) {
+    EntryBox<T> box = whole;
+    for (std::uint32_t at = root;;) {
+        const AcdfCurve curve = acdf_curve_at(table.tree, at);
+        const std::uint32_t axis = acdf_curve_axis(&curve);
+        std::uint32_t i = 0;
+        for (; i < curve.segments; ++i) {
+            EntryBox<T> part = part_of(curve, i, box);
+            if (part.low[axis] == whole.low[axis]) part.low[axis] -= border; // nothing is beyond
+            if (part.high[axis] == whole.high[axis]) part.high[axis] += border;
+            if (part.low[axis] < part.high[axis] && holds(part, entry, axis, border)) break;
+        }
+        if (i == curve.segments) return {at, false};
+        const std::uint32_t link = acdf_curve_link(&curve, i);
+        const bool dark = acdf_curve_cumulative(&curve, i) == acdf_curve_cumulative(&curve, i + 1);
+        if (link == 0 || dark) return {at, true};
+        box = part_of(curve, i, box);
+        at += link;
+    }
+}
+
+// All entries of a bin: returns how many are cells.
+std::size_t expect_entries_lead_deep(const AcdfTable& table, std::uint32_t bin) {
+    const AcdfEntryBin* grids = acdf_entry_bin(table.entries, bin);
+    const std::uint32_t first = table.indexed_count, end = table.axis_count, root = table.bins[bin].root;
+    const auto* const words = reinterpret_cast<const std::uint32_t*>(table.entries);
+    EntryBox<std::uint32_t> all_places = {};
+    EntryBox<double> all_numbers = {};
+    std::uint32_t places[ACDF_MAX_AXES] = {}, place_count = 1, number_count = 1;
+    for (std::uint32_t axis = first; axis < end; ++axis) {
+        const AcdfEntryAxis& a = grids->axes[axis - first];
+        all_places.high[axis] = table.axes[axis].resolution;
+        all_numbers.high[axis] = 1.0;
+        places[axis] = ((table.axes[axis].resolution - 1) >> a.shift) + 1;
+        place_count *= places[axis];
+        number_count *= a.number_steps;
+    }
+    std::size_t cells = 0;
+    for (std::uint32_t k = 0; k < place_count; ++k) {
+        EntryBox<std::uint32_t> entry = all_places;
+        for (std::uint32_t axis = first; axis < end; ++axis) {
+            const AcdfEntryAxis& a = grids->axes[axis - first];
+            entry.low[axis] = k / a.place_stride % places[axis] << a.shift;
+            entry.high[axis] = std::min(entry.low[axis] + (1u << a.shift), table.axes[axis].resolution);
+        }
+        const LedTo to = led_to<std::uint32_t>(table, root, all_places, entry, 0);
+        const std::uint32_t found = words[grids->places + k];
+        EXPECT_EQ(found >= ACDF_ENTRY_CELL, to.cell);
+        if (!to.cell) {
+            EXPECT_EQ(acdf_entry_curve(table.entries, found & ~ACDF_ENTRY_CELL)->at, to.at);
+        }
+        cells += to.cell;
+    }
+    for (std::uint32_t k = 0; k < number_count; ++k) {
+        EntryBox<double> entry = all_numbers;
+        for (std::uint32_t axis = first; axis < end; ++axis) {
+            const AcdfEntryAxis& a = grids->axes[axis - first];
+            entry.low[axis] = static_cast<double>(k / a.number_stride % a.number_steps) / a.number_steps;
+            entry.high[axis] = entry.low[axis] + 1.0 / a.number_steps;
+        }
+        const AcdfEntryCurve* found = acdf_entry_curve(table.entries, words[grids->numbers + k]);
+        EXPECT_EQ(found->at, led_to(table, root, all_numbers, entry, 0x1p-40).at);
+    }
+    return cells;
+}
+
+TEST(TableEntries, LeadAsDeepAsTheyCan) {
+    int with_tables = 0;
+    std::size_t cells = 0;
+    const auto expect_deep = [&](const std::vector<std::uint8_t>& bytes, std::uint32_t bins) {
+        File file;
+        ASSERT_TRUE(File::from_memory(bytes.data(), bytes.size(), file).ok());
+        const AcdfTable table = file.table().data();
+        for (std::uint32_t bin = 0; table.entries && bin < bins; ++bin) {
+            if (acdf_entry_bin(table.entries, bin)->places == 0) continue;
+            ++with_tables;
+            cells += expect_entries_lead_deep(table, bin);
+        }
+    };
+    expect_deep(table_of_bins(), 6);
+    for (const Space& space : spaces())
+        for (std::uint64_t seed = 0; seed < 16 && !HasFailure(); ++seed) {
+            SCOPED_TRACE(std::string(space.name) + " " + std::to_string(seed));
+            expect_deep(random_table(space, seed, false), 1);
+        }
+    EXPECT_GT(with_tables, 30);
+    EXPECT_GT(cells, 1000u);
+}
+
 // A table as they are in use: entries of half of all points are cells.
 TEST(TableEntries, OfAFittedFileGiveTheSameBits) {
     constexpr std::uint32_t side = 256;
