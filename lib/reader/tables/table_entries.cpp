@@ -42,6 +42,15 @@ struct Reached {
     ReachedSide side[ACDF_MAX_AXES];
 };
 
+/// Of one of both grids.
+struct EntryKind {
+    EntrySpan ReachedSide::*spans;
+    u32 AcdfEntryAxis::*stride; ///< entries to the next one
+    u32 AcdfEntryBin::*grid;
+};
+constexpr EntryKind kPlaces = {&ReachedSide::places, &AcdfEntryAxis::place_stride, &AcdfEntryBin::places};
+constexpr EntryKind kNumbers = {&ReachedSide::numbers, &AcdfEntryAxis::number_stride, &AcdfEntryBin::numbers};
+
 class EntriesMaker {
 public:
     EntriesMaker(const AcdfTable& table, u32 bin_count, std::size_t most_bytes, Scratch* scratch)
@@ -69,10 +78,8 @@ private:
     /// The entries along an axis that lie in its side: whether there are any.
     bool find_places(u32 axis, ReachedSide& side) const;
     bool find_numbers(u32 axis, ReachedSide& side) const;
-    /// Entries of what is reached, of those `along` an axis only a span, lead to `entry`.
-    void fill_places(const Reached& reached, u32 along, EntrySpan span, u32 entry);
-    void fill_numbers(const Reached& reached, u32 along, EntrySpan span, u32 entry);
-    void fill(const EntrySpan* spans, u32 AcdfEntryAxis::*stride, u32* grid, u32 entry) const;
+    /// Entries of what is reached lead to `entry`: of those along one axis only a span.
+    void fill(const EntryKind& kind, const Reached& reached, u32 along, EntrySpan span, u32 entry);
     u32 resolution(u32 axis) const { return table_.axes[first_axis_ + axis].resolution; }
     std::size_t curve_words() const { return sizeof(AcdfEntryCurve) / 4 + 2 * std::size_t{axes_}; }
     std::size_t words() const;
@@ -141,35 +148,24 @@ void EntriesMaker::lay_out(const EntryWidths& widths, AcdfEntryBin& bin) const {
     bin.numbers = numbers;
 }
 
-// spans: of each axis.
-void EntriesMaker::fill(const EntrySpan* spans, u32 AcdfEntryAxis::*stride, u32* grid, u32 entry) const {
+void EntriesMaker::fill(const EntryKind& kind, const Reached& reached, u32 along, EntrySpan span, u32 entry) {
+    if (!span.any()) return;
+    EntrySpan spans[ACDF_MAX_AXES];
     std::size_t at[ACDF_MAX_AXES];
-    for (u32 axis = 0; axis < axes_; ++axis) at[axis] = spans[axis].first;
+    for (u32 axis = 0; axis < axes_; ++axis) {
+        spans[axis] = axis == along ? span : reached.side[first_axis_ + axis].*kind.spans;
+        at[axis] = spans[axis].first;
+    }
+    u32* const grid = &grids_[bin_->*kind.grid];
     const u32 last = axes_ - 1; // entries along it are next to each other
     for (;;) {
         std::size_t line = 0;
-        for (u32 axis = 0; axis < last; ++axis) line += at[axis] * bin_->axes[axis].*stride;
+        for (u32 axis = 0; axis < last; ++axis) line += at[axis] * bin_->axes[axis].*kind.stride;
         std::fill(grid + line + spans[last].first, grid + line + spans[last].last, entry);
         u32 axis = last;
         while (axis > 0 && ++at[axis - 1] == spans[axis - 1].last) --axis, at[axis] = spans[axis].first;
         if (axis == 0) return;
     }
-}
-
-void EntriesMaker::fill_places(const Reached& reached, u32 along, EntrySpan span, u32 entry) {
-    if (!span.any()) return;
-    EntrySpan spans[ACDF_MAX_AXES];
-    for (u32 axis = 0; axis < axes_; ++axis) spans[axis] = reached.side[first_axis_ + axis].places;
-    spans[along] = span;
-    fill(spans, &AcdfEntryAxis::place_stride, &grids_[bin_->places], entry);
-}
-
-void EntriesMaker::fill_numbers(const Reached& reached, u32 along, EntrySpan span, u32 entry) {
-    if (!span.any()) return;
-    EntrySpan spans[ACDF_MAX_AXES];
-    for (u32 axis = 0; axis < axes_; ++axis) spans[axis] = reached.side[first_axis_ + axis].numbers;
-    spans[along] = span;
-    fill(spans, &AcdfEntryAxis::number_stride, &grids_[bin_->numbers], entry);
 }
 
 bool EntriesMaker::find_places(u32 axis, ReachedSide& side) const {
@@ -220,8 +216,8 @@ bool EntriesMaker::add_curve(u32 at, const Reached& reached, Found found, u32 de
 
 // A cell in which entries lie.
 bool EntriesMaker::add_cell(const Reached& reached) {
-    fill_places(reached, 0, reached.side[first_axis_].places,
-                static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
+    fill(kPlaces, reached, 0, reached.side[first_axis_].places,
+         static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
     AcdfTablePlace place = {};
     for (u32 axis = first_axis_; axis < table_.axis_count; ++axis) {
         place.range[axis].low = reached.side[axis].first;
@@ -244,11 +240,9 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
     CurveSegments segments(curve, above.first, above.last);
     const double maximum = segments.maximum(), width = above.high - above.low;
     EntrySpan places = above.places, numbers = above.numbers; // that are left
-    const auto fill_places_to = [&](u32 end) {
-        if (found.places) fill_places(reached, axis - first_axis_, {places.first, end}, number);
-    };
-    const auto fill_numbers_to = [&](u32 end) {
-        if (found.numbers) fill_numbers(reached, axis - first_axis_, {numbers.first, end}, number);
+    const auto fill_up_to = [&](const EntryKind& kind, EntrySpan& left, const EntrySpan& below) {
+        fill(kind, reached, axis - first_axis_, {left.first, below.first}, number);
+        left.first = below.last;
     };
     const bool walked = maximum > 0xFFFF || depth == kMostPath; // what is below
     bool all = true;
@@ -265,21 +259,15 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
         const Found below = {found.places && find_places(axis - first_axis_, side),
                              found.numbers && divided && find_numbers(axis - first_axis_, side)};
         if (!below.places && !below.numbers) continue;
-        if (below.places) {
-            fill_places_to(side.places.first);
-            places.first = side.places.last;
-        }
-        if (below.numbers) {
-            fill_numbers_to(side.numbers.first);
-            numbers.first = side.numbers.last;
-        }
+        if (below.places) fill_up_to(kPlaces, places, side.places);
+        if (below.numbers) fill_up_to(kNumbers, numbers, side.numbers);
         reached.probability = part > 0 ? acdf_positive(of_all * (part / maximum)) : 0.0;
         path_[depth] = {static_cast<std::uint16_t>(maximum), static_cast<std::uint16_t>(segment.from),
                         static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(axis - first_axis_)};
         all = divided ? visit(at + link, reached, below, depth + 1) : add_cell(reached);
     }
-    fill_places_to(places.last);
-    fill_numbers_to(numbers.last);
+    if (found.places) fill_up_to(kPlaces, places, {places.last, places.last});
+    if (found.numbers) fill_up_to(kNumbers, numbers, {numbers.last, numbers.last});
     side = above;
     reached.probability = of_all;
     return all;
