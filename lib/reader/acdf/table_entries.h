@@ -26,7 +26,7 @@ typedef struct AcdfEntryStep {
 typedef struct AcdfEntryCurve {
     double probability;    /* of what it divides */
     uint32_t at;           /* in the tree */
-    uint32_t first, count; /* of its AcdfEntrySteps, in the order of the way */
+    uint32_t first, count; /* of its AcdfEntrySteps, in their order; where numbers lead to it */
     uint32_t reserved;
 } AcdfEntryCurve;
 
