@@ -3,6 +3,7 @@
 
 #include "tests/inputs/folder.h"
 #include "tests/inputs/places.h"
+#include "tests/inputs/sanitized.h"
 
 #include "compress/store/store.h"
 
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -31,10 +33,20 @@ struct Result {
     std::string out, err;
 };
 
+/// Leaks are looked for in tests that call libraries: at the end of a program that takes as long as to start it.
+inline void look_for_no_leaks_in_programs() {
+    static const bool done = [] {
+        const char* const options = std::getenv("ASAN_OPTIONS");
+        return setenv("ASAN_OPTIONS", ((options ? options : "") + std::string(":detect_leaks=0")).c_str(), 1) == 0;
+    }();
+    ASSERT_TRUE(done);
+}
+
 /// Starts `acdf arguments...` (or a copy of it that lies elsewhere) with the given files as stdin, stdout and
 /// stderr.
 inline pid_t start_acdf(std::vector<std::string> arguments, const std::string& in, const std::string& out,
                         const std::string& err, const std::string& program = acdf_test::kProgram) {
+    if (acdf_test::kSanitized) look_for_no_leaks_in_programs();
     arguments.insert(arguments.begin(), "acdf");
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());

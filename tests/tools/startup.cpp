@@ -1,5 +1,6 @@
 // What the program loads before it has anything to do: no library for images, until there is one.
 #include "tests/inputs/places.h"
+#include "tests/inputs/sanitized.h"
 #include "tests/tools/plot/files.h"
 #include "tests/tools/run.h"
 #include "tools/plot/legend.h"
@@ -104,6 +105,7 @@ protected:
 };
 
 TEST_F(Startup, LoadsNoLibraryForImagesWhereThereIsNone) {
+    ACDF_NOT_SANITIZED();
     write_text(image, "never opened");
     const std::string map = folder / "sky.pfm"; // which needs no library
     write_rgb(map, 4, 2, std::vector<float>(24, 1.0f));
@@ -174,6 +176,7 @@ TEST_F(Startup, LoadsNoMoreThanAFontForAPicture) {
 }
 
 TEST_F(Startup, TheProgramAndItsModulesMayBeMovedTogether) {
+    ACDF_NOT_SANITIZED();
     write_images();
     const std::string program = copied_program();
     for (const char* module : kModules) fs::copy_file(module, place_of(module));

@@ -1,6 +1,7 @@
 // Rows of sweeps of local and BRDF files.
 #include "build/own_terms.h"
 #include "input/brdf/brdf.h"
+#include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/sweep.h"
 
@@ -58,6 +59,7 @@ TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
 }
 
 TEST(SweepRows, OfABrdf) {
+    ACDF_NOT_SANITIZED();
     const auto brdf = input::open_brdf("ggx:alpha=0.3");
     SweepOptions options = small_sweep();
     options.visibility.spp = 1; // uniform numbers, as above; samples that are lost below the surface count

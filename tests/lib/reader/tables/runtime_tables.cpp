@@ -92,6 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Octahedral, RuntimeTablesOf, testing::ValuesIn(octahedr
 
 // As many cells as files in use have: nearly all that is asked is told by the tables, in bounded memory.
 TEST(RuntimeTables, ServeNearlyAllOfUsualFiles) {
+    ACDF_NOT_SANITIZED();
     const auto sky =
         texel_target(512, 256, [random = std::mt19937_64(3)](std::uint32_t c, std::uint32_t r) mutable {
             const double x = c / 512.0, y = r / 256.0;
