@@ -1,5 +1,4 @@
 // The acdf program from outside: exit codes, messages, and what each command prints.
-#include "tests/inputs/sanitized.h"
 #include "tests/tools/run.h"
 
 #include <nlohmann/json.hpp>
@@ -90,7 +89,6 @@ TEST_F(Commands, VersionNamesProgramFormatAndLibraries) {
 }
 
 TEST_F(Commands, CompletionsKnowEveryCommandAndOption) {
-    ACDF_NOT_SANITIZED();
     const std::string bash = run_acdf({"completion", "bash"}).out, zsh = run_acdf({"completion", "zsh"}).out;
     for (const std::string& name : command_names()) {
         EXPECT_NE(bash.find("\n    " + name + ") options='"), std::string::npos) << name;

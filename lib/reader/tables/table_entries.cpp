@@ -233,15 +233,15 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
     const u32 number = curve_count_;
     if (!add_curve(at, reached, found, depth)) return false;
     const AcdfCurve curve = acdf_curve_at(table_.tree, at);
-    const u32 axis = acdf_curve_axis(&curve);
-    ReachedSide& side = reached.side[axis];
+    const u32 axis = acdf_curve_axis(&curve) - first_axis_;
+    ReachedSide& side = reached.side[first_axis_ + axis];
     const ReachedSide above = side;
     const double of_all = reached.probability;
     CurveSegments segments(curve, above.first, above.last);
     const double maximum = segments.maximum(), width = above.high - above.low;
     EntrySpan places = above.places, numbers = above.numbers; // that are left
     const auto fill_up_to = [&](const EntryKind& kind, EntrySpan& left, const EntrySpan& below) {
-        fill(kind, reached, axis - first_axis_, {left.first, below.first}, number);
+        fill(kind, reached, axis, {left.first, below.first}, number);
         left.first = below.last;
     };
     const bool walked = maximum > 0xFFFF || depth == kMostPath; // what is below
@@ -256,14 +256,14 @@ bool EntriesMaker::visit(u32 at, Reached& reached, Found found, u32 depth) {
         side.first = segment.first;
         side.last = segment.last;
         const bool divided = link > 0 && part > 0;
-        const Found below = {found.places && find_places(axis - first_axis_, side),
-                             found.numbers && divided && find_numbers(axis - first_axis_, side)};
+        const Found below = {found.places && find_places(axis, side),
+                             found.numbers && divided && find_numbers(axis, side)};
         if (!below.places && !below.numbers) continue;
         if (below.places) fill_up_to(kPlaces, places, side.places);
         if (below.numbers) fill_up_to(kNumbers, numbers, side.numbers);
         reached.probability = part > 0 ? acdf_positive(of_all * (part / maximum)) : 0.0;
         path_[depth] = {static_cast<std::uint16_t>(maximum), static_cast<std::uint16_t>(segment.from),
-                        static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(axis - first_axis_)};
+                        static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(axis)};
         all = divided ? visit(at + link, reached, below, depth + 1) : add_cell(reached);
     }
     if (found.places) fill_up_to(kPlaces, places, {places.last, places.last});

@@ -1,5 +1,4 @@
 // `acdf render` as a user runs it.
-#include "tests/inputs/sanitized.h"
 #include "tests/tools/render/scenes.h"
 
 #include <nlohmann/json.hpp>
@@ -89,7 +88,6 @@ TEST_F(RenderCommand, JsonHasTheFigures) {
 }
 
 TEST_F(RenderCommand, SequencesAreChosen) {
-    ACDF_NOT_SANITIZED();
     const auto json = [&](const std::string& output, const char* sequence) {
         EXPECT_EQ(render(output, {"--sequence", sequence, "--no-timing", "--no-reference"}).code, 0);
         return Json::parse(read_text(folder / (output + "/render.json")));

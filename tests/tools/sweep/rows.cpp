@@ -1,7 +1,6 @@
 // Rows of sweeps of local and BRDF files.
 #include "build/own_terms.h"
 #include "input/brdf/brdf.h"
-#include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
 #include "tools/sweep/sweep.h"
 
@@ -59,7 +58,6 @@ TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
 }
 
 TEST(SweepRows, OfABrdf) {
-    ACDF_NOT_SANITIZED();
     const auto brdf = input::open_brdf("ggx:alpha=0.3");
     SweepOptions options = small_sweep();
     options.visibility.spp = 1; // uniform numbers, as above; samples that are lost below the surface count

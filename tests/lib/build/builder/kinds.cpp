@@ -1,5 +1,4 @@
 // Local environments, BRDFs and tables by the public library: what the program makes, from every form of input.
-#include "tests/inputs/sanitized.h"
 #include "tests/inputs/table_files.h"
 #include "tests/inputs/write_rgb.h"
 #include "tests/lib/build/builder/builder.h"
@@ -56,7 +55,6 @@ Bytes local_bytes(const SkyFile& sky_file, LocalOptions options) {
 }
 
 TEST(BuilderLocal, MakesWhatTheProgramMakes) {
-    ACDF_NOT_SANITIZED();
     const SkyFile file;
     LocalOptions options;
     options.goal = Goal::of_budget(32 << 10);
@@ -151,7 +149,6 @@ Bytes brdf_bytes(const Brdf& given, const BrdfOptions& options) {
 }
 
 TEST(BuilderBrdf, MakesWhatTheProgramMakes) {
-    ACDF_NOT_SANITIZED();
     const Folder folder;
     const auto expect_same = [&](const std::string& text, BrdfOptions options, std::vector<std::string> arguments) {
         const auto model = input::model_brdf(text);
