@@ -48,7 +48,9 @@ Indices indices(const AcdfFile* file, const py::object& place, const std::vector
         throw py::value_error("index: the table has " + std::to_string(axes) +
                               " indexed axes; give one integer each");
     const Rows<std::int64_t> wide = rows<std::int64_t>(place, axes, "index", "iu");
-    Indices out = {{}, items_each(wide.leading, "index", items, item_name), nullptr};
+    // Not within the braces below: gcc 12 destroys `rows` twice where a later member's initializer throws.
+    const std::size_t each = items_each(wide.leading, "index", items, item_name);
+    Indices out = {{}, each, nullptr};
     out.rows.array = new_array<std::uint32_t>(wide.leading, axes);
     std::uint32_t* to = out.rows.array.mutable_data();
     for (std::size_t i = 0; i < wide.count * static_cast<std::size_t>(axes); ++i) {

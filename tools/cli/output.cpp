@@ -178,6 +178,7 @@ Output::Output(std::string path, bool force, const std::vector<std::string>& inp
     if (access(folder.c_str(), F_OK) != 0) fail(path_, "the folder " + folder + " does not exist; create it first");
 
     mode_ = exists ? status.st_mode & 07777u : default_mode();
+    if (exists) owner_ = status.st_uid, group_ = status.st_gid;
     const std::string extension = std::filesystem::path(target_).extension().string();
     sweep(folder);
     const int fd = create_temporary(folder, extension, temporary_);
@@ -219,6 +220,7 @@ void Output::finish_temporary(const Verify& verify) {
             const std::vector<std::uint8_t> bytes = read_descriptor(fd, path_);
             verify(bytes.data(), bytes.size());
         }
+        if (fchown(fd, owner_, group_) != 0) mode_ &= 0777u; // another user's: to run as them is not ours to grant
         if (fchmod(fd, mode_) != 0) fail_errno(path_, "cannot set permissions", errno);
         if (fsync(fd) != 0 && errno != EINVAL) fail_errno(path_, "cannot write", errno);
     } catch (...) {

@@ -46,7 +46,8 @@ private:
     std::FILE* stream_ = nullptr;
     bool force_ = false;
     unsigned mode_ = 0;
-    int lock_ = -1; // holds the lock on the temporary file
+    unsigned owner_ = ~0u, group_ = ~0u; // of the file that is replaced; those of a new file stay as they are
+    int lock_ = -1;                      // holds the lock on the temporary file
 
     void close();
     void unlock();

@@ -9,12 +9,12 @@ Loops run without the interpreter's lock, so several threads may draw at once.
 from __future__ import annotations
 
 import os
-import secrets
 from typing import Any, Dict, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _acdf
+from ._output import write_file
 
 _NEW = (None, None)
 Path = Union[str, "os.PathLike[str]"]
@@ -87,16 +87,9 @@ class File:
         return self._handle.to_bytes()
 
     def save(self, path: Path) -> None:
-        """Writes the file to `path`. Raises OSError."""
-        temporary = f"{os.fsdecode(path)}.{secrets.token_hex(4)}.part"
-        out = _builtin_open(temporary, "xb")
-        try:
-            with out:
-                out.write(self.to_bytes())
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
+        """Writes the file to `path`: whole or, raising OSError, not at all. Symbolic links are followed, and a file that is
+        replaced hands on its mode."""
+        write_file(os.fsdecode(path), self.to_bytes())
 
     def __repr__(self) -> str:
         return f"<acdf.{type(self).__name__}, {self.size} bytes>"
@@ -213,7 +206,6 @@ class Table(File):
         return self._handle.invert(index, x)
 
 
-_builtin_open = open
 _KINDS = {"environment": Environment, "local": LocalEnvironment, "brdf": Brdf, "table": Table}
 
 

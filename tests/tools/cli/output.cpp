@@ -53,6 +53,14 @@ TEST_F(Outputs, KeepsAnExistingFileUnlessForced) {
     struct stat status = {};
     ASSERT_EQ(stat(target.c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777u, 0640u);
+    if (geteuid() == 0) { // who may give files away does not take them, either
+        ASSERT_EQ(chown(target.c_str(), 12345, 12346), 0);
+        write_output(target, new_bytes, true);
+        ASSERT_EQ(stat(target.c_str(), &status), 0);
+        EXPECT_EQ(status.st_uid, 12345u);
+        EXPECT_EQ(status.st_gid, 12346u);
+        EXPECT_EQ(status.st_mode & 0777u, 0640u);
+    }
     EXPECT_EQ(folder.entries(), 1u);
 }
 
@@ -94,6 +102,29 @@ TEST_F(Outputs, FollowsASymbolicLink) {
     write_output(folder / "link", new_bytes, true);
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
     EXPECT_EQ(read_text(target), "new!");
+}
+
+TEST_F(Outputs, FollowsLinksToWhatDoesNotExistYet) {
+    std::filesystem::create_directory(folder / "far");
+    std::filesystem::create_symlink("far/made", folder / "link"); // from where the link lies
+    std::filesystem::create_symlink("link", folder / "twice");
+    write_output(folder / "twice", new_bytes, false);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "twice"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+    EXPECT_EQ(read_text(folder / "far/made"), "new!");
+    std::filesystem::create_symlink("circle", folder / "circle");
+    EXPECT_NE(message_of([&] { write_output(folder / "circle", new_bytes, true); }).find("circle"),
+              std::string::npos);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "circle"));
+}
+
+TEST_F(Outputs, WritesToDevicesAndLeavesThem) {
+    write_output("/dev/null", new_bytes, false);
+    EXPECT_NE(message_of([&] { write_output("/dev/full", new_bytes, true); }).find("No space left"),
+              std::string::npos);
+    struct stat status = {};
+    for (const char* device : {"/dev/null", "/dev/full"})
+        EXPECT_TRUE(stat(device, &status) == 0 && S_ISCHR(status.st_mode)) << device;
 }
 
 TEST_F(Outputs, RefusesFoldersAndInputs) {
