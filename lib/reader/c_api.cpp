@@ -61,13 +61,15 @@ AcdfFile::AcdfFile(acdf::File&& from, const AcdfAllocator& memory, const AcdfBlo
 }
 
 AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error) {
+    if (!options) return acdf_open(path, error);
     acdf::File file;
     const acdf::Status status = acdf::File::open(path, file, of(*options));
     return keep(status, file, options->allocator, error);
 }
 AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error) {
+    if (!options) return acdf_from_memory(data, size, error);
     acdf::File file;
-    const acdf::Status status = acdf::File::from_memory(data, size, file, of(*options));
+    const acdf::Status status = acdf::File::from_memory(data, data ? size : 0, file, of(*options));
     return keep(status, file, options->allocator, error);
 }
 
@@ -97,26 +99,26 @@ void acdf_close(AcdfFile* file) {
 }
 
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out) {
-    if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    *out = file->environment;
+    if (!file || file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
+    if (out) *out = file->environment;
     return 1;
 }
 
 int acdf_local(const AcdfFile* file, AcdfLocal* out) {
-    if (file->file.kind() != ACDF_KIND_LOCAL) return 0;
-    *out = file->local;
+    if (!file || file->file.kind() != ACDF_KIND_LOCAL) return 0;
+    if (out) *out = file->local;
     return 1;
 }
 
 int acdf_brdf(const AcdfFile* file, AcdfBrdf* out) {
-    if (file->file.kind() != ACDF_KIND_BRDF) return 0;
-    *out = file->brdf;
+    if (!file || file->file.kind() != ACDF_KIND_BRDF) return 0;
+    if (out) *out = file->brdf;
     return 1;
 }
 
 int acdf_table(const AcdfFile* file, AcdfTable* out) {
-    if (file->file.kind() != ACDF_KIND_TABLE) return 0;
-    *out = file->table;
+    if (!file || file->file.kind() != ACDF_KIND_TABLE) return 0;
+    if (out) *out = file->table;
     return 1;
 }
 
@@ -141,12 +143,13 @@ int acdf_metadata_pair(const AcdfFile* file, uint32_t i, AcdfText* key, AcdfText
     if (i >= file->file.metadata_count()) return 0;
     acdf::Text k, v;
     file->file.metadata(i, k, v);
-    *key = {k.data, k.size};
-    *value = {v.data, v.size};
+    if (key) *key = {k.data, k.size};
+    if (value) *value = {v.data, v.size};
     return 1;
 }
 
 AcdfText acdf_metadata_value(const AcdfFile* file, const char* key) {
+    if (!key) return {nullptr, 0};
     const acdf::Text value = file->file.metadata(key);
     return {value.data, value.size};
 }

@@ -55,6 +55,9 @@ const double (*pairs_at(const double* array, std::size_t i))[2] {
     return reinterpret_cast<const double(*)[2]>(array + 2 * i);
 }
 
+// Whether a file can serve arrays of this kind, with `each` items a place: 0 would never come to an end.
+bool serves(const AcdfFile* file, AcdfKind kind, size_t each) { return file->file.kind() == kind && each > 0; }
+
 void put_numbers(bool found, int axes, double* u) {
     for (int axis = 0; axis < axes && !found; ++axis) u[axis] = kNoNumber;
 }
@@ -104,7 +107,7 @@ float acdf_density_local(const AcdfFile* file, const float normal[3], const floa
 
 int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
                           float* directions, float* pdfs) {
-    if (file->file.kind() != ACDF_KIND_LOCAL) return 0;
+    if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     if (each == 1) {
         const acdf::LocalWavefront wavefront(file->file.local());
         draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
@@ -126,7 +129,7 @@ int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t eac
 
 int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
                              size_t count, float* pdfs) {
-    if (file->file.kind() != ACDF_KIND_LOCAL) return 0;
+    if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     if (each == 1) {
         acdf::LocalWavefront(file->file.local())
             .pdf(vectors_at(normals, 0), vectors_at(directions, 0), count, pdfs);
@@ -157,7 +160,7 @@ float acdf_density_brdf(const AcdfFile* file, const float wo[3], const float wi[
 
 int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
                          float* wi, float* pdfs) {
-    if (file->file.kind() != ACDF_KIND_BRDF) return 0;
+    if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each, [&](size_t j, size_t i) {
         put(acdf_brdf_sample(&file->brdf, wo + 3 * j, u[2 * i], u[2 * i + 1]), i, wi, pdfs);
     });
@@ -166,7 +169,7 @@ int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, con
 
 int acdf_density_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                             float* pdfs) {
-    if (file->file.kind() != ACDF_KIND_BRDF) return 0;
+    if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each,
                   [&](size_t j, size_t i) { pdfs[i] = acdf_brdf_pdf(&file->brdf, wo + 3 * j, wi + 3 * i); });
     return 1;
@@ -174,7 +177,7 @@ int acdf_density_brdf_array(const AcdfFile* file, const float* wo, size_t each, 
 
 int acdf_invert_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                            double* u) {
-    if (file->file.kind() != ACDF_KIND_BRDF) return 0;
+    if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each, [&](size_t j, size_t i) {
         put_numbers(acdf_brdf_invert(&file->brdf, wo + 3 * j, wi + 3 * i, u + 2 * i) != 0, 2, u + 2 * i);
     });
@@ -224,21 +227,25 @@ AcdfBrdfWaves* acdf_brdf_waves(const AcdfFile* file, AcdfError* error) {
     return block.data ? new (block.data) AcdfBrdfWaves{std::move(made), file->allocator, block} : nullptr;
 }
 
-void acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,
-                          float* wi, float* pdfs) {
+int acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,
+                         float* wi, float* pdfs) {
+    if (each == 0) return 0;
     float room[kWave][3];
     draw_in_waves(count, wi, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
         waves->wavefront.sample(views_of(wo, each, first, n, room), pairs_at(u, first), n, drawn);
     });
+    return 1;
 }
 
-void acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t each, const float* wi,
-                             size_t count, float* pdfs) {
+int acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t each, const float* wi, size_t count,
+                            float* pdfs) {
+    if (each == 0) return 0;
     float room[kWave][3];
     for (size_t first = 0; first < count; first += kWave) {
         const size_t n = count - first < kWave ? count - first : kWave;
         waves->wavefront.pdf(views_of(wo, each, first, n, room), vectors_at(wi, first), n, pdfs + first);
     }
+    return 1;
 }
 
 uint64_t acdf_brdf_waves_bytes(const AcdfBrdfWaves* waves) { return waves->wavefront.bytes(); }
@@ -253,20 +260,10 @@ void acdf_brdf_waves_close(AcdfBrdfWaves* waves) {
 
 // ---- tables ----
 
-uint32_t acdf_table_sampled_axes(const AcdfFile* file) {
-    return file->file.kind() == ACDF_KIND_TABLE ? acdf_table_sampled_count(&file->table) : 0;
-}
-uint32_t acdf_table_indexed_axes(const AcdfFile* file) { return file->table.indexed_count; }
-
-double acdf_draw_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x) {
-    return file->file.kind() == ACDF_KIND_TABLE ? acdf_table_sample(&file->table, index, u, x) : 0.0;
-}
-
-double acdf_density_table(const AcdfFile* file, const uint32_t* index, const double* x) {
-    return file->file.kind() == ACDF_KIND_TABLE ? acdf_table_pdf(&file->table, index, x) : 0.0;
-}
-
 namespace {
+
+// Whether an index is given where the table has indexed axes.
+bool has_index(const AcdfTable& table, const uint32_t* index) { return index || table.indexed_count == 0; }
 
 // The index of item group j; a table without indexed axes is given none.
 const uint32_t* index_of(const AcdfTable& table, const uint32_t* index, size_t j) {
@@ -275,9 +272,24 @@ const uint32_t* index_of(const AcdfTable& table, const uint32_t* index, size_t j
 
 } // namespace
 
+uint32_t acdf_table_sampled_axes(const AcdfFile* file) {
+    return file->file.kind() == ACDF_KIND_TABLE ? acdf_table_sampled_count(&file->table) : 0;
+}
+uint32_t acdf_table_indexed_axes(const AcdfFile* file) { return file->table.indexed_count; }
+
+double acdf_draw_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x) {
+    if (file->file.kind() != ACDF_KIND_TABLE || !has_index(file->table, index)) return 0.0;
+    return acdf_table_sample(&file->table, index, u, x);
+}
+
+double acdf_density_table(const AcdfFile* file, const uint32_t* index, const double* x) {
+    if (file->file.kind() != ACDF_KIND_TABLE || !has_index(file->table, index)) return 0.0;
+    return acdf_table_pdf(&file->table, index, x);
+}
+
 int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
                           double* x, double* pdfs) {
-    if (file->file.kind() != ACDF_KIND_TABLE) return 0;
+    if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
     const uint32_t axes = acdf_table_sampled_count(&table);
     for_each_item(count, each, [&](size_t j, size_t i) {
@@ -289,7 +301,7 @@ int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t ea
 
 int acdf_density_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
                              size_t count, double* pdfs) {
-    if (file->file.kind() != ACDF_KIND_TABLE) return 0;
+    if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
     const uint32_t axes = acdf_table_sampled_count(&table);
     for_each_item(count, each, [&](size_t j, size_t i) {
@@ -300,7 +312,7 @@ int acdf_density_table_array(const AcdfFile* file, const uint32_t* index, size_t
 
 int acdf_invert_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
                             double* u) {
-    if (file->file.kind() != ACDF_KIND_TABLE) return 0;
+    if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
     const uint32_t axes = acdf_table_sampled_count(&table);
     for_each_item(count, each, [&](size_t j, size_t i) {

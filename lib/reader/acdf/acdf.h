@@ -11,7 +11,8 @@
  *
  * The safety contract is that of acdf/reader.h: any bytes may be passed in; a file that was accepted can be
  * sampled for ever without reading outside it. An open file is never changed: any number of threads may use
- * it at once. Every function but acdf_close takes only open files, not null. */
+ * it at once. Functions take only open files, not null, but for acdf_close and acdf_environment, acdf_local,
+ * acdf_brdf and acdf_table, which return 0. */
 #ifndef ACDF_ACDF_H
 #define ACDF_ACDF_H
 
@@ -60,7 +61,8 @@ AcdfFile* acdf_from_memory(const void* data, size_t size, AcdfError* error);
 AcdfFile* acdf_open_plain(const char* path, AcdfError* error);
 AcdfFile* acdf_from_memory_plain(const void* data, size_t size, AcdfError* error);
 
-/* The same with limits, and with the caller's memory. A number that is 0 stands for its default. */
+/* The same with limits, and with the caller's memory. A number that is 0 stands for its default, as do options that
+ * are null. */
 typedef struct AcdfLoadOptions {
     uint64_t max_file_bytes;     /* 0: 4 GiB */
     uint64_t max_inflated_bytes; /* of compressed chunks together; 0: 1 GiB */
@@ -74,7 +76,8 @@ AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOpt
 /* Ends `file` and every view and pointer taken from it. Null is allowed. */
 void acdf_close(AcdfFile* file);
 
-/* The view of an environment file. Returns 1, or 0 (and `out` unset) where the file is of another kind. */
+/* The view of an environment file. Returns 1, or 0 (and `out` unset) where the file is of another kind or null.
+ * `out` may be null: whether it is of that kind. */
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out);
 /* The same for a local environment file, to be used with acdf/local.h. */
 int acdf_local(const AcdfFile* file, AcdfLocal* out);
@@ -104,9 +107,9 @@ typedef struct AcdfText {
 
 /* How many pairs of metadata there are. */
 uint32_t acdf_metadata_count(const AcdfFile* file);
-/* Pair i. Returns 1, or 0 (and key, value unset) where i >= the count. */
+/* Pair i. Returns 1, or 0 (and key, value unset) where i >= the count. Either may be null. */
 int acdf_metadata_pair(const AcdfFile* file, uint32_t i, AcdfText* key, AcdfText* value);
-/* The value of `key`; data is null where the file has no such key. */
+/* The value of `key`; data is null where the file has no such key, or `key` is null. */
 AcdfText acdf_metadata_value(const AcdfFile* file, const char* key);
 
 #ifdef __cplusplus

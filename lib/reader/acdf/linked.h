@@ -7,8 +7,9 @@
  * Arrays are packed: two doubles u in [0, 1] a sample, three floats a direction, normal or view (unit vectors;
  * normals of any length > 0), a float a density (sr^-1). They may not overlap. Results have `count` items. Where
  * normals, views or indices are given, each serves `each` samples that follow one another (at least 1): item i is
- * of normal i / each; count: one serves all. A function that is called with a file of another kind returns 0 and
- * writes nothing; arrays return 1 else. */
+ * of normal i / each; count: one serves all. A function that is called with a file of another kind, with `each` 0,
+ * or with an index that is null where the table has indexed axes, returns 0 and writes nothing; arrays return 1
+ * else. */
 #ifndef ACDF_LINKED_H
 #define ACDF_LINKED_H
 
@@ -69,10 +70,10 @@ int acdf_albedo_brdf_array(const AcdfFile* file, const float* wo, size_t count, 
  * or the file is of another kind. `error` may be null. Ends with acdf_brdf_waves_close, before its file does. */
 typedef struct AcdfBrdfWaves AcdfBrdfWaves;
 AcdfBrdfWaves* acdf_brdf_waves(const AcdfFile* file, AcdfError* error);
-void acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,
-                          float* wi, float* pdfs);
-void acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t each, const float* wi,
-                             size_t count, float* pdfs);
+int acdf_brdf_waves_draw(const AcdfBrdfWaves* waves, const float* wo, size_t each, const double* u, size_t count,
+                         float* wi, float* pdfs);
+int acdf_brdf_waves_density(const AcdfBrdfWaves* waves, const float* wo, size_t each, const float* wi, size_t count,
+                            float* pdfs);
 uint64_t acdf_brdf_waves_bytes(const AcdfBrdfWaves* waves); /* of the tables; 0: there are none */
 void acdf_brdf_waves_close(AcdfBrdfWaves* waves);           /* null is allowed */
 

@@ -59,6 +59,26 @@ TEST(CApi, TellsWhatIsInside) {
     EXPECT_EQ(keys, "accuracy.relative_variance fit.options source.name tool ");
 }
 
+TEST(CApi, NothingIsServedForNull) {
+    const auto bytes = small_environment();
+    const Handle handle(acdf_from_memory(bytes.data(), bytes.size(), nullptr), acdf_close);
+    AcdfEnvironment sky;
+    AcdfLocal local;
+    AcdfBrdf brdf;
+    AcdfTable table;
+    EXPECT_EQ(acdf_environment(nullptr, &sky) + acdf_local(nullptr, &local) + acdf_brdf(nullptr, &brdf) +
+                  acdf_table(nullptr, &table),
+              0);
+    EXPECT_EQ(acdf_environment(handle.get(), nullptr), 1);
+    EXPECT_EQ(acdf_local(handle.get(), nullptr), 0);
+    EXPECT_EQ(acdf_metadata_value(handle.get(), nullptr).data, nullptr);
+    AcdfText key, value;
+    ASSERT_EQ(acdf_metadata_pair(handle.get(), 2, &key, nullptr), 1);
+    EXPECT_EQ(to_string(key), "source.name");
+    ASSERT_EQ(acdf_metadata_pair(handle.get(), 2, nullptr, &value), 1);
+    EXPECT_EQ(to_string(value), "sky.exr");
+}
+
 TEST(CApi, ErrorsAreThoseOfTheCppInterface) {
     AcdfError error;
     EXPECT_EQ(acdf_open("/no/such/file.acdf", &error), nullptr);

@@ -223,6 +223,50 @@ TEST(Linked, otherKindsAreRefused) {
     acdf_brdf_waves_close(nullptr);
 }
 
+TEST(Linked, noItemsAPlaceAreRefused) {
+    const Both light(golden("local")), brdf(golden("brdf")),
+        table(std::string(ACDF_TEST_DIR "/../format/vectors/table.acdf"));
+    const std::vector<float> up = {0.0f, 0.0f, 1.0f};
+    std::vector<float> w = Both::directions(4, 0.1), p(4, -7.0f);
+    std::vector<double> u(24, 0.5), x(24, -7.0);
+    const std::uint32_t index[ACDF_MAX_AXES] = {};
+    const AcdfFile *l = light.handle.get(), *b = brdf.handle.get(), *t = table.handle.get();
+    const std::vector<float> as_it_was = w;
+    EXPECT_EQ(acdf_draw_local_array(l, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
+    EXPECT_EQ(acdf_density_local_array(l, up.data(), 0, w.data(), 4, p.data()), 0);
+    EXPECT_EQ(acdf_draw_brdf_array(b, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
+    EXPECT_EQ(acdf_density_brdf_array(b, up.data(), 0, w.data(), 4, p.data()), 0);
+    EXPECT_EQ(acdf_invert_brdf_array(b, up.data(), 0, w.data(), 4, x.data()), 0);
+    EXPECT_EQ(acdf_draw_table_array(t, index, 0, u.data(), 4, x.data(), x.data() + 20), 0);
+    EXPECT_EQ(acdf_density_table_array(t, index, 0, u.data(), 4, x.data()), 0);
+    EXPECT_EQ(acdf_invert_table_array(t, index, 0, u.data(), 4, x.data()), 0);
+    AcdfBrdfWaves* const waves = acdf_brdf_waves(b, nullptr);
+    ASSERT_TRUE(waves);
+    EXPECT_EQ(acdf_brdf_waves_draw(waves, up.data(), 0, u.data(), 4, w.data(), p.data()), 0);
+    EXPECT_EQ(acdf_brdf_waves_density(waves, up.data(), 0, w.data(), 4, p.data()), 0);
+    EXPECT_EQ(w, as_it_was);
+    EXPECT_EQ(p, std::vector<float>(4, -7.0f));
+    EXPECT_EQ(x, std::vector<double>(24, -7.0));
+    EXPECT_EQ(acdf_brdf_waves_draw(waves, up.data(), 4, u.data(), 4, w.data(), p.data()), 1);
+    EXPECT_EQ(acdf_brdf_waves_density(waves, up.data(), 4, w.data(), 4, p.data()), 1);
+    EXPECT_GT(p[3], 0.0f);
+    acdf_brdf_waves_close(waves);
+}
+
+TEST(Linked, anIndexThatIsMissingIsRefused) {
+    const Both table(std::string(ACDF_TEST_DIR "/../format/vectors/table.acdf"));
+    const AcdfFile* const t = table.handle.get();
+    ASSERT_GT(acdf_table_indexed_axes(t), 0u);
+    double u[ACDF_MAX_AXES] = {0.5, 0.5, 0.5}, x[ACDF_MAX_AXES] = {-7.0}, p = -7.0;
+    EXPECT_EQ(acdf_draw_table(t, nullptr, u, x), 0.0);
+    EXPECT_EQ(acdf_density_table(t, nullptr, u), 0.0);
+    EXPECT_EQ(acdf_draw_table_array(t, nullptr, 1, u, 1, x, &p), 0);
+    EXPECT_EQ(acdf_density_table_array(t, nullptr, 1, u, 1, &p), 0);
+    EXPECT_EQ(acdf_invert_table_array(t, nullptr, 1, u, 1, x), 0);
+    EXPECT_EQ(x[0], -7.0);
+    EXPECT_EQ(p, -7.0);
+}
+
 // ---- memory and alignment ----
 
 /// Counts what is out; `left` calls succeed.
@@ -267,6 +311,28 @@ TEST(Memory, ofTheCallersAllocatorAndBackToIt) {
         EXPECT_TRUE(ledger.out.empty()) << name;
         EXPECT_EQ(ledger.wrong, 0);
     }
+}
+
+TEST(Memory, noOptionsAreTheDefault) {
+    AcdfError error;
+    const Handle opened(acdf_open_with(golden("zlib").c_str(), nullptr, &error), acdf_close);
+    ASSERT_TRUE(opened) << error.message;
+    const Handle loaded(acdf_from_memory_with(acdf_header(opened.get()), acdf_size(opened.get()), nullptr, &error),
+                        acdf_close);
+    ASSERT_TRUE(loaded) << error.message;
+    EXPECT_EQ(acdf_table_bytes(opened.get()), acdf_table_bytes(loaded.get()));
+    EXPECT_EQ(acdf_from_memory(nullptr, 100, &error), nullptr);
+    EXPECT_EQ(error.code, ACDF_MALFORMED);
+}
+
+TEST(Memory, thatIsNeverReleasedIsTheCallersToFree) {
+    Ledger ledger;
+    AcdfLoadOptions options = {};
+    options.allocator = ledger.allocator();
+    options.allocator.release = nullptr;
+    acdf_close(acdf_open_with(golden("zlib").c_str(), &options, nullptr));
+    EXPECT_GE(ledger.out.size(), 2u);
+    for (const auto& [block, size] : ledger.out) std::free(block);
 }
 
 TEST(Memory, thatEndsIsAnErrorAndNotALeak) {
