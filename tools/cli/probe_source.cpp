@@ -116,12 +116,23 @@ ProbeTarget load_target(const std::string& path, const input::ProbeOptions& opti
     return load(path, options, builder::TargetRows(chosen), note);
 }
 
+namespace {
+
+/// Whether `option` stands among those that a file was made with.
+bool made_with(const File& file, const std::string& option) {
+    const Text text = file.metadata("fit.options");
+    return (std::string(text.data, text.size) + " ").find(option + " ") != std::string::npos;
+}
+
+} // namespace
+
 builder::TargetOptions stored_options(const File& file) {
     const AcdfDescription& d = file.description();
     builder::TargetOptions out;
     out.channels = {static_cast<AcdfChannels>(d.channels),
                     {d.channel_weights[0], d.channel_weights[1], d.channel_weights[2]}};
     out.filter = static_cast<AcdfFilter>(d.filter);
+    if (made_with(file, "--wrap repeat")) out.wrap = builder::Wrap::repeat;
     return out;
 }
 
@@ -130,11 +141,9 @@ namespace {
 /// The projection that had to be told when a file was made of that very source; else `automatic`.
 input::Projection projection_as_made(const File& file, const std::string& source) {
     using Projection = input::Projection;
-    const Text text = file.metadata("fit.options");
-    const std::string options = std::string(text.data, text.size) + " ";
     for (const Projection told : {Projection::latlong, Projection::angular, Projection::mirrorball,
                                   Projection::cube_cross, Projection::octahedral})
-        if (options.find(std::string("--projection ") + input::to_string(told) + " ") != std::string::npos)
+        if (made_with(file, std::string("--projection ") + input::to_string(told)))
             return made_from_another(file, input::file_sha256(source)) ? Projection::automatic : told;
     return Projection::automatic;
 }

@@ -45,7 +45,7 @@ ProbeTarget load_target(const std::string& path, const input::ProbeOptions& opti
 /// Reads a probe, and tells the same on stderr unless `quiet`. Throws Error.
 input::Probe load_probe(const std::string& path, const input::ProbeOptions& options, bool quiet);
 
-/// What a file says of channels and filter.
+/// What a file says of channels, filter and wrap.
 builder::TargetOptions stored_options(const File& file);
 
 /// What a renderer that looks `source` up integrates, on the grid of a file: what that says of channels and filter.

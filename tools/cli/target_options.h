@@ -42,6 +42,13 @@ inline void add_target_options(CLI::App& command, builder::TargetOptions& target
                "into dark texels finds light where a nearest fit has none, which is bias")
         ->option_text("NAME [nearest]")
         ->group("Fit");
+    constexpr Named<builder::Wrap> wraps[] = {{"clamp", builder::Wrap::clamp}, {"repeat", builder::Wrap::repeat}};
+    add_choice(command, "--wrap", target.wrap, wraps,
+               "What a bilinear lookup finds within half a texel of the poles of a lat-long map, and beyond the "
+               "sides of a disc: clamp (the row itself), or repeat (the row at the other end, as textures that "
+               "repeat have it: Cycles, pbrt-v3, LuxCore)")
+        ->option_text("NAME [clamp]")
+        ->group("Fit");
 }
 
 } // namespace acdf::tools

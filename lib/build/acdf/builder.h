@@ -119,6 +119,10 @@ enum class Domain {
     octahedral ///< u and v of the equal-area octahedral square
 };
 
+/// What an interpolated lookup finds beyond the first and the last row of a lat-long map, and beyond the sides of a
+/// disc: the border itself, or, as textures that repeat have it, the opposite one.
+enum class Wrap { clamp, repeat };
+
 /// What is fitted of a map.
 struct TargetOptions {
     Channels channels;
@@ -126,6 +130,7 @@ struct TargetOptions {
     /// How the renderer looks the map up. Set it right: a lookup that blends light into dark texels finds light
     /// where a nearest fit has none, which is bias.
     AcdfFilter filter = ACDF_FILTER_NEAREST;
+    Wrap wrap = Wrap::clamp; ///< of a bilinear lookup
     BadTexelPolicy bad_texels = BadTexelPolicy::zero;
     bool uniform_if_black = false; ///< black becomes the faintest even light, else ErrorCode::no_energy
 };

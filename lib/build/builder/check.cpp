@@ -124,6 +124,7 @@ void check(const TargetOptions& options) {
     check(options.channels);
     require(options.filter == ACDF_FILTER_NEAREST || options.filter == ACDF_FILTER_BILINEAR,
             "filter is no AcdfFilter");
+    require(options.wrap == Wrap::clamp || options.wrap == Wrap::repeat, "wrap is no Wrap");
     const Domain domain = options.domain;
     require(domain == Domain::source || domain == Domain::latlong || domain == Domain::octahedral,
             "domain is no Domain");

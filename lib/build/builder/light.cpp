@@ -12,6 +12,7 @@ template <class Options>
 build::Source source_of(const Options& options, const Target& target) {
     build::Source source = options.source;
     if (source.projection.empty()) source.projection = target.data()->projection;
+    source.reading += wrap_text(target.data()->map.repeats);
     return source;
 }
 

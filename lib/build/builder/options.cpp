@@ -1,5 +1,6 @@
 #include "build/builder/options.h"
 
+#include "build/builder/sources.h"
 #include "build/errors.h"
 #include "build/own_terms.h"
 #include "build/text/options.h"
@@ -52,13 +53,19 @@ std::vector<compress::SceneNormal> internal(const std::vector<SceneNormal>& norm
 template <class Options>
 std::string text_of(const Options& options) noexcept {
     try {
-        return build::option_text(options.source.reading, internal(options));
+        return build::option_text(options.source.reading + wrap_text(repeats(options.target)), internal(options));
     } catch (...) {
         return {};
     }
 }
 
 } // namespace
+
+bool repeats(const TargetOptions& options) {
+    return options.wrap == Wrap::repeat && options.filter == ACDF_FILTER_BILINEAR;
+}
+
+std::string wrap_text(bool repeats) { return repeats ? "--wrap repeat " : ""; }
 
 compress::TargetOptions internal(const TargetOptions& options) {
     return {internal(options.channels.weights), options.channels.mode, options.filter};

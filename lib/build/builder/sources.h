@@ -19,7 +19,7 @@ struct Target::Data {
     compress::TargetOptions options;
     BadTexels bad;
     std::string projection; ///< its name, where pixels told it
-    build::Map map;         ///< of the source
+    build::Map map;         ///< of the source, as it is looked up
     double error = 0.0;     ///< build::SourceTarget
 
     build::Domain grid_of() const { return {grid.parameterization, grid.columns, grid.rows}; }
@@ -31,6 +31,10 @@ struct Target::Data {
 };
 
 compress::TargetOptions internal(const TargetOptions& options);
+
+/// Whether lookups meet the opposite border, and what `fit.options` says then: "--wrap repeat ", or nothing.
+bool repeats(const TargetOptions& options);
+std::string wrap_text(bool repeats);
 
 /// A probe on its way into a target, on a grid that was told or is chosen as the options have it.
 class TargetRows : public build::ProbeRows {
@@ -49,12 +53,15 @@ private:
     std::size_t row() const { return std::size_t{3} * static_cast<std::size_t>(map_.width); }
     std::optional<build::Domain> grid_of(const build::Map& map) const;
     build::SourceTarget target_of(const build::Map& map, const float* rgb) const;
+    void keep_borders(int first, int count, const float* rgb);
+    build::SourceTarget own_target();
 
     TargetOptions options_;
     build::Progress progress_;
     std::optional<build::Domain> grid_;
     build::Map map_;
     std::vector<float> rgb_;                         ///< of a map that is fitted on another grid
+    std::vector<float> borders_[2];                  ///< first and last row of a map on its own, where rows repeat
     std::optional<compress::EnvironmentTarget> own_; ///< of a lat-long map on its own
     build::SourceTarget made_;
 };

@@ -4,6 +4,7 @@
 #include "build/builder/pixels.h"
 #include "build/builder/sources.h"
 #include "build/errors.h"
+#include "build/probe/repeated_rows.h"
 
 #include <algorithm>
 #include <functional>
@@ -126,20 +127,21 @@ Target target_of(compress::Target grid, const TargetOptions& options) {
     Target::Data data;
     data.options = internal(options);
     data.map = {grid.parameterization == ACDF_PARAM_OCTAHEDRAL ? Projection::octahedral : Projection::latlong,
-                static_cast<int>(grid.columns), static_cast<int>(grid.rows)};
+                static_cast<int>(grid.columns), static_cast<int>(grid.rows), repeats(options)};
     data.grid = std::move(grid);
     return held(std::move(data));
 }
 
 bool TargetRows::take_map(const build::Map& map, const std::vector<float>& rgb) {
     map_ = map;
-    made_ = target_of(map, rgb.data());
+    map_.repeats = repeats(options_);
+    made_ = target_of(map_, rgb.data());
     if (progress_) progress_(0.9, "resampling");
     return true;
 }
 
 void TargetRows::begin(int width, int height) {
-    map_ = {Projection::latlong, width, height};
+    map_ = {Projection::latlong, width, height, repeats(options_)};
     const auto grid = grid_of(map_), own = build::own_domain(map_);
     if (!grid || !own || !(*grid == *own)) {
         rgb_.resize(row() * static_cast<std::size_t>(height));
@@ -151,15 +153,31 @@ void TargetRows::begin(int width, int height) {
 }
 
 void TargetRows::take(int first, int count, const float* rgb) {
-    if (own_) own_->take(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), rgb);
-    else
+    if (own_) {
+        own_->take(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), rgb);
+        keep_borders(first, count, rgb);
+    } else
         std::copy_n(rgb, row() * static_cast<std::size_t>(count),
                     rgb_.begin() + static_cast<std::ptrdiff_t>(row() * static_cast<std::size_t>(first)));
     if (progress_) progress_(0.9 * (first + count) / map_.height, "reading pixels");
 }
 
+void TargetRows::keep_borders(int first, int count, const float* rgb) {
+    if (!map_.repeats) return;
+    if (first == 0) borders_[0].assign(rgb, rgb + row());
+    if (first + count < map_.height) return;
+    const float* last = rgb + row() * static_cast<std::size_t>(count - 1);
+    borders_[1].assign(last, last + row());
+}
+
+build::SourceTarget TargetRows::own_target() {
+    build::SourceTarget out{own_->finish(), 0.0};
+    if (map_.repeats) build::repeat_rows(out.target, borders_[0].data(), borders_[1].data(), internal(options_));
+    return out;
+}
+
 Target TargetRows::finish(const BadTexels& bad, const std::string& projection) {
-    if (own_) made_ = {own_->finish(), 0.0};
+    if (own_) made_ = own_target();
     else if (!rgb_.empty()) made_ = target_of(map_, rgb_.data());
     return held({std::move(made_.target), internal(options_), bad, projection, map_, made_.error});
 }

@@ -18,6 +18,8 @@ using Layout = builder::Projection;
 struct Map {
     Layout layout = Layout::latlong;
     int width = 0, height = 0;
+    /// Beyond the rows of a lat-long map, and the sides of a disc, lookups go on at the opposite border.
+    bool repeats = false;
 };
 
 struct Direction {

@@ -11,6 +11,10 @@
 namespace acdf::build {
 namespace {
 
+TexelPlace repeated(const Map& map, int column, int row) {
+    return {(column + map.width) % map.width, (row + map.height) % map.height};
+}
+
 TexelPlace beside_on_latlong(const Map& map, int column, int row) {
     return {(column + map.width) % map.width, std::clamp(row, 0, map.height - 1)};
 }
@@ -99,6 +103,9 @@ TexelPlace beside_on_cube(const Map& map, int from_column, int from_row, int col
 } // namespace
 
 TexelPlace texel_beside(const Map& map, int from_column, int from_row, int column, int row) {
+    const bool flat =
+        map.layout == Layout::latlong || map.layout == Layout::angular || map.layout == Layout::mirrorball;
+    if (map.repeats && flat) return repeated(map, column, row);
     switch (map.layout) {
     case Layout::latlong:
         return beside_on_latlong(map, column, row);

@@ -13,7 +13,8 @@ namespace acdf::build {
 
 /// The texel that lies beside a map's own at (column, row), which may be one outside of the map, or of the cube's
 /// face that holds the texel (`from_column`, `from_row`): lat-long maps wrap at the seam and stop at the poles,
-/// octahedral ones go on across the sides, cubes on the next face; discs stop at the image.
+/// octahedral ones go on across the sides, cubes on the next face; discs stop at the image. Where `map.repeats`,
+/// lat-long maps and discs go on at the opposite border instead of stopping.
 struct TexelPlace {
     int column = 0, row = 0;
 };

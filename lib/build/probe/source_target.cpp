@@ -1,6 +1,7 @@
 #include "build/probe/source_target.h"
 
 #include "build/probe/overlap.h"
+#include "build/probe/repeated_rows.h"
 #include "build/probe/source_lookup.h"
 #include "compress/parallel.h"
 #include "compress/sum.h"
@@ -261,8 +262,12 @@ SourceTarget source_target(const Map& map, const float* rgb, const Domain& domai
                            const compress::TargetOptions& options) {
     compress::TargetOptions own = options;
     own.parameterization = domain.parameterization;
-    if (own_domain(map) == domain)
-        return {compress::environment_target(rgb, domain.columns, domain.rows, own), 0.0};
+    if (own_domain(map) == domain) {
+        Target target = compress::environment_target(rgb, domain.columns, domain.rows, own);
+        const std::size_t row = std::size_t{3} * domain.columns;
+        if (has_repeated_rows(map, own)) repeat_rows(target, rgb, rgb + row * (domain.rows - 1), own);
+        return {std::move(target), 0.0};
+    }
     const SourceLookup source(map, rgb, own);
     Target target = compress::empty_target(domain.columns, domain.rows, domain.parameterization);
     return Overlay(source, domain, target).run();

@@ -39,6 +39,8 @@ const Named maps[] = {{"latlong", {Layout::latlong, 36, 18}},
                       {"vertical_cross", {Layout::vertical_cross, 24, 32}},
                       {"horizontal_cross", {Layout::horizontal_cross, 32, 24}},
                       {"stacked_cube", {Layout::stacked_cube, 8, 48}}};
+const Named repeated[] = {{"latlong", {Layout::latlong, 36, 18, true}},
+                          {"mirrorball", {Layout::mirrorball, 24, 24, true}}};
 
 /// A sky, with a sun of one texel and a part that is dark.
 std::vector<float> picture(const Map& map) {
@@ -149,8 +151,8 @@ compress::TargetOptions filtered(AcdfFilter filter) {
 
 /// Found once a process: overlaps of small cells take long, however small the map is.
 const build::SourceTarget& target_of(const Map& map, AcdfParameterization grid, AcdfFilter filter) {
-    static std::map<std::tuple<Layout, AcdfParameterization, AcdfFilter>, build::SourceTarget> made;
-    const auto [at, is_new] = made.try_emplace({map.layout, grid, filter});
+    static std::map<std::tuple<Layout, bool, AcdfParameterization, AcdfFilter>, build::SourceTarget> made;
+    const auto [at, is_new] = made.try_emplace({map.layout, map.repeats, grid, filter});
     if (is_new)
         at->second = build::source_target(map, picture(map).data(), build::domain_for(map, grid), filtered(filter));
     return at->second;
@@ -201,6 +203,53 @@ TEST_P(EveryLayout, WhatIsPrintedIsTrue) {
 
 INSTANTIATE_TEST_SUITE_P(SourceTarget, EveryLayout, ::testing::ValuesIn(maps),
                          [](const auto& info) { return std::string(info.param.name); });
+
+INSTANTIATE_TEST_SUITE_P(RepeatedSource, EveryLayout, ::testing::ValuesIn(repeated),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// A map of which only the last row is lit, as a texture that repeats shows it: f is 1/2 at the zenith and falls to
+// 0 in the middle of the first row; it is 1/2 at the nadir and 1 in the middle of the last row, whence it falls to
+// 0 in the middle of the row before. The sums are over z = cos theta, written here once more.
+TEST(SourceTarget, RowsThatRepeatMeetAtThePoles) {
+    const Map map{Layout::latlong, 20, 10, true};
+    std::vector<float> rgb(3 * 20 * 10, 0.0f);
+    std::fill_n(rgb.end() - 3 * 20, 3 * 20, 1.0f);
+    const auto integral = [](double from, double to, auto&& f) { // over rows
+        double sum = 0.0;
+        for (int i = 0; i < 20000; ++i) {
+            const double v = from + (i + 0.5) / 20000 * (to - from);
+            sum += f(v) * std::sin(kPi * v / 10.0) * (to - from) / 20000;
+        }
+        return sum;
+    };
+    const auto row_mean = [&](double row, double from, double to, auto&& f) {
+        return integral(from, to, f) / integral(row, row + 1.0, [](double) { return 1.0; });
+    };
+    const auto at_zenith = [](double v) { return 0.5 - v; };
+    const auto at_nadir = [](double v) { return 0.5 + (10.0 - v); };
+    const auto above = [](double v) { return v - 8.5; };
+    const double first = row_mean(0.0, 0.0, 0.5, at_zenith),
+                 first_square = row_mean(0.0, 0.0, 0.5, [&](double v) { return at_zenith(v) * at_zenith(v); }),
+                 last = row_mean(9.0, 9.0, 9.5, above) + row_mean(9.0, 9.5, 10.0, at_nadir),
+                 last_square = row_mean(9.0, 9.0, 9.5, [&](double v) { return above(v) * above(v); }) +
+                               row_mean(9.0, 9.5, 10.0, [&](double v) { return at_nadir(v) * at_nadir(v); });
+    const compress::Target target =
+        build::source_target(map, rgb.data(), {ACDF_PARAM_LATLONG, 20, 10}, filtered(ACDF_FILTER_BILINEAR)).target;
+    ASSERT_EQ(target.means.size(), 1u);
+    for (std::size_t column = 0; column < 20; ++column) {
+        EXPECT_NEAR(target.means[0][column] / first, 1.0, 1e-6);
+        EXPECT_NEAR(target.values[column] / std::sqrt(first_square), 1.0, 1e-6);
+        EXPECT_FLOAT_EQ(target.peaks[column], 0.5f);
+        EXPECT_NEAR(target.means[0][180 + column] / last, 1.0, 1e-6);
+        EXPECT_NEAR(target.values[180 + column] / std::sqrt(last_square), 1.0, 1e-6);
+        EXPECT_FLOAT_EQ(target.peaks[180 + column], 1.0f);
+    }
+    const double omega = 2.0 * kPi * (1.0 - std::cos(kPi / 10.0)); // of either row
+    const double before = row_mean(8.0, 8.5, 9.0, above),
+                 omega_before = 2.0 * kPi * (std::cos(0.8 * kPi) - std::cos(0.9 * kPi));
+    EXPECT_NEAR(target.total / (omega * (first + last) + omega_before * before), 1.0, 1e-6);
+    EXPECT_DOUBLE_EQ(target.mean_square, target.total * target.total);
+}
 
 // Beside a border of the square, of a face and of the seam lies the texel that shows the direction there.
 TEST(SourceLookup, NeighboursAcrossBordersAreNeighboursOnTheSphere) {
