@@ -59,7 +59,7 @@ private:
     nlohmann::ordered_json report(const ProbeTarget& loaded, const builder::Environment& result) const;
 
     input::ProbeOptions input_;
-    const Renderer* renderer_ = nullptr;
+    const builder::Renderer* renderer_ = nullptr;
     builder::EnvironmentOptions environment_;
     std::string knots_, budget_;
     SceneOption scene_;
@@ -208,8 +208,8 @@ std::uint64_t EnvConversion::memory() const {
 }
 
 Converted EnvConversion::convert(const Listener& listener) {
-    if (renderer_) scene_.note_axes(*command_, *renderer_, listener.note);
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
+    if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
     builder::EnvironmentOptions options = environment_;
     options.source = source_of(loaded.probe, input_);
     options.normals = scene_.read(listener.note);

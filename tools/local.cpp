@@ -62,7 +62,7 @@ private:
     SceneOption scene_;
     PortalOption portals_;
     input::ProbeOptions input_;
-    const Renderer* renderer_ = nullptr;
+    const builder::Renderer* renderer_ = nullptr;
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
     bool no_sharing_ = false, places_ = false, volume_ = false;
@@ -237,8 +237,8 @@ std::uint64_t LocalConversion::memory() const {
 
 Converted LocalConversion::convert(const Listener& listener) {
     builder::LocalOptions local = read_scene(listener.note);
-    if (renderer_) scene_.note_axes(*command_, *renderer_, listener.note);
     const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
+    if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
     local.source = source_of(loaded.probe, input_);
     builder::Local result;
     require_built(source, builder::local(loaded.target, local, result, told(listener.progress)));

@@ -7,4 +7,5 @@ PYBIND11_MODULE(_acdf, module) {
     module.attr("format_version") = std::to_string(ACDF_VERSION_MAJOR) + "." + std::to_string(ACDF_VERSION_MINOR);
     acdf::python::add_file(module);
     acdf::python::add_build(module);
+    acdf::python::add_renderers(module);
 }

@@ -17,14 +17,25 @@ builder::Source source_of(const Options& options) {
     return source;
 }
 
+/// What suits the renderer that is named, where one is.
+TargetOptions target_for(const Options& options) {
+    if (!options.has("for_renderer")) return {};
+    const std::string name = py::str(options.get("for_renderer"));
+    if (const Renderer* renderer = find_renderer(name.c_str())) return renderer->target;
+    std::string names;
+    for (const Renderer& renderer : renderers()) names += (names.empty() ? "" : ", ") + std::string(renderer.name);
+    throw py::value_error("for_renderer: '" + name + "' is none of " + names);
+}
+
 TargetOptions target_options(const Options& options) {
-    TargetOptions target;
-    target.channels = channels_of(options);
+    TargetOptions target = target_for(options);
+    target.channels = channels_of(options, target.channels);
     options.choose<Domain>(
         "domain", {{"source", Domain::source}, {"latlong", Domain::latlong}, {"octahedral", Domain::octahedral}},
         target.domain);
     options.choose<AcdfFilter>("filter", {{"nearest", ACDF_FILTER_NEAREST}, {"bilinear", ACDF_FILTER_BILINEAR}},
                                target.filter);
+    options.choose<Wrap>("wrap", {{"clamp", Wrap::clamp}, {"repeat", Wrap::repeat}}, target.wrap);
     options.choose<BadTexelPolicy>(
         "bad_texels",
         {{"zero", BadTexelPolicy::zero}, {"clamp", BadTexelPolicy::clamp}, {"error", BadTexelPolicy::error}},
@@ -114,9 +125,8 @@ AcdfCodec codec_of(const Options& options) {
     return codec;
 }
 
-Channels channels_of(const Options& options) {
-    Channels out;
-    if (!options.has("channel")) return out;
+Channels channels_of(const Options& options, const Channels& otherwise) {
+    if (!options.has("channel")) return otherwise;
     const std::string wanted = py::str(options.get("channel"));
     std::string names;
     for (const build::ChannelName& name : build::channel_names) {

@@ -3,7 +3,7 @@
 
 #include "python/arrays.h"
 
-#include <acdf/builder.h>
+#include <acdf/renderers.h>
 
 #include <initializer_list>
 #include <string>
@@ -60,7 +60,7 @@ Numbers number_array(const py::object& given, const char* name);
 
 builder::Goal goal_of(const Options& options, const builder::Goal& otherwise);
 AcdfCodec codec_of(const Options& options);
-builder::Channels channels_of(const Options& options);
+builder::Channels channels_of(const Options& options, const builder::Channels& otherwise = {});
 builder::EnvironmentOptions environment_options(const Options& options);
 builder::LocalOptions local_options(const Options& options);
 builder::BrdfOptions brdf_options(const Options& options);
@@ -68,5 +68,7 @@ builder::TableOptions table_options(const Options& options);
 
 /// Adds functions that build to the module.
 void add_build(py::module_& module);
+/// Adds the table of renderers.
+void add_renderers(py::module_& module);
 
 } // namespace acdf::python

@@ -5,9 +5,9 @@
 #include "tests/tools/run.h"
 
 #include "build/probe/projection.h"
-#include "tools/cli/renderer.h"
 
 #include <acdf/reader.h>
+#include <acdf/renderers.h>
 
 #include <nlohmann/json.hpp>
 
@@ -170,11 +170,14 @@ TEST_F(OctahedralCommand, PresetsAreDocumented) {
     std::ifstream page(std::string(ACDF_TEST_DIR) + "/../docs/conventions.md");
     std::string text((std::istreambuf_iterator<char>(page)), {});
     for (std::size_t at; (at = text.find("\xe2\x88\x92")) != std::string::npos;) text.replace(at, 3, "-"); // U+2212
-    for (const tools::Renderer& renderer : tools::renderers) {
-        const char* domain = renderer.domain == input::Domain::octahedral ? "octahedral" : "latlong";
-        const char* filter = renderer.filter == ACDF_FILTER_BILINEAR ? "bilinear" : "nearest";
+    for (const builder::Renderer& renderer : builder::renderers()) {
+        const builder::TargetOptions& target = renderer.target;
+        const char* domain = target.domain == builder::Domain::octahedral ? "octahedral" : "latlong";
+        const char* filter = target.filter == ACDF_FILTER_BILINEAR ? "bilinear" : "nearest";
+        const char* wrap = target.wrap == builder::Wrap::repeat ? "repeat" : "clamp";
+        const char* channel = target.channels.weights.r == target.channels.weights.g ? "average" : "luminance";
         const std::string row = std::string("| `") + renderer.name + "` | `" + domain + "` | `" + filter + "` | `" +
-                                renderer.channel + "` | " + renderer.there + " |";
+                                wrap + "` | `" + channel + "` | " + renderer.axes.text() + " |";
         EXPECT_NE(text.find(row), std::string::npos) << row;
     }
 }
@@ -193,7 +196,56 @@ TEST_F(OctahedralCommand, PresetsSetDomainFilterAndChannel) {
     made(latlong, {"--for", "mitsuba3"});
     ASSERT_TRUE(File::open(output.c_str(), file).ok());
     EXPECT_EQ(file.description().filter, std::uint32_t{ACDF_FILTER_BILINEAR});
-    EXPECT_EQ(run_acdf({"env", latlong, "-o", output, "--force", "--for", "povray"}).code, 2);
+    const Result unknown = run_acdf({"env", latlong, "-o", output, "--force", "--for", "povray"});
+    EXPECT_EQ(unknown.code, 2);
+    for (const char* part : {"povray", "renderman", "conventions.md"})
+        EXPECT_NE(unknown.err.find(part), std::string::npos) << unknown.err;
+}
+
+// Within half a texel of the zenith these find the last row: it needs density there, and files say so to `measure`.
+TEST_F(OctahedralCommand, PresetsCoverWhatRowsThatRepeatShowAtThePoles) {
+    const int width = 20, height = 10;
+    std::vector<float> rgb(3 * width * height, 0.0f);
+    std::fill_n(rgb.end() - 3 * width, 3 * width, 1.0f);
+    const std::string source = folder / "foot.pfm";
+    write_rgb(source, width, height, rgb);
+    const float zenith[3] = {0.05f, 0.03f, 0.9983f}, up[3] = {0.0f, 0.0f, 1.0f};
+    for (const char* renderer : {"cycles", "pbrt-v3", "luxcore", "mitsuba3", "three"}) {
+        const bool repeats = builder::find_renderer(renderer)->target.wrap == builder::Wrap::repeat;
+        made(source, {"--for", renderer});
+        File file;
+        ASSERT_TRUE(File::open(output.c_str(), file).ok());
+        EXPECT_EQ(file.environment().pdf(zenith) > 0.0f, repeats) << renderer;
+        const Text options = file.metadata("fit.options");
+        EXPECT_EQ(std::string(options.data, options.size).find("--wrap repeat") != std::string::npos, repeats);
+        EXPECT_EQ(measured(source)["support_violations"], 0);
+        if (!repeats) continue;
+        made(source, {"--for", renderer}, "local");
+        ASSERT_TRUE(File::open(output.c_str(), file).ok());
+        EXPECT_GT(file.local().pdf(up, zenith), 0.0f) << renderer;
+    }
+    made(source, {"--for", "cycles", "--wrap", "clamp"});
+    File file;
+    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    EXPECT_EQ(file.environment().pdf(zenith), 0.0f) << "what is given by itself wins";
+    // On another grid than the map's own.
+    const json square_file = made(source, {"--for", "cycles", "--domain", "octahedral"});
+    EXPECT_EQ(square_file["support_violations"], 0);
+    ASSERT_TRUE(File::open(output.c_str(), file).ok());
+    EXPECT_GT(file.environment().pdf(zenith), 0.0f);
+    EXPECT_NEAR(measured(source)["relative_variance"], square_file["relative_variance"], 1e-9);
+}
+
+TEST_F(OctahedralCommand, PresetsSayHowTheRendererTurnsAMirrorBall) {
+    const std::string ball = folder / "ball.pfm";
+    write_map(ball, {build::Layout::mirrorball, 64, 64});
+    made(ball, {"--projection", "mirrorball", "--for", "cycles"});
+    EXPECT_NE(messages.find("(y, -x, z)"), std::string::npos) << messages;
+    EXPECT_NE(messages.find("(-Y, X, Z)"), std::string::npos) << messages;
+    made(latlong, {"--for", "cycles"});
+    EXPECT_NE(messages.find("(x, y, z) is (x, y, z)"), std::string::npos) << messages;
+    made(ball, {"--projection", "mirrorball", "--for", "pbrt-v4"});
+    EXPECT_NE(messages.find("once this map is made into the octahedral one"), std::string::npos) << messages;
 }
 
 } // namespace

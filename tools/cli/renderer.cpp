@@ -1,47 +1,57 @@
 #include "tools/cli/renderer.h"
 
-#include "build/text/options.h"
-
 #include <CLI/CLI.hpp>
 
-#include <vector>
-
 namespace acdf::tools {
+namespace {
 
-void add_renderer(CLI::App& command, const Renderer*& chosen) {
-    std::vector<std::string> names;
-    for (const Renderer& renderer : renderers) names.emplace_back(renderer.name);
+std::string renderer_names() {
+    std::string out;
+    for (const builder::Renderer& renderer : builder::renderers())
+        out += (out.empty() ? "" : ", ") + std::string(renderer.name);
+    return out;
+}
+
+} // namespace
+
+void add_renderer(CLI::App& command, const builder::Renderer*& chosen) {
     command
         .add_option_function<std::string>(
             "--for",
             [&chosen](const std::string& name) {
-                for (const Renderer& renderer : renderers)
-                    if (name == renderer.name) chosen = &renderer;
+                chosen = builder::find_renderer(name.c_str());
+                if (!chosen)
+                    throw CLI::ValidationError("--for", "'" + name + "' is none of " + renderer_names() +
+                                                            "; docs/conventions.md says what is known of others");
             },
-            "The renderer that will use the file: sets --domain, --filter and --channel as it looks its map up, "
-            "but for "
-            "those that are given by themselves, and tells which axes to swap: pbrt-v4, pbrt-v3, mitsuba3, cycles, "
-            "luxcore, three")
-        ->check(CLI::IsMember(names).description(""))
+            "The renderer that will use the file: sets --domain, --filter, --wrap and --channel as it looks its "
+            "map "
+            "up, but for those that are given by themselves, and says which axes to swap: " +
+                renderer_names())
         ->option_text("NAME")
         ->group("Input");
 }
 
-void use_renderer(const CLI::App& command, const Renderer* chosen, input::ProbeOptions& input,
+void use_renderer(const CLI::App& command, const builder::Renderer* chosen, input::ProbeOptions& input,
                   builder::TargetOptions& target) {
     if (!chosen) return;
     const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
-    if (!given("--domain")) input.domain = chosen->domain;
-    if (!given("--filter")) target.filter = chosen->filter;
-    if (given("--channel")) return;
-    for (const build::ChannelName& channel : build::channel_names)
-        if (channel.name == std::string(chosen->channel))
-            target.channels = {channel.channels, {channel.weights.r, channel.weights.g, channel.weights.b}};
+    if (!given("--domain")) input.domain = chosen->target.domain;
+    if (!given("--filter")) target.filter = chosen->target.filter;
+    if (!given("--wrap")) target.wrap = chosen->target.wrap;
+    if (!given("--channel")) target.channels = chosen->target.channels;
 }
 
-std::string axes_text(const Renderer& renderer) {
-    return std::string("in ") + renderer.name + " a drawn (x, y, z) is " + renderer.there +
-           " in the frame of the light; ask for the density of its (X, Y, Z) as " + renderer.back;
+std::string axes_text(const builder::Renderer& renderer, builder::Projection projection) {
+    const builder::Axes* axes = renderer.axes_of(projection);
+    const std::string name = renderer.name;
+    const builder::Axes& to = axes ? *axes : renderer.axes;
+    const std::string text = "in " + name + " a sample's (x, y, z) is " + to.text() +
+                             " in the frame of the light; evaluate the pdf of its (X, Y, Z) at " +
+                             to.inverse().text("XYZ");
+    if (axes) return text;
+    const char* own = renderer.target.domain == builder::Domain::octahedral ? "octahedral" : "lat-long";
+    return text + ", once this map is made into the " + own + " one that it looks up";
 }
 
 } // namespace acdf::tools

@@ -46,13 +46,16 @@ std::vector<std::string*> SceneOption::files(std::string& source) {
     return out;
 }
 
-void SceneOption::note_axes(const CLI::App& command, const Renderer& renderer, const Note& note) const {
-    note(axes_text(renderer));
-    if (!given() || SceneAxes::of(renderer.back).ours()) return;
+void SceneOption::note_axes(const CLI::App& command, const builder::Renderer& renderer,
+                            builder::Projection projection, const Note& note) const {
+    note(axes_text(renderer, projection));
+    const builder::Axes* axes = renderer.axes_of(projection);
+    const std::string back = (axes ? *axes : renderer.axes).inverse().text("XYZ");
+    if (!given() || SceneAxes::of(back).ours()) return;
     for (const char* option : {"--scene-up", "--scene-axes"})
         if (command.get_option(option)->count() > 0) return;
     note(std::string("the scene is taken as it is in our own frame; if it is in that of ") + renderer.name +
-         ", add --scene-axes \"" + renderer.back + "\"");
+         ", add --scene-axes \"" + back + "\"");
 }
 
 void SceneOption::check(const CLI::App& command) const {

@@ -5,7 +5,7 @@
 #include "tools/cli/conversion.h"
 #include "tools/cli/scene_axes.h"
 
-#include <acdf/builder.h>
+#include <acdf/renderers.h>
 
 #include <string>
 #include <vector>
@@ -16,8 +16,6 @@ class Option;
 } // namespace CLI
 
 namespace acdf::tools {
-
-struct Renderer;
 
 /// --scene-up.
 CLI::Option* add_scene_up(CLI::App& command, input::UpAxis& up, const std::string& help);
@@ -35,7 +33,8 @@ struct SceneOption {
     void add_axes(CLI::App& command, const char* group);
     /// What the caller must do with directions, and with a scene in the renderer's frame of whose axes nothing was
     /// said.
-    void note_axes(const CLI::App& command, const Renderer& renderer, const Note& note) const;
+    void note_axes(const CLI::App& command, const builder::Renderer& renderer, builder::Projection projection,
+                   const Note& note) const;
     /// Throws CLI::ValidationError where there is an option of the scene, but no scene.
     void check(const CLI::App& command) const;
     /// The option in one spelling, with the SHA-256 of each file. Throws input::Error.

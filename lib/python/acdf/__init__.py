@@ -15,6 +15,7 @@
 
 from ._acdf import __version__, format_version
 from ._errors import BuildError, FileError
+from ._renderers import Renderer, renderers
 from .build import build_brdf, build_environment, build_local, build_table
 from .files import Brdf, Environment, File, LocalEnvironment, Samples, Table, open
 
@@ -25,6 +26,7 @@ __all__ = [
     "File",
     "FileError",
     "LocalEnvironment",
+    "Renderer",
     "Samples",
     "Table",
     "__version__",
@@ -35,6 +37,7 @@ __all__ = [
     "format_version",
     "open",
     "plot",
+    "renderers",
 ]
 
 

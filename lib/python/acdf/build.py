@@ -44,9 +44,11 @@ def build_environment(
     cells: Optional[int] = None,
     variance: Optional[float] = None,
     projection: str = "latlong",
-    domain: str = "source",
-    filter: str = "nearest",
-    channel: str = "luminance",
+    for_renderer: Optional[str] = None,
+    domain: Optional[str] = None,
+    filter: Optional[str] = None,
+    wrap: Optional[str] = None,
+    channel: Optional[str] = None,
     bad_texels: str = "zero",
     uniform_if_black: bool = False,
     fit: str = "variance",
@@ -68,9 +70,13 @@ def build_environment(
     budget, cells, variance: one goal: at most so many bytes ("64KiB"), about so many cells (4096, the default), or at most
         this relative variance.
     projection: "latlong", "angular", "mirrorball", "vertical-cross", "horizontal-cross", "stacked-cube", "octahedral".
-    domain: the grid of the fit: "source", "latlong" or "octahedral".
-    filter: how the renderer looks the map up: "nearest" or "bilinear". Set it right: else there may be bias.
-    channel: whose noise counts: "luminance", "rgb", "max", "red", "green", "blue", "average".
+    for_renderer: a name of `acdf.renderers`: sets domain, filter, wrap and channel, but for those that are given. Swap axes by
+        `acdf.renderers[name].to_light` and `from_light`.
+    domain: the grid of the fit: "source" (the default), "latlong" or "octahedral".
+    filter: how the renderer looks the map up: "nearest" (the default) or "bilinear". Set it right: else there may be bias.
+    wrap: what a bilinear lookup finds beyond the first and the last row: "clamp" (that row, the default) or "repeat" (the row at
+        the other end).
+    channel: whose noise counts: "luminance" (the default), "rgb", "max", "red", "green", "blue", "average".
     bad_texels: what NaN, infinite and negative values become: "zero", "clamp"; or "error".
     fit: "variance", "cdf", "pdf" or "uniform".
     max_weight: the largest weight of a sample over the mean, at least 1; 0: no bound.
@@ -99,9 +105,11 @@ def build_local(
     cells: Optional[int] = None,
     variance: Optional[float] = None,
     projection: str = "latlong",
-    domain: str = "source",
-    filter: str = "nearest",
-    channel: str = "luminance",
+    for_renderer: Optional[str] = None,
+    domain: Optional[str] = None,
+    filter: Optional[str] = None,
+    wrap: Optional[str] = None,
+    channel: Optional[str] = None,
     bad_texels: str = "zero",
     uniform_if_black: bool = False,
     subdivisions: Optional[int] = None,

@@ -73,6 +73,26 @@ class Built(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "normal_weights: 3 of them for 1 normals"):
             acdf.build_local(sky_image(16), normals=[[0, 0, 1]], normal_weights=[1, 2, 3])
 
+    def test_renderers_are_those_of_the_program(self):
+        image = sky_image()
+        with tempfile.TemporaryDirectory() as folder:
+            probe, made = os.path.join(folder, "sky.pfm"), os.path.join(folder, "sky.acdf")
+            with open(probe, "wb") as out:  # rows from the bottom
+                out.write(b"PF\n64 32\n-1.0\n" + image[::-1].tobytes())
+            for name, renderer in acdf.renderers.items():
+                acdf_program("env", probe, "-o", made, "--for", name, "--projection", "latlong", "--force", "-q")
+                theirs, ours = acdf.open(made), acdf.build_environment(image, for_renderer=name)
+                u = np.random.default_rng(3).random((200, 2))
+                np.testing.assert_array_equal(ours.sample(u).direction, theirs.sample(u).direction)
+                np.testing.assert_array_equal(ours.sample(u).pdf, theirs.sample(u).pdf)
+                w = ours.sample(u).direction
+                np.testing.assert_array_equal(renderer.from_light(renderer.to_light(w)), w)
+        self.assertEqual(acdf.renderers["cycles"].mirrorball_axes, (2, -1, 3))
+        nearest = acdf.build_environment(image, for_renderer="cycles", filter="nearest")
+        self.assertEqual(nearest.info()["filter"], "nearest")
+        with self.assertRaisesRegex(ValueError, "for_renderer: 'v-ray' is none of pbrt-v4"):
+            acdf.build_environment(image, for_renderer="v-ray")
+
     def test_companions(self):
         sky = acdf.build_environment(sky_image(), budget="4KiB", company="cosine", shares=(2, 1))
         self.assertTrue(sky.needs_company)
@@ -172,7 +192,7 @@ class Errors(unittest.TestCase):
 
 class Documentation(unittest.TestCase):
     def test_examples(self):
-        for module in (acdf, acdf.files, acdf.build):
+        for module in (acdf, acdf.files, acdf.build, acdf._renderers):
             with self.subTest(module.__name__):
                 found = doctest.testmod(module, optionflags=doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL)
                 self.assertEqual(found.failed, 0)

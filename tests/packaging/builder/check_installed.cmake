@@ -25,13 +25,13 @@ file(RENAME ${WORK}/installed ${WORK}/prefix)
 refuse("builder" ${configure} -B ${WORK}/without) # the reader alone has none
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component builder)
 
-# Two headers, each alone; nothing of the library's own is installed with them.
+# Three headers, each alone; nothing of the library's own is installed with them.
 run(ignored ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/own --component builder)
 file(GLOB_RECURSE headers RELATIVE ${WORK}/own/include ${WORK}/own/include/*)
-if(NOT headers STREQUAL "acdf/accuracy.h;acdf/builder.h;acdf/outcome.h;acdf/pixels.h")
+if(NOT headers STREQUAL "acdf/accuracy.h;acdf/builder.h;acdf/outcome.h;acdf/pixels.h;acdf/renderers.h")
     message(FATAL_ERROR "installed headers: ${headers}")
 endif()
-foreach(header accuracy builder)
+foreach(header accuracy builder renderers)
     file(WRITE ${WORK}/alone.cpp "#include <acdf/${header}.h>\n")
     run(ignored ${CXX} -std=c++17 -Wall -Wextra -Wconversion -Werror -I${WORK}/prefix/include
         -fsyntax-only ${WORK}/alone.cpp)

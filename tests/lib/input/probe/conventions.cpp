@@ -3,6 +3,8 @@
 #include "build/probe/projection.h"
 #include "tests/lib/input/write.h"
 
+#include <acdf/renderers.h>
+
 #include <OpenEXR/ImfEnvmap.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -11,6 +13,7 @@
 #include <fstream>
 #include <map>
 #include <random>
+#include <set>
 #include <sstream>
 
 namespace {
@@ -45,6 +48,25 @@ Uv luxcore(Vec d) { return pbrt(d); }
 // three.js, equirectUv, and three-gpu-pathtracer: u = atan2(z, x) / 2 pi + 1/2, v = asin(y) / pi + 1/2 from the
 // bottom.
 Uv three(Vec d) { return {std::atan2(d.z, d.x) / (2.0 * pi) + 0.5, 1.0 - (std::asin(d.y) / pi + 0.5)}; }
+
+// USD's Hydra Storm, ProjectToLatLong: u = (atan2(z, x) + pi/2) / 2 pi, which repeats, v = acos(y) / pi from the
+// top.
+Uv storm(Vec d) { return {turn_fraction(std::atan2(d.z, d.x) + 0.5 * pi), std::acos(d.y) / pi}; }
+
+// RenderMan, PxrDomeLight: its axes x, y and z are USD's -z, -x and y, by which hdPrman turns it to OpenEXR's
+// frame.
+Uv renderman(Vec d) { return openexr({-d.y, d.z, -d.x}); }
+
+// Unreal, a long-lat texture made into a cube: u = (1 + atan2(x, -z) / pi) / 2, v = acos(y) / pi, in a frame whose
+// y and z are those of the world exchanged.
+Uv unreal(Vec d) { return {0.5 * (1.0 + std::atan2(d.x, -d.y) / pi), std::acos(d.z) / pi}; }
+
+// Cycles, direction_to_mirrorball: the point of the ball whose normal lies between the direction and -y, towards
+// which the camera is; seen with x to the right and z up.
+Uv cycles_ball(Vec d) {
+    const Vec half = normalized({d.x, d.y - 1.0, d.z});
+    return {0.5 * (half.x + 1.0), 1.0 - 0.5 * (half.z + 1.0)};
+}
 
 // "(−x, y, z)" applied to d. The minus sign is U+2212, three bytes of which none is an ASCII letter.
 Vec permuted(const std::string& triple, Vec d) {
@@ -82,6 +104,7 @@ std::map<std::string, std::string> documented_rows() {
         const std::string name = program.substr(1, program.find_last_not_of(' '));
         rows[name] = triple.substr(open, close - open + 1);
     }
+    rows.erase("Program"); // the heading
     return rows;
 }
 
@@ -94,22 +117,89 @@ std::vector<Vec> directions() {
     return all;
 }
 
+/// A program of the table, and its names for --for.
+struct Program {
+    const char* title;
+    Uv (*formula)(Vec);
+    std::vector<const char*> presets;
+};
+const Program programs[] = {{"OpenEXR", openexr, {}},
+                            {"USD `UsdLuxDomeLight`", openexr, {}},
+                            {"USD Hydra Storm", storm, {"storm"}},
+                            {"Mitsuba 3", mitsuba, {"mitsuba3"}},
+                            {"pbrt", pbrt, {"pbrt-v3", "pbrt-v4"}},
+                            {"Blender (Cycles)", cycles, {"cycles"}},
+                            {"LuxCore", luxcore, {"luxcore"}},
+                            {"three.js", three, {"three"}},
+                            {"Arnold", openexr, {"arnold"}},
+                            {"RenderMan", renderman, {"renderman"}},
+                            {"Karma", openexr, {"karma"}},
+                            {"Unreal Engine", unreal, {"unreal"}}};
+
+/// That a direction is where `theirs` shows what is `there` in the program's frame.
+void expect_same_point(acdf::build::Layout layout, const Vec& d, const Vec& there, Uv (*theirs)(Vec),
+                       const std::string& program) {
+    const acdf::build::ImagePoint ours = acdf::build::to_image({layout, 2, 1}, {d.x, d.y, d.z});
+    const Uv uv = theirs(there);
+    ASSERT_NEAR(uv.u, ours.u, 1e-9) << program;
+    ASSERT_NEAR(uv.v, ours.v, 1e-7) << program;
+}
+
+Vec turned(const acdf::builder::Axes& axes, const Vec& d) {
+    const auto component = [&](int axis) {
+        const double of[3] = {d.x, d.y, d.z};
+        return axis < 0 ? -of[-axis - 1] : of[axis - 1];
+    };
+    return {component(axes.x), component(axes.y), component(axes.z)};
+}
+
 TEST(InputConventions, DocumentedAxesMapToTheSamePixelInEveryProgram) {
-    const std::map<std::string, Uv (*)(Vec)> programs{
-        {"OpenEXR", openexr},   {"USD `UsdLuxDomeLight`", openexr}, {"pbrt", pbrt},
-        {"Mitsuba 3", mitsuba}, {"Blender (Cycles)", cycles},       {"LuxCore", luxcore},
-        {"three.js", three}};
     const std::map<std::string, std::string> rows = documented_rows();
-    for (const auto& [program, formula] : programs) {
-        ASSERT_EQ(rows.count(program), 1u) << program << " is not in the table";
+    EXPECT_EQ(rows.size(), std::size(programs)) << "each program of the table is in this list";
+    for (const Program& program : programs) {
+        ASSERT_EQ(rows.count(program.title), 1u) << program.title << " is not in the table";
+        for (const Vec& d : directions())
+            expect_same_point(acdf::build::Layout::latlong, d, permuted(rows.at(program.title), d), program.formula,
+                              program.title);
+    }
+}
+
+TEST(InputConventions, PresetsHaveTheAxesOfTheirPrograms) {
+    for (const acdf::builder::Renderer& renderer : acdf::builder::renderers()) {
+        const Program* of = nullptr;
+        for (const Program& program : programs)
+            for (const char* preset : program.presets)
+                if (preset == std::string(renderer.name)) of = &program;
+        ASSERT_NE(of, nullptr) << renderer.name;
+        EXPECT_EQ(acdf::builder::find_renderer(renderer.name), &renderer);
+        const acdf::builder::Axes back = renderer.axes.inverse();
         for (const Vec& d : directions()) {
-            const acdf::build::ImagePoint ours =
-                acdf::build::to_image({acdf::build::Layout::latlong, 2, 1}, {d.x, d.y, d.z});
-            const Uv theirs = formula(permuted(rows.at(program), d));
-            ASSERT_NEAR(theirs.u, ours.u, 1e-9) << program;
-            ASSERT_NEAR(theirs.v, ours.v, 1e-7) << program;
+            const Vec there = turned(renderer.axes, d);
+            expect_same_point(acdf::build::Layout::latlong, d, there, of->formula, renderer.name);
+            EXPECT_EQ(length(turned(back, there) - d), 0.0) << renderer.name;
+            const float ours[3] = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+            float turned_there[3];
+            renderer.axes.turn(ours, turned_there);
+            EXPECT_EQ(turned_there[0], static_cast<float>(there.x));
+            EXPECT_EQ(turned_there[1], static_cast<float>(there.y));
+            EXPECT_EQ(turned_there[2], static_cast<float>(there.z));
         }
     }
+    EXPECT_EQ(acdf::builder::find_renderer("v-ray"), nullptr);
+    EXPECT_EQ(acdf::builder::find_renderer(nullptr), nullptr);
+}
+
+TEST(InputConventions, CyclesTurnsMirrorBallsAnotherWay) {
+    const acdf::builder::Renderer* renderer = acdf::builder::find_renderer("cycles");
+    ASSERT_NE(renderer, nullptr);
+    const acdf::builder::Axes* ball = renderer->axes_of(acdf::builder::Projection::mirrorball);
+    ASSERT_NE(ball, nullptr);
+    EXPECT_EQ(ball->text(), "(y, -x, z)");
+    EXPECT_EQ(ball->inverse().text("XYZ"), "(-Y, X, Z)");
+    for (const Vec& d : directions())
+        expect_same_point(acdf::build::Layout::mirrorball, d, turned(*ball, d), cycles_ball, "cycles");
+    EXPECT_EQ(renderer->axes_of(acdf::builder::Projection::angular), nullptr);
+    EXPECT_EQ(acdf::builder::find_renderer("three")->axes_of(acdf::builder::Projection::mirrorball), nullptr);
 }
 
 // The formula above against OpenEXR itself, which counts from texel centres on the border.
@@ -162,12 +252,13 @@ TEST(InputConventions, AngularMapsAreMaketxsLightProbes) {
     }
 }
 
-// pbrt's frame is left-handed, and LuxCore takes pbrt's formula in a right-handed one, so that it shows the map
-// mirrored; the others are rotations of ours.
-TEST(InputConventions, OnlyPbrtsFormulaMirrors) {
+// The frames of pbrt and Unreal are left-handed, and LuxCore takes pbrt's formula in a right-handed one, so that it
+// shows the map mirrored; the others are rotations of ours.
+TEST(InputConventions, OnlyLeftHandedFramesAndLuxCoreMirror) {
+    const std::set<std::string> mirrored{"pbrt", "LuxCore", "Unreal Engine"};
     for (const auto& [program, triple] : documented_rows()) {
         const Vec x = permuted(triple, {1, 0, 0}), y = permuted(triple, {0, 1, 0}), z = permuted(triple, {0, 0, 1});
-        EXPECT_EQ(dot(cross(x, y), z), program == "pbrt" || program == "LuxCore" ? -1.0 : 1.0) << program;
+        EXPECT_EQ(dot(cross(x, y), z), mirrored.count(program) > 0 ? -1.0 : 1.0) << program;
     }
 }
 

@@ -1,0 +1,60 @@
+// Renderers of which it is known how they look an environment map up: the options that suit each, and the axes of
+// its light. `acdf env --for NAME` uses the same table; docs/conventions.md says where each line is read off.
+//
+//     if (const acdf::builder::Renderer* cycles = acdf::builder::find_renderer("cycles")) {
+//         options.target = cycles->target;
+//         ...
+//         float there[3];
+//         cycles->axes.turn(sample.direction, there); // in the frame of the light
+//     }
+#pragma once
+
+#include <acdf/builder.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace acdf::builder {
+
+/// The axes of one frame by those of another: each is x, y or z of that (1, 2, 3), or its opposite (-1, -2, -3).
+struct Axes {
+    int x = 1, y = 2, z = 3;
+
+    /// A vector of the other frame in this one.
+    void turn(const float from[3], float to[3]) const noexcept;
+    /// The axes of the other frame by those of this one.
+    Axes inverse() const noexcept;
+    /// "(-x, y, z)", with the letters of the other frame.
+    std::string text(const char* letters = "xyz") const;
+};
+
+/// How a renderer looks an environment map up, and the axes of the light that it makes of it.
+struct Renderer {
+    const char* name;     ///< as --for takes it
+    TargetOptions target; ///< domain, filter, wrap and channels as the renderer has them; the rest is by default
+    Axes axes;            ///< of its light's frame, by ours, for lat-long and octahedral maps
+    std::optional<Axes> mirrorball; ///< the same for mirror balls, where it reads them and it is known how
+
+    /// Those for a map of that projection; null for others.
+    const Axes* axes_of(Projection projection) const noexcept;
+};
+
+/// A range of them.
+struct Renderers {
+    const Renderer* first;
+    std::size_t count;
+
+    /// For loops over all.
+    const Renderer* begin() const noexcept { return first; }
+    /// For loops over all.
+    const Renderer* end() const noexcept { return first + count; }
+};
+
+/// All that are known.
+Renderers renderers() noexcept;
+
+/// The one of that name; null where there is none.
+const Renderer* find_renderer(const char* name) noexcept;
+
+} // namespace acdf::builder
