@@ -56,6 +56,21 @@ TEST(Printable, LeavesTextAndTellsTheRest) {
     EXPECT_EQ(acdf::tools::on_one_line("a\nb\n\n"), "a b");
 }
 
+TEST(Printable, TellsWhatTurnsTextOrEndsLines) {
+    using acdf::tools::printable;
+    EXPECT_EQ(printable("a\u202Efdca.exe"), "a\\xe2\\x80\\xaefdca.exe");
+    for (const char* one : {"\u0085", "\u061C", "\u200E", "\u200F", "\u2028", "\u2029", "\u202A", "\u202B",
+                            "\u202C", "\u202D", "\u202E", "\u2066", "\u2067", "\u2068", "\u2069"}) {
+        EXPECT_EQ(printable(one).find(one), std::string::npos) << printable(one);
+        const std::string escaped = acdf::tools::printable_json("[\"" + std::string(one) + "\"]");
+        EXPECT_EQ(escaped.find(one), std::string::npos) << escaped;
+        EXPECT_EQ(json::parse(escaped)[0], one);
+    }
+    const std::string hebrew = "\u05E9\u05DE\u05E9 \u200B\u2027\u202F\u2065\u206A \U0001F31E.exr";
+    EXPECT_EQ(printable(hebrew), hebrew) << "letters of any script";
+    EXPECT_EQ(acdf::tools::printable_json(hebrew), hebrew);
+}
+
 TEST(TimeLeft, IsToldOnceItIsKnown) {
     using acdf::tools::time_left;
     EXPECT_EQ(time_left(0.0, 3.0), "");
@@ -80,6 +95,33 @@ TEST_F(Hostile, NamesThatAreNotUtf8) {
     const Result odd_output = run_acdf({"env", probe, "-o", folder / "o\xff.acdf", "--json"});
     EXPECT_EQ(odd_output.code, 0) << odd_output.err;
     EXPECT_FALSE(json::parse(odd_output.out, nullptr, false).is_discarded());
+}
+
+TEST_F(Hostile, NamesThatTurnTheLine) {
+    const std::string turn = "\u202E", separator = "\u2028", odd = folder / ("a" + turn + "b" + separator + ".pfm");
+    write_probe(odd);
+    const auto expect_plain = [&](const std::vector<std::string>& command) {
+        const Result result = run_acdf(command);
+        EXPECT_EQ(result.code, 0) << command[0] << ": " << result.err;
+        for (const std::string& text : {result.out, result.err})
+            for (const std::string& mark : {turn, separator})
+                EXPECT_EQ(text.find(mark), std::string::npos) << command[0] << ": " << text;
+        return result.out;
+    };
+    const std::string out = folder / ("made" + turn + separator + ".acdf"),
+                      name = "a" + turn + "b" + separator + ".pfm";
+    EXPECT_EQ(json::parse(expect_plain({"env", odd, "-o", out, "--json"}))["source"], odd);
+    expect_plain({"env", odd, "-o", out, "-f"});
+    EXPECT_EQ(json::parse(expect_plain({"info", out, "--json"}))["source"]["name"], name);
+    expect_plain({"info", out});
+    expect_plain({"validate", out});
+    expect_plain({"measure", out, "--against", odd});
+    expect_plain({"local", odd, "-o", folder / "local.acdf"});
+    expect_plain({"batch", odd, "-o", folder / ("batch" + turn)});
+    expect_plain({"batch", odd, "-o", folder / ("batch" + turn), "--dry-run"});
+    expect_plain({"batch", odd, "-o", folder / ("ninja" + turn), "--emit", "ninja"});
+    expect_plain({"sweep", odd, "-o", folder / ("sweep" + turn), "--kind", "env", "--budgets", "1KiB"});
+    expect_plain({"demo", odd, "-o", folder / ("demo" + turn)});
 }
 
 TEST_F(Hostile, InputsWithoutAnEnd) {

@@ -174,7 +174,8 @@ void show_plan(const BatchArguments& options, const std::vector<PlannedJob>& pla
                             {"memory", planned.due ? nlohmann::ordered_json(planned.memory) : nullptr}});
         else if (!options.quiet)
             std::printf("%s %s %s -> %s: %s\n", planned.due ? "make" : "skip", job.kind->name,
-                        printable(job.source).c_str(), printable(job.output).c_str(), planned.reason.c_str());
+                        printable(job.source).c_str(), printable(job.output).c_str(),
+                        printable(planned.reason).c_str());
     }
     if (options.json) std::fputs(json_text(list).c_str(), stdout);
 }
@@ -282,7 +283,7 @@ int emit_ninja(const BatchArguments& options, const BatchJobs& all, const BatchL
     const std::string text = ninja_text(plan, build, make_conversion);
     write_output(path, {text.begin(), text.end()}, true);
     if (!options.quiet)
-        std::printf("%s: %zu jobs; run `ninja -C %s -k 0`\n", path.c_str(), plan.size(), options.output.c_str());
+        put(path + ": " + std::to_string(plan.size()) + " jobs; run `ninja -C " + options.output + " -k 0`\n");
     return exit_done;
 }
 

@@ -67,7 +67,7 @@ std::string figure(const JobResult& job, const std::string& folder) {
     std::string out = "<figure>\n";
     const bool failed = job.status == JobResult::Status::failed;
     if (!failed) out += thumbnail((std::filesystem::path(folder) / job.output).string(), job.output) + "\n";
-    out += "<h2>" + escaped(job.output) + "</h2>\n<figcaption>";
+    out += "<h2><bdi>" + escaped(job.output) + "</bdi></h2>\n<figcaption>";
     if (failed) out += "<span class=\"failed\">failed: " + escaped(job.error) + "</span>";
     else out += escaped(caption(job));
     for (const std::string& note : job.notes) out += "<br>" + escaped(note);
@@ -83,8 +83,8 @@ const char gallery_mark[] = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta 
 std::string gallery_page(const BatchReport& report, const std::string& folder) {
     const std::size_t failed = report.count(JobResult::Status::failed), made = report.jobs.size() - failed;
     std::string out =
-        gallery_mark + std::string("<style>") + kStyle + "</style>\n</head>\n<body>\n<header>\n<h1>" +
-        std::to_string(made) + (made == 1 ? " file" : " files") +
+        gallery_mark + std::string(closed_page_policy) + "<style>" + kStyle +
+        "</style>\n</head>\n<body>\n<header>\n<h1>" + std::to_string(made) + (made == 1 ? " file" : " files") +
         (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
         "</h1>\n<p>Densities in false colours, logarithmic, from violet over green to red; each picture "
         "has a range of its own. Dark grey: no sample falls there.</p>\n</header>\n<main>\n";

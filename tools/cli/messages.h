@@ -1,5 +1,5 @@
 // What is said to a person: lines on stderr and text on stdout, in which names of files and texts from files cannot
-// move the cursor, change colours or end the line.
+// move the cursor, change colours, end the line or turn what stands beside them.
 #pragma once
 
 #include <cstdio>
@@ -7,8 +7,12 @@
 
 namespace acdf::tools {
 
-/// `text` with control characters and bytes that are no UTF-8 told as \x1b and the like. Line ends and tabs stay.
+/// `text` with control characters, marks that turn the direction of writing, separators of lines, and bytes that
+/// are no UTF-8 written as \x1b and the like. Line ends and tabs stay.
 std::string printable(const std::string& text);
+
+/// The same for JSON, where they are written as \u001b: the values stay what they were. `json` is UTF-8.
+std::string printable_json(const std::string& json);
 
 /// The same on one line: line ends become spaces.
 std::string on_one_line(std::string text);

@@ -1,5 +1,6 @@
 // acdf demo: the other subcommands, one after the other, on built-in probes or on those given.
 #include "tools/cli/help.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
 #include "tools/commands.h"
@@ -29,7 +30,7 @@ void run_command(const std::vector<std::string>& words) {
     for (const std::string& word : words) {
         const bool plain = word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                                                   "._-/+:=,@%") == std::string::npos;
-        std::printf(plain ? " %s" : " '%s'", word.c_str());
+        put(plain ? " " + word : " '" + word + "'");
     }
     std::printf("\n");
     std::fflush(stdout);
@@ -71,7 +72,7 @@ void show_brdf(const DemoArguments& options, const std::string& brdf, const std:
         if (options.force) words.push_back("--force");
         run_command(words);
     };
-    std::printf("\n== %s\n", brdf.c_str());
+    put("\n== " + brdf + "\n");
     with_force({"brdf", brdf, "-o", stem + ".acdf", "--budget", "32KiB"});
     run_command({"info", stem + ".acdf"});
     with_force({"plot", stem + ".acdf", "-o", stem + ".png", "--view", "60"});
@@ -83,7 +84,7 @@ void run(const DemoArguments& options) {
         for (const DemoProbe& probe : demo_probes()) {
             const std::string path = (fs::path(options.folder) / (probe.name + ".exr")).string();
             write_probe(probe, path, options.force);
-            std::printf("\n== %s: %s\n", path.c_str(), probe.what.c_str());
+            put("\n== " + path + ": " + probe.what + "\n");
             show_probe(options, path, probe.name);
         }
         show_brdf(options, "ggx:alpha=0.1", "ggx");
@@ -93,12 +94,12 @@ void run(const DemoArguments& options) {
             if (!names.insert(fs::path(probe).stem().string()).second)
                 throw Failure(probe + ": two probes of this name would write the same files; give them one by one");
         for (const std::string& probe : options.probes) {
-            std::printf("\n== %s\n", probe.c_str());
+            put("\n== " + probe + "\n");
             show_probe(options, probe, fs::path(probe).stem().string());
         }
     }
-    std::printf("\nThe files are in %s: NAME.png shows the density, NAME.acdf is what a renderer links to.\n",
-                options.folder.c_str());
+    put("\nThe files are in " + options.folder +
+        ": NAME.png shows the density, NAME.acdf is what a renderer links to.\n");
 }
 
 } // namespace

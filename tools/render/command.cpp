@@ -239,7 +239,7 @@ void run(const RenderArguments& options) {
     const std::string json = render_json(*scene, done);
     folder.write("render.json", {json.begin(), json.end()});
     if (options.json) std::fputs(json.c_str(), stdout);
-    else std::fputs(render_table(*scene, done).c_str(), stdout);
+    else put(render_table(*scene, done));
 }
 
 void add_measurement_options(CLI::App& command, RenderArguments& options) {

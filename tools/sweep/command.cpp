@@ -223,9 +223,8 @@ void run(SweepArguments& options) {
         std::fputs(text.c_str(), stdout);
     } else if (!options.quiet) {
         const Advice advice = advise(sweep);
-        std::printf("%s\n  %s\n%s shows the trade; the numbers are in %s and %s\n", advice.sentence.c_str(),
-                    advice.command.c_str(), path("report.html").c_str(), path("sweep.csv").c_str(),
-                    path("sweep.json").c_str());
+        put(advice.sentence + "\n  " + advice.command + "\n" + path("report.html") +
+            " shows the trade; the numbers are in " + path("sweep.csv") + " and " + path("sweep.json") + "\n");
     }
 }
 

@@ -296,9 +296,8 @@ std::string method_html(const Sweep& sweep) {
 std::string sweep_html(const Sweep& sweep) {
     const Advice advice = advise(sweep);
     const std::string name = sweep.source.substr(sweep.source.find_last_of('/') + 1);
-    std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-                      "style-src 'unsafe-inline'\">\n"
+    std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n" +
+                      std::string(closed_page_policy) +
                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
                       element("title", "acdf sweep: " + name) + "\n<style>" + report_style +
                       "</style>\n</head>\n<body>\n<header>\n<p class=\"kicker\">acdf sweep, " +

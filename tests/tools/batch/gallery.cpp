@@ -33,9 +33,11 @@ TEST(BatchGallery, ShowsEveryFileAndWhatFailed) {
     EXPECT_EQ(count(page, "data:image/png;base64,iVBORw0KGgo"), 3u);
     EXPECT_EQ(count(page, "src=\"http"), 0u);
     EXPECT_EQ(count(page, "a<b>"), 0u); // names are text
-    EXPECT_NE(page.find("<h2>a&lt;b&gt;&amp;.acdf</h2>"), std::string::npos);
+    EXPECT_NE(page.find("<h2><bdi>a&lt;b&gt;&amp;.acdf</bdi></h2>"), std::string::npos);
     EXPECT_NE(page.find("3 files, 1 failed"), std::string::npos);
     EXPECT_NE(page.find("out of reach"), std::string::npos);
+    const std::size_t policy = page.find("Content-Security-Policy\" content=\"default-src 'none'; img-src data:;");
+    EXPECT_LT(policy, page.find("<style>")) << "it counts for what follows it";
     // Once more, all up to date but the last.
     EXPECT_EQ(run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "-q"}).code, 1);
     EXPECT_EQ(count(read_text(folder / "out/gallery.html"), "<img "), 3u);
