@@ -26,6 +26,7 @@ struct Failure : std::runtime_error {
 // (or any std::exception: exit_failed) or CLI::ValidationError (exit_usage).
 void add_demo(CLI::App& program, int& exit_code);
 void add_env(CLI::App& program, int& exit_code);
+void add_make(CLI::App& program, int& exit_code);
 void add_brdf(CLI::App& program, int& exit_code);
 void add_local(CLI::App& program, int& exit_code);
 void add_table(CLI::App& program, int& exit_code);

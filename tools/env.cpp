@@ -50,6 +50,7 @@ public:
 private:
     bool given(const char* option) const { return command_->get_option(option)->count() > 0; }
     builder::EnvironmentOptions with_source() const;
+    void use_renderers_partner();
     void check_company() const;
     void set_goal();
     void set_knots();
@@ -60,6 +61,7 @@ private:
 
     input::ProbeOptions input_;
     const builder::Renderer* renderer_ = nullptr;
+    bool for_partner_ = false; ///< as the renderer's preset has it
     builder::EnvironmentOptions environment_;
     std::string knots_, budget_;
     SceneOption scene_;
@@ -118,6 +120,13 @@ void EnvConversion::set_knots() {
 
 std::vector<std::string*> EnvConversion::files() { return scene_.files(source); }
 
+void EnvConversion::use_renderers_partner() {
+    if (!renderer_) return;
+    builder::EnvironmentOptions options = environment_;
+    if (scene_.given()) options.normals = {{}}; // any
+    for_partner_ = use_partner(*command_, renderer_->company(options), environment_.company);
+}
+
 void EnvConversion::check_company() const {
     const bool alone = environment_.company.kind == ACDF_COMPANY_NONE;
     for (const char* option : {"--shares", "--heuristic", "--scene"})
@@ -136,6 +145,7 @@ void EnvConversion::check() {
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
     if (fit == ACDF_FIT_VARIANCE) set_goal();
     else set_knots();
+    use_renderers_partner();
     check_company();
 }
 
@@ -210,6 +220,7 @@ std::uint64_t EnvConversion::memory() const {
 Converted EnvConversion::convert(const Listener& listener) {
     const ProbeTarget loaded = load_target(source, input_, environment_.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
+    if (for_partner_) listener.note(partner_text(*renderer_, environment_.company));
     builder::EnvironmentOptions options = environment_;
     options.source = source_of(loaded.probe, input_);
     options.normals = scene_.read(listener.note);

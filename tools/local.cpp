@@ -63,6 +63,7 @@ private:
     PortalOption portals_;
     input::ProbeOptions input_;
     const builder::Renderer* renderer_ = nullptr;
+    bool for_partner_ = false; ///< as the renderer's preset has it
     builder::LocalOptions local_;
     const CLI::App* command_ = nullptr;
     bool no_sharing_ = false, places_ = false, volume_ = false;
@@ -124,6 +125,7 @@ void LocalConversion::check() {
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
+    if (renderer_ && !places_) for_partner_ = use_partner(*command_, renderer_->company(local_), local_.company);
     const bool alone = local_.company.kind == ACDF_COMPANY_NONE;
     for (const char* option : {"--shares", "--heuristic"})
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
@@ -239,6 +241,7 @@ Converted LocalConversion::convert(const Listener& listener) {
     builder::LocalOptions local = read_scene(listener.note);
     const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
+    if (for_partner_) listener.note(partner_text(*renderer_, local_.company));
     local.source = source_of(loaded.probe, input_);
     builder::Local result;
     require_built(source, builder::local(loaded.target, local, result, told(listener.progress)));

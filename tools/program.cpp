@@ -31,14 +31,23 @@ struct Command {
 };
 
 constexpr Command commands[] = {
-    {"Start here", "demo", add_demo},      {"Make", "env", add_env},
-    {"Make", "local", add_local},          {"Make", "brdf", add_brdf},
-    {"Make", "table", add_table},          {"Inspect", "info", add_info},
-    {"Inspect", "validate", add_validate}, {"Inspect", "measure", add_measure},
-    {"Inspect", "plot", add_plot},         {"Inspect", "scanline", add_scanline},
-    {"Inspect", "render", add_render},     {"Inspect", "sweep", add_sweep},
-    {"Use", "sample", add_sample},         {"Use", "pdf", add_pdf},
-    {"Use", "export", add_export},         {"Use", "completion", add_completion},
+    {"Start here", "demo", add_demo},
+    {"Make", "make", add_make},
+    {"Make", "env", add_env},
+    {"Make", "local", add_local},
+    {"Make", "brdf", add_brdf},
+    {"Make", "table", add_table},
+    {"Inspect", "info", add_info},
+    {"Inspect", "validate", add_validate},
+    {"Inspect", "measure", add_measure},
+    {"Inspect", "plot", add_plot},
+    {"Inspect", "scanline", add_scanline},
+    {"Inspect", "render", add_render},
+    {"Inspect", "sweep", add_sweep},
+    {"Use", "sample", add_sample},
+    {"Use", "pdf", add_pdf},
+    {"Use", "export", add_export},
+    {"Use", "completion", add_completion},
     {"Make", "batch", add_batch},
 };
 

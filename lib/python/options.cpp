@@ -17,18 +17,19 @@ builder::Source source_of(const Options& options) {
     return source;
 }
 
-/// What suits the renderer that is named, where one is.
-TargetOptions target_for(const Options& options) {
-    if (!options.has("for_renderer")) return {};
+/// The one that is named; null where none is.
+const Renderer* renderer_of(const Options& options) {
+    if (!options.has("for_renderer")) return nullptr;
     const std::string name = py::str(options.get("for_renderer"));
-    if (const Renderer* renderer = find_renderer(name.c_str())) return renderer->target;
+    if (const Renderer* renderer = find_renderer(name.c_str())) return renderer;
     std::string names;
     for (const Renderer& renderer : renderers()) names += (names.empty() ? "" : ", ") + std::string(renderer.name);
     throw py::value_error("for_renderer: '" + name + "' is none of " + names);
 }
 
 TargetOptions target_options(const Options& options) {
-    TargetOptions target = target_for(options);
+    const Renderer* renderer = renderer_of(options);
+    TargetOptions target = renderer ? renderer->target : TargetOptions{};
     target.channels = channels_of(options, target.channels);
     options.choose<Domain>(
         "domain", {{"source", Domain::source}, {"latlong", Domain::latlong}, {"octahedral", Domain::octahedral}},
@@ -56,8 +57,7 @@ FitOptions fit_options(const Options& options) {
     return fit;
 }
 
-Company company_of(const Options& options) {
-    Company company;
+Company company_of(const Options& options, Company company = {}) {
     options.choose<AcdfCompanyKind>("company",
                                     {{"none", ACDF_COMPANY_NONE},
                                      {"cosine", ACDF_COMPANY_COSINE},
@@ -141,8 +141,9 @@ EnvironmentOptions environment_options(const Options& options) {
     out.target = target_options(options);
     out.goal = goal_of(options, out.goal);
     out.fit = fit_options(options);
-    out.company = company_of(options);
     out.normals = normals_of(options);
+    const Renderer* renderer = renderer_of(options);
+    out.company = company_of(options, renderer ? renderer->company(out) : Company{});
     out.codec = codec_of(options);
     out.source = source_of(options);
     return out;
@@ -161,7 +162,8 @@ LocalOptions local_options(const Options& options) {
     options.choose<LocalShape>(
         "shape", {{"small", LocalShape::small}, {"fast", LocalShape::fast}, {"auto", LocalShape::automatic}},
         out.shape);
-    out.company = company_of(options);
+    const Renderer* renderer = renderer_of(options);
+    out.company = company_of(options, renderer ? renderer->company(out) : Company{});
     out.codec = codec_of(options);
     out.source = source_of(options);
     return out;

@@ -1,5 +1,7 @@
 #include "tools/cli/renderer.h"
 
+#include "build/text/company.h"
+
 #include <CLI/CLI.hpp>
 
 namespace acdf::tools {
@@ -26,7 +28,8 @@ void add_renderer(CLI::App& command, const builder::Renderer*& chosen) {
             },
             "The renderer that will use the file: sets --domain, --filter, --wrap and --channel as it looks its "
             "map "
-            "up, but for those that are given by themselves, and says which axes to swap: " +
+            "up, --with and --heuristic as its path integrator combines samples, but for those that are given by "
+            "themselves, and says which axes to swap: " +
                 renderer_names())
         ->option_text("NAME")
         ->group("Input");
@@ -40,6 +43,21 @@ void use_renderer(const CLI::App& command, const builder::Renderer* chosen, inpu
     if (!given("--filter")) target.filter = chosen->target.filter;
     if (!given("--wrap")) target.wrap = chosen->target.wrap;
     if (!given("--channel")) target.channels = chosen->target.channels;
+}
+
+bool use_partner(const CLI::App& command, const builder::Company& suits, builder::Company& company) {
+    if (suits.kind == ACDF_COMPANY_NONE) return false;
+    if (command.get_option("--heuristic")->count() == 0) company.heuristic = suits.heuristic;
+    if (command.get_option("--with")->count() > 0) return false;
+    company.kind = suits.kind;
+    return true;
+}
+
+std::string partner_text(const builder::Renderer& renderer, const builder::Company& company) {
+    std::string options = build::company_text({company.kind, company.heuristic, company.light, company.other});
+    options.pop_back();
+    return std::string("made to be combined with BSDF samples, as ") + renderer.name + "'s path integrator does (" +
+           options + "): never use it alone; for an integrator that takes light samples alone add --with none";
 }
 
 std::string axes_text(const builder::Renderer& renderer, builder::Projection projection) {

@@ -36,8 +36,22 @@ struct Renderer {
     Axes axes;            ///< of its light's frame, by ours, for lat-long and octahedral maps
     std::optional<Axes> mirrorball; ///< the same for mirror balls, where it reads them and it is known how
 
+    /// Whether its environment light is given the normal of the surface that it lights: files of kind local need
+    /// it.
+    bool has_normal = false;
+    /// Whether its path integrator adds BSDF samples to those of the light, and how it weighs them.
+    bool adds_bsdf_samples = false;
+    AcdfHeuristic heuristic = ACDF_HEURISTIC_BALANCE;
+    const char* why = ""; ///< where the three are read off
+
     /// Those for a map of that projection; null for others.
     const Axes* axes_of(Projection projection) const noexcept;
+    /// The kind of file that has the least noise there: ACDF_KIND_LOCAL or ACDF_KIND_ENVIRONMENT.
+    AcdfKind kind() const noexcept;
+    /// The MIS partner that suits a file of these options, with the heuristic; kind ACDF_COMPANY_NONE where the
+    /// file may be used alone, or its options go without a partner. A file for a partner may not be used alone.
+    Company company(const EnvironmentOptions& options) const noexcept;
+    Company company(const LocalOptions& options) const noexcept;
 };
 
 /// A range of them.

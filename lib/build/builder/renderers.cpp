@@ -21,21 +21,92 @@ constexpr TargetOptions latlong(Wrap wrap, const Channels& channels = luminance)
     return looked_up(Domain::latlong, ACDF_FILTER_BILINEAR, wrap, channels);
 }
 
+constexpr const char* closed = "how its light takes samples is not published, so that the file may be used alone";
+
 constexpr Axes usd{2, 3, 1}, pbrt{-1, 2, 3}; // (y, z, x) and (-x, y, z)
 
 // Where it is not known whether rows repeat, they do: then a file has density for either.
 constexpr Renderer known[] = {
-    {"pbrt-v4", looked_up(Domain::octahedral, ACDF_FILTER_NEAREST, Wrap::clamp, average), pbrt, {}},
-    {"pbrt-v3", latlong(Wrap::repeat), pbrt, {}},
-    {"mitsuba3", latlong(Wrap::clamp), usd, {}},
-    {"cycles", latlong(Wrap::repeat, average), {1, 2, 3}, Axes{2, -1, 3}},
-    {"luxcore", latlong(Wrap::repeat), pbrt, {}},
-    {"three", latlong(Wrap::clamp), {1, 3, -2}, {}},
-    {"arnold", latlong(Wrap::repeat), usd, {}},
-    {"renderman", latlong(Wrap::repeat), {-1, -2, 3}, {}},
-    {"karma", latlong(Wrap::repeat), usd, {}},
-    {"storm", latlong(Wrap::clamp), usd, {}},
-    {"unreal", latlong(Wrap::clamp), {-2, -1, 3}, {}},
+    {"pbrt-v4",
+     looked_up(Domain::octahedral, ACDF_FILTER_NEAREST, Wrap::clamp, average),
+     pbrt,
+     {},
+     true,
+     true,
+     ACDF_HEURISTIC_POWER,
+     "its lights are given a normal (LightSampleContext), and its path integrator weighs a light and a BSDF sample "
+     "by "
+     "the power heuristic (PathIntegrator::SampleLd)"},
+    {"pbrt-v3",
+     latlong(Wrap::repeat),
+     pbrt,
+     {},
+     true,
+     true,
+     ACDF_HEURISTIC_POWER,
+     "its lights are given a normal (Interaction), and its integrators weigh a light and a BSDF sample by the "
+     "power "
+     "heuristic (EstimateDirect)"},
+    {"mitsuba3",
+     latlong(Wrap::clamp),
+     usd,
+     {},
+     true,
+     true,
+     ACDF_HEURISTIC_POWER,
+     "its emitters are given a normal (Interaction3f), and its path integrator weighs an emitter and a BSDF sample "
+     "by "
+     "the power heuristic (PathIntegrator::mis_weight)"},
+    {"cycles",
+     latlong(Wrap::repeat, average),
+     {1, 2, 3},
+     Axes{2, -1, 3},
+     false,
+     true,
+     ACDF_HEURISTIC_POWER,
+     "its background light is given a position and no normal (background_light_sample), and it weighs a light and "
+     "a "
+     "BSDF sample by the power heuristic (light_sample_mis_weight_nee)"},
+    {"luxcore",
+     latlong(Wrap::repeat),
+     pbrt,
+     {},
+     true,
+     true,
+     ACDF_HEURISTIC_POWER,
+     "its lights are given the BSDF, which has a normal (InfiniteLight::Illuminate), and its path tracer weighs a "
+     "light "
+     "and a BSDF sample by the power heuristic (PathTracer)"},
+    {"three",
+     latlong(Wrap::clamp),
+     {1, 3, -2},
+     {},
+     false,
+     true,
+     ACDF_HEURISTIC_POWER,
+     "three-gpu-pathtracer samples the environment without a normal (sampleEquirectProbability), and weighs a "
+     "light and "
+     "a BSDF sample by the power heuristic (misHeuristic)"},
+    {"arnold", latlong(Wrap::repeat), usd, {}, false, false, ACDF_HEURISTIC_BALANCE, closed},
+    {"renderman", latlong(Wrap::repeat), {-1, -2, 3}, {}, false, false, ACDF_HEURISTIC_BALANCE, closed},
+    {"karma", latlong(Wrap::repeat), usd, {}, false, false, ACDF_HEURISTIC_BALANCE, closed},
+    {"storm",
+     latlong(Wrap::clamp),
+     usd,
+     {},
+     false,
+     false,
+     ACDF_HEURISTIC_BALANCE,
+     "it filters the map and draws no samples, so that the file serves other programs of that frame, alone"},
+    {"unreal",
+     latlong(Wrap::clamp),
+     {-2, -1, 3},
+     {},
+     false,
+     false,
+     ACDF_HEURISTIC_BALANCE,
+     "its path tracer samples a map of its own making, so that the file serves other programs of that frame, "
+     "alone"},
 };
 
 } // namespace
@@ -67,6 +138,31 @@ std::string Axes::text(const char* letters) const {
 const Axes* Renderer::axes_of(Projection projection) const noexcept {
     if (projection == Projection::latlong || projection == Projection::octahedral) return &axes;
     return projection == Projection::mirrorball && mirrorball ? &*mirrorball : nullptr;
+}
+
+AcdfKind Renderer::kind() const noexcept { return has_normal ? ACDF_KIND_LOCAL : ACDF_KIND_ENVIRONMENT; }
+
+// Made for all normals alike, an environment beside a cosine counts surfaces that face away from the light as much
+// as those that are seen: without a scene the mean does better (docs/integrate.md).
+Company Renderer::company(const EnvironmentOptions& options) const noexcept {
+    const FitOptions& fit = options.fit;
+    Company out;
+    if (!adds_bsdf_samples || fit.fit != ACDF_FIT_VARIANCE || fit.shape != Shape::tree || fit.max_weight > 0.0 ||
+        options.goal.kind == Goal::Kind::variance)
+        return out;
+    out.kind = options.normals.empty() ? ACDF_COMPANY_MEAN : ACDF_COMPANY_COSINE;
+    out.heuristic = heuristic;
+    return out;
+}
+
+Company Renderer::company(const LocalOptions& options) const noexcept {
+    Company out;
+    if (!adds_bsdf_samples || !options.sharing || options.cosine_share > 0.0 || options.max_weight > 0.0 ||
+        options.shape == LocalShape::fast || options.places.point)
+        return out;
+    out.kind = ACDF_COMPANY_COSINE;
+    out.heuristic = heuristic;
+    return out;
 }
 
 Renderers renderers() noexcept { return {known, sizeof known / sizeof *known}; }

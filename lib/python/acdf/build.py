@@ -53,8 +53,8 @@ def build_environment(
     uniform_if_black: bool = False,
     fit: str = "variance",
     max_weight: float = 0.0,
-    company: str = "none",
-    heuristic: str = "balance",
+    company: Optional[str] = None,
+    heuristic: Optional[str] = None,
     shares: Tuple[float, float] = (1.0, 1.0),
     normals: Optional[Any] = None,
     normal_weights: Optional[Any] = None,
@@ -70,8 +70,8 @@ def build_environment(
     budget, cells, variance: one goal: at most so many bytes ("64KiB"), about so many cells (4096, the default), or at most
         this relative variance.
     projection: "latlong", "angular", "mirrorball", "vertical-cross", "horizontal-cross", "stacked-cube", "octahedral".
-    for_renderer: a name of `acdf.renderers`: sets domain, filter, wrap and channel, but for those that are given. Swap axes by
-        `acdf.renderers[name].to_light` and `from_light`.
+    for_renderer: a name of `acdf.renderers`: sets domain, filter, wrap and channel, and the company and heuristic of its path
+        integrator, but for those that are given. Swap axes by `acdf.renderers[name].to_light` and `from_light`.
     domain: the grid of the fit: "source" (the default), "latlong" or "octahedral".
     filter: how the renderer looks the map up: "nearest" (the default) or "bilinear". Set it right: else there may be bias.
     wrap: what a bilinear lookup finds beyond the first and the last row: "clamp" (that row, the default) or "repeat" (the row at
@@ -80,8 +80,9 @@ def build_environment(
     bad_texels: what NaN, infinite and negative values become: "zero", "clamp"; or "error".
     fit: "variance", "cdf", "pdf" or "uniform".
     max_weight: the largest weight of a sample over the mean, at least 1; 0: no bound.
-    company, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "cosine", "brdf" or
-        "mean"; "balance" or "power"; samples of the file and of the company, in proportion; the normals of the scene.
+    company, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "none" (the default),
+        "cosine", "brdf" or "mean"; "balance" (the default) or "power"; samples of the file and of the company, in proportion;
+        the normals of the scene.
     compress: "none", "zlib" or "planes".
     threads: at most so many; 0: all cores.
     progress: called with the share that is done and what is being done; returning False cancels.
@@ -120,8 +121,8 @@ def build_local(
     cosine_share: float = 0.0,
     sharing: bool = True,
     shape: str = "auto",
-    company: str = "none",
-    heuristic: str = "balance",
+    company: Optional[str] = None,
+    heuristic: Optional[str] = None,
     shares: Tuple[float, float] = (1.0, 1.0),
     compress: str = "none",
     source_name: str = "",

@@ -88,6 +88,9 @@ class Built(unittest.TestCase):
                 w = ours.sample(u).direction
                 np.testing.assert_array_equal(renderer.from_light(renderer.to_light(w)), w)
         self.assertEqual(acdf.renderers["cycles"].mirrorball_axes, (2, -1, 3))
+        self.assertEqual(acdf.build_environment(image, for_renderer="cycles").info()["company"]["heuristic"], "power")
+        self.assertFalse(acdf.build_environment(image, for_renderer="cycles", company="none").needs_company)
+        self.assertFalse(acdf.build_environment(image, for_renderer="cycles", max_weight=9).needs_company)
         nearest = acdf.build_environment(image, for_renderer="cycles", filter="nearest")
         self.assertEqual(nearest.info()["filter"], "nearest")
         with self.assertRaisesRegex(ValueError, "for_renderer: 'v-ray' is none of pbrt-v4"):
