@@ -82,6 +82,13 @@ if(TARGET acdf_python)
         "#!/bin/sh\nset -e\nif command -v py3clean >/dev/null; then py3clean -p python3-acdf; fi\n")
 endif()
 
+# Packages are made of what was built: whether it is hardened cannot be mended any more.
+if(NOT ACDF_HARDEN)
+    file(WRITE ${PROJECT_BINARY_DIR}/debian/not_hardened.cmake
+        "message(WARNING \"these packages are not hardened: configure with --preset package, or -DACDF_HARDEN=ON\")\n")
+    set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_BINARY_DIR}/debian/not_hardened.cmake)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
