@@ -1,9 +1,6 @@
 #!/usr/bin/env bash
 # long.sh [--minutes N] [--build DIR] [NAME...]: every fuzzer, or those named (fuzz_reader, fuzz_npy, ...), one after another, N minutes
-# each (60) on all cores. For a schedule, beside the seconds of each run of the tests:
-#
-#   17 2 * * *  cd /path/to/acdf && git pull -q && nice tests/fuzz/long.sh --minutes 30 >build/fuzz.log 2>&1 || mail ...
-#
+# each (60) on all cores. For a schedule (.ci/nightly), beside the seconds of each run of the tests.
 # Builds with clang and sanitizers in build/asan first, unless --build names a folder where that was done. What a run finds is where
 # the next one goes on (tests/fuzz/found/NAME of the build folder). Exit code 1 where an input broke something: it is named, lies in
 # tests/fuzz/crashes of the build folder, and belongs into tests/fuzz/regressions/NAME once it is mended.

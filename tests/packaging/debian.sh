@@ -38,6 +38,13 @@ else
     echo "lintian is not installed: packages are not checked by it"
 fi
 
+if grep -qx 'ACDF_HARDEN:BOOL=ON' "$build/CMakeCache.txt"; then
+    mapfile -t compiled < <(find root/usr -type f \( -name '*.so' -o -name '*.so.*' -o -path '*/bin/*' \))
+    bash "$source/tests/packaging/hardened.sh" "${compiled[@]}"
+else
+    echo "this build is not hardened, and so are these packages"
+fi
+
 # The program.
 unset ACDF_TEST_DATA PYTHONPATH LD_LIBRARY_PATH
 "$make_sky" sky.exr
