@@ -4,6 +4,8 @@
 
 #include "input/sha256.h"
 
+#include <acdf/renderers.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -232,6 +234,29 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
     options.fit = {};
     options.fit.fit = ACDF_FIT_UNIFORM;
     expect_same(options, {"--fit", "uniform"});
+    options = {};
+    options.target.wrap = Wrap::repeat; // of a nearest lookup, which knows none
+    expect_same(options, {"--wrap", "repeat"});
+    options.target.filter = ACDF_FILTER_BILINEAR;
+    expect_same(options, {"--filter", "bilinear", "--wrap", "repeat"});
+}
+
+TEST(Builder, MakesWhatTheProgramMakesForARenderer) {
+    const Folder folder;
+    const std::vector<float> rgb = sky();
+    write_rgb(folder / "p.pfm", int(kSkyWidth), int(kSkyHeight), rgb);
+    for (const Renderer& renderer : renderers()) {
+        EnvironmentOptions options;
+        options.target = renderer.target;
+        options.company = renderer.company(options);
+        const bool square = renderer.target.domain == Domain::octahedral;
+        options.source = {"p.pfm", input::file_sha256(folder / "p.pfm"), "",
+                          std::string("--domain ") + (square ? "octahedral " : "latlong ")};
+        EXPECT_EQ(bytes_of(pixels_of(rgb), options),
+                  program_bytes({"env", folder / "p.pfm", "--for", renderer.name}, folder / "p.acdf"))
+            << renderer.name;
+        if (acdf_test::kSanitized) break;
+    }
 }
 
 TEST(Builder, OneTargetMakesManyFiles) {
