@@ -34,7 +34,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast_cut.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/fast_rows.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/grid.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/groups.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/halvings.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/linked.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/lobe.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local.h
@@ -51,7 +51,6 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/moved.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/normals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/octahedral.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/parallel.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_queue.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_rating.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/pieces.h
@@ -66,7 +65,6 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/reader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/row_heights.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/sample.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_brdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_grids.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/shader_point.h

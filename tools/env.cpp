@@ -80,7 +80,7 @@ constexpr OnlyFor only_for[] = {
     {"--target-variance", false, false, false, true,
      "is for --fit variance; use --eps or --knots with the other fits"},
     {"--max-weight", false, false, false, true, "is for --fit variance"},
-    {"--shape", false, false, false, true, "is for --fit variance; the other fits have two levels"},
+    {"--order", true, true, true, false, "is for --fit uniform, cdf and pdf"},
     {"--knots", true, true, true, false, "is for --fit uniform, cdf and pdf; use --cells or --budget"},
     {"--conditional", true, true, true, false, "is for --fit uniform, cdf and pdf"},
     {"--eps", false, true, true, false, "is for --fit cdf and pdf; use --target-variance with --fit variance"},
@@ -100,13 +100,7 @@ bool allows(const OnlyFor& rule, AcdfFit fit) {
     }
 }
 
-void EnvConversion::set_goal() {
-    const int goals = read_goal(*command_, budget_, environment_.goal);
-    const bool only_cells = environment_.fit.shape == builder::Shape::cascade;
-    if (only_cells && goals > 0 && !given("--cells"))
-        throw CLI::ValidationError("--shape cascade", "is sized by --cells");
-    if (only_cells && given("--max-weight")) throw CLI::ValidationError("--max-weight", "is for --shape tree");
-}
+void EnvConversion::set_goal() { read_goal(*command_, budget_, environment_.goal); }
 
 void EnvConversion::set_knots() {
     builder::FitOptions& fit = environment_.fit;
@@ -133,8 +127,8 @@ void EnvConversion::check_company() const {
         if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
     for (const char* option : {"--target-variance", "--max-weight"})
         if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
-    if (!alone && (environment_.fit.fit != ACDF_FIT_VARIANCE || environment_.fit.shape != builder::Shape::tree))
-        throw CLI::ValidationError("--with", "is for --fit variance and --shape tree");
+    if (!alone && environment_.fit.fit != ACDF_FIT_VARIANCE)
+        throw CLI::ValidationError("--with", "is for --fit variance");
 }
 
 void EnvConversion::check() {
@@ -255,13 +249,6 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             "Douglas-Peucker on the CDF), pdf (the same on the density, piecewise linear: for smooth skies), "
             "uniform (equal steps, to compare with)")
         ->group("Fit");
-    constexpr Named<builder::Shape> shapes[] = {{"tree", builder::Shape::tree},
-                                                {"cascade", builder::Shape::cascade}};
-    add_choice(command, "--shape", fit.shape, shapes,
-               "What --fit variance makes: tree (refines any segment along any axis: less noise for its size) or "
-               "cascade (two levels, as in the paper: a sample takes less time)")
-        ->option_text("NAME [tree]")
-        ->group("Fit");
     enum class First { either, phi, z };
     constexpr Named<First> orders[] = {{"auto", First::either}, {"phi", First::phi}, {"z", First::z}};
     add_choice(
@@ -270,9 +257,8 @@ void EnvConversion::add_fit_options(CLI::App& command) {
             if (first != First::either) fit.order = first == First::phi ? builder::Order::phi : builder::Order::z;
         },
         orders,
-        "Which axis is split first: phi, z, or auto (two levels are fitted both ways and the more accurate "
-        "file is "
-        "kept, in twice the time; a tree takes the axis that gains more)")
+        "Which axis --fit uniform, cdf and pdf split first: phi, z, or auto (both files are made, and the more "
+        "accurate one is kept, in twice the time)")
         ->option_text("NAME [auto]")
         ->group("Fit");
     add_goal(

@@ -26,13 +26,7 @@ struct ExportArguments {
     std::string file;
     Target target = Target::c;
     std::string output = "-", tables;
-    bool force = false, walk = false;
-};
-
-/// Which functions, and the tables that they read.
-struct Exported {
-    bool walk; // acdf/shader_walk.h and acdf/shader_brdf.h; else acdf/shader.h
-    ShaderTables tables;
+    bool force = false;
 };
 
 constexpr int texture_width = 2048; // of the texture that head.txt of GLSL reads
@@ -50,9 +44,8 @@ std::string rows_of_words(const ShaderTables& tables, const char* format, const 
     return text + "\n";
 }
 
-std::string c_text(const Exported& exported, bool with_words) {
-    const ShaderTables& tables = exported.tables;
-    std::string text = exported.walk ? shader_walk_c : shader_cells_c;
+std::string c_text(const ShaderTables& tables, bool with_words) {
+    const std::string text = shader_walk_c;
     if (!with_words) return text;
     return text + "\n#if !defined(ACDF_TABLES_H) && !defined(__OPENCL_VERSION__)\n#define ACDF_TABLES_H\n" +
            "static const uint32_t acdf_tables[" + std::to_string(tables.size()) + "] = {\n" +
@@ -60,16 +53,13 @@ std::string c_text(const Exported& exported, bool with_words) {
 }
 
 /// What a program needs to make a buffer or a texture of the tables, and to check that they are the file's.
-std::string description(const ExportArguments& options, const LoadedFile& loaded, const Exported& exported) {
-    const ShaderTables& tables = exported.tables;
+std::string description(const ExportArguments& options, const LoadedFile& loaded, const ShaderTables& tables) {
     const std::size_t rows = (tables.size() + texture_width - 1) / texture_width;
     nlohmann::ordered_json json = {{"what", "tables for the functions of acdf export"},
                                    {"version", ACDF_VERSION},
-                                   {"functions", exported.walk ? "walk" : "cells"},
                                    {"element", "uint32, little-endian"},
                                    {"words", tables.size()},
                                    {"texture", {{"format", "r32ui"}, {"width", texture_width}, {"height", rows}}}};
-    if (!exported.walk) json["pieces"] = reinterpret_cast<const AcdfCells*>(tables.words())->count;
     json["resolution"] = {loaded.file.axis(0).resolution, loaded.file.axis(1).resolution};
     json["total"] = loaded.file.description().total;
     if (loaded.file.kind() == ACDF_KIND_ENVIRONMENT)
@@ -81,31 +71,27 @@ std::string description(const ExportArguments& options, const LoadedFile& loaded
            "  ]\n}\n";
 }
 
-std::string text_of(const ExportArguments& options, const LoadedFile& loaded, const Exported& exported) {
+std::string text_of(const ExportArguments& options, const LoadedFile& loaded, const ShaderTables& tables) {
     switch (options.target) {
     case Target::c:
-        return c_text(exported, options.tables.empty());
+        return c_text(tables, options.tables.empty());
     case Target::glsl:
-        return exported.walk ? shader_walk_glsl : shader_cells_glsl;
+        return shader_walk_glsl;
     case Target::hlsl:
-        return exported.walk ? shader_walk_hlsl : shader_cells_hlsl;
+        return shader_walk_hlsl;
     case Target::wgsl:
-        return exported.walk ? shader_walk_wgsl : shader_cells_wgsl;
+        return shader_walk_wgsl;
     case Target::json:
         break;
     }
-    return description(options, loaded, exported);
+    return description(options, loaded, tables);
 }
 
-/// Environments on a lat-long grid have tables of cells, all others are walked.
-Exported make_tables(const ExportArguments& options, const LoadedFile& loaded) {
-    const bool cells = !options.walk && loaded.file.kind() == ACDF_KIND_ENVIRONMENT &&
-                       loaded.file.description().parameterization == ACDF_PARAM_LATLONG;
-    Exported exported = {!cells, {}};
-    const Status status = cells ? ShaderTables::make(loaded.file, exported.tables)
-                                : ShaderTables::make_walk(loaded.file, exported.tables);
-    if (!status.ok()) throw Failure(options.file + ": " + status.message);
-    return exported;
+ShaderTables make_tables(const ExportArguments& options, const LoadedFile& loaded) {
+    ShaderTables tables;
+    if (const Status status = ShaderTables::make(loaded.file, tables); !status.ok())
+        throw Failure(options.file + ": " + status.message);
+    return tables;
 }
 
 bool one_file(const std::string& a, const std::string& b) {
@@ -124,10 +110,10 @@ void run(const ExportArguments& options) {
     if (!options.tables.empty())
         words.emplace(options.tables, options.force, std::vector<std::string>{options.file});
     const LoadedFile loaded = load_file(options.file);
-    const Exported exported = make_tables(options, loaded);
-    output.write(text_of(options, loaded, exported));
+    const ShaderTables tables = make_tables(options, loaded);
+    output.write(text_of(options, loaded, tables));
     if (words) {
-        words->write(exported.tables.words(), 4 * exported.tables.size());
+        words->write(tables.words(), 4 * tables.size());
         words->commit();
     }
     output.commit();
@@ -164,18 +150,10 @@ void add_export(CLI::App& program, int& exit_code) {
             "files")
         ->type_name("FILE")
         ->group("Output");
-    command
-        ->add_flag(
-            "--walk", options->walk,
-            "Walk a tree, also of an environment on a lat-long grid, for which there are faster functions: its "
-            "tables are smaller by half, and the functions are those of local environments and BRDFs")
-        ->group("Output");
     add_output(*command, options->output, options->force, "The text to write, stdout by default");
     command->footer(help_footer(
-        "Draws and densities are those of the reader, of 32-bit words and floats alone: some 130 bytes "
-        "a cell, or 60 where "
-        "trees are walked. "
-        "docs/shaders.md tells how to bind the tables, and how nearly results agree.",
+        "Samples and pdfs are the reader's, from 32-bit words and floats alone: the tables take some 60 bytes a "
+        "cell. docs/shaders.md says how to bind the tables, and how nearly results agree.",
         "acdf export sky.acdf --target glsl -o sky.glsl --tables sky.bin\n"
         "acdf export sky.acdf --target wgsl --tables sky.bin > sky.wgsl\n"
         "acdf export sky.acdf --target c -o sky.h               # functions and tables in one header\n"

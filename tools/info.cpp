@@ -49,6 +49,10 @@ bool is_fast(const File& file) { return file.kind() == ACDF_KIND_LOCAL && file.l
 
 TreeCounts count_tree(const File& file) {
     TreeCounts counts;
+    if (!file.has_bins()) {
+        counts.cells = file.environment().data().halved->count + 1;
+        return counts;
+    }
     if (is_fast(file)) counts.cells = count_grids(file);
     if (const AcdfTiles* tiles = file.blend().tiles; tiles && tiles->root_count == 0) {
         counts.cells = tiles->tile_count; // shared by all bins, and no curve divides them

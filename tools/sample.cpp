@@ -77,9 +77,9 @@ using Numbers = const double (*)[2];
 
 void sample_environment(const File& file, const SampleArguments& options, Output& output) {
     if (!options.at.empty()) throw Failure(options.file + ": an environment has no bins; leave out --at");
-    const EnvironmentWavefront view(file.environment());
+    const EnvironmentView view = file.environment();
     write_directions(options, output, [&](Numbers u, std::size_t count, DirectionSample* samples) {
-        view.sample(u, count, samples);
+        for (std::size_t i = 0; i < count; ++i) samples[i] = view.sample(u[i][0], u[i][1]);
     });
 }
 

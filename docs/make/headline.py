@@ -51,7 +51,6 @@ def headline():
     gain = math.exp(sum(map(math.log, local)) / len(local))
     calls = tables_of_calls()
     draws = [numbers(calls[width]["draw"]["64 KiB"])[0] for width in calls]
-    by_groups = max(float(row["ns a draw"]) for row in table("performance.md", "file", "ns a draw") if row["file"].endswith("_64KiB"))
     waves = [row for row in table("performance.md", "", "ns a sample") if "AVX-512" in row[""]]
     wave_draws = [float(row["ns a sample"]) for row in waves]
     return f"""- **Small.** 16 to 64 KiB stand for a full-resolution table of megabytes. They stay in the cache. At 64 KiB one sample of the
@@ -60,8 +59,7 @@ def headline():
   (geometric mean {gain:.0f}), with samples of the light alone and nothing in its way
   ([docs/accuracy.md](docs/accuracy.md#e4-local-environment-maps)). Shadows take most of that: [with a wall](docs/accuracy.md#what-hides-light).
 - **Fast.** A draw of 64 KiB takes {min(draws):.0f} to {max(draws):.0f} ns: {ratio(1024, "draw", calls):.2g} of the time of the full-resolution CDF at 1024×512, {ratio(4096, "draw", calls):.2g} at 4096×2048
-  ([docs/performance.md](docs/performance.md#environment-files)); up to {by_groups:.0f} ns where cells are [too many for the fastest
-  tables](docs/performance.md#how-environment-files-answer), as those of studios. Measured BRDFs are drawn from in {min(wave_draws):.0f} to {max(wave_draws):.0f} ns in waves with AVX-512
+  ([docs/performance.md](docs/performance.md#environment-files)). Measured BRDFs are drawn from in {min(wave_draws):.0f} to {max(wave_draws):.0f} ns in waves with AVX-512
   ([docs/performance.md](docs/performance.md#brdfs))."""
 
 

@@ -1,14 +1,12 @@
 #!/usr/bin/env bash
 # method_tables.sh PROBES: tables of environment files (docs/accuracy.md, docs/performance.md), from the probes in a folder, as Markdown on stdout.
-# ACDF names the program (default: build/release/tools/acdf). The table of layouts comes from the program `layouts`
-# beside it in tests/bench (-DACDF_BUILD_BENCHMARKS=ON), and is left out where that is not built; LAYOUTS names it.
-# TABLES chooses some of: fits sizes options ratio layouts building. The last needs oiiotool, for maps of other sizes.
+# ACDF names the program (default: build/release/tools/acdf). TABLES chooses some of: fits sizes options ratio building. The last
+# needs oiiotool, for maps of other sizes.
 set -euo pipefail
 probes=${1:?usage: docs/make/method_tables.sh PROBES}
 build=$(dirname "${BASH_SOURCE[0]}")/../../build/release
 acdf=${ACDF:-$build/tools/acdf}
-layouts=${LAYOUTS:-$build/tests/bench/layouts}
-tables=${TABLES:-fits sizes options ratio layouts building}
+tables=${TABLES:-fits sizes options ratio building}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -32,10 +30,10 @@ row() { # LABEL ARGUMENTS...: relative variances for each set of options in `col
 six=(city.exr sunset.exr studio.exr courtyard.exr noon_grass_1k.hdr venice_sunset_1k.hdr)
 
 fits() {
-    echo "| probe | uniform | cdf | cdf, eq. 4 as printed | cdf, 16 gradient knots | pdf | variance, cascade | variance, tree |"
-    echo "|---|---|---|---|---|---|---|---|"
+    echo "| probe | uniform | cdf | cdf, eq. 4 as printed | cdf, 16 gradient knots | pdf | variance |"
+    echo "|---|---|---|---|---|---|---|"
     columns=("--fit uniform" "--fit cdf --order z" "--fit cdf --order z --conditional mean" "--fit cdf --order z --gradient 16"
-        "--fit pdf" "--shape cascade" "")
+        "--fit pdf" "")
     for probe in city sunset studio courtyard; do row "$probe" "$probes/$probe.exr"; done
 }
 
@@ -71,10 +69,6 @@ options() {
 --target-variance 0.05
 --target-variance 0.005
 --budget 64KiB --max-weight 3
---order phi
---order z
---shape cascade
---shape cascade --order z
 --channel rgb
 --channel max
 --channel red
@@ -119,19 +113,6 @@ ratio() {
         done
         echo "$line |"
     done
-}
-
-# What chunk TREE would take in other layouts.
-layouts() {
-    local probe size
-    [ -x "$layouts" ] || return 0
-    for size in 16KiB 64KiB; do
-        for probe in "${six[@]}"; do
-            "$acdf" env "$probes/$probe" --budget "$size" --quiet --json \
-                -o "$work/${probe%.*}_$size.acdf" >"$work/report"
-        done
-    done
-    "$layouts" "$work"/*_16KiB.acdf "$work"/*_64KiB.acdf
 }
 
 # Seconds of the processor, over all threads, and peak memory of `acdf env`, the start of the program, reading, hashing and

@@ -91,6 +91,7 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
 #define ACDF_CHUNK_PLACES ACDF_FOURCC('P', 'L', 'A', 'C')
 #define ACDF_CHUNK_PORTALS ACDF_FOURCC('P', 'O', 'R', 'T')
+#define ACDF_CHUNK_HALVINGS ACDF_FOURCC('H', 'A', 'L', 'V')
 
 #define ACDF_CHUNK_FLAG_CRITICAL 1u
 
@@ -159,6 +160,18 @@ typedef struct AcdfBin {
 #define ACDF_CURVE_TILTED 0x0200u
 #define ACDF_CURVE_SEGMENTS_SHIFT 10 /* 1 to 63 segments; 0: the count follows */
 #define ACDF_CURVE_SHORT_SEGMENTS 63u
+
+/* Chunk HALV: a tree of halvings (SPEC.md §5.12), instead of BINS and TREE. This, then two runs of bits, the lowest of
+ * each byte first, each padded with zeros to a multiple of 32: the nodes in preorder, 0 for a leaf, else 1 and the
+ * number of a sampled axis; then `code_bits` a halving, in the same order. */
+typedef struct AcdfHalvingsHeader {
+    uint32_t halving_count;
+    uint32_t code_bits; /* ACDF_LEAST_CODE_BITS to ACDF_MOST_CODE_BITS */
+    uint32_t reserved[2];
+} AcdfHalvingsHeader;
+#define ACDF_LEAST_CODE_BITS 2u
+#define ACDF_MOST_CODE_BITS 12u
+#define ACDF_MOST_HALVINGS 0x7FFFFFFu /* 2^27 - 1 */
 
 /* The streams of codec 2 (SPEC.md §4). Where there are several sizes, the stream of the smallest is named. */
 enum {
@@ -320,6 +333,7 @@ ACDF_STATIC_ASSERT(offsetof(AcdfHeader, file_length) == 16);
 ACDF_STATIC_ASSERT(offsetof(AcdfHeader, chunk_count) == 36);
 ACDF_STATIC_ASSERT(offsetof(AcdfHeader, header_crc) == 60);
 ACDF_STATIC_ASSERT(sizeof(AcdfChunk) == 48);
+ACDF_STATIC_ASSERT(sizeof(AcdfHalvingsHeader) == 16);
 ACDF_STATIC_ASSERT(offsetof(AcdfChunk, offset) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfDescription) == 64);
 ACDF_STATIC_ASSERT(offsetof(AcdfDescription, channel_weights) == 32);

@@ -7,6 +7,7 @@ sections and steps beside the code. It shares nothing with lib/reader.
     sky = load(open("probe.acdf", "rb").read())
     x, y, z, pdf = sky.sample(0.25, 0.5)          # pdf in sr^-1
     pdf = sky.pdf((x, y, z))
+    u0, u1 = sky.invert((x, y, z))                # of environments
 """
 from .container import Refused, read_container
 from .description import read_description

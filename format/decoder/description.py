@@ -18,7 +18,7 @@ class Axis:
 
 
 class Description:
-    """`axes`, `bins` (pairs of root and share) and the fields of DESC."""
+    """`axes`, `bins` (pairs of root and share, None beside HALV) and the fields of DESC."""
 
 
 def is_utf8(data):
@@ -51,15 +51,22 @@ def read_description(container):
     d.axes = [Axis(data[64 + 48 * i:112 + 48 * i]) for i in range(axis_count)]
     check_axes(d.axes)
     check_metadata(container.payloads.get(b"META"))
-    bins = container.payloads[b"BINS"]
-    require(len(bins) == 8 * d.bin_count, 4004)
-    d.bins = list(struct.iter_unpack("<If", bins))
-    require(all(math.isfinite(share) and share >= 0 for _, share in d.bins), 6017)
+    d.bins = read_bins(container.payloads, d.bin_count)
     if container.kind == ENVIRONMENT:
         check_environment(d)
     if container.kind == TABLE:
         check_table(d, weights)
     return d
+
+
+def read_bins(payloads, count):
+    """§5.3. A file with HALV has none."""
+    if b"HALV" in payloads:
+        return None
+    require(len(payloads[b"BINS"]) == 8 * count, 4004)
+    bins = list(struct.iter_unpack("<If", payloads[b"BINS"]))
+    require(all(math.isfinite(share) and share >= 0 for _, share in bins), 6017)
+    return bins
 
 
 def check_axes(axes):
@@ -114,7 +121,7 @@ def check_environment(d):
     require(len(d.axes) == 2, 7001)
     check_sphere_axes(d)
     require(d.bin_count == 1, 7002)
-    require(d.bins[0][1] == 1.0, 7008)
+    require(d.bins is None or d.bins[0][1] == 1.0, 7008)
 
 
 def check_table(d, weights):

@@ -4,6 +4,7 @@ from .company import Company
 from .container import BRDF, ENVIRONMENT, LOCAL
 from .description import NOT_STORED
 from .fast import FastTiles
+from .halvings import Halvings
 from .local import Local
 from .refused import require
 from .sphere import Environment
@@ -22,6 +23,9 @@ def view_of(container, d):
 
 def sampler_of(container, d):
     chunks, kind = container.payloads, container.kind
+    if b"HALV" in chunks:
+        require(b"BINS" not in chunks and b"TREE" not in chunks and d.fit == 4, 6035)
+        return Environment(Halvings(chunks[b"HALV"], [axis.resolution for axis in d.axes]), None, grid_of(d))
     tiles = None
     if b"SUMS" in chunks or b"GRID" in chunks:
         require(all(name in chunks for name in (b"SUMS", b"GRID", b"TILE")), 6027)

@@ -2,7 +2,7 @@
 import ctypes
 import math
 
-from .tree import fraction_drawn, slope
+from .tree import fraction_drawn, random_number_at, slope
 
 BETA = 2.0**-22
 PI = math.pi
@@ -106,7 +106,7 @@ def of_unit_length(v):
 
 
 class Environment:
-    """`sphere` is the grid of directions: a Sphere, or the Square of §6.9."""
+    """`tree` is a Tree of curves or Halvings, `sphere` the grid of directions: a Sphere, or the Square of §6.9."""
 
     def __init__(self, tree, root, sphere):
         self.tree, self.root, self.sphere = tree, root, sphere
@@ -127,3 +127,15 @@ class Environment:
         column, square = self.sphere.grid(v)
         p = self.tree.find(self.root, square, box, s)
         return self.sphere.density(box, s, self.sphere.fractions(v, column, box), p)
+
+    def invert(self, direction):
+        """§6.5: the random numbers of a direction; None where its density is 0."""
+        v = direction_of(direction)
+        if not of_unit_length(v):
+            return None
+        (box, s), strata = self.sphere.whole(), [[0.0, 1.0], [0.0, 1.0]]
+        column, square = self.sphere.grid(v)
+        if not self.tree.find(self.root, square, box, s, strata) > 0:
+            return None
+        t = self.sphere.fractions(v, column, box)
+        return [random_number_at(*strata[a], s[a], t[a]) for a in (0, 1)]

@@ -107,8 +107,8 @@ class Tree:
                 return max(p, LEAST)
             unit += curve.child(i)
 
-    def find(self, root, square, box, s):
-        """§6.3. Returns p, 0 where no sample can fall."""
+    def find(self, root, square, box, s, strata=None):
+        """§6.3. Returns p, 0 where no sample can fall. `strata`, by axis, become l and w of §6.5."""
         p, unit = 1.0, root
         while True:
             curve = self.curves[unit]
@@ -118,6 +118,10 @@ class Tree:
             if curve.probability(i) == 0:
                 return 0.0
             p = p * (curve.probability(i) / float(curve.maximum))
+            if strata is not None:
+                low, width = strata[a]
+                strata[a] = [low + width * curve.cumulative[i] / curve.maximum,
+                             width * curve.probability(i) / curve.maximum]
             box[a] = curve.narrowed(i, box[a])
             if curve.tilts:
                 s[a] = curve.tilts[i] / 32768
@@ -129,6 +133,11 @@ class Tree:
 def fraction_drawn(u, s):
     """t of §6.2."""
     return u if s == 0 else 2 * u / ((1 - s) + math.sqrt((1 - s) * (1 - s) + 4 * s * u))
+
+
+def random_number_at(low, width, s, t):
+    """u of §6.5."""
+    return low + width * (t + s * (t * t - t))
 
 
 def slope(s, t):

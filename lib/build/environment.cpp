@@ -6,10 +6,12 @@
 #include "build/text/company.h"
 #include "build/text/options.h"
 #include "compress/company/target.h"
+#include "compress/halvings/fit.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
+#include <variant>
 
 namespace acdf::build {
 namespace {
@@ -59,11 +61,52 @@ void recommend(const std::vector<std::uint8_t>& bytes, const compress::Target& t
     description.chunks = {compress::company_chunk(options.company, static_cast<float>(share), {})};
 }
 
+std::string out_of_budget(std::uint64_t budget, const compress::Description& description) {
+    compress::Halvings leaf;
+    leaf.axes = {-1};
+    return "a size of " + std::to_string(budget) + " bytes is out of reach; the least that can be had is " +
+           std::to_string(compress::store(leaf, description).size());
+}
+
 Accuracy measure_bytes(const std::vector<std::uint8_t>& bytes, const compress::Target& target) {
     File file;
     if (const Status status = File::from_memory(bytes.data(), bytes.size(), file); !status.ok())
         throw std::logic_error(std::string("the file just made is not accepted: ") + status.message);
     return measure_environment(file, target);
+}
+
+/// Halvings of the variance fit, curves of the others.
+struct FittedTree {
+    std::variant<compress::Halvings, compress::EncodedTree> of;
+
+    std::vector<std::uint8_t> stored(const compress::Description& description,
+                                     AcdfCodec codec = ACDF_CODEC_NONE) const {
+        return std::visit([&](const auto& tree) { return compress::store(tree, description, codec); }, of);
+    }
+};
+
+compress::Halvings fit_halvings(const compress::Target& target, const EnvironmentOptions& options,
+                                const compress::Description& description, const compress::Progress& progress) {
+    compress::HalvingsOptions fit;
+    fit.goal = options.fit.goal;
+    fit.max_weight = options.fit.max_weight;
+    fit.most_bytes = kMostBytesForVariance;
+    fit.progress = progress;
+    if (fit.goal.kind == compress::Goal::Kind::budget) {
+        fit.chunk_bytes = compress::halvings_room(description, fit.goal.budget);
+        if (fit.chunk_bytes == 0) throw std::runtime_error(out_of_budget(fit.goal.budget, description));
+    }
+    return options.company ? compress::fit_halvings(fitted_target(target, options), fit)
+                           : compress::fit_halvings(target, fit);
+}
+
+FittedTree fit_tree(const compress::Target& target, const EnvironmentOptions& options, std::optional<Order> tried,
+                    const compress::Description& description, const compress::Progress& progress) {
+    if (options.fit.fit == ACDF_FIT_VARIANCE) return {fit_halvings(target, options, description, progress)};
+    compress::FitOptions fit = options.fit;
+    if (tried) fit.order = tried;
+    fit.progress = progress;
+    return {compress::fit(target, fit).tree};
 }
 
 /// Splits in the order `tried`, if it is one, in place of that of the options.
@@ -81,24 +124,15 @@ Environment build_once(const compress::Target& target, const Source& source, con
     description.metadata = metadata(source, options, tried, {});
     if (options.company) description.chunks = {compress::company_chunk(options.company, 0.5f, {})};
 
-    compress::FitOptions fit = options.fit;
-    if (tried) fit.order = tried;
-    fit.file_size = [&](const compress::EncodedTree& tree) {
-        return std::uint64_t{compress::store(tree, description, options.codec).size()};
-    };
-    fit.most_bytes = kMostBytesForVariance;
-    fit.size_by_length = options.codec == ACDF_CODEC_NONE;
-    fit.progress = [&](double share) {
+    const FittedTree tree = fit_tree(target, options, tried, description, [&](double share) {
         if (progress) progress(0.9 * share, "fitting");
-    };
-    const compress::EncodedTree tree =
-        compress::fit(options.company ? fitted_target(target, options) : target, fit).tree;
+    });
     Environment out;
-    out.order = fit.order;
-    if (options.company) recommend(compress::store(tree, description), target, options, description);
-    out.accuracy = measure_bytes(compress::store(tree, description), target);
+    out.order = tried ? tried : options.fit.order;
+    if (options.company) recommend(tree.stored(description), target, options, description);
+    out.accuracy = measure_bytes(tree.stored(description), target);
     description.metadata = metadata(source, options, tried, out.accuracy);
-    out.bytes = compress::store(tree, description, options.codec);
+    out.bytes = tree.stored(description, options.codec);
     if (progress) progress(1.0, "measuring");
     return out;
 }
@@ -124,7 +158,6 @@ std::string option_text(const std::string& reading, const EnvironmentOptions& op
     std::string text = reading + target_text(options.target) + codec_text(options.codec) + fit_text(fit.fit);
     if (fit.order) text += "--order " + std::string(to_string(*fit.order)) + " ";
     if (fit.fit != ACDF_FIT_VARIANCE) return text + knots_text(fit);
-    if (fit.shape == compress::Shape::cascade) text += "--shape cascade ";
     text += company_text(options.company);
     if (options.company && !options.scene.empty())
         text += options.scene_text.empty() ? "--scene " : options.scene_text + " ";
@@ -135,9 +168,9 @@ std::string option_text(const std::string& reading, const EnvironmentOptions& op
 Environment build_environment(const compress::Target& target, const Source& source,
                               const EnvironmentOptions& options, const Progress& progress) {
     if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
-    const bool tree = options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == compress::Shape::tree;
-    return tree || options.fit.order ? build_once(target, source, options, {}, progress)
-                                     : build_better(target, source, options, progress);
+    return options.fit.fit == ACDF_FIT_VARIANCE || options.fit.order
+               ? build_once(target, source, options, {}, progress)
+               : build_better(target, source, options, progress);
 }
 
 } // namespace acdf::build

@@ -40,7 +40,6 @@ acdf::LoadOptions of(const AcdfLoadOptions& from) {
     if (from.max_inflated_bytes > 0) options.limits.max_inflated_bytes = from.max_inflated_bytes;
     options.tables = !from.plain;
     options.allocator = from.allocator;
-    options.parallel = from.parallel;
     return options;
 }
 
@@ -134,7 +133,7 @@ const AcdfAxis* acdf_axis(const AcdfFile* file, uint32_t axis) {
 }
 
 const AcdfBin* acdf_bin(const AcdfFile* file, uint32_t bin) {
-    return bin < file->file.description().bin_count ? &file->file.bin(bin) : nullptr;
+    return file->file.has_bins() && bin < file->file.description().bin_count ? &file->file.bin(bin) : nullptr;
 }
 
 uint32_t acdf_metadata_count(const AcdfFile* file) { return file->file.metadata_count(); }

@@ -1,10 +1,9 @@
 // `File`: ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check/check.h"
+#include "halved_tree.h"
 #include "input_file.h"
 #include "memory.h"
 #include "tables/brdf.h"
-#include "tables/cells.h"
-#include "tables/groups.h"
 #include "tables/local.h"
 #include "tables/table_entries.h"
 #include "waves/brdf.h"
@@ -12,6 +11,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -144,8 +144,7 @@ File& File::operator=(File&& other) noexcept {
     nodes_ = std::exchange(other.nodes_, nullptr);
     metadata_ = std::exchange(other.metadata_, nullptr);
     metadata_count_ = std::exchange(other.metadata_count_, 0);
-    cells_ = std::exchange(other.cells_, nullptr);
-    groups_ = std::exchange(other.groups_, nullptr);
+    halved_ = std::exchange(other.halved_, nullptr);
     local_tables_ = std::exchange(other.local_tables_, nullptr);
     brdf_tables_ = std::exchange(other.brdf_tables_, nullptr);
     entries_ = std::exchange(other.entries_, nullptr);
@@ -185,7 +184,10 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     if (options.tables) parts.survey = &survey;
     check(static_cast<const u8*>(data), size, options.limits, first_error, &status, parts, options.allocator);
     loaded.owned_[1] = parts.inflated;
-    if (!status.ok()) return status;
+    if (!status.ok()) {
+        std::free(parts.halvings);
+        return status;
+    }
     loaded.bytes_ = static_cast<const u8*>(data);
     loaded.size_ = size;
     loaded.description_ = parts.description;
@@ -204,35 +206,34 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
     loaded.metadata_count_ = parts.metadata_count;
-    if (options.tables) loaded.make_tables(survey, options.parallel);
+    const bool halved = !parts.halvings || loaded.make_halved(parts, options.tables);
+    std::free(parts.halvings);
+    if (!halved) return failure(1003, "%llu halvings", ull{parts.halving_count});
+    if (options.tables) loaded.make_tables(survey);
     file = std::move(loaded);
     return status;
 }
 
 // They are only for speed: where there is no memory for them, the file is as good without.
-void File::make_tables(const TreeSurvey& survey, const AcdfParallel& parallel) noexcept {
+void File::make_tables(const TreeSurvey& survey) noexcept {
     const std::size_t most = 8 * static_cast<std::size_t>(size_) + (std::size_t{1} << 20);
     if (kind() == ACDF_KIND_BRDF && can_have_tables(brdf().data()))
         brdf_tables_ = make_brdf_tables(brdf().data(), most, true, allocator_, owned_[2]);
-    if (kind() == ACDF_KIND_ENVIRONMENT) make_environment_tables(survey, most, parallel);
     if (kind() == ACDF_KIND_LOCAL && blend_.tiles)
         local_tables_ = make_local_tables(local().data(), tree_units_, most, allocator_, owned_[2]);
     if (kind() == ACDF_KIND_TABLE)
         entries_ = make_table_entries(table().data(), description_->bin_count, survey, most, allocator_, owned_[2]);
 }
 
-void File::make_environment_tables(const TreeSurvey& checked, std::size_t most_bytes,
-                                   const AcdfParallel& parallel) noexcept {
-    constexpr u32 fewest_cells = 1 << 12; // tables of fewer need less than a large page
-    Scratch pages;
-    const AcdfEnvironment data = environment().data();
-    const TreeSurvey walked = checked.done() ? TreeSurvey() : TreeSurvey(data, tree_units_);
-    const TreeSurvey& survey = checked.done() ? checked : walked;
-    Scratch* const scratch = survey.done() && survey.cells() >= fewest_cells ? &pages : nullptr;
-    cells_ = make_cells(data, survey, most_bytes, allocator_, owned_[2], scratch);
-    if (cells_) return;
-    pages.clear();
-    groups_ = make_groups(data, survey, most_bytes, allocator_, owned_[2], scratch, Instructions::avx512, parallel);
+// False where there is no memory.
+bool File::make_halved(const Parts& parts, bool lookup) noexcept {
+    u32 resolution[ACDF_MAX_AXES], count = 0;
+    for (u32 axis = 0; axis < description_->axis_count; ++axis)
+        if (axes_[axis].role == ACDF_AXIS_SAMPLED) resolution[count++] = axes_[axis].resolution;
+    const HalvedSource source = {
+        parts.halvings, parts.halving_count, resolution, count, description_->parameterization, lookup};
+    halved_ = make_halved_tree(source, allocator_, owned_[2]);
+    return halved_ != nullptr;
 }
 
 void File::metadata(u32 i, Text& key, Text& value) const noexcept {
@@ -264,9 +265,9 @@ int File::memory(AcdfMove* moves) const noexcept {
 }
 
 EnvironmentView File::environment() const noexcept {
-    return EnvironmentView({tree_, bins_[0].root, axes_[ACDF_AXIS_PHI].resolution,
+    return EnvironmentView({tree_, bins_ ? bins_[0].root : 0, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
-                            cells_, company_, tree_units_, groups_});
+                            halved_, company_, tree_units_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
@@ -280,8 +281,7 @@ LocalEnvironmentView File::local() const noexcept {
                          description_->parameterization,
                          nullptr,
                          company_,
-                         tree_units_,
-                         nullptr};
+                         tree_units_};
     local.company = company_;
     local.bins = bins_;
     local.lights = lights_;

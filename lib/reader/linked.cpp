@@ -76,16 +76,14 @@ float acdf_density_environment(const AcdfFile* file, const float direction[3]) {
 int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
                                 float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    const acdf::EnvironmentWavefront wavefront(file->file.environment());
-    draw_in_waves(count, directions, pdfs, [&](size_t first, size_t n, DirectionSample* drawn) {
-        wavefront.sample(pairs_at(u, first), n, drawn);
-    });
+    for (size_t i = 0; i < count; ++i)
+        put(acdf_environment_sample(&file->environment, u[2 * i], u[2 * i + 1]), i, directions, pdfs);
     return 1;
 }
 
 int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
-    acdf::EnvironmentWavefront(file->file.environment()).pdf(vectors_at(directions, 0), count, pdfs);
+    for (size_t i = 0; i < count; ++i) pdfs[i] = acdf_environment_pdf(&file->environment, directions + 3 * i);
     return 1;
 }
 

@@ -38,10 +38,8 @@ done
 cp "$here"/package/{acdf.mjs,acdf.d.ts,shaders.d.ts,README.md} "$root/LICENSE" "$work/package/"
 sed "s/@VERSION@/$version/" "$here/package/package.json" >"$work/package/package.json"
 for language in glsl wgsl; do
-    for form in cells walk; do
-        printf 'export const %s = `' "$language$([ $form = cells ] || echo Walk)"
-        sed 's/[`\\$]/\\&/g' "$build/lib/shader/acdf_$form.$language"
-        printf '`;\n'
-    done
+    printf 'export const %s = `' "$language"
+    sed 's/[`\\$]/\\&/g' "$build/lib/shader/acdf_walk.$language"
+    printf '`;\n'
 done >"$work/package/shaders.mjs"
 chmod 644 "$work/package/acdf.wasm"

@@ -52,6 +52,43 @@ float density(const acdf::File& file, const float* at, const float direction[3])
     return 0.0f;
 }
 
+/// Positions of cells: the first `most` are written, four numbers each, and all are counted.
+struct Cells {
+    u32* out;
+    std::size_t most, count = 0;
+
+    void add(u32 first_column, u32 last_column, u32 first_row, u32 last_row) {
+        if (count < most) {
+            const u32 ends[4] = {first_column, last_column, first_row, last_row};
+            std::memcpy(out + 4 * count, ends, sizeof ends);
+        }
+        ++count;
+    }
+    /// Below a node of halvings. A path passes at most 62.
+    void add(const AcdfHalving* nodes, u32 at, const AcdfSpan box[2]) {
+        if (at == ACDF_LEAF) return add(box[0].end[0], box[0].end[1], box[1].end[0], box[1].end[1]);
+        const AcdfHalving node = nodes[at];
+        const u32 axis = node.link & 7u;
+        for (u32 upper = 0; upper < 2; ++upper) {
+            AcdfSpan half[2] = {box[0], box[1]};
+            half[axis].end[1 - upper] = acdf_span_middle(&box[axis]);
+            const bool leaf = node.link >> (3 + upper) & 1u;
+            add(nodes, leaf ? ACDF_LEAF : upper ? at + (node.link >> 5) : at + 1, half);
+        }
+    }
+    /// Of a tree of curves.
+    void add(const AcdfEnvironment& environment) {
+        const acdf::Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment.columns, environment.rows},
+                                  false, false};
+        acdf::each_cell(environment.tree, environment.root, whole,
+                        [this](const acdf::Cell& above, u32 axis, const acdf::CellPart& part) {
+                            const acdf::Cell cell = part.in(above, axis);
+                            add(cell.first[0], cell.last[0], cell.first[1], cell.last[1]);
+                            return count < (std::size_t{1} << 24); // shared curves may make more cells than bytes
+                        });
+    }
+};
+
 } // namespace
 
 /// Memory for `size` bytes; null where there is none.
@@ -138,25 +175,19 @@ ACDF_EXPORT void acdf_web_map(const Opened* opened, const float* at, u32 width, 
 ACDF_EXPORT std::size_t acdf_web_cells(const Opened* opened, u32* out, std::size_t most) {
     if (opened->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
     const AcdfEnvironment environment = opened->file.environment().data();
-    const acdf::Cell whole = {1.0,   {0.0, 0.0}, {1.0, 1.0}, {0, 0}, {environment.columns, environment.rows},
-                              false, false};
-    std::size_t count = 0;
-    const auto add = [&](const acdf::Cell& above, u32 axis, const acdf::CellPart& part) {
-        if (count < most) {
-            const acdf::Cell cell = part.in(above, axis);
-            const u32 ends[4] = {cell.first[0], cell.last[0], cell.first[1], cell.last[1]};
-            std::memcpy(out + 4 * count, ends, sizeof ends);
-        }
-        return ++count < (std::size_t{1} << 24); // shared curves may make more cells than bytes
-    };
-    acdf::each_cell(environment.tree, environment.root, whole, add);
-    return count;
+    Cells cells{out, most};
+    if (environment.halved) {
+        const AcdfSpan whole[2] = {{{0, environment.columns}}, {{0, environment.rows}}};
+        cells.add(acdf_halvings_nodes(environment.halved), environment.halved->count ? 0 : ACDF_LEAF, whole);
+    } else {
+        cells.add(environment);
+    }
+    return cells.count;
 }
 
-/// How many words of tables for shaders there are, for walks or for cells; 0, and an error, where there are none.
-ACDF_EXPORT std::size_t acdf_web_shader_tables(Opened* opened, u32 walk) {
-    opened->status = walk ? acdf::ShaderTables::make_walk(opened->file, opened->tables)
-                          : acdf::ShaderTables::make(opened->file, opened->tables);
+/// How many words of tables for shaders there are; 0, and an error, where there are none.
+ACDF_EXPORT std::size_t acdf_web_shader_tables(Opened* opened) {
+    opened->status = acdf::ShaderTables::make(opened->file, opened->tables);
     return opened->tables.size();
 }
 ACDF_EXPORT const u32* acdf_web_shader_words(const Opened* opened) { return opened->tables.words(); }

@@ -1,32 +1,28 @@
-// Time of a draw and of a density of environment files, beside samplers of all texels of the same map.
+// Time of a sample and of a pdf of environment files beside samplers of all texels of the same map, and time to
+// build them.
 //
-//   bench_environment [COLUMNS...]            tables in Markdown; 1024 and 4096 by default
-//   bench_environment --files FILE...         a row a file, beside the full tables of 1024 and of 4096 columns
-//   bench_environment --write FILE BYTES [octahedral] the file of 1024 x 512 texels, or of 1024 x 1024
-//   bench_environment --count draw|pdf FILE N [walk]  N calls and nothing else, for callgrind
+//   bench_environment [COLUMNS...]              tables in Markdown; 1024 and 4096 by default
+//   bench_environment --build                   CPU time to build files, one thread
+//   bench_environment --count sample|pdf FILE N N calls and nothing else, for callgrind
 #include "tests/bench/directions.h"
 #include "tests/bench/full_table.h"
 #include "tests/bench/turns.h"
 
-#include "compress/fit/fit.h"
+#include "compress/halvings/fit.h"
 #include "compress/store/store.h"
+#include "compress/threads.h"
 #include "measure/samplers/alias_table.h"
 #include "measure/samplers/hierarchical_warp.h"
 
-#include <acdf/wavefront.h>
+#include <acdf/reader.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <random>
-#include <thread>
 
 namespace {
 
@@ -40,26 +36,23 @@ using acdf_bench::uniform_directions;
 
 constexpr std::size_t kNumbers = std::size_t{1} << 18; // pairs, before they repeat
 
-/// A file in memory, with tables and without.
+/// A file in memory, opened with a lookup grid and without.
 struct Built {
     std::vector<std::uint8_t> bytes;
-    File tables, plain;
+    File with_lookup, without;
 
     Built(const compress::Target& target, std::uint64_t budget) {
-        compress::FitOptions options;
-        options.goal.kind = compress::Goal::Kind::budget;
-        options.goal.budget = budget - 832; // what is beside the tree
         compress::Description description =
             compress::environment_description(target.columns, target.rows, target.parameterization);
-        description.total = compress::integral(target);
-        bytes = compress::store(compress::fit(target, options).tree, description);
-        open(bytes, tables, plain);
-    }
-    static bool open(const std::vector<std::uint8_t>& bytes, File& tables, File& plain) {
-        LoadOptions walk;
-        walk.tables = false;
-        return File::from_memory(bytes.data(), bytes.size(), tables).ok() &&
-               File::from_memory(bytes.data(), bytes.size(), plain, walk).ok();
+        description.total = target.total;
+        compress::HalvingsOptions options;
+        options.goal.kind = compress::Goal::Kind::budget;
+        options.chunk_bytes = compress::halvings_room(description, budget);
+        bytes = compress::store(compress::fit_halvings(target, options), description);
+        LoadOptions plain;
+        plain.tables = false;
+        File::from_memory(bytes.data(), bytes.size(), with_lookup);
+        File::from_memory(bytes.data(), bytes.size(), without, plain);
     }
 };
 
@@ -98,36 +91,6 @@ Candidate densities(const char* name, const Sampler& sampler, const Directions& 
             }};
 }
 
-/// The same in waves of 4096.
-constexpr std::size_t kWave = 4096;
-struct Waves {
-    EnvironmentWavefront wavefront;
-    std::vector<double> u;
-    mutable std::vector<DirectionSample> samples{kWave};
-    mutable std::vector<float> pdfs = std::vector<float>(kWave);
-
-    Waves(const EnvironmentView& view, const std::vector<float>& numbers, Instructions most)
-        : wavefront(view, most), u(numbers.begin(), numbers.end()) {}
-    Candidate draws(const char* name) const {
-        return {name, [this](std::size_t first, std::size_t count) {
-                    for (std::size_t done = 0; done < count; done += kWave) {
-                        wavefront.sample(reinterpret_cast<const double(*)[2]>(&u[2 * (first + done)]),
-                                         std::min(kWave, count - done), samples.data());
-                        keep(samples[0]);
-                    }
-                }};
-    }
-    Candidate densities(const char* name, const Directions& w) const {
-        return {name, [this, &w](std::size_t first, std::size_t count) {
-                    for (std::size_t done = 0; done < count; done += kWave) {
-                        wavefront.pdf(reinterpret_cast<const float(*)[3]>(w[first + done].data()),
-                                      std::min(kWave, count - done), pdfs.data());
-                        keep(pdfs[0]);
-                    }
-                }};
-    }
-};
-
 /// A row of the table: ns of each, and the ratio to the first one.
 void report(const std::string& what, std::vector<Candidate> candidates, bool evict) {
     acdf_bench::Turns turns;
@@ -144,129 +107,90 @@ void report(const std::string& what, std::vector<Candidate> candidates, bool evi
     std::fflush(stdout);
 }
 
+/// Milliseconds that a right file takes to be opened.
+double milliseconds_to_open(const std::vector<std::uint8_t>& bytes) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 20; ++k) {
+        File file;
+        const double begin = acdf_bench::thread_seconds();
+        File::from_memory(bytes.data(), bytes.size(), file);
+        least = std::min(least, 1e3 * (acdf_bench::thread_seconds() - begin));
+    }
+    return least;
+}
+
 void run(const compress::Target& target) {
-    const Built large(target, 64 << 10), small(target, 4 << 10);
+    const Built large(target, 64 << 10), small(target, 16 << 10);
     const FullTable full(target);
     const measure::AliasTable alias(target);
     const measure::HierarchicalWarp warp(target);
-    const EnvironmentView fast = large.tables.environment(), walk = large.plain.environment();
-    const EnvironmentView fast_small = small.tables.environment();
+    const EnvironmentView at_64 = large.with_lookup.environment(), at_16 = small.with_lookup.environment(),
+                          plain = large.without.environment();
+    std::printf("\n%u x %u texels%s; full table of %llu bytes\n", target.columns, target.rows,
+                full.octahedral ? " of the octahedral square" : "",
+                static_cast<unsigned long long>(full.cdf.bytes()));
+    for (const Built* built : {&large, &small})
+        std::printf("- a file of %zu bytes takes %llu more in memory, and %.2f ms to open\n", built->bytes.size(),
+                    static_cast<unsigned long long>(built->with_lookup.table_bytes()),
+                    milliseconds_to_open(built->bytes));
     std::printf(
-        "\n%u x %u texels%s; files of %zu and %zu bytes, with tables of %llu and %llu bytes; full table %llu\n\n",
-        target.columns, target.rows, full.octahedral ? " of the octahedral square" : "", large.bytes.size(),
-        small.bytes.size(), static_cast<unsigned long long>(large.tables.table_bytes()),
-        static_cast<unsigned long long>(small.tables.table_bytes()),
-        static_cast<unsigned long long>(full.cdf.bytes()));
-    std::printf("| ns a call (of the full table's) | full table | alias table | hierarchical warp | 64 KiB | 4 KiB "
-                "| 64 KiB, "
-                "no tables | 64 KiB, AVX2 | 64 KiB, AVX-512 |\n|---|---|---|---|---|---|---|---|---|\n");
+        "\n| ns a call (of the full table's) | full table | alias table | hierarchical warp | 64 KiB | 16 KiB "
+        "| 64 KiB, no lookup grid |\n|---|---|---|---|---|---|---|\n");
     const std::vector<float> u = numbers(false), coherent = numbers(true);
-    const Directions drawn = drawn_directions(walk, u), uniform = uniform_directions(kNumbers, 9);
-    const Waves waves[2][2] = {{{fast, u, Instructions::avx2}, {fast, u, Instructions::avx512}},
-                               {{fast, coherent, Instructions::avx2}, {fast, coherent, Instructions::avx512}}};
-    const auto all_draws = [&](const std::vector<float>& given) {
-        const Waves* const wave = waves[&given == &coherent];
-        return std::vector<Candidate>{draws("full", full, given),    draws("alias", alias, given),
-                                      draws("warp", warp, given),    draws("64", fast, given),
-                                      draws("4", fast_small, given), draws("walk", walk, given),
-                                      wave[0].draws("avx2"),         wave[1].draws("avx512")};
+    const Directions drawn = drawn_directions(plain, u), uniform = uniform_directions(kNumbers, 9);
+    const auto samples = [&](const std::vector<float>& given) {
+        return std::vector<Candidate>{draws("full", full, given), draws("alias", alias, given),
+                                      draws("warp", warp, given), draws("64", at_64, given),
+                                      draws("16", at_16, given),  draws("plain", plain, given)};
     };
-    const auto all_densities = [&](const Directions& given) {
-        return std::vector<Candidate>{densities("full", full, given),       densities("alias", alias, given),
-                                      densities("warp", warp, given),       densities("64", fast, given),
-                                      densities("4", fast_small, given),    densities("walk", walk, given),
-                                      waves[0][0].densities("avx2", given), waves[0][1].densities("avx512", given)};
+    const auto pdfs = [&](const Directions& given) {
+        return std::vector<Candidate>{densities("full", full, given), densities("alias", alias, given),
+                                      densities("warp", warp, given), densities("64", at_64, given),
+                                      densities("16", at_16, given),  densities("plain", plain, given)};
     };
-    report("draw", all_draws(u), false);
-    report("draw, coherent numbers", all_draws(coherent), false);
-    report("draw, caches evicted", all_draws(u), true);
-    report("density of uniform directions", all_densities(uniform), false);
-    report("density of drawn directions", all_densities(drawn), false);
-    report("density of uniform directions, caches evicted", all_densities(uniform), true);
+    report("sample", samples(u), false);
+    report("sample, coherent numbers", samples(coherent), false);
+    report("sample, caches evicted", samples(u), true);
+    report("pdf of uniform directions", pdfs(uniform), false);
+    report("pdf of sampled directions", pdfs(drawn), false);
+    report("pdf of uniform directions, caches evicted", pdfs(uniform), true);
 }
 
-/// As LoadOptions::parallel: two threads.
-void by_two_threads(void*, std::size_t count, void (*task)(void* of, std::size_t i), void* of) {
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-        for (std::size_t i; (i = next++) < count;) task(of, i);
-    };
-    std::thread other(work);
-    work();
-    other.join();
-}
-
-/// Milliseconds that runtime tables of a right file take to be made, by one thread and by two, beside what it takes
-/// to be opened without them.
-std::array<double, 2> making_tables(const std::vector<std::uint8_t>& bytes) {
-    LoadOptions options[3]; // without, by one, by two
-    options[0].tables = false;
-    options[2].parallel.run = by_two_threads;
-    double least[3] = {1e9, 1e9, 1e9};
-    for (int k = 0; k < 20; ++k)
-        for (int i = 0; i < 3; ++i) {
-            File file;
-            const auto begin = std::chrono::steady_clock::now();
-            File::from_memory(bytes.data(), bytes.size(), file, options[i]);
-            const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
-            least[i] = std::min(least[i], taken.count());
-        }
-    return {std::max(least[1] - least[0], 0.0), std::max(least[2] - least[0], 0.0)};
-}
-
-/// Draws and densities of files, with tables and without, beside full tables.
-int of_files(int files, char** paths) {
-    const FullTable full[2] = {FullTable(sky(1024)), FullTable(sky(4096))};
-    const std::vector<float> u = numbers(false);
-    const Directions w = uniform_directions(kNumbers, 9);
-    std::printf("| file | bytes | tables | making them, ms (by two threads) | ns a draw | walked "
-                "| of the full table's, 1k and 4k | AVX2, AVX-512 | ns a density | walked "
-                "| of the full table's, 1k and 4k | AVX2, AVX-512 "
-                "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (int i = 0; i < files; ++i) {
-        std::ifstream in(paths[i], std::ios::binary);
-        const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-        LoadOptions walk;
-        File plain, tables;
-        walk.tables = false;
-        if (!File::from_memory(bytes.data(), bytes.size(), plain, walk).ok()) return 1;
-        if (!File::from_memory(bytes.data(), bytes.size(), tables).ok()) return 1;
-        if (plain.kind() != ACDF_KIND_ENVIRONMENT) return 1;
-        const EnvironmentView fast = tables.environment(), slow = plain.environment();
-        const Waves waves[2] = {{fast, u, Instructions::avx2}, {fast, u, Instructions::avx512}};
-        std::vector<Candidate> drawn{draws("1k", full[0], u), draws("4k", full[1], u), draws("tables", fast, u),
-                                     draws("walk", slow, u),  waves[0].draws("avx2"),  waves[1].draws("avx512")};
-        std::vector<Candidate> told{densities("1k", full[0], w),   densities("4k", full[1], w),
-                                    densities("tables", fast, w),  densities("walk", slow, w),
-                                    waves[0].densities("avx2", w), waves[1].densities("avx512", w)};
-        std::string name = paths[i];
-        name.erase(0, name.find_last_of('/') + 1);
-        const std::array<double, 2> making = making_tables(bytes);
-        std::printf("| %s | %llu | %llu | %.1f (%.1f)", name.c_str(), static_cast<unsigned long long>(plain.size()),
-                    static_cast<unsigned long long>(tables.table_bytes()), making[0], making[1]);
-        for (auto* const all : {&drawn, &told}) {
-            acdf_bench::Turns turns;
-            turns.rounds = 20;
-            acdf_bench::take_turns(*all, turns);
-            const double ns = (*all)[2].least;
-            std::printf(" | %.1f | %.1f | %.2f %.2f | %.1f %.1f", ns, (*all)[3].least, ns / (*all)[0].least,
-                        ns / (*all)[1].least, (*all)[4].least, (*all)[5].least);
-        }
-        std::printf(" |\n");
-        std::fflush(stdout);
+/// CPU milliseconds that building takes, one thread, without decoding: target, fit, bytes.
+void building(std::uint32_t columns, AcdfFilter filter) {
+    const compress::Target source = sky(columns);
+    std::vector<float> rgb;
+    for (const float value : source.values) rgb.insert(rgb.end(), 3, value);
+    compress::TargetOptions options;
+    options.filter = filter;
+    std::printf("| %u x %u, %s |", columns, columns / 2, filter == ACDF_FILTER_BILINEAR ? "bilinear" : "nearest");
+    for (const std::uint64_t budget : {4u << 10, 16u << 10, 64u << 10}) {
+        double least[3] = {1e9, 1e9, 1e9};
+        compress::with_threads(1, [&] {
+            for (int k = 0; k < 5; ++k) {
+                const double begin = acdf_bench::thread_seconds();
+                const compress::Target target =
+                    compress::environment_target(rgb.data(), columns, columns / 2, options);
+                const double made = acdf_bench::thread_seconds();
+                const Built built(target, budget);
+                const double end = acdf_bench::thread_seconds();
+                least[0] = std::min(least[0], 1e3 * (end - begin));
+                least[1] = std::min(least[1], 1e3 * (made - begin));
+            }
+        });
+        std::printf(" %.1f (%.1f) |", least[0], least[1]);
     }
-    return 0;
+    std::printf("\n");
+    std::fflush(stdout);
 }
 
-int count(const char* what, const char* path, std::size_t calls, bool walk) {
-    LoadOptions options;
-    options.tables = !walk;
+int count(const char* what, const char* path, std::size_t calls) {
     File file;
-    if (!File::open(path, file, options).ok() || file.kind() != ACDF_KIND_ENVIRONMENT) return 1;
+    if (!File::open(path, file).ok() || file.kind() != ACDF_KIND_ENVIRONMENT) return 1;
     const EnvironmentView view = file.environment();
     const std::vector<float> u = numbers(false);
     const Directions w = uniform_directions(kNumbers, 9);
-    if (std::strcmp(what, "draw") == 0) draws(what, view, u).calls(0, calls);
+    if (std::strcmp(what, "sample") == 0) draws(what, view, u).calls(0, calls);
     else densities(what, view, w).calls(0, calls);
     return 0;
 }
@@ -274,16 +198,14 @@ int count(const char* what, const char* path, std::size_t calls, bool walk) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc >= 3 && std::strcmp(argv[1], "--files") == 0) return of_files(argc - 2, argv + 2);
-    if (argc >= 4 && std::strcmp(argv[1], "--write") == 0) {
-        const Built built(sky(1024, argc > 4), std::strtoul(argv[3], nullptr, 10));
-        std::ofstream(argv[2], std::ios::binary)
-            .write(reinterpret_cast<const char*>(built.bytes.data()),
-                   static_cast<std::streamsize>(built.bytes.size()));
+    if (argc >= 2 && std::strcmp(argv[1], "--build") == 0) {
+        std::printf("| CPU ms (of which the target) | 4 KiB | 16 KiB | 64 KiB |\n|---|---|---|---|\n");
+        for (const std::uint32_t columns : {512u, 1024u, 2048u, 4096u})
+            for (const AcdfFilter filter : {ACDF_FILTER_NEAREST, ACDF_FILTER_BILINEAR}) building(columns, filter);
         return 0;
     }
     if (argc >= 5 && std::strcmp(argv[1], "--count") == 0)
-        return count(argv[2], argv[3], std::strtoul(argv[4], nullptr, 10), argc > 5);
+        return count(argv[2], argv[3], std::strtoul(argv[4], nullptr, 10));
     std::vector<std::uint32_t> widths;
     for (int i = 1; i < argc; ++i) widths.push_back(static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)));
     if (widths.empty()) widths = {1024, 4096};

@@ -1,9 +1,9 @@
 // Time of draws and densities on a GPU, beside samplers of all texels of a map.
 //
-//   cuda_bench environments COLUMNS FILE...   environments and their exported tables (.bin, of --walk
-//                                             walk.bin); maps of so many columns are what they are compared with
-//   cuda_bench others FILE...                 local environments and BRDFs, and exported tables (local.bin,
-//   brdf.bin)
+//   cuda_bench environments COLUMNS FILE...   environments and their exported tables (.bin); maps of so
+//                                             many columns are what they are compared with
+//   cuda_bench others FILE...                 local environments and BRDFs, and exported tables (.bin, of
+//                                             BRDFs brdf.bin)
 //
 // Tables in Markdown: ns a call, several million calls a launch, the least of 20. Skips (77) where there is no
 // device.
@@ -173,12 +173,9 @@ void environments(std::uint32_t columns, int count, char** paths, const Question
         if (ends_with(paths[i], ".bin")) {
             const Exported exported(paths[i]);
             const std::uint32_t* words = exported.words.data();
-            const bool walk = ends_with(paths[i], "walk.bin");
-            const auto draw = walk ? time_exported_walk_draw : time_exported_cells_draw;
-            const auto density = walk ? time_exported_walk_density : time_exported_cells_density;
             rows.push_back({name_of(paths[i]) + ", exported",
-                            {draw(words, q.any()), draw(words, q.coherent()), density(words, q.any()),
-                             density(words, drawn)}});
+                            {time_exported_draw(words, q.any()), time_exported_draw(words, q.coherent()),
+                             time_exported_density(words, q.any()), time_exported_density(words, drawn)}});
             continue;
         }
         for (const bool tables : {true, false}) {
@@ -200,8 +197,8 @@ void others(int count, char** paths, const Questions& q) {
             const Exported exported(paths[i]);
             const std::uint32_t* words = exported.words.data();
             const bool surface = ends_with(paths[i], "brdf.bin");
-            const auto draw = surface ? time_exported_brdf_draw : time_exported_walk_draw;
-            const auto density = surface ? time_exported_brdf_density : time_exported_walk_density;
+            const auto draw = surface ? time_exported_brdf_draw : time_exported_draw;
+            const auto density = surface ? time_exported_brdf_density : time_exported_density;
             Row row{name_of(paths[i]) + ", exported",
                     {draw(words, q.any()), draw(words, q.coherent()), density(words, q.any())}};
             if (!surface) row.times.insert(row.times.begin() + 2, Timed{});

@@ -7,10 +7,8 @@
 
 namespace acdf_cuda {
 
-Timed time_exported_cells_draw(const std::uint32_t* tables, const Asked& asked);
-Timed time_exported_cells_density(const std::uint32_t* tables, const Asked& asked);
-Timed time_exported_walk_draw(const std::uint32_t* tables, const Asked& asked);
-Timed time_exported_walk_density(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_draw(const std::uint32_t* tables, const Asked& asked);
+Timed time_exported_density(const std::uint32_t* tables, const Asked& asked);
 Timed time_exported_brdf_draw(const std::uint32_t* tables, const Asked& asked);
 Timed time_exported_brdf_density(const std::uint32_t* tables, const Asked& asked);
 

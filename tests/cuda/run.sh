@@ -21,7 +21,7 @@ cd "$work"
 tables() { "$acdf" export "$1.acdf" --target c --tables "$2.bin" -o "$2.h"; }
 tables 64KiB 64KiB
 tables 4KiB 4KiB
-tables octahedral_64KiB octahedral_64KiB_walk
+tables octahedral_64KiB octahedral_64KiB
 tables local_1MiB local_1MiB
 tables local_128KiB local_128KiB
 tables nickel_128KiB nickel_128KiB_brdf
@@ -38,7 +38,7 @@ all=(64KiB.acdf octahedral_64KiB.acdf noon_grass_256KiB.acdf local_128KiB.acdf l
     for columns in "${@:-1024 4096 16384}"; do
         for one in $columns; do
             "$cuda/cuda_bench" environments "$one" 64KiB.acdf 4KiB.acdf octahedral_64KiB.acdf noon_grass_256KiB.acdf 64KiB.bin 4KiB.bin \
-                octahedral_64KiB_walk.bin
+                octahedral_64KiB.bin
         done
     done
     "$cuda/cuda_bench" others local_1MiB.acdf local_128KiB.acdf nickel_128KiB.acdf local_1MiB.bin local_128KiB.bin nickel_128KiB_brdf.bin

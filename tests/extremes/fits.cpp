@@ -1,9 +1,9 @@
 // Every fit on probes at the ends of what numbers can hold: stored in each way, read, measured and sampled.
 #include "tests/extremes/targets.h"
+#include "tests/inputs/environment_file.h"
 #include "tests/lib/compress/checks.h"
 
 #include "build/accuracy/environment.h"
-#include "compress/store/store.h"
 
 #include <acdf/reader.h>
 
@@ -24,19 +24,6 @@ protected:
     const Target& target() const { return GetParam().target; }
 };
 
-std::vector<std::uint8_t> stored(const Target& target, const acdf::compress::FitOptions& options,
-                                 const acdf::compress::EncodedTree& tree, AcdfCodec codec = ACDF_CODEC_NONE) {
-    auto description =
-        acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
-    description.fit = options.fit;
-    description.total = acdf::compress::integral(target);
-    return acdf::compress::store(tree, description, codec);
-}
-
-std::vector<std::uint8_t> stored(const Target& target, const acdf::compress::FitOptions& options) {
-    return stored(target, options, acdf::compress::fit(target, options).tree);
-}
-
 TEST_P(Extreme, EveryFitIsADensityThatCoversIt) {
     for (const NamedFit& fit : all_fits(9, 7, 60)) check_fit(target(), fit);
 }
@@ -46,7 +33,7 @@ TEST_P(Extreme, WeightsAreFiniteAndEveryNumberDrawsSomething) {
     const double numbers[] = {0.0, 1.0, 1.0 - 0x1p-24, 0x1p-149, 0x1p-24, 0.5, 0.25, 1.0 / 3, -1.0, 2.0, NAN};
     for (const NamedFit& fit : all_fits(9, 7, 60)) {
         SCOPED_TRACE(fit.name);
-        const auto bytes = stored(target(), fit.options);
+        const auto bytes = environment_file(target(), fit.options);
         acdf::File file;
         ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
         const acdf::EnvironmentView view = file.environment();
@@ -65,12 +52,11 @@ TEST_P(Extreme, WeightsAreFiniteAndEveryNumberDrawsSomething) {
 
 TEST_P(Extreme, CodecsChangeNoSample) {
     for (const NamedFit& fit : all_fits(9, 7, 60)) {
-        const auto tree = acdf::compress::fit(target(), fit.options).tree;
-        const auto plain = stored(target(), fit.options, tree);
+        const auto plain = environment_file(target(), fit.options);
         acdf::File file;
         ASSERT_TRUE(acdf::File::from_memory(plain.data(), plain.size(), file).ok());
         for (const AcdfCodec codec : {ACDF_CODEC_ZLIB, ACDF_CODEC_PLANES}) {
-            const auto packed = stored(target(), fit.options, tree, codec);
+            const auto packed = environment_file(target(), fit.options, codec);
             acdf::File other;
             const acdf::Status status = acdf::File::from_memory(packed.data(), packed.size(), other);
             ASSERT_TRUE(status.ok()) << fit.name << ": " << status.message;
@@ -94,7 +80,7 @@ TEST(ExtremeConstant, IsOneCellWithoutVariance) {
     for (const double value : {1e-44, 1e-30, 1.0, 65504.0, 1e30}) {
         const Target target = texel_target(128, 64, [=](std::uint32_t, std::uint32_t) { return value; });
         acdf::compress::FitOptions options;
-        const auto bytes = stored(target, options);
+        const auto bytes = environment_file(target, options);
         acdf::File file;
         ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
         const auto accuracy = acdf::build::measure_environment(file, target);
@@ -111,7 +97,7 @@ TEST(ExtremeRange, MoreCellsNeverHurt) {
         for (const std::uint32_t cells : {1u, 4u, 16u, 64u, 256u, 1024u}) {
             acdf::compress::FitOptions options;
             options.goal.cells = cells;
-            const auto bytes = stored(t.target, options);
+            const auto bytes = environment_file(t.target, options);
             acdf::File file;
             ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
             const double variance = acdf::build::measure_environment(file, t.target).relative_variance;

@@ -1,6 +1,8 @@
 // Random numbers are floats in most renderers: 2^24 steps an axis. Which cells can they reach, and how far from
 // its density is what they draw? Every number of the grid counts: nothing is sampled.
+#include "tests/extremes/find_cell.h"
 #include "tests/extremes/targets.h"
+#include "tests/inputs/environment_file.h"
 #include "tests/inputs/sanitized.h"
 
 #include "build/accuracy/cells.h"
@@ -209,16 +211,14 @@ struct Reach {
 };
 
 Reach reach(const Target& target, const acdf::compress::FitOptions& options) {
-    auto description = acdf::compress::environment_description(target.columns, target.rows);
-    description.total = target.total;
-    const auto bytes = acdf::compress::store(acdf::compress::fit(target, options).tree, description);
+    const auto bytes = environment_file(target, options);
     acdf::File file;
     const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
     EXPECT_TRUE(status.ok()) << status.message;
     const AcdfEnvironment env = file.environment().data();
     Reach out;
     Sum bias_plain, bias_widened;
-    acdf::build::for_each_cell(file, env.root, [&](const acdf::build::Cell& cell) {
+    acdf::build::for_each_cell(file.environment(), [&](const acdf::build::Cell& cell) {
         Sum energy;
         for (std::uint32_t r = cell.range[1].low; r < cell.range[1].high; ++r) {
             Sum row;
@@ -229,9 +229,8 @@ Reach reach(const Target& target, const acdf::compress::FitOptions& options) {
         if (!(energy.value() > 0.0)) return;
         const std::uint32_t square[2] = {cell.range[0].low, cell.range[1].low};
         AcdfRange range[2];
-        AcdfStratum strata[2] = {{0.0, 1.0}, {0.0, 1.0}};
-        acdf_sphere_ranges(env.columns, env.rows, range);
-        const double p = acdf_tree_find(env.tree, env.root, square, range, strata);
+        AcdfStratum strata[2];
+        const double p = find_cell(env, square, range, strata);
         EXPECT_NEAR(strata[0].width * strata[1].width / p, 1.0, 1e-9);
         const Pairs pairs = pairs_into(strata);
         const double share = energy.value() / target.total;
@@ -265,14 +264,10 @@ TEST_P(Reachability, FloatsReachAllLightWithoutBias) {
     const std::uint32_t columns = GetParam();
     if (kSanitized && columns > 1024) GTEST_SKIP() << "too large a map for sanitizers";
     const Target target = sun_in_sky(columns, columns / 2);
-    acdf::compress::FitOptions tree, cascade, paper;
-    cascade.shape = acdf::compress::Shape::cascade;
+    acdf::compress::FitOptions variance, paper;
     paper.fit = ACDF_FIT_CDF;
-    const std::pair<const char*, acdf::compress::FitOptions> fits[] = {
-        {"tree", tree}, {"cascade", cascade}, {"cdf", paper}};
+    const std::pair<const char*, acdf::compress::FitOptions> fits[] = {{"variance", variance}, {"cdf", paper}};
     for (const auto& [name, options] : fits) {
-        if (columns > 4096 && options.fit == ACDF_FIT_VARIANCE && options.shape == acdf::compress::Shape::cascade)
-            continue;
         const Reach r = reach(target, options);
         report(name, columns, r);
         EXPECT_EQ(r.plain, std::uint64_t{1} << 48) << name << ": its CDFs end at exactly 1";
@@ -317,12 +312,11 @@ TEST(DeepTrees, AtDepth12EveryCellIsReachedAsOftenAsItShould) {
             ASSERT_TRUE(status.ok()) << status.message;
             const AcdfEnvironment env = file.environment().data();
             std::uint64_t all = 0, cells = 0;
-            acdf::build::for_each_cell(file, env.root, [&](const acdf::build::Cell& cell) {
+            acdf::build::for_each_cell(file.environment(), [&](const acdf::build::Cell& cell) {
                 const std::uint32_t square[2] = {cell.range[0].low, cell.range[1].low};
                 AcdfRange range[2];
-                AcdfStratum strata[2] = {{0.0, 1.0}, {0.0, 1.0}};
-                acdf_sphere_ranges(env.columns, env.rows, range);
-                const double p = acdf_tree_find(env.tree, env.root, square, range, strata);
+                AcdfStratum strata[2];
+                const double p = find_cell(env, square, range, strata);
                 const std::uint64_t pairs = pairs_into(strata).widened;
                 EXPECT_NEAR(static_cast<double>(pairs) * 0x1p-48, p, 1e-3 * p + 0x1p-44);
                 EXPECT_GT(pairs, 0u);

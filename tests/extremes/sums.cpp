@@ -1,9 +1,9 @@
 // No result depends on the order in which texels are added up.
+#include "tests/extremes/find_cell.h"
 #include "tests/extremes/targets.h"
+#include "tests/inputs/environment_file.h"
 
 #include "build/accuracy/environment.h"
-#include "compress/fit/fit.h"
-#include "compress/store/store.h"
 
 #include <acdf/reader.h>
 
@@ -72,10 +72,7 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
     for (const NamedTarget& t : all_targets()) {
         acdf::compress::FitOptions options;
         options.goal.cells = 100;
-        auto description =
-            acdf::compress::environment_description(t.target.columns, t.target.rows, t.target.parameterization);
-        description.total = acdf::compress::integral(t.target);
-        const auto bytes = acdf::compress::store(acdf::compress::fit(t.target, options).tree, description);
+        const auto bytes = environment_file(t.target, options);
         acdf::File file;
         ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
         const auto accuracy = acdf::build::measure_environment(file, t.target);
@@ -90,8 +87,8 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
             const std::uint32_t square[2] = {static_cast<std::uint32_t>(k % t.target.columns),
                                              static_cast<std::uint32_t>(k / t.target.columns)};
             AcdfRange range[2];
-            acdf_sphere_ranges(env.columns, env.rows, range);
-            const double p = acdf_tree_find(env.tree, env.root, square, range, nullptr);
+            AcdfStratum strata[2];
+            const double p = find_cell(env, square, range, strata);
             const AcdfGrid grid = acdf_environment_grid(&env);
             const double density = p / acdf_grid_solid_angle(&grid, range);
             const auto measure = static_cast<long double>(t.target.row_measure[square[1]]) *
@@ -109,15 +106,11 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
 TEST(Summation, FitsAreAsGoodInAnyOrder) {
     for (const NamedTarget& t : all_targets()) {
         acdf::compress::FitOptions options;
-        options.shape = acdf::compress::Shape::cascade;
         options.goal.cells = 60;
         double variance[2];
         for (int i = 0; i < 2; ++i) {
             const Target target = i == 0 ? t.target : reversed(t.target);
-            auto description =
-                acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
-            description.total = acdf::compress::integral(target);
-            const auto bytes = acdf::compress::store(acdf::compress::fit(target, options).tree, description);
+            const auto bytes = environment_file(target, options);
             acdf::File file;
             ASSERT_TRUE(acdf::File::from_memory(bytes.data(), bytes.size(), file).ok());
             variance[i] = acdf::build::measure_environment(file, target).relative_variance;

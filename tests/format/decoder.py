@@ -25,7 +25,9 @@ sys.path.insert(0, str(ROOT / "format"))
 
 from decoder import Refused, load  # noqa: E402
 from decoder.brdf import Brdf  # noqa: E402
+from decoder.halvings import Halvings  # noqa: E402
 from decoder.local import Local  # noqa: E402
+from decoder.sphere import Environment  # noqa: E402
 from decoder.table import Table  # noqa: E402
 
 GOLDEN = ROOT / "tests" / "golden" / "v1.0"
@@ -94,8 +96,27 @@ def compare_direction_row(view, row, fail, where):
     fail.check((found > 0) == (wanted > 0), f"{where}: found again {found}")
 
 
+def compare_inverse(view, row, fail, where):
+    """What the numbers of a direction lead to: within 2^-20 the direction again, as both may lie on a border."""
+    direction = numbers(row, "xyz")
+    u = view.invert(direction)
+    fail.check((u is None) == (view.pdf(direction) == 0), f"{where}: {u}")
+    if u is not None:
+        again = view.sample(*u)[:3]
+        length = math.hypot(*direction)
+        fail.check(all(abs(x - y / length) < 2.0**-20 for x, y in zip(again, direction)), f"{where}: again {again}")
+
+
+def compare_environment_row(view, row, fail, where):
+    compare_direction_row(view, row, fail, where)
+    compare_inverse(view, row, fail, where)
+
+
 def compare(view, path, fail):
-    compare_row = compare_table_row if isinstance(view, Table) else compare_direction_row
+    if isinstance(view, Environment):
+        compare_row = compare_environment_row
+    else:
+        compare_row = compare_table_row if isinstance(view, Table) else compare_direction_row
     with open(path, newline="") as lines:
         for number, row in enumerate(csv.DictReader(lines), 2):
             compare_row(view, row, fail, f"{path.name}:{number}")
@@ -127,8 +148,8 @@ def hex_examples():
 
 
 def examples_of_the_text(fail):
-    """What §9 says of its two files."""
-    smallest, second = map(load, hex_examples())
+    """What §9 says of its three files."""
+    smallest, second, halved = map(load, hex_examples())
     fail.check(is_density(smallest.pdf((0.0, 0.0, 1.0)), float(np.float32(1 / (4 * math.pi)))), "smallest file")
     left, right = 64 / 255 * 8 / (2 * math.pi * 3), 191 / 255 * 8 / (2 * math.pi * 5)
     fail.check(is_density(second.pdf((-0.6, 0.0, 0.8)), float(np.float32(0.5 * left))), "second file, the seam")
@@ -136,6 +157,10 @@ def examples_of_the_text(fail):
     fail.check(second.pdf((0.0, 0.6, -0.8)) == 0.0, "second file, below")
     told = (-0.219401, 0.623990, 0.75, 0.108987)
     fail.check(np.allclose(second.sample(0.1, 0.25), told, rtol=0, atol=1e-6), "second file, a sample")
+    wanted = (-0.119618, 0.378052, 0.918024, 0.241204)
+    fail.check(np.allclose(halved.sample(0.1, 0.25), wanted, rtol=0, atol=1e-6), "third file, a sample")
+    fail.check(abs(halved.pdf((0.0, 0.8, 0.6)) - 0.011942) < 1e-6, "third file, the second leaf")
+    fail.check(halved.pdf((0.6, 0.0, -0.8)) == 0.0, "third file, below")
 
 
 # ---- damage ---------------------------------------------------------------------------------------------
@@ -143,7 +168,7 @@ def examples_of_the_text(fail):
 
 def damaged_files(fail):
     """Every byte of a file stands under some check."""
-    for name in ("untilted", "local", "brdf_floor", "planes"):
+    for name in ("untilted", "local", "brdf_floor", "planes", "halvings", "halvings_zlib"):
         data = (GOLDEN / f"{name}.acdf").read_bytes()
         for at in range(0, len(data), 7):
             broken = bytearray(data)
@@ -240,7 +265,7 @@ def inputs(folder):
 
 
 FRESH = [["env", "sky.pfm", *options.split()] for options in (
-    "--cells 200", "--cells 200 --compress zlib", "--cells 200 --shape cascade",
+    "--cells 200", "--cells 200 --compress zlib", "--cells 3000 --domain octahedral",
     "--cells 200 --filter bilinear --channel rgb", "--fit cdf --knots 12x9",
     "--fit cdf --order phi --gradient 2 --knots 9x12 --compress zlib", "--fit pdf --knots 12x9",
     "--fit uniform --knots 8x8 --compress zlib")]
@@ -258,13 +283,14 @@ FRESH += [["table", *options.split()] for options in (
     "field.npy --cells 600 --indexed 2 --names i,j,nm --range nm=730:380 --compress zlib")]
 
 
-FEATURES = {"tilts", "links", "tiles", "roots of tiles", "trees of bins", "lights", "azimuths", "mirrored"}
+FEATURES = {"halvings", "tilts", "links", "tiles", "roots of tiles", "trees of bins", "lights", "azimuths", "mirrored"}
 
 
 def features(view):
     """What of the format a file uses: fresh files together shall use it all."""
-    curves, tiles = view.tree.curves.values(), getattr(view, "tiles", None)
-    uses = {"tilts": any(curve.tilts for curve in curves), "links": any(curve.links for curve in curves),
+    halved, tiles = isinstance(view.tree, Halvings), getattr(view, "tiles", None)
+    curves = [] if halved else view.tree.curves.values()
+    uses = {"halvings": halved, "tilts": any(curve.tilts for curve in curves), "links": any(curve.links for curve in curves),
             "tiles": tiles is not None, "roots of tiles": tiles is not None and tiles.roots is not None,
             "trees of bins": isinstance(view, (Local, Brdf)) and tiles is None,
             "lights": bool(getattr(view, "lights", None)), "azimuths": getattr(view, "F", 1) > 1,

@@ -2,6 +2,8 @@
 #include "tests/lib/reader/load.h"
 #include "tests/lib/reader/planes.h"
 
+#include <acdf/halvings.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -140,6 +142,51 @@ TEST(Spec, secondExampleLoads) {
     EXPECT_NEAR(file.environment().pdf(right), 0.190736277f, 1e-8f);
     EXPECT_NEAR(file.environment().pdf(edge), 0.5f * 0.106519387f, 1e-8f);
     EXPECT_EQ(file.environment().pdf(below), 0.0f);
+}
+
+/// The third example.
+EnvironmentSpec halved_environment() {
+    EnvironmentSpec spec;
+    spec.columns = 8;
+    spec.rows = 4;
+    spec.halvings.nodes = {{1, 255}, {0, 85}, {1, 200}, {}, {}, {}, {}};
+    return spec;
+}
+
+TEST(Spec, thirdExampleIsWhatTheTestsBuild) { EXPECT_EQ(worked_example(2), halved_environment().encode()); }
+
+TEST(Spec, thirdExampleLoads) {
+    const Bytes bytes = worked_example(2);
+    EXPECT_TRUE(findings(bytes).rules.empty()) << findings(bytes).text;
+    acdf::File file;
+    const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
+    ASSERT_TRUE(status.ok()) << status.message;
+    const auto s = file.environment().sample(0.1, 0.25);
+    const float right[3] = {0.6f, 0.0f, 0.8f}, low[3] = {0.0f, 0.8f, 0.6f}, below[3] = {0.6f, 0.0f, -0.8f};
+    EXPECT_EQ(file.environment().pdf(below), 0.0f);
+    const std::string text = worked_text();
+    for (const float value : {s.direction[0], s.direction[1], s.direction[2], s.pdf, file.environment().pdf(low),
+                              file.environment().pdf(right)}) {
+        char digits[32];
+        std::snprintf(digits, sizeof digits, "%.6f", std::fabs(static_cast<double>(value)));
+        EXPECT_NE(text.find(digits), std::string::npos) << digits;
+    }
+}
+
+// The table of shares in §5.12.
+TEST(Spec, sharesOfCodesAreThoseOfTheProgram) {
+    int shares = 0;
+    for (const std::string& line : spec_lines()) {
+        const auto cells = cells_of(line);
+        if (line == "| B | k | share |") shares = 1;
+        else if (shares > 0 && cells.size() != 3) break;
+        else if (shares > 0 && cells[0].find_first_not_of("0123456789") == std::string::npos) {
+            const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(std::stoul(cells[i])); };
+            EXPECT_EQ(acdf_halving_share(number(1), number(0)), number(2)) << line;
+            ++shares;
+        }
+    }
+    EXPECT_EQ(shares, 1 + 9);
 }
 
 } // namespace

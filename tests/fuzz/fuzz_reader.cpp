@@ -2,6 +2,7 @@
 // accepted must give good samples. The mutator keeps layout and CRCs right most of the time, so that the
 // checks behind them are reached.
 #include "tests/fuzz/fuzz_random.h"
+#include "tests/fuzz/mutate_halvings.h"
 #include "tests/fuzz/require.h"
 #include "tests/fuzz/sample_file.h"
 #include "tests/lib/reader/builder.h"
@@ -20,8 +21,12 @@ namespace {
 Bytes mutated_payload(FileSpec spec, std::size_t max_size, FuzzRandom& rng) {
     ChunkSpec& chunk = spec.chunks[rng.next() % spec.chunks.size()];
     const std::size_t size = chunk.raw.size();
-    chunk.raw.resize(std::max(size + 64, size) + 1);
-    chunk.raw.resize(LLVMFuzzerMutate(chunk.raw.data(), size, chunk.raw.size()));
+    if (chunk.type == "HALV" && rng.next() % 8 != 0) {
+        chunk.raw = mutated_halvings(chunk.raw, rng);
+    } else {
+        chunk.raw.resize(std::max(size + 64, size) + 1);
+        chunk.raw.resize(LLVMFuzzerMutate(chunk.raw.data(), size, chunk.raw.size()));
+    }
     if (chunk.type == "TREE" && chunk.planes_of == 0 && rng.next() % 8 != 0) pad_to(chunk.raw, 2);
     if (chunk.planes_of != 0 && rng.next() % 8 == 0) chunk.planes_of = rng.next() % (4 * size + 2);
     else if (rng.next() % 16 == 0) chunk.zlib = !chunk.zlib;

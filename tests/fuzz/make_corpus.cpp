@@ -3,6 +3,7 @@
 #include "tests/lib/reader/brdf_builder.h"
 #include "tests/lib/reader/local_fast_random.h"
 #include "tests/lib/reader/planes.h"
+#include "tests/lib/reader/random_halvings.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -40,6 +41,9 @@ int main(int argc, char** argv) {
     complete.zlib = true;
     write(folder / "compressed", complete.encode());
     write(folder / "planes", as_planes(preorder_environment()).encode());
+    EnvironmentSpec leaf;
+    leaf.halvings.nodes = {{}};
+    write(folder / "halvings", leaf.encode());
     for (std::uint32_t seed = 0; seed < 12; ++seed) {
         RandomOptions options;
         options.columns = seed % 2 ? 65536 : 64;
@@ -50,7 +54,12 @@ int main(int argc, char** argv) {
         EnvironmentSpec spec = RandomTree(seed, options).make();
         spec.zlib = seed % 4 == 0;
         write(folder / ("tree" + std::to_string(seed)), spec.encode());
+        spec = RandomHalvings(seed, options).make();
+        spec.zlib = seed % 4 == 1;
+        write(folder / ("halvings" + std::to_string(seed)), spec.encode());
         options.octahedral = true;
+        write(folder / ("octahedral_halvings" + std::to_string(seed)),
+              RandomHalvings(seed, options).make().encode());
         write(folder / ("octahedral_tree" + std::to_string(seed)), RandomTree(seed, options).make().encode());
         options.depth = 3;
         write(folder / ("octahedral_local" + std::to_string(seed)), RandomLocal(seed, options).make().encode());

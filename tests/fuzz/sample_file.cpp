@@ -27,6 +27,7 @@ void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
         const acdf::DirectionSample s = view.sample(random.any_u(), random.any_u());
         require(is_unit(s.direction) && s.pdf > 0.0f && std::isfinite(s.pdf));
         require(view.pdf(s.direction) > 0.0f); // of tilted curves it may differ by rounding
+        require(!view.data().halved || view.pdf(s.direction) == s.pdf);
         double u[2];
         require(view.invert(s.direction, u) && in_unit_square(u));
         float any[3];
@@ -35,7 +36,26 @@ void sample_everything(const acdf::EnvironmentView& view, FuzzRandom& random) {
         random.unit_vector(any, false);
         require(view.invert(any, u) == (view.pdf(any) > 0.0f));
     }
-    wavefront_is_the_view(view, random);
+}
+
+/// The lookup grid of an environment leads where descents from the root do.
+void lookups_are_descents(const acdf::EnvironmentView& view, const void* bytes, std::size_t size,
+                          FuzzRandom& random) {
+    acdf::LoadOptions options;
+    options.tables = false;
+    acdf::File plain;
+    require(acdf::File::from_memory(bytes, size, plain, options).ok());
+    const acdf::EnvironmentView descents = plain.environment();
+    require(descents.data().halved->bits == 0);
+    for (int n = 0; n < samples_a_file; ++n) {
+        const double u0 = random.any_u(), u1 = random.any_u();
+        const acdf::DirectionSample a = view.sample(u0, u1), b = descents.sample(u0, u1);
+        require(std::memcmp(&a, &b, sizeof a) == 0);
+        float any[3];
+        if (n % 2 == 0) random.any_vector(any);
+        else random.unit_vector(any, false);
+        require(view.pdf(any) == descents.pdf(any));
+    }
 }
 
 void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& random) {
@@ -149,7 +169,7 @@ void sample_brdf_walk(const acdf::ShaderTables& tables, bool brdf, FuzzRandom& r
 /// As shaders do, of whatever files have tables for them.
 void sample_walk(const acdf::File& file, FuzzRandom& random) {
     acdf::ShaderTables tables;
-    if (!acdf::ShaderTables::make_walk(file, tables).ok()) return;
+    if (!acdf::ShaderTables::make(file, tables).ok()) return;
     for (int n = 0; n < samples_a_file; ++n) {
         float normal[3], any[3];
         random.any_vector(normal);
@@ -177,6 +197,9 @@ void sample_everything(const acdf::File& file, const void* bytes, std::size_t si
         require(key.size != 0 && (value.data || value.size == 0));
     }
     if (file.kind() == ACDF_KIND_ENVIRONMENT) sample_everything(file.environment(), random);
+    if (file.kind() == ACDF_KIND_ENVIRONMENT && file.environment().data().halved &&
+        file.header().header_crc % 2 == 1)
+        lookups_are_descents(file.environment(), bytes, size, random);
     if (file.kind() == ACDF_KIND_LOCAL) sample_everything(file.local(), random);
     if (file.kind() == ACDF_KIND_BRDF) sample_everything(file.brdf(), random);
     if (file.kind() == ACDF_KIND_TABLE) sample_everything(file.table(), random);

@@ -4,7 +4,6 @@
 
 #include "tests/fuzz/fuzz_random.h"
 #include "tests/fuzz/require.h"
-#include "tests/lib/reader/tables/grouped.h"
 #include "tests/lib/reader/tables/no_pieces.h"
 
 #include <acdf/product.h>
@@ -49,25 +48,6 @@ inline void wavefront_is_the_view(const acdf::BrdfView& view, FuzzRandom& random
     wavefront.pdf(wave.first, wave.second, samples_a_file, wave.pdfs);
     wave.require_single([&](int n) { return view.sample(wave.first[n], wave.u[n][0], wave.u[n][1]); },
                         [&](int n) { return view.pdf(wave.first[n], wave.second[n]); });
-}
-
-inline void environment_wavefront_is_the_view(const acdf::EnvironmentView& view, FuzzRandom& random) {
-    const auto most = random.below(2) == 0 ? acdf::Instructions::avx2 : acdf::Instructions::avx512;
-    const acdf::EnvironmentWavefront wavefront(view, most);
-    FuzzWave wave(random, false);
-    wavefront.sample(wave.u, samples_a_file, wave.samples);
-    wavefront.pdf(wave.second, samples_a_file, wave.pdfs);
-    wave.require_single([&](int n) { return view.sample(wave.u[n][0], wave.u[n][1]); },
-                        [&](int n) { return view.pdf(wave.second[n]); });
-}
-
-/// By the file's tables, and by those of larger files.
-inline void wavefront_is_the_view(const acdf::EnvironmentView& view, FuzzRandom& random) {
-    environment_wavefront_is_the_view(view, random);
-    const AcdfEnvironment data = view.data();
-    if (!data.cells) return;
-    const Grouped large(data, data.tree_units, 4 * std::size_t{data.cells->words}, random.below(2) == 0);
-    environment_wavefront_is_the_view(acdf::EnvironmentView(large.data), random);
 }
 
 /// Of a normal each, and of one shading point.

@@ -1,5 +1,5 @@
 // The exported C on a CUDA device: answers to words.bin, directions.bin and normals.bin in FOLDER, as opencl.c
-// gives them. Compiled with -DWALK, and of BRDFs with -DBRDF too, as device.c is.
+// gives them. Of BRDFs compiled with -DBRDF.
 #include "exported.h"
 
 #include <cstdio>
@@ -13,21 +13,15 @@
 #define AT acdf_view(tables, normals[i].x, normals[i].y, normals[i].z),
 #define acdf_sample acdf_sample_brdf
 #define acdf_pdf acdf_pdf_brdf
-typedef AcdfWalkSample Sample;
-#elif defined(WALK)
-#define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),
-typedef AcdfWalkSample Sample;
 #else
-#define AT
-typedef AcdfShaderSample Sample;
+#define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),
 #endif
 
 __global__ void answer(const uint32_t* tables, const uint2* words, const float4* directions, const float4* normals,
                        float4* draws, float2* densities, size_t count) {
     const size_t i = size_t{blockIdx.x} * blockDim.x + threadIdx.x;
-    (void)normals;
     if (i >= count) return;
-    const Sample s = acdf_sample(tables, AT words[i].x, words[i].y);
+    const AcdfWalkSample s = acdf_sample(tables, AT words[i].x, words[i].y);
     const float4 d = directions[i];
     draws[i] = {s.x, s.y, s.z, s.pdf};
     densities[i] = {acdf_pdf(tables, AT d.x, d.y, d.z), acdf_pdf(tables, AT s.x, s.y, s.z)};

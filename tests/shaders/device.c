@@ -1,6 +1,5 @@
-/* The exported C on this processor: answers to words.bin and directions.bin (WALK: and normals.bin; BRDF: which are
- * views) in FOLDER.
- * TABLES_FILE: by tables.bin, else by those in the header. */
+/* The exported C on this processor: answers to words.bin, directions.bin and normals.bin (BRDF: which are views) in
+ * FOLDER. TABLES_FILE: by tables.bin, else by those in the header. */
 #include "exported.h"
 
 #ifdef BRDF
@@ -38,9 +37,7 @@ int main(int argc, char** argv) {
     const char* folder = argc > 1 ? argv[1] : ".";
     const uint32_t* words = (const uint32_t*)read_file(folder, "words.bin", &size);
     const float* directions = (const float*)read_file(folder, "directions.bin", &size);
-#ifdef WALK
     const float* normals = (const float*)read_file(folder, "normals.bin", &size);
-#endif
     char path[4096];
     FILE *draws, *densities;
 #ifdef TABLES_FILE
@@ -56,15 +53,10 @@ int main(int argc, char** argv) {
     if (!draws || !densities) return 1;
     for (i = 0; i < count; ++i) {
         const float* d = directions + 4 * i;
-#ifdef WALK
         const float* n = normals + 4 * i;
         const POINT at = AT(tables, n[0], n[1], n[2]);
         const AcdfWalkSample s = SAMPLE(tables, at, words[2 * i], words[2 * i + 1]);
         const float two[2] = {PDF(tables, at, d[0], d[1], d[2]), PDF(tables, at, s.x, s.y, s.z)};
-#else
-        const AcdfShaderSample s = acdf_sample(tables, words[2 * i], words[2 * i + 1]);
-        const float two[2] = {acdf_pdf(tables, d[0], d[1], d[2]), acdf_pdf(tables, s.x, s.y, s.z)};
-#endif
         const float four[4] = {s.x, s.y, s.z, s.pdf};
         fwrite(four, sizeof four, 1, draws);
         fwrite(two, sizeof two, 1, densities);

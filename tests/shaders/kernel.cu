@@ -16,17 +16,12 @@
 #define acdf_sample acdf_sample_brdf
 #define acdf_sample_float acdf_sample_brdf_float
 #define acdf_pdf acdf_pdf_brdf
-typedef AcdfWalkSample Sample;
-#elif defined(WALK)
-#define AT acdf_at(tables, directions[3], directions[4], directions[5]),
-typedef AcdfWalkSample Sample;
 #else
-#define AT
-typedef AcdfShaderSample Sample;
+#define AT acdf_at(tables, directions[3], directions[4], directions[5]),
 #endif
 
 __global__ void answer(const uint32_t* tables, const uint32_t* words, const float* directions, float* out) {
-    const Sample s = acdf_sample(tables, AT words[0], words[1]);
+    const AcdfWalkSample s = acdf_sample(tables, AT words[0], words[1]);
     out[0] = s.x + s.y + s.z;
     out[1] = s.pdf + acdf_pdf(tables, AT s.x, s.y, s.z);
     out[2] = acdf_pdf(tables, AT directions[0], directions[1], directions[2]);

@@ -1,6 +1,5 @@
 /* The exported C as OpenCL: answers to words.bin, directions.bin and normals.bin in FOLDER by the first device
- * there is. A second argument: the functions walk, "brdf" those
- * of a BRDF, whose normals are views. */
+ * there is. A second argument "brdf": those of a BRDF, whose normals are views. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -11,21 +10,16 @@
 static const char kernel_source[] =
     "#ifdef BRDF\n"
     "#define AT acdf_view(tables, normals[i].x, normals[i].y, normals[i].z),\n"
-    "#define SAMPLE AcdfWalkSample\n"
     "#define acdf_sample acdf_sample_brdf\n"
     "#define acdf_pdf acdf_pdf_brdf\n"
-    "#elif defined(WALK)\n"
-    "#define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),\n"
-    "#define SAMPLE AcdfWalkSample\n"
     "#else\n"
-    "#define AT\n"
-    "#define SAMPLE AcdfShaderSample\n"
+    "#define AT acdf_at(tables, normals[i].x, normals[i].y, normals[i].z),\n"
     "#endif\n"
     "__kernel void answer(__global const uint* tables, __global const uint2* words,\n"
     "        __global const float4* directions, __global const float4* normals, __global float4* draws,\n"
     "        __global float2* densities) {\n"
     "    const size_t i = get_global_id(0);\n"
-    "    const SAMPLE s = acdf_sample(tables, AT words[i].x, words[i].y);\n"
+    "    const AcdfWalkSample s = acdf_sample(tables, AT words[i].x, words[i].y);\n"
     "    const float4 d = directions[i];\n"
     "    draws[i] = (float4)(s.x, s.y, s.z, s.pdf);\n"
     "    densities[i] = (float2)(acdf_pdf(tables, AT d.x, d.y, d.z),\n"
@@ -81,7 +75,7 @@ int main(int argc, char** argv) {
     cl_mem buffers[6];
     cl_uint i;
     cl_int error;
-    if (argc > 2) strcat(options, strcmp(argv[2], "brdf") == 0 ? " -DBRDF" : " -DWALK");
+    if (argc > 2) strcat(options, " -DBRDF");
     if (clGetPlatformIDs(1, &platform, NULL) != CL_SUCCESS ||
         clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL) != CL_SUCCESS) {
         fprintf(stderr, "skipped: there is no OpenCL device (pocl-opencl-icd makes one of the processor)\n");

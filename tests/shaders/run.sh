@@ -1,18 +1,14 @@
 #!/usr/bin/env bash
 # run.sh DEVICE ACDF COMPARE MAKE_SKY COUNT [FORM]: exports a file, draws and evaluates COUNT times on a device, and compares
-# with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only compile. FORM: cells, an environment
-# on a lat-long grid; or what is walked: local, local_square, the same of the fast shape (local_fast, local_fast_square), square
-# (the octahedral one), walk (the first one again), brdf and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment name another source than that of tests, the size of the
-# file, and the share of a BRDF that follows the cosine. MADE names a folder for files that several devices take: DEVICE "file"
-# puts one there, others take it if there is one.
+# with the reader. DEVICE: c, opencl, cuda, webgl, mesa (webgl on Mesa's llvmpipe), webgpu; or glslang and kernels, which only
+# compile. FORM: environment, on a lat-long grid; environment_square, on the octahedral one; local and local_square, the same
+# of the fast shape (local_fast, local_fast_square); brdf and brdf_anisotropic. PROBE, BRDF, BUDGET and FLOOR in the environment
+# name another source than that of tests, the size of the file, and the share of a BRDF that follows the cosine. MADE names a
+# folder for files that several devices take: DEVICE "file" puts one there, others take it if there is one.
 set -euo pipefail
-device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5 form=${6:-cells}
-walk=
-case $form in
-cells) ;;
-brdf*) walk=brdf ;;
-*) walk=walk ;;
-esac
+device=$1 acdf=$2 compare=$3 make_sky=$4 count=$5 form=${6:-environment}
+brdf=
+case $form in brdf*) brdf=brdf ;; esac
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -25,7 +21,7 @@ need() { command -v "$1" >/dev/null || skip "no $1"; }
 
 make_file() {
     local probe=${PROBE:-$work/sky.pfm} domain=latlong kind=env shape=()
-    if [ "$walk" = brdf ]; then
+    if [ "$brdf" ]; then
         local model=cook-torrance:m=0.2
         [ "$form" = brdf ] || model=ggx:alpha=0.1,0.3
         if [ -e "${MADE-}/$form.acdf" ]; then
@@ -47,18 +43,13 @@ make_file() {
 }
 
 # export TARGET -o FILE ...
-export_sky() {
-    local flags=()
-    [ "$form" != walk ] || flags=(--walk)
-    "$acdf" export "$work/sky.acdf" --force --target "$@" "${flags[@]}"
-}
+export_sky() { "$acdf" export "$work/sky.acdf" --force --target "$@"; }
 
-defines=${walk:+-DWALK}
-[ "$walk" != brdf ] || defines="-DWALK -DBRDF"
+defines=${brdf:+-DBRDF}
 
-# Steps of 2^-24 by which coordinates may be off, or of walks the density that is told of a draw. Where floats are IEEE's,
-# and sums of products are not fused: none.
-check() { "$compare" "check${walk:+_walk}" "$work/sky.acdf" "$count" "$work" "$1"; }
+# Steps of 2^-24 by which the density of a draw may differ from that of its direction. Where floats are IEEE's, and sums of
+# products are not fused: none.
+check() { "$compare" check "$work/sky.acdf" "$count" "$work" "$1"; }
 
 on_c() {
     make_file
@@ -81,7 +72,7 @@ on_opencl() {
     make_file
     export_sky c --tables "$work/tables.bin" -o "$work/exported.h"
     status=0
-    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" $walk || status=$?
+    HOME=$work POCL_CACHE_DIR=$work "$work/device" "$work" $brdf || status=$?
     [ "$status" != 77 ] || exit 77
     [ "$status" = 0 ]
     check 0
@@ -104,8 +95,8 @@ on_glslang() {
     make_file
     export_sky glsl -o "$work/sky.glsl"
     export_sky hlsl -o "$work/sky.hlsl"
-    local at=${walk:+acdf_at(vec3(0.0, 1.0, 0.0)), } of=
-    if [ "$walk" = brdf ]; then
+    local at='acdf_at(vec3(0.0, 1.0, 0.0)), ' of=
+    if [ "$brdf" ]; then
         at='acdf_view(vec3(0.0, 0.6, 0.8)), ' of=_brdf
     fi
     local main="void main() { answer = acdf_sample$of(${at}uvec2(1u, 2u)) + acdf_sample$of(${at}vec2(0.5)) * acdf_pdf$of(${at}vec3(0.0, 0.0, 1.0)); }"
@@ -167,7 +158,7 @@ on_browser() {
     make_file
     export_sky "$2" --tables "$work/tables.bin" -o "$work/sky.$2"
     cp "$here/$1.html" "$work/index.html"
-    python3 "$here/browser.py" "$work" "index.html${walk:+?$walk}" "${@:4}" || exit "$?"
+    python3 "$here/browser.py" "$work" "index.html${brdf:+?$brdf}" "${@:4}" || exit "$?"
     check "$3"
 }
 

@@ -235,6 +235,23 @@ TEST_F(Commands, InfoAsJson) {
     EXPECT_EQ(types, (std::set<std::string>{"DESC", "BINS", "TREE", "META"}));
 }
 
+TEST_F(Commands, InfoOfHalvings) {
+    write_bytes(sky, small_halvings());
+    const Result result = run_acdf({"info", "--json", sky});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const json report = json::parse(result.out);
+    EXPECT_EQ(report["bytes"], small_halvings().size());
+    EXPECT_EQ(report["bins"], 1);
+    EXPECT_EQ(report["cells"], 3);
+    EXPECT_EQ(report["curves"], 0);
+    std::set<std::string> types;
+    for (const json& chunk : report["chunks"]) types.insert(chunk["type"]);
+    EXPECT_EQ(types, (std::set<std::string>{"DESC", "HALV", "META"}));
+    const Result people = run_acdf({"info", sky});
+    ASSERT_EQ(people.code, 0) << people.err;
+    EXPECT_NE(people.out.find("3 cells"), std::string::npos) << people.out;
+}
+
 TEST_F(Commands, InfoOfSeveralFilesIsAnArrayAndABadOneIsTold) {
     const Result good = run_acdf({"info", sky, sky, "--json"});
     EXPECT_EQ(good.code, 0);
@@ -345,6 +362,23 @@ TEST_F(Commands, PdfOfSamplesIsTheirDensity) {
 
     write_text(folder / "samples.csv", samples.out);
     EXPECT_EQ(run_acdf({"pdf", sky, folder / "samples.csv"}).out, densities.out);
+}
+
+TEST_F(Commands, PdfOfHalvings) {
+    write_bytes(sky, small_halvings());
+    const Result samples = run_acdf({"sample", sky, "-n", "200", "--seed", "7"});
+    const Result densities = run_acdf({"pdf", sky}, samples.out);
+    ASSERT_EQ(densities.code, 0) << densities.err;
+    const auto rows = numbers_in(samples.out, true), pdfs = numbers_in(densities.out, false);
+    ASSERT_EQ(pdfs.size(), 200u);
+    for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(pdfs[i][0], rows[i][5]) << i;
+    // Codes 170 and 100 of 8 bits stand for 0.75153 and 0.33329.
+    const auto by_hand =
+        numbers_in(run_acdf({"pdf", sky}, "0.6 -0.64 0.48\n0.6 0.64 0.48\n0.6 0 -0.8\n").out, false);
+    const double pi = 3.14159265358979323846, upper = 0.751526538, low_phi = 0.333292101;
+    EXPECT_NEAR(by_hand[0][0], upper * (1.0 - low_phi) / pi, 1e-6);
+    EXPECT_NEAR(by_hand[1][0], upper * low_phi / pi, 1e-6);
+    EXPECT_NEAR(by_hand[2][0], (1.0 - upper) / (2 * pi), 1e-6);
 }
 
 TEST_F(Commands, PdfReadsWhatPeopleWrite) {

@@ -74,28 +74,45 @@ TEST_F(Export, WithoutTablesCAndJsonHoldThem) {
               std::string::npos);
 }
 
-// Local environments, the octahedral square and BRDFs are walked, other environments where it is asked for.
-TEST_F(Export, WalksWhatHasNoCells) {
+// One text serves local environments, environments on either grid and BRDFs.
+TEST_F(Export, OneTextServesAllKinds) {
     const std::string golden = std::string(ACDF_TEST_DIR) + "/golden/v1.0/";
+    const std::string functions = run_acdf({"export", file, "--target", "glsl"}).out;
     for (const char* name :
          {"local.acdf", "local_grid.acdf", "octahedral.acdf", "places.acdf", "brdf_mirrored.acdf", "zlib.acdf"}) {
-        const bool cells = std::string(name) == "zlib.acdf";
-        std::vector<std::string> command = {"export", golden + name, "--target", "glsl", "--tables", tables, "-f"};
-        if (cells) command.emplace_back("--walk");
-        const Result result = run_acdf(command);
+        const Result result = run_acdf({"export", golden + name, "--target", "glsl", "--tables", tables, "-f"});
+        EXPECT_EQ(result.out, functions) << name;
         ASSERT_EQ(result.code, 0) << result.err;
         for (const char* function : {"AcdfShaderPoint acdf_at(vec3 normal)", "AcdfShaderView acdf_view(vec3 wo)"})
             EXPECT_NE(result.out.find(function), std::string::npos) << name;
         File opened;
         ShaderTables made;
         ASSERT_TRUE(File::open((golden + name).c_str(), opened).ok());
-        ASSERT_TRUE(ShaderTables::make_walk(opened, made).ok());
+        ASSERT_TRUE(ShaderTables::make(opened, made).ok());
         const std::string bytes = read_text(tables);
         ASSERT_EQ(bytes.size(), 4 * made.size()) << name;
         EXPECT_EQ(std::memcmp(bytes.data(), made.words(), bytes.size()), 0) << name;
-        EXPECT_EQ(json::parse(run_acdf({"export", golden + name, "--target", "json", "--walk"}).out)["functions"],
-                  "walk");
     }
+}
+
+TEST_F(Export, HalvingsHaveTables) {
+    write_bytes(file, small_halvings());
+    const Result result = run_acdf({"export", file, "--target", "glsl", "--tables", tables});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const std::string bytes = read_text(tables);
+    const std::vector<std::uint32_t> expected = words();
+    ASSERT_EQ(bytes.size(), 4 * expected.size());
+    EXPECT_EQ(std::memcmp(bytes.data(), expected.data(), bytes.size()), 0);
+    EXPECT_EQ(expected[ACDF_WALK_BIN_COUNT], 0u);
+    EXPECT_NE(expected[ACDF_WALK_ENVIRONMENT], ACDF_WALK_NONE);
+}
+
+// What `--walk` and its kinds of tables were: gone.
+TEST_F(Export, HasOneKindOfTables) {
+    expect_failure({"export", file, "--target", "c", "--walk"}, 2, "--walk");
+    const json told = json::parse(run_acdf({"export", file, "--target", "json"}).out);
+    EXPECT_FALSE(told.contains("functions"));
+    EXPECT_FALSE(told.contains("pieces"));
 }
 
 TEST_F(Export, RefusesWithOneLine) {
@@ -134,7 +151,7 @@ TEST_F(Export, RefusesWhatHasNoTables) {
         ASSERT_TRUE(File::open(entry.path().c_str(), opened).ok());
         ShaderTables made;
         if (opened.kind() == ACDF_KIND_ENVIRONMENT || opened.kind() == ACDF_KIND_LOCAL) continue;
-        if (ShaderTables::make_walk(opened, made).ok()) continue; // of a BRDF without tilts
+        if (ShaderTables::make(opened, made).ok()) continue; // of a BRDF without tilts
         expect_failure({"export", entry.path(), "--target", "c"}, 1, "no tables for shaders");
     }
 }

@@ -215,6 +215,15 @@ TEST_F(Hostile, NamesOfChoicesAreTold) {
     expect_failure({"env", probe, "--on-black", "true", "-o", file}, 2, "'true' is none of error, uniform");
 }
 
+TEST_F(Hostile, OptionsOfOtherFitsAreRefused) {
+    for (const char* order : {"phi", "z"})
+        expect_failure({"env", probe, "--order", order, "-o", file}, 2,
+                       "--order: is for --fit uniform, cdf and pdf");
+    expect_failure({"env", probe, "--shape", "cascade", "-o", file}, 2, "--shape");
+    expect_failure({"env", probe, "--fit", "cdf", "--cells", "9", "-o", file}, 2, "--cells: is for --fit variance");
+    EXPECT_EQ(run_acdf({"env", probe, "--fit", "cdf", "--order", "z", "-o", file, "-q"}).code, 0);
+}
+
 TEST_F(Hostile, ListsAreToldHowTheyAreWritten) {
     for (const char* normal : {"0 0 1", "0,1", "1"})
         expect_failure({"plot", file, "-o", folder / "n.png", "--normal", normal}, 2,

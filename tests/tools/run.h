@@ -89,19 +89,31 @@ inline Result run_acdf(const std::vector<std::string>& arguments, const std::str
     return result;
 }
 
-/// 8 x 4 texels. theta: upper half 3/4 of the probability, cut at phi = 0 into 1/3 and 2/3; lower half even.
-inline std::vector<std::uint8_t> small_environment() {
-    compress::Cascade cascade;
-    cascade.curves.push_back({1, {2}, {0.75, 0.25}, {1, -1}, {}});
-    cascade.curves.push_back({0, {4}, {1.0 / 3, 2.0 / 3}, {}, {}});
-    cascade.roots = {0};
+inline compress::Description small_description() {
     compress::Description description = compress::environment_description(8, 4);
     description.total = 2.5;
     description.metadata = {{"accuracy.relative_variance", "0.125"},
                             {"fit.options", "--cells 3"},
                             {"source.name", "sky.exr"},
                             {"tool", "acdf test"}};
-    return compress::store(compress::encode_tree(cascade), description);
+    return description;
+}
+
+/// 8 x 4 texels. theta: upper half 3/4 of the probability, cut at phi = 0 into 1/3 and 2/3; lower half even.
+inline std::vector<std::uint8_t> small_environment() {
+    compress::Cascade cascade;
+    cascade.curves.push_back({1, {2}, {0.75, 0.25}, {1, -1}, {}});
+    cascade.curves.push_back({0, {4}, {1.0 / 3, 2.0 / 3}, {}, {}});
+    cascade.roots = {0};
+    return compress::store(compress::encode_tree(cascade), small_description());
+}
+
+/// The same cells by halvings, with nearly these probabilities.
+inline std::vector<std::uint8_t> small_halvings() {
+    compress::Halvings tree;
+    tree.axes = {1, 0, -1, -1, -1};
+    tree.codes = {170, 100};
+    return compress::store(tree, small_description());
 }
 
 inline void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes) {

@@ -38,8 +38,8 @@ done
 "$acdf" local sky.pfm --budget 64KiB -o local.acdf --quiet
 "$acdf" sample sky.acdf -n 20000 >sky.csv
 "$acdf" sample local.acdf -n 20000 --normal 0,0.6,0.8 >local.csv
-"$acdf" export sky.acdf --target glsl --tables tables.bin >sky.glsl
-"$acdf" export local.acdf --target wgsl --tables walk.bin >walk.wgsl
+"$acdf" export sky.acdf --target glsl --tables sky.bin >sky.glsl
+"$acdf" export local.acdf --target wgsl --tables local.bin >local.wgsl
 cp "$here/package_test.mjs" .
 GOLDEN=$golden node --test package_test.mjs
 # The types are those that the calls are meant for, and are checked at all.

@@ -137,7 +137,8 @@ std::vector<float> knot_opacity(const EnvironmentView& view, const PlotMap& map,
     const AcdfEnvironment& env = view.data();
     const FindCell find = [&env](const float direction[3], AcdfRange range[2]) {
         double t[2];
-        acdf_environment_find(&env, direction, range, t, nullptr);
+        AcdfStratum strata[2];
+        acdf_environment_find(&env, direction, range, t, strata);
     };
     return knot_opacity(find, acdf_environment_grid(&env), map, progress);
 }

@@ -133,7 +133,8 @@ void load_stored(const PlotArguments& options, Plotted& source) {
     source.columns = file.axis(ACDF_AXIS_PHI).resolution;
     source.rows = file.axis(ACDF_AXIS_THETA).resolution;
     std::unordered_map<std::uint32_t, std::uint64_t> known;
-    const std::uint64_t cells = count_cells(file.tree(), file.bin(0).root, known);
+    const AcdfEnvironment data = file.environment().data();
+    const std::uint64_t cells = data.halved ? data.halved->count + 1 : count_cells(data.tree, data.root, known);
     source.title = {shown_name(options.file), build::fit_name(file.description().fit) + " fit",
                     std::to_string(cells) + (cells == 1 ? " cell" : " cells"), to_readable_size(file.size())};
     add_variance(file, source.title);

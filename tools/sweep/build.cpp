@@ -22,7 +22,7 @@ const char* to_string(SweepKind kind) {
 }
 
 const std::vector<std::string>& fits_of(SweepKind kind) {
-    static const std::vector<std::string> environment{"variance", "cascade", "cdf", "pdf", "uniform"},
+    static const std::vector<std::string> environment{"variance", "cdf", "pdf", "uniform"},
         local{"variance", "fast", "separate", "cdf"}, places{"places", "variance"},
         brdf{"variance", "separate", "cdf", "uniform"};
     const std::vector<std::string>* const fits[] = {&environment, &local, &places, &brdf};

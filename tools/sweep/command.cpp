@@ -247,7 +247,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
     comma_separated(
         command.add_option(
             "--fits", options.sweep.fits,
-            "Fits to try, separated by commas. env: variance, cascade, cdf, pdf, uniform; local: variance, fast "
+            "Fits to try, separated by commas. env: variance, cdf, pdf, uniform; local: variance, fast "
             "(--shape fast), separate (a tree for each normal), cdf (the paper's); places: places, variance (by "
             "normals "
             "alone); brdf: variance, separate, cdf, uniform"))

@@ -22,9 +22,6 @@ builder::EnvironmentOptions options_of(const Step& step, const builder::Target& 
     const std::uint32_t cells = cells_in(step.budget);
     if (step.fit == "variance") {
         out.goal = builder::Goal::of_budget(step.budget);
-    } else if (step.fit == "cascade") {
-        out.fit.shape = builder::Shape::cascade;
-        out.goal.cells = cells;
     } else {
         out.fit.fit = step.fit == "cdf" ? ACDF_FIT_CDF : step.fit == "pdf" ? ACDF_FIT_PDF : ACDF_FIT_UNIFORM;
         const auto side = static_cast<std::uint32_t>(std::max(2.0, std::sqrt(cells)));
@@ -36,16 +33,14 @@ builder::EnvironmentOptions options_of(const Step& step, const builder::Target& 
 
 std::string text_of(const Step& step, const builder::EnvironmentOptions& o) {
     if (step.fit == "variance") return "--budget " + budget_text(step.budget);
-    if (step.fit == "cascade") return "--shape cascade --cells " + std::to_string(o.goal.cells);
     return "--fit " + step.fit + " " + knots_text(o.fit.phi_segments, o.fit.theta_segments);
 }
 
 const char* environment_label(const std::string& fit) {
-    return fit == "variance"  ? "variance fit (default)"
-           : fit == "cascade" ? "variance fit, two levels"
-           : fit == "cdf"     ? "cdf fit (the paper's)"
-           : fit == "pdf"     ? "pdf fit"
-                              : "uniform knots";
+    return fit == "variance" ? "variance fit (default)"
+           : fit == "cdf"    ? "cdf fit (the paper's)"
+           : fit == "pdf"    ? "pdf fit"
+                             : "uniform knots";
 }
 
 Candidate make_file(const builder::Target& target, const builder::Source& source, const Step& step) {

@@ -14,10 +14,10 @@ const functions = /* glsl */ `
     ${glsl}
     float acdfEquirect(vec3 direction, inout vec3 color) {
         color = sampleEquirectColor(envMapInfo.map, direction);
-        return acdf_pdf(vec3(direction.x, -direction.z, direction.y));
+        return acdf_pdf(acdf_anywhere(), vec3(direction.x, -direction.z, direction.y));
     }
     float acdfEquirectProbability(vec2 r, inout vec3 color, inout vec3 direction) {
-        vec4 s = acdf_sample(r);
+        vec4 s = acdf_sample(acdf_anywhere(), r);
         direction = vec3(s.x, s.z, -s.y);
         color = sampleEquirectColor(envMapInfo.map, direction);
         return s.w;
@@ -35,7 +35,7 @@ function tablesOf(file) {
     return texture;
 }
 
-/** Draws from `file` (an environment on a lat-long grid) instead of scene.environment's own tables. */
+/** Draws from `file` (an environment) instead of scene.environment's own tables. */
 export function drawEnvironmentFrom(pathTracer, file) {
     const {material} = pathTracer._pathTracer, before = material.fragmentShader;
     if (!before.includes(AFTER)) throw new Error(`the path tracer's shader has no "${AFTER}"`);

@@ -21,6 +21,25 @@ void descend(const std::uint8_t* tree, std::uint32_t at, const AnyCell& cell, co
     }
 }
 
+void descend(const AcdfHalving* nodes, std::uint32_t at, const AcdfSpan* steps, const AcdfSpan* box,
+             const std::function<void(const Cell&)>& visit) {
+    if (at == ACDF_LEAF) {
+        Cell cell;
+        acdf_halved_ranges(box, cell.range);
+        cell.probability = acdf_span_share(&steps[0]) * acdf_span_share(&steps[1]);
+        return visit(cell);
+    }
+    const AcdfHalving node = nodes[at];
+    const std::uint32_t axis = node.link & 7u;
+    for (std::uint32_t upper = 0; upper < 2; ++upper) {
+        AcdfSpan half_steps[2] = {steps[0], steps[1]}, half_box[2] = {box[0], box[1]};
+        half_steps[axis].end[1 - upper] = node.threshold;
+        half_box[axis].end[1 - upper] = acdf_span_middle(&box[axis]);
+        const bool is_leaf = node.link >> (3 + upper) & 1u;
+        descend(nodes, is_leaf ? ACDF_LEAF : upper ? at + (node.link >> 5) : at + 1, half_steps, half_box, visit);
+    }
+}
+
 template <std::size_t Axes>
 CellOf<Axes> whole(const File& file) {
     CellOf<Axes> cell = {};
@@ -67,6 +86,16 @@ void for_each_grid_cell(const std::uint8_t* grid, const AcdfRange* range,
 }
 
 } // namespace
+
+void for_each_cell(const EnvironmentView& environment, const std::function<void(const Cell&)>& visit) {
+    const AcdfEnvironment& data = environment.data();
+    Cell whole = {{{0, data.columns, 0.0}, {0, data.rows, 0.0}}, 1.0};
+    if (!data.halved) return descend(data.tree, data.root, whole, visit);
+    const std::uint32_t resolution[2] = {data.columns, data.rows};
+    AcdfSpan steps[2], box[2];
+    const std::uint32_t root = acdf_halvings_root(data.halved, resolution, 2, steps, box);
+    descend(acdf_halvings_nodes(data.halved), root, steps, box, visit);
+}
 
 void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit) {
     descend(file.tree(), root, whole<2>(file), visit);

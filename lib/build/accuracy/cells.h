@@ -19,8 +19,10 @@ struct CellOf {
 using Cell = CellOf<2>;
 using TableCell = CellOf<ACDF_MAX_AXES>;
 
-/// Calls `visit` for every cell under `root`, those of probability 0 included. The cells partition
+/// Calls `visit` for every cell of an environment, those of probability 0 included. The cells partition
 /// [0, columns) x [0, rows).
+void for_each_cell(const EnvironmentView& environment, const std::function<void(const Cell&)>& visit);
+/// The same for the tree of curves under `root`.
 void for_each_cell(const File& file, std::uint32_t root, const std::function<void(const Cell&)>& visit);
 
 /// The same for a tree within a box: range[2], without tilts.

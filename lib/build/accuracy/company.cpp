@@ -21,7 +21,7 @@ std::vector<double> densities(const File& file, const FineTexels& texels) {
     std::vector<double> out(std::size_t{target.columns} * target.rows);
     const AcdfEnvironment environment = file.environment().data();
     const AcdfGrid grid = acdf_environment_grid(&environment);
-    for_each_cell(file, file.bin(0).root, [&](const Cell& cell) {
+    for_each_cell(file.environment(), [&](const Cell& cell) {
         if (cell.range[0].tilt != 0.0 || cell.range[1].tilt != 0.0)
             throw std::invalid_argument("tilted curves beside a company");
         const double p = cell.probability / acdf_grid_solid_angle(&grid, cell.range);

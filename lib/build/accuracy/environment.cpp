@@ -84,7 +84,7 @@ Work divide(const File& file) {
     constexpr std::uint64_t kTexels = 1 << 17;
     Work work;
     std::uint64_t texels = kTexels;
-    for_each_cell(file, file.bin(0).root, [&](const Cell& cell) {
+    for_each_cell(file.environment(), [&](const Cell& cell) {
         if (texels >= kTexels) {
             work.begin.push_back(work.cells.size());
             texels = 0;
@@ -119,7 +119,7 @@ Accuracy measure_combined(const File& file, const Target& target) {
     Accuracy a;
     a.combined = true;
     a.total = target.total > 0.0 ? target.total : integral(target);
-    for_each_cell(file, file.bin(0).root, [&](const Cell&) { ++a.cells; });
+    for_each_cell(file.environment(), [&](const Cell&) { ++a.cells; });
     a.relative_variance = both.relative_variance;
     a.max_weight = both.max_weight;
     a.support_violations = both.support_violations;

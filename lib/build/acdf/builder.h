@@ -79,13 +79,10 @@ struct Channels {
     ChannelWeights weights;
 };
 
-/// Which axis is split first. `best`: a tree splits the axis that gains more; of fits of two levels both are made,
-/// and the more accurate one is kept.
+/// Which axis the fits cdf, pdf and uniform divide first. `best`: both files are made, and the more accurate one is
+/// kept.
 enum class Order { best, phi, z };
-/// What the variance fit makes: a tree that refines any segment along any axis (less noise for its size), or two
-/// levels, as in Lawrence et al. 2005 (faster to sample; its goal is a number of cells).
-enum class Shape { tree, cascade };
-/// How the rows of a region become one curve, but for the variance fit: weighted by energy, or all alike (ibid.,
+/// How these fits average the rows of a region into one curve: weighted by energy, or all alike (ibid.,
 /// eq. 4).
 enum class Conditional { energy, mean };
 
@@ -94,8 +91,7 @@ enum class Conditional { energy, mean };
 struct FitOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
     Order order = Order::best;
-    Shape shape = Shape::tree; ///< variance
-    double max_weight = 0.0;   ///< variance as a tree: the largest f/p over its mean, at least 1; 0: no bound
+    double max_weight = 0.0;   ///< variance: the largest f/p over its mean, at least 1; 0: no bound
     std::uint32_t phi_segments = 64, theta_segments = 64; ///< cdf, pdf, uniform: of a curve, 1 to ACDF_MAX_SEGMENTS
     double epsilon = 0.0;             ///< cdf, pdf: deviation at which a curve has knots enough, in [0, 1]; 0: none
     std::uint32_t gradient_knots = 0; ///< cdf, pdf: extra knots of the first curve (ibid., eq. 5), up to 2^20

@@ -68,14 +68,13 @@ void check_segments(std::uint32_t phi, std::uint32_t theta, double epsilon) {
 void check(const FitOptions& fit) {
     require(is_fit(fit.fit), "fit is no AcdfFit");
     require(fit.order == Order::best || fit.order == Order::phi || fit.order == Order::z, "order is no Order");
-    require(fit.shape == Shape::tree || fit.shape == Shape::cascade, "shape is no Shape");
     require(fit.conditional == Conditional::energy || fit.conditional == Conditional::mean,
             "conditional is no Conditional");
     check_max_weight(fit.max_weight);
     check_segments(fit.phi_segments, fit.theta_segments, fit.epsilon);
     require(fit.gradient_knots <= 1u << 20, "gradient_knots is above 2^20");
-    const bool tree = fit.fit == ACDF_FIT_VARIANCE && fit.shape == Shape::tree;
-    require(tree || fit.max_weight == 0.0, "max_weight is for the variance fit as a tree");
+    const bool variance = fit.fit == ACDF_FIT_VARIANCE;
+    require(variance || fit.max_weight == 0.0, "max_weight is for the variance fit");
 }
 
 void check(const SceneNormal& n) {
@@ -141,14 +140,13 @@ void check(const EnvironmentOptions& options) {
     for (const SceneNormal& n : options.normals) check(n);
     check_text(options.normals_text);
     const bool alone = options.company.kind == ACDF_COMPANY_NONE;
-    require(alone || (options.fit.fit == ACDF_FIT_VARIANCE && options.fit.shape == Shape::tree &&
-                      options.fit.max_weight == 0.0 && options.goal.kind != Goal::Kind::variance),
-            "a company is for the variance fit as a tree, without max_weight, of a number of cells or a budget");
+    require(alone || (options.fit.fit == ACDF_FIT_VARIANCE && options.fit.max_weight == 0.0 &&
+                      options.goal.kind != Goal::Kind::variance),
+            "a company is for the variance fit, without max_weight, of a number of cells or a budget");
     require(!alone || options.normals.empty(), "normals of an environment are those that its company lights");
     if (options.fit.fit != ACDF_FIT_VARIANCE) return;
+    require(options.fit.order == Order::best, "order is for the fits cdf, pdf and uniform");
     check(options.goal, 1);
-    require(options.fit.shape == Shape::tree || options.goal.kind == Goal::Kind::cells,
-            "the goal of a cascade is a number of cells");
 }
 
 /// Whether a transform turns, mirrors and scales as a whole: rays then have the directions that positions tell.

@@ -29,7 +29,6 @@ compress::FitOptions internal(const FitOptions& options) {
     compress::FitOptions out;
     out.fit = options.fit;
     out.order = internal(options.order);
-    out.shape = options.shape == Shape::tree ? compress::Shape::tree : compress::Shape::cascade;
     out.max_weight = options.max_weight;
     out.column_segments = options.phi_segments;
     out.row_segments = options.theta_segments;

@@ -148,7 +148,7 @@ AcdfKind Renderer::kind() const noexcept { return has_normal ? ACDF_KIND_LOCAL :
 Company Renderer::company(const EnvironmentOptions& options) const noexcept {
     const FitOptions& fit = options.fit;
     Company out;
-    if (!adds_bsdf_samples || fit.fit != ACDF_FIT_VARIANCE || fit.shape != Shape::tree || fit.max_weight > 0.0 ||
+    if (!adds_bsdf_samples || fit.fit != ACDF_FIT_VARIANCE || fit.max_weight > 0.0 ||
         options.goal.kind == Goal::Kind::variance)
         return out;
     out.kind = options.normals.empty() ? ACDF_COMPANY_MEAN : ACDF_COMPANY_COSINE;

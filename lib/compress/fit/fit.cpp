@@ -9,15 +9,11 @@
 namespace acdf::compress {
 namespace {
 
-Cascade fit_rows_first(const Target& target, const FitOptions& options) {
-    return options.fit == ACDF_FIT_VARIANCE ? fit_variance_cascade(target, options) : fit_regional(target, options);
-}
-
 Cascade fit_two_levels(const Target& target, const FitOptions& options) {
-    if (options.order == Order::z) return fit_rows_first(target, options);
+    if (options.order == Order::z) return fit_regional(target, options);
     FitOptions turned = options;
     std::swap(turned.column_segments, turned.row_segments);
-    return fit_rows_first(transposed(target), turned);
+    return fit_regional(transposed(target), turned);
 }
 
 /// The trees are fitted to g. What the options say of f, relative to f's mean, is so translated.
@@ -42,7 +38,7 @@ Fitted fit(const Target& target, const FitOptions& options) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (options.fit == ACDF_FIT_VARIANCE && options.goal.kind == Goal::Kind::cells && options.goal.cells == 0)
         throw std::invalid_argument("a goal of 0 cells");
-    if (options.fit == ACDF_FIT_VARIANCE && options.shape == Shape::tree)
+    if (options.fit == ACDF_FIT_VARIANCE)
         return fit_trees({grid_of(target)}, of_best_density(target, options));
     Fitted out;
     out.cascade = fit_two_levels(target, options);

@@ -17,11 +17,6 @@ namespace acdf::compress {
 /// Which axis is split first.
 enum class Order { phi, z };
 
-/// Whether the variance fit may refine a segment along any axis, as deep as it pays, or makes two levels: a
-/// marginal, and a conditional in each of its segments. Trees are more accurate for their size, cascades faster
-/// to sample.
-enum class Shape { tree, cascade };
-
 /// How the rows of a region of the marginal are averaged into one conditional. The paper's eq. 4 gives every
 /// row the same weight; weighting rows by their energy is the region's own conditional, and costs less.
 enum class Conditional { energy, mean };
@@ -48,14 +43,13 @@ struct Goal {
 struct FitOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
     std::optional<Order> order; ///< empty: as the fit sees fit (a tree), else phi
-    Shape shape = Shape::tree;  ///< variance
-    Goal goal;                  ///< variance; a cascade takes cells alone
+    Goal goal;                  ///< variance
     FileSize file_size;         ///< needed for a budget; by default the bytes of the tree
     CascadeSize cascade_size;   ///< instead of file_size
     /// A goal of variance is out of reach where it takes many more bytes; it bounds the memory of the search.
     std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
     bool size_by_length = false;        ///< file_size depends on nothing but the number of bytes of the tree
-    double max_weight = 0.0;            ///< variance as a tree: the largest f/p over its mean; 0: no bound
+    double max_weight = 0.0;            ///< variance: the largest f/p over its mean; 0: no bound
     std::uint32_t column_segments = 64; ///< uniform, cdf, pdf: segments of a curve over columns (phi)
     std::uint32_t row_segments = 64;    ///< the same over rows (theta)
     double epsilon = 0.0;               ///< cdf, pdf: see CurveBudget
@@ -78,8 +72,5 @@ Fitted fit(const Target& target, const FitOptions& options);
 /// Fits uniform, cdf and pdf: marginal over the target's rows, one conditional over columns for each region
 /// between its knots (Lawrence et al. 2005, §5).
 Cascade fit_regional(const Target& target, const FitOptions& options);
-
-/// The minimum-variance cascade of fixed depth: docs/method.md.
-Cascade fit_variance_cascade(const Target& target, const FitOptions& options);
 
 } // namespace acdf::compress

@@ -294,8 +294,7 @@ SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, Bin
                                const FitOptions& options) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     const std::vector<LightPoint> light = light_points(target);
-    const bool one_price = options.fit == ACDF_FIT_VARIANCE && options.shape == Shape::tree;
-    return one_price ? fit_at_one_price(target, light, bins, kind, options)
+    return options.fit == ACDF_FIT_VARIANCE ? fit_at_one_price(target, light, bins, kind, options)
                      : fit_each(target, light, bins, kind, options);
 }
 

@@ -148,6 +148,18 @@ Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
 /// What a reader that does not know it may leave out.
 bool is_ancillary(std::uint32_t type) { return type == ACDF_CHUNK_PLACES || type == ACDF_CHUNK_PORTALS; }
 
+/// A file of DESC, `trees`, what the kind needs beside them, and META.
+Bytes store_chunks(std::vector<Payload> trees, const Description& description, AcdfCodec codec) {
+    std::vector<Payload> payloads{
+        {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_FLAG_CRITICAL, description_payload(description)}};
+    for (Payload& tree : trees) payloads.push_back(std::move(tree));
+    for (const Chunk& chunk : description.chunks)
+        payloads.push_back({chunk.type, is_ancillary(chunk.type) ? 0 : ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
+    if (!description.metadata.empty())
+        payloads.push_back({ACDF_CHUNK_METADATA, 0, metadata_payload(description.metadata)});
+    return assemble(description.kind, std::move(payloads), codec);
+}
+
 } // namespace
 
 Description environment_description(std::uint32_t columns, std::uint32_t rows,
@@ -197,15 +209,21 @@ Chunk company_chunk(const Company& company, float recommended_share,
 }
 
 std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description, AcdfCodec codec) {
-    std::vector<Payload> payloads;
-    payloads.push_back({ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_FLAG_CRITICAL, description_payload(description)});
-    payloads.push_back({ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree, description)});
-    payloads.push_back({ACDF_CHUNK_TREE, ACDF_CHUNK_FLAG_CRITICAL, tree.bytes});
-    for (const Chunk& chunk : description.chunks)
-        payloads.push_back({chunk.type, is_ancillary(chunk.type) ? 0 : ACDF_CHUNK_FLAG_CRITICAL, chunk.bytes});
-    if (!description.metadata.empty())
-        payloads.push_back({ACDF_CHUNK_METADATA, 0, metadata_payload(description.metadata)});
-    return assemble(description.kind, std::move(payloads), codec);
+    return store_chunks({{ACDF_CHUNK_BINS, ACDF_CHUNK_FLAG_CRITICAL, bins_payload(tree, description)},
+                         {ACDF_CHUNK_TREE, ACDF_CHUNK_FLAG_CRITICAL, tree.bytes}},
+                        description, codec);
+}
+
+std::vector<std::uint8_t> store(const Halvings& tree, const Description& description, AcdfCodec codec) {
+    return store_chunks({{ACDF_CHUNK_HALVINGS, ACDF_CHUNK_FLAG_CRITICAL, halvings_chunk(tree)}}, description,
+                        codec);
+}
+
+std::uint64_t halvings_room(const Description& description, std::uint64_t file_bytes) {
+    Halvings leaf;
+    leaf.axes = {-1};
+    const std::uint64_t others = store(leaf, description).size() - rounded(halvings_chunk(leaf).size());
+    return file_bytes > others ? (file_bytes - others) / ACDF_ALIGNMENT * ACDF_ALIGNMENT : 0;
 }
 
 } // namespace acdf::compress

@@ -3,6 +3,7 @@
 
 #include "compress/cascade.h"
 #include "compress/company.h"
+#include "compress/halvings/halvings.h"
 
 #include <acdf/layout.h>
 
@@ -86,5 +87,10 @@ Chunk company_chunk(const Company& company, float recommended_share, const std::
 /// readable, and keeps its size whatever numbers it tells.
 std::vector<std::uint8_t> store(const EncodedTree& tree, const Description& description,
                                 AcdfCodec codec = ACDF_CODEC_NONE);
+/// The same of a tree of halvings.
+std::vector<std::uint8_t> store(const Halvings& tree, const Description& description,
+                                AcdfCodec codec = ACDF_CODEC_NONE);
+/// How many bytes chunk HALV may have in an uncompressed file of `file_bytes`; 0: none fits.
+std::uint64_t halvings_room(const Description& description, std::uint64_t file_bytes);
 
 } // namespace acdf::compress

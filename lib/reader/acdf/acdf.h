@@ -22,7 +22,6 @@
 #include <acdf/linked.h>
 #include <acdf/local.h>
 #include <acdf/moved.h>
-#include <acdf/parallel.h>
 #include <acdf/sample.h>
 #include <acdf/table.h>
 
@@ -68,7 +67,6 @@ typedef struct AcdfLoadOptions {
     uint64_t max_inflated_bytes; /* of compressed chunks together; 0: 1 GiB */
     int plain;                   /* 1: without runtime tables */
     AcdfAllocator allocator;     /* of what the open file keeps, itself too; all null: the C library's */
-    AcdfParallel parallel;       /* threads that help to make runtime tables; all null: none */
 } AcdfLoadOptions;
 AcdfFile* acdf_open_with(const char* path, const AcdfLoadOptions* options, AcdfError* error);
 AcdfFile* acdf_from_memory_with(const void* data, size_t size, const AcdfLoadOptions* options, AcdfError* error);

@@ -8,6 +8,7 @@
 #define ACDF_LOCAL_TABLES_H
 
 #include <acdf/tile_blocks.h>
+#include <acdf/cells.h>
 #include <acdf/tile_tables.h>
 
 #ifdef __cplusplus

@@ -43,9 +43,8 @@ static inline const void* acdf_moved(const void* pointer, const AcdfMove* moves,
 /* Points a view into the copies, of which there are `count`. */
 static inline void acdf_move_environment(AcdfEnvironment* environment, const AcdfMove* moves, int count) {
     ACDF_MOVE(uint8_t, environment->tree);
-    ACDF_MOVE(AcdfCells, environment->cells);
+    ACDF_MOVE(AcdfHalvedTree, environment->halved);
     ACDF_MOVE(AcdfCompany, environment->company);
-    ACDF_MOVE(AcdfGroups, environment->groups);
 }
 
 /* The same of what bins share: a part of the following. */

@@ -16,7 +16,6 @@
 
 #include <acdf/allocator.h>
 #include <acdf/moved.h>
-#include <acdf/parallel.h>
 #include <acdf/views.h>
 
 #include <cstddef>
@@ -64,8 +63,6 @@ struct LoadOptions {
     /// Where the memory comes from that an open file keeps; by default the C library. It must stay usable until the
     /// file is gone. What is needed for a moment, while bytes are checked, is the C library's.
     AcdfAllocator allocator = {};
-    /// Threads of yours that help to make the tables of large environments; by default none.
-    AcdfParallel parallel = {};
 };
 
 /// A key or value of the metadata: UTF-8, not terminated.
@@ -74,6 +71,7 @@ struct Text {
     std::size_t size = 0;
 };
 
+struct Parts;
 class TreeSurvey;
 
 /// A checked file. Movable, not copyable.
@@ -96,12 +94,13 @@ public:
     /// Whether no file was loaded: then only this may be asked.
     bool empty() const noexcept { return bytes_ == nullptr; }
     // Everything below asks for a file that is not empty.
-    /// Kind, and the parts of the file as they lie in it; axis i < axis_count, bin i < bin_count.
+    /// Kind, and the parts of the file as they lie in it; axis i < axis_count. A tree of halvings has no bins.
     AcdfKind kind() const noexcept { return static_cast<AcdfKind>(header().kind); }
     const AcdfHeader& header() const noexcept { return *reinterpret_cast<const AcdfHeader*>(bytes_); }
     const AcdfDescription& description() const noexcept { return *description_; }
     const AcdfAxis& axis(std::uint32_t i) const noexcept { return axes_[i]; }
     const AcdfBin& bin(std::uint32_t i) const noexcept { return bins_[i]; }
+    bool has_bins() const noexcept { return bins_ != nullptr; }
     /// Chunk TREE, and its size in units of two bytes, in which offsets in it are counted.
     const std::uint8_t* tree() const noexcept { return tree_; }
     /// What bins share; `tiles` is null where each has a tree of its own.
@@ -114,8 +113,7 @@ public:
     const AcdfCompany* company() const noexcept { return company_; }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept {
-        return 4 * std::uint64_t{cells_          ? cells_->words
-                                 : groups_       ? groups_->words
+        return 4 * std::uint64_t{halved_         ? halved_->words
                                  : local_tables_ ? local_tables_->words
                                  : brdf_tables_  ? brdf_tables_->words
                                  : entries_      ? entries_->words
@@ -160,17 +158,15 @@ private:
     const float* nodes_ = nullptr;
     const std::uint8_t* metadata_ = nullptr;
     std::uint32_t metadata_count_ = 0;
-    AcdfCells* cells_ = nullptr;
-    AcdfGroups* groups_ = nullptr;
+    AcdfHalvedTree* halved_ = nullptr;
     AcdfLocalTables* local_tables_ = nullptr;
     AcdfBrdfTables* brdf_tables_ = nullptr;
     AcdfEntries* entries_ = nullptr;
     AcdfAllocator allocator_ = {};
     AcdfBlock owned_[3] = {}; // the file's bytes; inflated chunks; runtime tables
 
-    void make_tables(const TreeSurvey& survey, const AcdfParallel& parallel) noexcept;
-    void make_environment_tables(const TreeSurvey& survey, std::size_t most_bytes,
-                                 const AcdfParallel& parallel) noexcept;
+    void make_tables(const TreeSurvey& survey) noexcept;
+    bool make_halved(const Parts& parts, bool lookup) noexcept;
     void release() noexcept;
 };
 

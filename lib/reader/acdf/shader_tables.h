@@ -1,9 +1,8 @@
-// Words for a shader's buffer or texture, from which acdf/shader.h, acdf/shader_walk.h and acdf/shader_brdf.h draw;
+// Words for a shader's buffer or texture, from which acdf/shader_walk.h and acdf/shader_brdf.h sample;
 // `acdf export` writes them, too.
 #pragma once
 
 #include <acdf/reader.h>
-#include <acdf/shader.h>
 #include <acdf/shader_brdf.h>
 
 namespace acdf {
@@ -19,18 +18,12 @@ public:
     ShaderTables(const ShaderTables&) = delete;
     ShaderTables& operator=(const ShaderTables&) = delete;
 
-    /// Makes the tables of acdf/shader.h of a file that is not empty. `unsupported` where there are none: files of
-    /// another kind or on the octahedral square, with cells that tilt (--fit pdf), of more than 65,535 pieces of
-    /// cells (some 60,000 cells) or with more than 16 cells in a circle of 2^-11 radians about a pole. `out` then
-    /// is empty. Work and memory are in proportion to the cells, some 130 bytes each.
-    static Status make(const File& file, ShaderTables& out) noexcept;
-
     /// Makes the tables of acdf/shader_walk.h of a file that is not empty: of environments and local environments,
     /// on either grid; and those of acdf/shader_brdf.h of BRDFs. `unsupported` where there are none: for tables,
     /// and for cells that tilt (--fit pdf). `out` then is empty. Work and memory are in proportion to the cells,
     /// some 60 bytes each, and rows; of the fast shape to the file. Places are left out: what serves a normal
     /// anywhere serves it at each of them.
-    static Status make_walk(const File& file, ShaderTables& out) noexcept;
+    static Status make(const File& file, ShaderTables& out) noexcept;
 
     /// Little-endian, as a GPU takes them.
     const std::uint32_t* words() const noexcept { return static_cast<const std::uint32_t*>(block_.data); }

@@ -2,6 +2,7 @@
 #ifndef ACDF_SPHERE_H
 #define ACDF_SPHERE_H
 
+#include <acdf/pieces.h>
 #include <acdf/tree.h>
 
 #ifdef __cplusplus
@@ -61,19 +62,18 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
     range[0].tilt = range[1].tilt = 0.0;
 }
 
-/* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, const AcdfRange range[2],
-                                              const double u[2], double p) {
+/* The direction that what is left of the random numbers picks in a cell of probability p, between the heights z0 of
+ * its upper and z1 of its lower border. */
+ACDF_FN AcdfDirectionSample acdf_sphere_place_between(uint32_t columns, const AcdfRange range[2], const double u[2],
+                                                      double p, double z0, double z1) {
     AcdfDirectionSample out;
-    double tx, tz, x, z, z0, z1, sin_theta, sine, cosine, border, kept;
+    double tx, tz, x, z, sin_theta, sine, cosine, border, kept;
     tx = acdf_tilt_sample(range[0].tilt, u[0]);
     border = (double)columns * (ACDF_BORDER / (2.0 * ACDF_PI));
     x = (double)range[0].low + tx * (double)(range[0].high - range[0].low);
     x = acdf_clamp(x, (double)range[0].low + border, (double)range[0].high - border);
 
     tz = acdf_tilt_sample(range[1].tilt, u[1]);
-    z0 = acdf_row_z(range[1].low, rows);
-    z1 = acdf_row_z(range[1].high, rows);
     z = z0 + tz * (z1 - z0);
     sin_theta = sqrt((1.0 - z) * (1.0 + z));
     border = ACDF_BORDER * sin_theta;
@@ -93,6 +93,13 @@ ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, c
     return out;
 }
 
+/* The same of a cell of `rows` rows of the sphere. */
+ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, const AcdfRange range[2],
+                                              const double u[2], double p) {
+    return acdf_sphere_place_between(columns, range, u, p, acdf_row_z(range[1].low, rows),
+                                     acdf_row_z(range[1].high, rows));
+}
+
 /* The grid square of a direction, and where on the columns axis it lies. Returns 0 for directions that are NaN or
  * whose length differs from 1 by more than about 5e-4. */
 ACDF_FN int acdf_sphere_square(uint32_t columns, uint32_t rows, const float direction[3], uint32_t square[2],
@@ -107,6 +114,30 @@ ACDF_FN int acdf_sphere_square(uint32_t columns, uint32_t rows, const float dire
     square[0] = (uint32_t)*column;
     square[1] = (uint32_t)((double)rows * acdf_atan2pi(sqrt(sin2), z));
     if (square[1] >= rows) square[1] = rows - 1;
+    return 1;
+}
+
+/* The angle, in radians, of a point of the first quadrant, y and x >= 0 and not both 0: within 2e-7. */
+ACDF_INLINE float acdf_angle_nearly(float y, float x) {
+    const float low = y < x ? y : x, high = y < x ? x : y, angle = acdf_atan_float(low / high);
+    return y > x ? 1.57079633f - angle : angle;
+}
+
+/* The position of a direction on both axes, in floats: within error[axis] of what doubles have. Returns 0 for
+ * directions at which that is not so: near the poles, and of another length than 1. */
+ACDF_INLINE int acdf_sphere_nearly(uint32_t columns, uint32_t rows, const float direction[3], float position[2],
+                                   float error[2]) {
+    const float x = direction[0], y = direction[1], z = direction[2];
+    const float sin2 = x * x + y * y, length2 = sin2 + z * z;
+    float turn, angle;
+    if (!(length2 > 0.9999f && length2 < 1.0001f && sin2 > 1e-12f)) return 0;
+    turn = acdf_angle_nearly(fabsf(y), fabsf(x)) * 0.15915494f;
+    turn = x < 0.0f ? 0.5f - turn : turn;
+    angle = acdf_angle_nearly(sqrtf(sin2), fabsf(z)) * 0.31830989f;
+    position[0] = (float)columns * (y < 0.0f ? 0.5f + turn : 0.5f - turn);
+    position[1] = (float)rows * (z < 0.0f ? 1.0f - angle : angle);
+    error[0] = (float)columns * 4e-7f;
+    error[1] = (float)rows * 4e-7f;
     return 1;
 }
 

@@ -1,7 +1,4 @@
-// Draws from an environment, a local environment or a BRDF many times at once: for renderers that work in waves.
-//
-//   acdf::EnvironmentWavefront sky(file.environment());
-//   sky.sample(u, count, out);
+// Samples a local environment or a BRDF many times at once: for renderers that work in batches.
 //
 //   acdf::BrdfWavefront wavefront;
 //   if (acdf::Status status = acdf::BrdfWavefront::prepare(file.brdf(), wavefront); !status.ok()) { ... }
@@ -19,29 +16,6 @@ struct WavefrontTable;
 
 /// What instructions serve; with `none` it is the loop over BrdfView.
 enum class Instructions : int { none = 0, avx2 = 1, avx512 = 2 };
-
-/// The directions and densities of an EnvironmentView, bit for bit (see acdf/linked.h), in a fraction of the time.
-/// A few words by value, no memory of its own; valid while the File lives. All functions are const, thread-safe,
-/// allocate and throw nothing.
-class EnvironmentWavefront {
-public:
-    EnvironmentWavefront() noexcept = default;
-    /// Uses the best instructions that the processor has, up to `most`. Served by the loop over the view are those
-    /// without runtime tables.
-    explicit EnvironmentWavefront(const EnvironmentView& view, Instructions most = Instructions::avx512) noexcept;
-
-    /// EnvironmentView::sample of u[i] into out[i], i < count.
-    void sample(const double (*u)[2], std::size_t count, DirectionSample* out) const noexcept;
-    /// EnvironmentView::pdf of directions[i] into out[i], i < count.
-    void pdf(const float (*directions)[3], std::size_t count, float* out) const noexcept;
-
-    /// Those that serve.
-    Instructions instructions() const noexcept { return instructions_; }
-
-private:
-    AcdfEnvironment environment_ = {};
-    Instructions instructions_ = Instructions::none;
-};
 
 /// The directions and densities of a LocalEnvironmentView, bit for bit (see acdf/linked.h), in a fraction of the
 /// time. A few words by value, no memory of its own; valid while the File lives. All functions are const,

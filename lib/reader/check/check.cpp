@@ -141,6 +141,7 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
 // ---- chunk table ----------------------------------------------------------------------------------------
 
 constexpr u32 required_types[] = {ACDF_CHUNK_DESCRIPTION, ACDF_CHUNK_BINS, ACDF_CHUNK_TREE};
+constexpr u32 required_beside_halvings = 1; // the first of them
 
 // Whether a known chunk has a place in files of a kind.
 bool belongs(int known, u32 kind) {
@@ -149,6 +150,7 @@ bool belongs(int known, u32 kind) {
         return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
     if (known == chunk_company) return kind != ACDF_KIND_BRDF;
+    if (known == chunk_halvings) return kind == ACDF_KIND_ENVIRONMENT;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
 }
@@ -224,6 +226,20 @@ void check_lengths(const ChunkTable& table, u32 i, Report& report) {
                    static_cast<ull>(chunk.raw_length), static_cast<ull>(chunk.stored_length));
 }
 
+bool has_chunk(const ChunkTable& table, u32 type) {
+    for (u32 i = 0; i < table.count; ++i)
+        if (table.chunks[i].type == type) return true;
+    return false;
+}
+
+void check_required(const ChunkTable& table, Report& report) {
+    u32 count = sizeof required_types / sizeof *required_types;
+    if (has_chunk(table, ACDF_CHUNK_HALVINGS)) count = required_beside_halvings;
+    for (u32 i = 0; i < count; ++i)
+        if (!has_chunk(table, required_types[i]))
+            report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(required_types[i]).text);
+}
+
 void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& report) {
     u64 end = table.end();
     table.legal = true;
@@ -232,11 +248,7 @@ void check_table(ChunkTable& table, const AcdfHeader& header, u64 size, Report& 
         end = check_place(table, i, round_up(end, ACDF_ALIGNMENT), size, report);
         check_lengths(table, i, report);
     }
-    for (const u32 type : required_types) {
-        bool found = false;
-        for (u32 i = 0; i < table.count; ++i) found = found || table.chunks[i].type == type;
-        if (!found) report.add(3004, table.offset_of(0), "'%s' is missing", ChunkName(type).text);
-    }
+    check_required(table, report);
     end = round_up(end, ACDF_ALIGNMENT);
     if (table.legal && header.file_length != end)
         report.add(3008, offsetof(AcdfHeader, file_length), "`file_length` is %llu, the chunks end at %llu",
@@ -297,7 +309,14 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], fast, report, parts, boxes);
     if (fast && !report.stopped()) check_fast(payloads, boxes, report, parts);
     const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
-    if (tiles_ok && !report.stopped())
+    if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind)) {
+        if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
+            report.add(6035, payloads.of[chunk_halvings].at(0), "%s is there, too",
+                       payloads.of[chunk_tree].data ? "TREE" : "BINS");
+        if (parts.description->fit != ACDF_FIT_VARIANCE)
+            report.add(6035, payloads.of[chunk_halvings].at(0), "with fit %u", parts.description->fit);
+        if (!report.stopped()) check_halvings(payloads.of[chunk_halvings], report, parts);
+    } else if (tiles_ok && !report.stopped())
         check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
     if (header.kind == ACDF_KIND_LOCAL && !report.stopped())
         check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
@@ -339,6 +358,7 @@ Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* co
     }
     verdict = check(data, size, limits, sink, context, parts);
     give_block({}, parts.inflated);
+    std::free(parts.halvings);
     std::free(copy);
     return verdict;
 }

@@ -53,6 +53,7 @@ enum KnownChunk {
     chunk_portals,
     chunk_sums,
     chunk_grid,
+    chunk_halvings,
     known_chunks
 };
 
@@ -93,6 +94,8 @@ void check_fast(const Payloads& payloads, const TileBoxes& boxes, Report& report
 /// BINS and TREE; needs parts.description and, where there are tiles, those. Sets parts.bins, parts.tree.
 void check_tree(const Payload& bins, const Payload& tree, std::uint32_t kind, const TileBoxes& boxes,
                 Report& report, Parts& parts) noexcept;
+/// HALV; needs parts.description. Sets parts.halvings.
+void check_halvings(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// What the kind asks of axes and bins; needs parts.description.
 /// Axes 0 and 1 must be those of an environment.
 void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;

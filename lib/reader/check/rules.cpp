@@ -138,6 +138,15 @@ const Rule rules[] = {
      "an "
      "axis, and behind them 64 zero bytes. The ends of a list never decrease up to 255."},
 
+    {6030, error, malformed, "halvings",
+     "HALV is as long as its counts say, codes have 2 to 12 bits, and its reserved fields are zero."},
+    {6031, error, malformed, "halved-nodes", "`halving_count` nodes of HALV are halved, and every half is there."},
+    {6032, error, malformed, "halved-axis", "A node is halved on a sampled axis that it has two steps or more of."},
+    {6033, error, malformed, "halved-numbers",
+     "A node that no random number leads to is a leaf; one with a code between the first and the last is reached by two "
+     "steps of random numbers or more on its axis."},
+    {6034, error, malformed, "halvings-padding", "The padding of HALV is zero."},
+    {6035, error, malformed, "halvings-alone", "HALV comes without BINS and TREE, and with fit 4."},
     {7001, error, malformed, "environment-axes",
      "An environment, local or not, has the two axes of §6.1 first, with parameterization 4 those of §6.9, with "
      "resolutions of at most 65536; one that is not local has no others."},

@@ -1,5 +1,5 @@
 // Lists of boxes that are halved some boxes at a time, those of each half moved together in a register. One source
-// a set of instructions, compiled for it; internal linkage: see cell_lanes_kernel.h.
+// a set of instructions, compiled for it; internal linkage: no linker mixes what was compiled for others.
 #pragma once
 
 #include "tables/box_lists.h"

@@ -40,7 +40,8 @@ public:
         : file_(file), local_(local_of(file)), environment_(local_.environment),
           cells_(environment_.parameterization, environment_.columns, environment_.rows),
           most_leaves_(2 * std::size_t{file.tree_units()} + 64 +
-                       (local_.blend.tiles ? local_.blend.tiles->tile_count : 0)) {}
+                       (local_.blend.tiles ? local_.blend.tiles->tile_count : 0) +
+                       (environment_.halved ? environment_.halved->count : 0)) {}
 
     bool make();
     bool assemble(AcdfBlock& block) const;
@@ -57,6 +58,8 @@ private:
     bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
     u32 node(u32 axis, u32 position, u32 chance);
     u32 tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light);
+    u32 halvings(u32 at, const AcdfSpan* steps, const Cell& box);
+    u32 environment();
     u32 curve(const Divided& divided, const AcdfCurve& curve, u32 first, u32 last);
     u32 splits(u32 node, const Cell& box);
     u32 leaf(const Cell& cell, u32 light);
@@ -93,6 +96,37 @@ u32 WalkMaker::leaf(const Cell& cell, u32 light) {
 u32 WalkMaker::tree(const std::uint8_t* tree, u32 root, const Cell& box, u32 light) {
     const AcdfCurve whole = acdf_curve_at(tree, root);
     return curve({tree, root, box, light}, whole, 0, whole.segments);
+}
+
+// A node of halvings, the box of it and the random numbers that lead there. A path passes at most 62 halvings.
+u32 WalkMaker::halvings(u32 at, const AcdfSpan* steps, const Cell& box) {
+    const AcdfHalving node = acdf_halvings_nodes(environment_.halved)[at];
+    const u32 axis = node.link & 7u, middle = (box.first[axis] + box.last[axis]) / 2;
+    const u32 wide[2] = {node.threshold - steps[axis].end[0], steps[axis].end[1] - node.threshold};
+    const u32 made = this->node(axis, middle, chance_of(wide[0], wide[1]));
+    u32 links[2] = {};
+    for (u32 upper = 0; upper < 2 && !failed_; ++upper) {
+        Cell part = box;
+        AcdfSpan part_steps[2] = {steps[0], steps[1]};
+        (upper ? part.first : part.last)[axis] = middle;
+        part_steps[axis].end[1 - upper] = node.threshold;
+        part.probability *= static_cast<double>(wide[upper]) / (wide[0] + wide[1]);
+        part.dark = wide[upper] == 0;
+        links[upper] = node.link >> (3 + upper) & 1u
+                           ? leaf(part, 0)
+                           : halvings(upper ? at + (node.link >> 5) : at + 1, part_steps, part);
+    }
+    if (failed_) return ACDF_WALK_LEAF;
+    parts_.nodes[made].lower = links[0];
+    parts_.nodes[made].upper = links[1];
+    return made;
+}
+
+u32 WalkMaker::environment() {
+    const AcdfHalvedTree* halved = environment_.halved;
+    const AcdfSpan steps[2] = {{{0, ACDF_STEPS}}, {{0, ACDF_STEPS}}};
+    if (!halved) return tree(environment_.tree, environment_.root, cells_.whole(), 0);
+    return halved->count ? halvings(0, steps, cells_.whole()) : leaf(cells_.whole(), 0);
 }
 
 // Segments [first, last) of a curve, which are halved. A path passes at most 64 curves.
@@ -200,7 +234,7 @@ bool WalkMaker::make() {
     parts_.add(WalkLeaf{0, 0.0f, {}}); // what is dark
     if (!cells_.remember(most_leaves_)) return false;
     if (local_.light_count > 0 && !light_links_.add(local_.light_count, ACDF_WALK_LEAF)) return false;
-    if (!brdf()) root_ = tree(environment_.tree, environment_.root, cells_.whole(), 0);
+    if (!brdf()) root_ = environment();
     if (local_.fast.grid) {
         mixture_ = ACDF_WALK_ON_GRIDS;
         for (u32 i = 0; i < local_.light_count; ++i) light_links_[i] = local_.lights[i].tile;

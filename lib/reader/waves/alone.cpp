@@ -2,13 +2,6 @@
 
 namespace acdf::alone {
 
-AcdfDirectionSample environment_sample(const AcdfEnvironment& env, const double u[2]) noexcept {
-    return acdf_environment_sample(&env, u[0], u[1]);
-}
-float environment_pdf(const AcdfEnvironment& env, const float w[3]) noexcept {
-    return acdf_environment_pdf(&env, w);
-}
-
 AcdfDirectionSample local_sample(const AcdfLocal& local, const AcdfLocalPoint& point, const double u[2]) noexcept {
     return acdf_local_sample_at(&local, &point, u[0], u[1]);
 }

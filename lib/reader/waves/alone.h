@@ -8,9 +8,6 @@
 /// Those of the same names in acdf/sample.h, acdf/local.h, acdf/cut_sample.h and acdf/fast_cut.h.
 namespace acdf::alone {
 
-AcdfDirectionSample environment_sample(const AcdfEnvironment&, const double u[2]) noexcept;
-float environment_pdf(const AcdfEnvironment&, const float w[3]) noexcept;
-
 AcdfDirectionSample local_sample(const AcdfLocal&, const float normal[3], const double u[2]) noexcept;
 AcdfDirectionSample local_sample(const AcdfLocal&, const AcdfLocalPoint&, const double u[2]) noexcept;
 float local_pdf(const AcdfLocal&, const float normal[3], const float w[3]) noexcept;

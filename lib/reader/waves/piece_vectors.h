@@ -1,8 +1,8 @@
 // The directions of acdf/pieces.h and acdf/shader_square.h over vectors of floats, operation by operation. Internal
-// linkage: see environment_kernel.h.
+// linkage: see vectors.h.
 #pragma once
 
-#include "waves/environment_vectors.h"
+#include "waves/vectors.h"
 
 namespace {
 

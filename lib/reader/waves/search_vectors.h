@@ -1,8 +1,8 @@
 // acdf/squares.h over vectors: the entries of grids are loaded for all lanes at a time, the boxes of a block
-// compared lane by lane. Internal linkage: see environment_kernel.h.
+// compared lane by lane. Internal linkage: see vectors.h.
 #pragma once
 
-#include "waves/environment_vectors.h"
+#include "waves/vectors.h"
 
 #include <acdf/squares.h>
 

@@ -53,11 +53,8 @@ export interface AcdfFile {
     cells(): Uint32Array;
     /** Of the samples of both, how many to draw from this file where it has a company, in (0, 1]. */
     recommendedShare(at?: At): number;
-    /**
-     * Words for the functions of "acdf/shaders": for glsl and wgsl those of an environment on a lat-long grid; with
-     * walk for glslWalk and wgslWalk those of any environment, local environment or BRDF. Throws AcdfError.
-     */
-    shaderTables(options?: { walk?: boolean }): Uint32Array;
+    /** Words for the functions of "acdf/shaders", of an environment, a local environment or a BRDF. Throws AcdfError. */
+    shaderTables(): Uint32Array;
     /** Gives the memory back. What is called then throws. */
     close(): void;
 }

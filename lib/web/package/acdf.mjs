@@ -106,8 +106,8 @@ class AcdfFile {
         return share;
     }
 
-    shaderTables({ walk = false } = {}) {
-        const count = this.#exports.acdf_web_shader_tables(this.#handle(), walk ? 1 : 0);
+    shaderTables() {
+        const count = this.#exports.acdf_web_shader_tables(this.#handle());
         if (!count) throw new AcdfError(this.#error());
         const begin = this.#exports.acdf_web_shader_words(this.#handle());
         return new Uint32Array(this.#exports.memory.buffer, begin, count).slice();

@@ -6,6 +6,7 @@
 
 #include "build/accuracy/cells.h"
 #include "build/accuracy/environment.h"
+#include "compress/halvings/fit.h"
 #include "compress/store/store.h"
 
 #include <gtest/gtest.h>
@@ -21,13 +22,12 @@ using acdf::build::Cell;
 using acdf::compress::Conditional;
 using acdf::compress::FitOptions;
 using acdf::compress::Order;
-using acdf::compress::Shape;
 using acdf::compress::Target;
 
 const std::uint32_t kSamples = std::uint32_t(repeated(60000));
-// Chi-square tests in all: two a fit, 19 fits, 12 synthetic targets on two grids and four probes on two. Together
+// Chi-square tests in all: two a fit, 15 fits, 12 synthetic targets on two grids and four probes on two. Together
 // they reject a correct program with a chance of 1 % (once and for all, because the seeds are fixed).
-constexpr int kChiSquareTests = 2 * 19 * 2 * (12 + 4);
+constexpr int kChiSquareTests = 2 * 15 * 2 * (12 + 4);
 constexpr std::uint32_t kPhiBins = 31,
                         kZBins = 15; // of u and v too; odd, so that no border falls on those of a grid
 
@@ -67,7 +67,7 @@ CellMap map_cells(const acdf::File& file, const Target& target) {
     CellMap map;
     map.of_texel.assign(target.values.size(), kNone);
     std::size_t overlaps = 0;
-    acdf::build::for_each_cell(file, file.bin(0).root, [&](const Cell& cell) {
+    acdf::build::for_each_cell(file.environment(), [&](const Cell& cell) {
         for (std::uint32_t r = cell.range[1].low; r < cell.range[1].high; ++r)
             for (std::uint32_t c = cell.range[0].low; c < cell.range[0].high; ++c) {
                 std::uint32_t& owner = map.of_texel[std::size_t{r} * target.columns + c];
@@ -266,7 +266,6 @@ std::vector<NamedFit> all_fits(std::uint32_t columns, std::uint32_t rows, std::u
     base.column_segments = columns;
     base.row_segments = rows;
     base.goal.cells = cells;
-    base.shape = Shape::cascade;
     std::vector<NamedFit> variants;
     const auto add = [&](const char* name, AcdfFit fit, double epsilon, std::uint32_t gradient, Conditional mean) {
         FitOptions options = base;
@@ -283,9 +282,6 @@ std::vector<NamedFit> all_fits(std::uint32_t columns, std::uint32_t rows, std::u
     add("cdf, gradient, mean", ACDF_FIT_CDF, 0.0, rows / 2, Conditional::mean);
     add("cdf, epsilon", ACDF_FIT_CDF, 0.02, 0, Conditional::energy);
     add("pdf", ACDF_FIT_PDF, 0.0, 0, Conditional::energy);
-    add("variance, cascade", ACDF_FIT_VARIANCE, 0.0, 0, Conditional::energy);
-    add("variance, tree", ACDF_FIT_VARIANCE, 0.0, 0, Conditional::energy);
-    variants.back().options.shape = Shape::tree;
 
     std::vector<NamedFit> all;
     for (const NamedFit& variant : variants)
@@ -294,8 +290,20 @@ std::vector<NamedFit> all_fits(std::uint32_t columns, std::uint32_t rows, std::u
             all.back().name += order == Order::phi ? ", order phi" : ", order z";
             all.back().options.order = order;
         }
-    all.push_back(variants.back()); // a tree starts with the axis of its own choice
+    FitOptions variance = base;
+    variance.fit = ACDF_FIT_VARIANCE;
+    all.push_back({"variance", variance});
     return all;
+}
+
+/// Halvings of the variance fit, curves of the others.
+static std::vector<std::uint8_t> stored(const Target& target, const FitOptions& options,
+                                        const acdf::compress::Description& description) {
+    if (options.fit != ACDF_FIT_VARIANCE)
+        return acdf::compress::store(acdf::compress::fit(target, options).tree, description);
+    acdf::compress::HalvingsOptions halvings;
+    halvings.goal = options.goal;
+    return acdf::compress::store(acdf::compress::fit_halvings(target, halvings), description);
 }
 
 void check_fit(const Target& target, const NamedFit& fit) {
@@ -304,7 +312,7 @@ void check_fit(const Target& target, const NamedFit& fit) {
         acdf::compress::environment_description(target.columns, target.rows, target.parameterization);
     description.fit = fit.options.fit;
     description.total = acdf::compress::integral(target);
-    const auto bytes = acdf::compress::store(acdf::compress::fit(target, fit.options).tree, description);
+    const auto bytes = stored(target, fit.options, description);
     acdf::File file;
     const acdf::Status status = acdf::File::from_memory(bytes.data(), bytes.size(), file);
     ASSERT_TRUE(status.ok()) << status.message;

@@ -83,14 +83,10 @@ TEST_P(Probe, VarianceFitMeetsItsFigure) {
     FitOptions options;
     options.fit = ACDF_FIT_VARIANCE;
     options.goal.cells = 4096;
-    for (const Shape shape : {Shape::cascade, Shape::tree}) {
-        SCOPED_TRACE(shape == Shape::tree ? "tree" : "cascade");
-        options.shape = shape;
-        options.order = Order::phi;
-        const double phi = relative_variance(options);
-        options.order = Order::z;
-        EXPECT_LE(std::min(phi, relative_variance(options)), GetParam().variance);
-    }
+    options.order = Order::phi;
+    const double phi = relative_variance(options);
+    options.order = Order::z;
+    EXPECT_LE(std::min(phi, relative_variance(options)), GetParam().variance);
 }
 
 /// A probe in a projection; the discs and squares are read in several, as any of them is a map of the sphere.

@@ -7,6 +7,7 @@
 
 #include "build/accuracy/environment.h"
 #include "compress/fit/fit.h"
+#include "compress/halvings/fit.h"
 #include "compress/store/store.h"
 
 #include <gtest/gtest.h>
@@ -112,19 +113,28 @@ TEST_P(TwoLights, GradientAloneFindsAllBorders) {
 }
 
 TEST_P(TwoLights, VarianceNeedsNoHelp) {
-    for (const Shape shape : {Shape::cascade, Shape::tree}) {
-        SCOPED_TRACE(shape == Shape::tree ? "tree" : "cascade");
-        FitOptions options;
-        options.fit = ACDF_FIT_VARIANCE;
-        options.order = GetParam();
-        options.shape = shape;
-        options.goal.cells = shape == Shape::tree ? 16 : 8; // four bands; three cells in each of the lit ones
-        store_fit(options);
-        EXPECT_LT(relative_variance(), 1e-6);
-        EXPECT_GT(pdf(kB + 2, kLow[0] + 1), 0.0);
-        EXPECT_EQ(pdf(kB + 2, kHigh[0] + 1), 0.0);
-        EXPECT_EQ(pdf(kC + 2, kLow[0] + 1), 0.0);
-    }
+    FitOptions options;
+    options.fit = ACDF_FIT_VARIANCE;
+    options.order = GetParam();
+    options.goal.cells = 16;
+    store_fit(options);
+    EXPECT_LT(relative_variance(), 1e-6);
+    EXPECT_GT(pdf(kB + 2, kLow[0] + 1), 0.0);
+    EXPECT_EQ(pdf(kB + 2, kHigh[0] + 1), 0.0);
+    EXPECT_EQ(pdf(kC + 2, kLow[0] + 1), 0.0);
+}
+
+// The lights begin and end at even rows: halvings find their borders with codes that are exactly 0 and 1.
+TEST_P(TwoLights, HalvingsNeedNoHelp) {
+    HalvingsOptions options;
+    options.goal.cells = 64;
+    bytes_ = store(fit_halvings(target(), options), environment_description(kSize, kSize));
+    const acdf::Status status = acdf::File::from_memory(bytes_.data(), bytes_.size(), file_);
+    ASSERT_TRUE(status.ok()) << status.message;
+    EXPECT_LT(relative_variance(), 1e-3); // of codes of ten bits or fewer
+    EXPECT_GT(pdf(kB + 2, kLow[0] + 1), 0.0);
+    EXPECT_EQ(pdf(kB + 2, kHigh[0] + 1), 0.0);
+    EXPECT_EQ(pdf(kC + 2, kLow[0] + 1), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothOrders, TwoLights, ::testing::Values(Order::phi, Order::z),

@@ -312,9 +312,56 @@ inline FileSpec taken_apart(const Bytes& file) {
     return spec;
 }
 
+/// A node of a tree of halvings.
+struct HalvingSpec {
+    int axis = -1; ///< -1: a leaf
+    std::uint32_t code = 0;
+};
+
+/// Bits, the lowest of each byte first (SPEC.md §5.12).
+class BitSpec {
+public:
+    void put(std::uint32_t value, std::uint32_t count) {
+        for (std::uint32_t i = 0; i < count; ++i) bits_.push_back(value >> i & 1);
+    }
+    void add_to(Bytes& out) const {
+        const std::size_t begin = out.size();
+        out.resize(begin + (bits_.size() + 31) / 32 * 4, 0);
+        for (std::size_t i = 0; i < bits_.size(); ++i)
+            out[begin + i / 8] = static_cast<std::uint8_t>(out[begin + i / 8] | bits_[i] << i % 8);
+    }
+
+private:
+    std::vector<std::uint32_t> bits_;
+};
+
+/// Chunk HALV of a tree over two sampled axes.
+struct HalvingsSpec {
+    std::uint32_t code_bits = 8, axis_bits = 1;
+    std::vector<HalvingSpec> nodes; ///< in preorder
+
+    Bytes encode() const {
+        BitSpec structure, codes;
+        std::uint32_t count = 0;
+        for (const HalvingSpec& node : nodes) {
+            structure.put(node.axis >= 0, 1);
+            if (node.axis < 0) continue;
+            structure.put(static_cast<std::uint32_t>(node.axis), axis_bits);
+            codes.put(node.code, code_bits);
+            ++count;
+        }
+        Bytes out;
+        for (const std::uint32_t v : {count, code_bits, 0u, 0u}) put32(out, v);
+        structure.add_to(out);
+        codes.add_to(out);
+        return out;
+    }
+};
+
 /// An environment file with everything that SPEC.md asks of one.
 struct EnvironmentSpec {
     std::uint32_t columns = 1, rows = 1;
+    HalvingsSpec halvings; ///< instead of curves, if it has nodes
     TreeSpec tree = {{CurveSpec{}}, {}};
     std::size_t root = 0; ///< index of a curve
     Metadata metadata;    ///< no chunk META if empty
@@ -330,9 +377,14 @@ struct EnvironmentSpec {
         if (octahedral) description.make_octahedral();
         const Bytes curves = tree.encode();
         FileSpec file;
-        file.chunks = {{"DESC", description.encode(), 1, zlib},
-                       {"BINS", acdf_test::encode(std::vector<BinSpec>{{tree.starts[root], 1.0f}}), 1, zlib},
-                       {"TREE", curves, 1, zlib}};
+        file.chunks = {{"DESC", description.encode(), 1, zlib}};
+        if (halvings.nodes.empty()) {
+            file.chunks.push_back(
+                {"BINS", acdf_test::encode(std::vector<BinSpec>{{tree.starts[root], 1.0f}}), 1, zlib});
+            file.chunks.push_back({"TREE", curves, 1, zlib});
+        } else {
+            file.chunks.push_back({"HALV", halvings.encode(), 1, zlib});
+        }
         if (!metadata.empty()) file.chunks.push_back({"META", acdf_test::encode(metadata), 0, zlib});
         return file;
     }

@@ -33,7 +33,7 @@ TEST(EnvironmentView, samplesFollowTheDensity) {
     // Šidák: all trees together fail by chance once in a hundred times; the seeds are fixed.
     const double tail = 1.0 - std::pow(1.0 - 0.01, 1.0 / tree_count);
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
-        const auto env = loaded(RandomTree(seed, options_of(seed)).make());
+        const auto env = loaded(random_environment(seed, options_of(seed)));
         const Environment reference(env->bytes);
         const auto columns = static_cast<std::size_t>(reference.columns);
         std::vector<Cell> cells;

@@ -59,6 +59,21 @@ struct Curve {
     std::size_t n() const { return children.size(); }
 };
 
+// SPEC.md §5.12: the share of a node's random numbers that leads to its lower half, in steps of 2^-31.
+inline std::uint64_t halving_share(std::uint64_t code, std::uint64_t code_bits) {
+    const double q = static_cast<double>((std::uint64_t{1} << code_bits) - 1),
+                 j = 2.0 * static_cast<double>(code) - q;
+    const double a = 14 * q * q * q + j * (11 * q * q + 3 * j * j),
+                 b = 14 * q * q * q - j * (11 * q * q + 3 * j * j);
+    return static_cast<std::uint64_t>(std::floor(a * a / (a * a + b * b) * 2147483648.0 + 0.5));
+}
+
+// A node of halvings on the way: its box and the steps of random numbers that lead to it, low and high on each
+// axis.
+struct Halved {
+    std::uint64_t box[2][2], steps[2][2];
+};
+
 class Environment {
 public:
     explicit Environment(const Bytes& file) {
@@ -68,12 +83,43 @@ public:
         rows = static_cast<double>(number(description_, 64 + 48 + 24, 4));
         total = f64(description_, 56);
         octahedral = number(description_, 0, 4) == 4;
-        root = number(bins_, 0, 4);
+        if (halvings_.empty()) root = number(bins_, 0, 4);
     }
 
     double columns, rows, total;
     bool octahedral;
-    std::size_t root; // of the tree, in units of two bytes
+    std::size_t root = 0; // of the tree, in units of two bytes
+
+    bool is_halved() const { return !halvings_.empty(); }
+
+    /// Every leaf of a tree of halvings, in preorder: `enter(axis, upper, node)` says whether a half is visited.
+    void each_leaf(const std::function<bool(std::size_t axis, bool upper, const Halved& half)>& enter,
+                   const std::function<void(const Halved&)>& visit) const {
+        const std::size_t count = number(halvings_, 0, 4);
+        std::size_t bit = 8 * 16, code = 8 * (16 + (3 * count + 1 + 31) / 32 * 4);
+        const std::uint64_t all = std::uint64_t{1} << 31;
+        const Halved whole = {{{0, static_cast<std::uint64_t>(columns)}, {0, static_cast<std::uint64_t>(rows)}},
+                              {{0, all}, {0, all}}};
+        descend(whole, true, bit, code, enter, visit);
+    }
+    Cell cell_of(const Halved& leaf) const {
+        Cell cell;
+        for (int axis = 0; axis < 2; ++axis) {
+            cell.low[axis] = static_cast<double>(leaf.box[axis][0]);
+            cell.high[axis] = static_cast<double>(leaf.box[axis][1]);
+            cell.p *= static_cast<double>(leaf.steps[axis][1] - leaf.steps[axis][0]) / 2147483648.0;
+        }
+        return cell;
+    }
+    Cell halved_at(const std::function<bool(std::size_t axis, bool upper, const Halved& half)>& enter,
+                   Halved* leaf = nullptr) const {
+        Cell cell;
+        each_leaf(enter, [&](const Halved& found) {
+            cell = cell_of(found);
+            if (leaf) *leaf = found;
+        });
+        return cell;
+    }
 
     Curve curve(std::size_t unit) const {
         std::size_t at = 2 * unit;
@@ -140,6 +186,22 @@ public:
         double u[2] = {u0, u1};
         for (double& v : u) v = v > 0.0 ? std::min(v, 1.0) : 0.0;
         Sample s;
+        if (is_halved()) {
+            Halved leaf;
+            std::uint64_t step[2];
+            for (int axis = 0; axis < 2; ++axis)
+                step[axis] = static_cast<std::uint64_t>(std::min(std::floor(u[axis] * 2147483648.0), 2147483647.0));
+            s.cell = halved_at(
+                [&](std::size_t axis, bool, const Halved& half) {
+                    return half.steps[axis][0] <= step[axis] && step[axis] < half.steps[axis][1];
+                },
+                &leaf);
+            for (int axis = 0; axis < 2; ++axis)
+                u[axis] = (u[axis] * 2147483648.0 - static_cast<double>(leaf.steps[axis][0])) /
+                          static_cast<double>(leaf.steps[axis][1] - leaf.steps[axis][0]);
+            place(s, u);
+            return s;
+        }
         s.cell = walk([&](const Curve& c) { return draw(c, u); });
         place(s, u);
         return s;
@@ -282,6 +344,11 @@ public:
     }
 
     Cell find(const double (&square)[2]) const {
+        if (is_halved())
+            return halved_at([&](std::size_t axis, bool, const Halved& half) {
+                return static_cast<double>(half.box[axis][0]) <= square[axis] &&
+                       square[axis] < static_cast<double>(half.box[axis][1]);
+            });
         return walk([&](const Curve& c) { return segment_of(c, square); });
     }
     static std::size_t segment_of(const Curve& c, const double (&square)[2]) {
@@ -292,6 +359,9 @@ public:
 
     /// Every cell, those of probability 0 included.
     void each_cell(const std::function<void(const Cell&)>& visit) const {
+        if (is_halved())
+            return each_leaf([](std::size_t, bool, const Halved&) { return true; },
+                             [&](const Halved& leaf) { visit(cell_of(leaf)); });
         Cell whole;
         whole.high[0] = columns;
         whole.high[1] = rows;
@@ -332,6 +402,35 @@ private:
         if (type == "SUMS") sums_ = bytes;
         if (type == "GRID") grid_ = bytes;
         if (type == "LOCL") local_ = bytes;
+        if (type == "HALV") halvings_ = bytes;
+    }
+
+    std::uint64_t bits_at(std::size_t& bit, std::size_t count) const {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < count; ++i, ++bit)
+            value |= static_cast<std::uint64_t>(halvings_.at(bit / 8) >> bit % 8 & 1) << i;
+        return value;
+    }
+
+    void descend(const Halved& node, bool entered, std::size_t& bit, std::size_t& code,
+                 const std::function<bool(std::size_t, bool, const Halved&)>& enter,
+                 const std::function<void(const Halved&)>& visit) const {
+        if (bits_at(bit, 1) == 0) {
+            if (entered) visit(node);
+            return;
+        }
+        const std::size_t axis = bits_at(bit, 1);
+        const std::uint64_t code_bits = number(halvings_, 4, 4), k = bits_at(code, code_bits);
+        const std::uint64_t low = node.steps[axis][0], wide = node.steps[axis][1] - low;
+        std::uint64_t lower = wide * halving_share(k, code_bits) / (std::uint64_t{1} << 31);
+        if (k == 0) lower = 0;
+        else if (k == (std::uint64_t{1} << code_bits) - 1) lower = wide;
+        else lower = std::min(std::max<std::uint64_t>(lower, 1), wide - 1);
+        Halved half[2] = {node, node};
+        half[0].steps[axis][1] = half[1].steps[axis][0] = low + lower;
+        half[0].box[axis][1] = half[1].box[axis][0] = (node.box[axis][0] + node.box[axis][1]) / 2;
+        for (int upper = 0; upper < 2; ++upper)
+            descend(half[upper], entered && enter(axis, upper == 1, half[upper]), bit, code, enter, visit);
     }
 
     // Positions on the axis: the ends are those of the range so far.
@@ -360,7 +459,7 @@ private:
     }
 
 protected:
-    Bytes description_, bins_, tree_, tiles_, rows_, sums_, grid_, local_;
+    Bytes description_, bins_, tree_, tiles_, rows_, sums_, grid_, local_, halvings_;
 };
 
 } // namespace acdf_reference

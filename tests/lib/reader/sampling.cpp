@@ -49,7 +49,7 @@ TEST(EnvironmentFrame, quadrantsAndHemispheres) {
 
 TEST(EnvironmentView, agreesWithTheSlowDecoder) {
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
-        EnvironmentSpec spec = RandomTree(seed, options_of(seed)).make();
+        EnvironmentSpec spec = random_environment(seed, options_of(seed));
         spec.zlib = seed % 7 == 0;
         const auto env = loaded(spec);
         const Environment reference(env->bytes);
@@ -160,7 +160,7 @@ TEST(EnvironmentView, pdfOfASampleIsExact) {
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
         RandomOptions options = options_of(seed);
         options.tilts = false;
-        expect_equal_pdf(loaded(RandomTree(seed, options).make())->view, 1000, seed);
+        expect_equal_pdf(loaded(random_environment(seed, options))->view, 1000, seed);
     }
 }
 
@@ -175,7 +175,7 @@ TEST(EnvironmentView, pdfOfASampleIsExactInNarrowCells) {
         options.narrow_cells = true;
         options.segments = 24;
         options.depth = 4;
-        expect_equal_pdf(loaded(RandomTree(seed, options).make())->view, 5000, seed);
+        expect_equal_pdf(loaded(random_environment(seed, options))->view, 5000, seed);
     }
 }
 
@@ -223,7 +223,7 @@ TEST(EnvironmentView, invertGivesTheRandomNumbersBack) {
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
         RandomOptions options = options_of(seed);
         options.depth = 3;
-        const auto env = loaded(RandomTree(seed, options).make());
+        const auto env = loaded(random_environment(seed, options));
         std::mt19937_64 rng(seed);
         for (int n = 0; n < 300; ++n) {
             const auto s = env->view.sample(uniform(rng), uniform(rng));
@@ -250,7 +250,7 @@ TEST(EnvironmentView, anyRandomNumberGivesASample) {
     std::vector<double> edges = {0.0,    -0.0, 1.0,  1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-24,   0x1p-53,     5e-324,
                                  1e-310, 0.5,  -1.0, 2.0,           infinity,      -infinity, std::nan("")};
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
-        EnvironmentSpec spec = RandomTree(seed, options_of(seed)).make();
+        EnvironmentSpec spec = random_environment(seed, options_of(seed));
         std::vector<double> us = edges;
         for (const CurveSpec& curve : spec.tree.curves)
             for (std::uint32_t c : curve.cumulative) { // exactly on a knot, and beside it
@@ -316,7 +316,7 @@ TEST(EnvironmentView, directionsAtTheEdges) {
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
         RandomOptions options = options_of(seed);
         options.dark = false;
-        const auto env = loaded(RandomTree(seed, options).make());
+        const auto env = loaded(random_environment(seed, options));
         for (const auto& d : none) EXPECT_EQ(env->view.pdf(d), 0.0f);
         for (const auto& d : some) EXPECT_GT(env->view.pdf(d), 0.0f) << d[0] << ' ' << d[1] << ' ' << d[2];
         if (options.octahedral) continue;
@@ -354,7 +354,7 @@ TEST(EnvironmentView, isMonotoneWithinASegment) {
 // integrated exactly by two Gauss points an axis.
 TEST(EnvironmentView, integratesToOne) {
     for (std::uint32_t seed = 0; seed < tree_count; ++seed) {
-        const auto env = loaded(RandomTree(seed, options_of(seed)).make());
+        const auto env = loaded(random_environment(seed, options_of(seed)));
         const Environment reference(env->bytes);
         double sum = 0.0, probability = 0.0;
         reference.each_cell([&](const Cell& cell) {

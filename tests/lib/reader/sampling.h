@@ -3,7 +3,7 @@
 
 #include "tests/inputs/directions.h"
 #include "tests/lib/reader/load.h"
-#include "tests/lib/reader/random.h"
+#include "tests/lib/reader/random_halvings.h"
 
 #include <gtest/gtest.h>
 

@@ -22,7 +22,7 @@ struct WalkedFile {
         options.tables = false;
         const acdf::Status loaded = acdf::File::from_memory(bytes.data(), bytes.size(), file, options);
         EXPECT_TRUE(loaded.ok()) << loaded.message;
-        status = acdf::ShaderTables::make_walk(file, tables);
+        status = acdf::ShaderTables::make(file, tables);
         EXPECT_EQ(status.ok(), tables.size() > 0) << status.message;
     }
     bool local() const { return file.kind() == ACDF_KIND_LOCAL; }

@@ -1,12 +1,11 @@
 // Environment files and images for the tests of plots.
 #pragma once
 
+#include "tests/inputs/environment_file.h"
 #include "tests/inputs/synthetic.h"
 #include "tests/inputs/write_rgb.h"
 
 #include "build/probe/projection.h"
-#include "compress/fit/fit.h"
-#include "compress/store/store.h"
 #include "images/image_file.h"
 
 #include <acdf/reader.h>
@@ -21,14 +20,6 @@
 
 namespace acdf::test {
 
-inline std::vector<std::uint8_t> environment_bytes(const compress::Target& target,
-                                                   const compress::FitOptions& options) {
-    compress::Description description = compress::environment_description(target.columns, target.rows);
-    description.fit = options.fit;
-    description.total = compress::integral(target);
-    return compress::store(compress::fit(target, options).tree, description);
-}
-
 /// A file in memory and the view of it.
 struct StoredEnvironment {
     std::vector<std::uint8_t> bytes;
@@ -39,7 +30,7 @@ struct StoredEnvironment {
         EXPECT_TRUE(status.ok()) << status.message;
     }
     StoredEnvironment(const compress::Target& target, const compress::FitOptions& options)
-        : StoredEnvironment(environment_bytes(target, options)) {}
+        : StoredEnvironment(acdf_test::environment_file(target, options)) {}
     EnvironmentView view() const { return file.environment(); }
 };
 

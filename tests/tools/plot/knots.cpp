@@ -14,7 +14,7 @@ namespace {
 
 std::vector<build::Cell> cells_of(const File& file) {
     std::vector<build::Cell> cells;
-    build::for_each_cell(file, file.bin(0).root, [&](const build::Cell& cell) { cells.push_back(cell); });
+    build::for_each_cell(file.environment(), [&](const build::Cell& cell) { cells.push_back(cell); });
     return cells;
 }
 

@@ -166,7 +166,7 @@ TEST(SweepCommand, RefusesWhatIsThereAndWrongOptions) {
     EXPECT_EQ(read_text(folder / "out/report.html"), "mine");
     EXPECT_FALSE(std::filesystem::exists(folder / "out/sweep.csv"));
     EXPECT_EQ(sweep(probe, folder / "x", {"--kind", "nonsense"}).code, 2);
-    result = run_acdf({"sweep", "ggx:alpha=0.3", "-o", folder / "x", "--fits", "cascade"});
+    result = run_acdf({"sweep", "ggx:alpha=0.3", "-o", folder / "x", "--fits", "pdf"});
     EXPECT_EQ(result.code, 2);
     EXPECT_NE(result.err.find("separate"), std::string::npos) << result.err; // what there is
     EXPECT_EQ(run_acdf({"sweep", "ggx:alpha=0.3", "-o", folder / "x", "--budgets", "12 parsecs"}).code, 2);

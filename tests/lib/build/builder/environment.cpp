@@ -215,10 +215,9 @@ TEST(Builder, MakesWhatTheProgramMakesOfEveryFit) {
     options.fit.max_weight = 40.0;
     expect_same(options, {"--target-variance", "0.02", "--max-weight", "40"});
     options = {};
-    options.fit.shape = Shape::cascade;
     options.goal = builder::Goal::of_cells(300);
     options.target.channels = {ACDF_CHANNELS_SEPARATE, {1.0, 1.0, 1.0}};
-    expect_same(options, {"--shape", "cascade", "--cells", "300", "--channel", "rgb"});
+    expect_same(options, {"--cells", "300", "--channel", "rgb"});
     options = {};
     options.fit.fit = ACDF_FIT_CDF;
     options.fit.phi_segments = 12, options.fit.theta_segments = 9;

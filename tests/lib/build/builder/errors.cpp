@@ -72,14 +72,7 @@ TEST(BuilderErrors, EnvironmentOptions) {
     refused("a wild goal", [](EnvironmentOptions& o) { o.goal.kind = static_cast<Goal::Kind>(9); });
     for (const double w : {kNan, kInfinite, -1.0, 0.5})
         refused("max_weight", [&](EnvironmentOptions& o) { o.fit.max_weight = w; });
-    refused("a cascade of a budget", [](EnvironmentOptions& o) {
-        o.fit.shape = Shape::cascade;
-        o.goal = Goal::of_budget(4000);
-    });
-    refused("a cascade of bounded weight", [](EnvironmentOptions& o) {
-        o.fit.shape = Shape::cascade;
-        o.fit.max_weight = 5.0;
-    });
+    refused("an order of halvings", [](EnvironmentOptions& o) { o.fit.order = builder::Order::z; });
     refused("no segments", [](EnvironmentOptions& o) { o.fit.phi_segments = 0; });
     refused("too many segments", [](EnvironmentOptions& o) { o.fit.theta_segments = 1 << 20; });
     for (const double e : {kNan, -0.1, 1.1}) refused("epsilon", [&](EnvironmentOptions& o) { o.fit.epsilon = e; });

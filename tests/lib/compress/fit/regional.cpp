@@ -16,16 +16,15 @@ namespace {
 
 using namespace acdf::compress;
 
-constexpr AcdfFit kFits[] = {ACDF_FIT_UNIFORM, ACDF_FIT_CDF, ACDF_FIT_PDF, ACDF_FIT_VARIANCE};
+constexpr AcdfFit kFits[] = {ACDF_FIT_UNIFORM, ACDF_FIT_CDF, ACDF_FIT_PDF};
 
-FitOptions options_of(AcdfFit fit, Order order, Shape shape = Shape::cascade) {
+FitOptions options_of(AcdfFit fit, Order order) {
     FitOptions options;
     options.fit = fit;
     options.order = order;
     options.column_segments = 9;
     options.row_segments = 5;
     options.goal.cells = 45;
-    options.shape = shape;
     return options;
 }
 
@@ -57,8 +56,8 @@ TEST(Fit, OrderPhiIsOrderZOfTheTransposedTarget) {
 
 TEST(Fit, TreesStartWithTheAxisOfTheirOrder) {
     const Target t = acdf_test::noise_target(31, 23, 1, 1.0, 0.1);
-    const FitOptions phi = options_of(ACDF_FIT_VARIANCE, Order::phi, Shape::tree);
-    const FitOptions z = options_of(ACDF_FIT_VARIANCE, Order::z, Shape::tree);
+    const FitOptions phi = options_of(ACDF_FIT_VARIANCE, Order::phi);
+    const FitOptions z = options_of(ACDF_FIT_VARIANCE, Order::z);
     EXPECT_EQ(fit(t, phi).cascade.curves[0].axis, ACDF_AXIS_PHI + 0u);
     EXPECT_EQ(fit(t, z).cascade.curves[0].axis, ACDF_AXIS_THETA + 0u);
     // The same tree but for the order in which sums are taken.

@@ -18,7 +18,6 @@ using namespace acdf::compress;
 FitOptions tree_for(const Goal& goal) {
     FitOptions options;
     options.fit = ACDF_FIT_VARIANCE;
-    options.shape = Shape::tree;
     options.goal = goal;
     return options;
 }
@@ -73,7 +72,6 @@ TEST(FitTree, HasNoVarianceWithACellATexel) {
 TEST(FitTree, SeparatesLightsThatACascadeCannot) {
     const Target t = many_lights();
     FitOptions cascade = tree_for(cells(400));
-    cascade.shape = Shape::cascade;
     cascade.order = Order::z;
     const double two_levels = measured(fit(t, cascade).tree, t);
     EXPECT_LT(measured(fit(t, tree_for(cells(400))).tree, t), 0.5 * two_levels);

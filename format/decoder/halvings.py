@@ -1,0 +1,134 @@
+"""SPEC.md §5.12, and what §6.2, §6.3 and §6.5 say of trees of halvings."""
+import math
+import struct
+
+from .refused import require
+
+STEPS = 1 << 31
+MOST_HALVINGS = 134217727
+
+
+class Bits:
+    """A run of bits, the lowest of each byte first."""
+
+    def __init__(self, data):
+        self.data, self.at = data, 0
+
+    def take(self, count):
+        value = 0
+        for i in range(count):
+            value |= (self.data[self.at // 8] >> self.at % 8 & 1) << i
+            self.at += 1
+        return value
+
+    def is_used_up(self):
+        return not any(self.take(1) for _ in range(8 * len(self.data) - self.at))
+
+
+def words(bits):
+    return (bits + 31) // 32
+
+
+def share(code, code_bits):
+    """Of a node's random numbers, what leads to its lower half, in steps of 2^-31."""
+    q = float((1 << code_bits) - 1)
+    j = 2.0 * code - q
+    e = 14.0 * q * q * q
+    o = j * (11.0 * q * q + 3.0 * j * j)
+    a, b = e + o, e - o
+    return math.floor(a * a / (a * a + b * b) * 2147483648.0 + 0.5)
+
+
+def threshold(low, high, code, code_bits):
+    """The first step of [low, high) that leads to the upper half."""
+    if code == 0:
+        return low
+    if code == (1 << code_bits) - 1:
+        return high
+    wide = high - low
+    require(wide >= 2, 6033)
+    return low + min(max(wide * share(code, code_bits) >> 31, 1), wide - 1)
+
+
+class Node:
+    """A node: `box` and `steps`, by axis, low and high. One that is halved has `axis` and `halves`, lower and upper."""
+
+    def __init__(self, box, steps):
+        self.box, self.steps, self.axis, self.halves = box, steps, None, None
+
+    def halve(self, axis, border):
+        """Also where random numbers are divided: at `border`."""
+        self.axis = axis
+        low, high = self.box[axis]
+        middle = (low + high) // 2
+        first, last = self.steps[axis]
+        self.halves = [self.with_axis(axis, [low, middle], [first, border]),
+                       self.with_axis(axis, [middle, high], [border, last])]
+
+    def with_axis(self, axis, box, steps):
+        node = Node(list(self.box), list(self.steps))
+        node.box[axis], node.steps[axis] = box, steps
+        return node
+
+    def is_dark(self):
+        return any(low == high for low, high in self.steps)
+
+    def probability(self):
+        (r0, s0), (r1, s1) = self.steps
+        return (s0 - r0) / STEPS * ((s1 - r1) / STEPS)
+
+
+class Halvings:
+    """Chunk HALV. What Tree is to curves: `draw` and `find` change `u`, `box` and, of `find`, `strata`, by axis, to those
+    of the cell. The other arguments are those of Tree."""
+
+    def __init__(self, data, resolutions):
+        require(len(data) >= 16, 6030)
+        self.count, self.code_bits, *reserved = struct.unpack_from("<4I", data)
+        require(self.count <= MOST_HALVINGS and 2 <= self.code_bits <= 12 and not any(reserved), 6030)
+        codes_at = 16 + 4 * words(3 * self.count + 1)
+        require(len(data) == codes_at + 4 * words(self.code_bits * self.count), 6030)
+        self.root = Node([[0, n] for n in resolutions], [[0, STEPS] for _ in resolutions])
+        structure, codes = Bits(data[16:codes_at]), Bits(data[codes_at:])
+        self.read(structure, codes)
+        require(structure.is_used_up() and codes.is_used_up(), 6034)
+
+    def read(self, structure, codes):
+        """The nodes in preorder."""
+        halved, waiting = 0, [self.root]
+        while waiting:
+            node = waiting.pop()
+            if structure.take(1) == 0:
+                continue
+            halved += 1
+            require(halved <= self.count, 6031)
+            axis, code = structure.take(1), codes.take(self.code_bits)
+            low, high = node.box[axis]
+            require(high - low >= 2, 6032)
+            require(not node.is_dark(), 6033)
+            node.halve(axis, threshold(*node.steps[axis], code, self.code_bits))
+            waiting += reversed(node.halves)
+        require(halved == self.count, 6031)
+
+    def leaf(self, is_upper):
+        node = self.root
+        while node.halves:
+            node = node.halves[is_upper(node)]
+        return node
+
+    def draw(self, _root, u, box, _s):
+        """§6.2. Returns p."""
+        step = [min(math.floor(v * STEPS), STEPS - 1) for v in u]
+        leaf = self.leaf(lambda node: step[node.axis] >= node.halves[1].steps[node.axis][0])
+        for a, (low, high) in enumerate(leaf.steps):
+            u[a] = (u[a] * STEPS - low) / (high - low)
+        box[:] = leaf.box
+        return leaf.probability()
+
+    def find(self, _root, square, box, _s, strata=None):
+        """§6.3. Returns p, 0 where no sample can fall."""
+        leaf = self.leaf(lambda node: square[node.axis] >= node.halves[1].box[node.axis][0])
+        box[:] = leaf.box
+        if strata is not None:
+            strata[:] = [[low / STEPS, (high - low) / STEPS] for low, high in leaf.steps]
+        return leaf.probability()

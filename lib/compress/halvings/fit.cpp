@@ -1,0 +1,184 @@
+#include "compress/halvings/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+namespace acdf::compress {
+namespace {
+
+constexpr std::uint32_t kAxisBits = 1; // two axes
+constexpr std::uint32_t kCodeBits[] = {6, 7, 8, 9, 10, 12};
+constexpr std::uint32_t kFewestCodeBits = kCodeBits[0], kMostCodeBits = 12;
+constexpr std::uint32_t kUsualCodeBits = 8;
+/// A code of 8 bits adds about so much to the relative variance a level of the tree, one of b bits 4^(8 - b) times
+/// that.
+constexpr double kLossOfLevel = 1.3e-5;
+
+/// The most leaves that fit into a chunk.
+std::size_t leaves_within(std::uint64_t bytes, std::uint32_t code_bits) {
+    std::size_t leaves = bytes * 8 / (2 + kAxisBits + code_bits) + 1;
+    while (leaves > 0 && halvings_bytes(leaves, kAxisBits, code_bits) > bytes) --leaves;
+    return leaves;
+}
+
+double predicted_loss(std::size_t leaves, std::uint32_t code_bits) {
+    return kLossOfLevel * std::log2(double(leaves) + 1.0) * std::exp2(2.0 * (8.0 - double(code_bits)));
+}
+
+class HalvingsFit {
+public:
+    HalvingsFit(const Target& target, const HalvingsOptions& options)
+        : options_(options), sums_(grid_of(target)), integral_(compress::integral(target)),
+          mean_square_(target.mean_square > 0.0 ? target.mean_square : integral_ * integral_),
+          heaviest_(options.max_weight * (std::sqrt(mean_square_) / integral_)) {}
+
+    Halvings run() {
+        Quantised best = search();
+        for (int tries = 0; options_.max_weight > 0.0 && weight_of(best) > options_.max_weight; ++tries) {
+            const double weight = weight_of(best);
+            if (tries == 16)
+                throw std::runtime_error(out_of_reach("a largest weight", options_.max_weight, weight));
+            heaviest_ *= 0.95 * std::min(1.0, options_.max_weight / weight);
+            best = search();
+        }
+        return std::move(best.halvings);
+    }
+
+private:
+    Quantised search() {
+        switch (options_.goal.kind) {
+        case Goal::Kind::cells:
+            return of_cells();
+        case Goal::Kind::budget:
+            return of_bytes();
+        default:
+            return of_variance();
+        }
+    }
+
+    GrowthLimits limits(std::size_t leaves) const {
+        GrowthLimits out;
+        out.leaves = leaves;
+        out.heaviest = heaviest_;
+        out.done = options_.progress;
+        return out;
+    }
+
+    GrownTree grown(const GrowthLimits& limits) const { return grow(sums_, integral_, limits); }
+
+    Quantised stored(const GrownTree& tree, std::size_t leaves, std::uint32_t code_bits) const {
+        return quantise(sums_, tree, leaves, code_bits, options_.max_weight > 0.0 ? integral_ : 0.0);
+    }
+
+    /// Relative variance of ideal shares: noise that is relative to the square of the mean of f.
+    double ideal_variance(const GrownTree& tree, std::size_t leaves) const {
+        const double cost = tree.cost[leaves - 1] / sums_.unit();
+        return cost * (cost / mean_square_) - 1.0;
+    }
+    double variance_of(const Quantised& stored) const {
+        return stored.second_moment / sums_.unit() / sums_.unit() / mean_square_ - 1.0;
+    }
+    /// Over the mean of f / p that a renderer sees.
+    double weight_of(const Quantised& stored) const {
+        return stored.max_weight * (integral_ / std::sqrt(mean_square_));
+    }
+
+    Quantised of_cells() const {
+        const GrownTree tree = grown(limits(options_.goal.cells));
+        std::uint32_t code_bits = kUsualCodeBits;
+        while (code_bits < 10 &&
+               ideal_variance(tree, tree.leaves()) < 4.0 * predicted_loss(tree.leaves(), code_bits))
+            ++code_bits;
+        return stored(tree, tree.leaves(), code_bits);
+    }
+
+    Quantised of_bytes() const {
+        const std::size_t usual = leaves_within(options_.chunk_bytes, kUsualCodeBits);
+        if (leaves_within(options_.chunk_bytes, kFewestCodeBits) == 0)
+            throw std::runtime_error("no tree fits into the budget");
+        const GrownTree tree = grown(limits(std::max<std::size_t>(usual, 1)));
+        std::uint32_t best = kUsualCodeBits;
+        double least = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t code_bits : kCodeBits) {
+            const std::size_t leaves = std::min(leaves_within(options_.chunk_bytes, code_bits), tree.leaves());
+            if (leaves == 0) continue;
+            const double variance = ideal_variance(tree, leaves) + predicted_loss(leaves, code_bits);
+            if (variance >= least) continue;
+            least = variance;
+            best = code_bits;
+        }
+        return stored(tree, std::min(leaves_within(options_.chunk_bytes, best), tree.leaves()), best);
+    }
+
+    /// Grows until the codes of most bits reach the variance, then looks for the smallest tree of each kind of
+    /// codes.
+    Quantised of_variance() const {
+        const double wanted = options_.goal.variance;
+        GrowthLimits until = limits(leaves_within(options_.most_bytes, kFewestCodeBits));
+        until.cost = std::sqrt((1.0 + 0.98 * wanted) * mean_square_) * sums_.unit();
+        until.done = {};
+        const GrownTree tree = grown(until);
+        if (variance_of(stored(tree, tree.leaves(), kMostCodeBits)) > wanted) refuse_variance(tree);
+        Quantised best;
+        std::size_t least = std::numeric_limits<std::size_t>::max();
+        for (const std::uint32_t code_bits : kCodeBits) {
+            if (variance_of(stored(tree, tree.leaves(), code_bits)) > wanted) continue;
+            Quantised smallest = smallest_of_variance(tree, code_bits);
+            const std::size_t bytes = halvings_bytes(smallest.halvings.leaves(), kAxisBits, code_bits);
+            if (bytes >= least) continue;
+            least = bytes;
+            best = std::move(smallest);
+        }
+        return best;
+    }
+
+    Quantised smallest_of_variance(const GrownTree& tree, std::uint32_t code_bits) const {
+        std::size_t enough = tree.leaves(), few = 0;
+        while (enough > few + 1) {
+            const std::size_t middle = few + (enough - few) / 2;
+            const bool reaches = ideal_variance(tree, middle) <= options_.goal.variance &&
+                                 variance_of(stored(tree, middle, code_bits)) <= options_.goal.variance;
+            (reaches ? enough : few) = middle;
+        }
+        return stored(tree, enough, code_bits);
+    }
+
+    [[noreturn]] void refuse_variance(const GrownTree& tree) const {
+        const double reached = ideal_variance(tree, tree.leaves());
+        char text[200];
+        if (halvings_bytes(tree.leaves() + 1, kAxisBits, kFewestCodeBits) > options_.most_bytes)
+            std::snprintf(
+                text, sizeof text,
+                "a relative variance of %.9g takes more than about %.4g MiB, which come to %.4g; a larger "
+                "file takes a budget",
+                options_.goal.variance, double(options_.most_bytes) / 1048576.0, reached);
+        else
+            std::snprintf(text, sizeof text, "a relative variance of %.9g is out of reach: texels alone have %.3g",
+                          options_.goal.variance, reached);
+        throw std::runtime_error(text);
+    }
+
+    static std::string out_of_reach(const char* what, double wanted, double best) {
+        char text[160];
+        std::snprintf(text, sizeof text, "%s of %.9g is out of reach; the least that can be had is %.6g", what,
+                      wanted, best);
+        return text;
+    }
+
+    const HalvingsOptions& options_;
+    HalvedSums sums_;
+    double integral_, mean_square_, heaviest_;
+};
+
+} // namespace
+
+Halvings fit_halvings(const Target& target, const HalvingsOptions& options) {
+    if (!has_energy(target)) throw std::invalid_argument("a target without energy");
+    if (options.goal.kind == Goal::Kind::cells && options.goal.cells == 0)
+        throw std::invalid_argument("a goal of 0 cells");
+    return HalvingsFit(target, options).run();
+}
+
+} // namespace acdf::compress

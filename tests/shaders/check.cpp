@@ -1,0 +1,115 @@
+#include "tests/shaders/check.h"
+
+#include "tests/lib/reader/half_vectors.h"
+#include "tests/shaders/answers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+namespace acdf_test {
+
+namespace {
+
+// Of a density: what floats round. Beyond the second, it is another cell's.
+constexpr double kNear = 1e-5, kSame = 1e-3;
+// In the fast shape rows have weights that are whole numbers, 2^12 in all or more: one may be one more or less.
+constexpr double kNearOnGrids = 3.0 / 4096.0;
+// Draws of another cell than the reader's, and directions of another density: next to borders.
+constexpr double kMostOthers = 1e-4;
+
+struct Differences {
+    std::size_t drawn = 0, other_cells = 0, not_told = 0, rounded = 0, other_densities = 0;
+    double farthest = 0.0, own = 0.0;
+};
+
+double relative(double a, double b) { return a == b ? 0.0 : std::fabs(a - b) / std::max(a, b); }
+
+class Reader {
+public:
+    explicit Reader(const acdf::File& file) : file_(file) {}
+    /// A normal, or of a BRDF a direction of view.
+    void at(const float given[3]) {
+        if (file_.kind() == ACDF_KIND_LOCAL) point_ = file_.local().at(given);
+        std::copy_n(given, 3, wo_);
+    }
+    acdf::DirectionSample sample(double u0, double u1) const {
+        if (brdf()) return file_.brdf().sample(wo_, u0, u1);
+        return file_.kind() == ACDF_KIND_LOCAL ? file_.local().sample(point_, u0, u1)
+                                               : file_.environment().sample(u0, u1);
+    }
+    float pdf(const float d[3]) const {
+        if (brdf()) return file_.brdf().pdf(wo_, d);
+        return file_.kind() == ACDF_KIND_LOCAL ? file_.local().pdf(point_, d) : file_.environment().pdf(d);
+    }
+
+    /// Of a density: what floats round.
+    double near(const float d[3]) const {
+        if (file_.fast().grid) return kNearOnGrids;
+        return brdf() ? Halves(wo_, d).rounded() : kNear;
+    }
+    /// Beyond this it is another cell's.
+    double same(const float d[3]) const { return brdf() ? kSame + Halves(wo_, d).moved() : kSame; }
+
+private:
+    bool brdf() const { return file_.kind() == ACDF_KIND_BRDF; }
+
+    const acdf::File& file_;
+    AcdfLocalPoint point_ = {};
+    float wo_[3] = {};
+};
+
+void compare_draw(const Reader& reader, const std::uint32_t* words, const float* draw, double own,
+                  Differences& found) {
+    const acdf::DirectionSample told = reader.sample(words[0] * 0x1p-32, words[1] * 0x1p-32);
+    const double pdf = draw[3];
+    if (!(pdf > 0.0)) {
+        found.not_told += told.pdf > 0.0f;
+        return;
+    }
+    ++found.drawn;
+    found.own = std::max(found.own, relative(pdf, own));
+    const double of_reader = relative(pdf, reader.pdf(draw));
+    found.not_told += !(of_reader <= reader.same(draw));
+    found.rounded += !(of_reader <= reader.near(draw));
+    if (!(relative(pdf, told.pdf) <= reader.same(draw))) {
+        ++found.other_cells;
+        return;
+    }
+    for (int k = 0; k < 3; ++k)
+        found.farthest = std::max(found.farthest, std::fabs(double{told.direction[k]} - draw[k]));
+}
+
+} // namespace
+
+int check(const acdf::File& file, std::size_t count, const std::string& folder, double ulps) {
+    const auto words = read_all<std::uint32_t>(folder + "/words.bin", 2 * count);
+    const auto normals = read_all<float>(folder + "/normals.bin", 4 * count);
+    const auto directions = read_all<float>(folder + "/directions.bin", 4 * count);
+    const auto draws = read_all<float>(folder + "/draws.bin", 4 * count);
+    const auto densities = read_all<float>(folder + "/densities.bin", 2 * count);
+    Differences found;
+    Reader reader(file);
+    for (std::size_t i = 0; i < count; ++i) {
+        reader.at(&normals[4 * i]);
+        compare_draw(reader, &words[2 * i], &draws[4 * i], densities[2 * i + 1], found);
+        const float* direction = &directions[4 * i];
+        found.other_densities += !(relative(reader.pdf(direction), densities[2 * i]) <= reader.same(direction));
+    }
+    const double own = found.own * 0x1p24;
+    std::printf(
+        "%zu draws: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not tell, "
+        "%zu by more than is rounded; own density off by %.1f steps of 2^-24\n%zu directions: %zu of another "
+        "density\n",
+        found.drawn, found.other_cells, found.farthest, found.not_told, found.rounded, own, count,
+        found.other_densities);
+    const double most = kMostOthers * static_cast<double>(count);
+    const bool right = static_cast<double>(found.other_cells) <= most &&
+                       static_cast<double>(found.not_told) <= most / 10 &&
+                       static_cast<double>(found.rounded) <= most &&
+                       static_cast<double>(found.other_densities) <= most && 2 * found.drawn > count && own <= ulps;
+    return right ? 0 : 1;
+}
+
+} // namespace acdf_test

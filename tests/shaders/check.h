@@ -1,0 +1,15 @@
+// What a device answers by the exported functions (acdf/shader_walk.h, acdf/shader_brdf.h), beside the reader.
+#pragma once
+
+#include <acdf/reader.h>
+
+#include <cstddef>
+#include <string>
+
+namespace acdf_test {
+
+/// Prints how nearly draws.bin and densities.bin of `folder` agree with the reader, and returns 0, or 1 where they
+/// do not. `ulps`: by how many steps of 2^-24 of it the density that a device tells of its own draw may differ.
+int check(const acdf::File& file, std::size_t count, const std::string& folder, double ulps);
+
+} // namespace acdf_test
