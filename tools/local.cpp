@@ -13,6 +13,7 @@
 #include "tools/cli/mesh_places.h"
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
+#include "tools/cli/portal_check.h"
 #include "tools/cli/portal_option.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/renderer.h"
@@ -172,9 +173,11 @@ builder::LocalOptions LocalConversion::read_scene(const Note& note) const {
     if (places_) {
         local.normals = both_sides(std::move(local.normals));
         if (volume_) local.normals.clear(); // what hangs in the air has any
-        local.places = places_on(read_surface(scene_, note), scene_.input().up, volume_);
+        const std::shared_ptr<const input::MeshSurface> surface = read_surface(scene_, note);
+        local.places = places_on(surface, scene_.input().up, volume_);
         if (!scene_.axes().ours()) scene_.axes().tell(local.places);
         portals_.tell(local.places);
+        note_portals(local.places, *surface, note);
     }
     return local;
 }

@@ -1,5 +1,6 @@
 #include "input/other_kind.h"
 
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -39,10 +40,38 @@ std::string told_by_beginning(const std::string& path, const Beginning (&known)[
     return {};
 }
 
+/// Whether a file of the RGL database holds Mueller matrices, by the names of its fields.
+bool is_polarised(const std::string& path) {
+    constexpr std::size_t begin = 18, most = 4096; // behind magic, version and count; the names come first
+    std::string first(most, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(first.data(), static_cast<std::streamsize>(first.size()));
+    if (first.compare(0, 11, "tensor_file") != 0) return false;
+    bool matrices = false;
+    for (std::size_t at = begin; at + 2 <= most;) {
+        const auto byte = [&](std::size_t i) {
+            return i < most ? std::size_t{static_cast<std::uint8_t>(first[i])} : 0;
+        };
+        const std::size_t length = byte(at) | byte(at + 1) << 8;
+        if (length == 0 || at + 2 + length + 11 > most) break;
+        const std::string name = first.substr(at + 2, length);
+        if (name == "vndf") return false;
+        matrices |= name == "M";
+        const std::size_t dimensions = byte(at + 2 + length) | byte(at + 3 + length) << 8;
+        at += 2 + length + 2 + 1 + 8 + 8 * dimensions;
+    }
+    return matrices;
+}
+
 } // namespace
 
 std::string kind_of_no_brdf(const std::string& path) { return told_by_beginning(path, of_no_brdf); }
 
-std::string kind_of_no_image(const std::string& path) { return told_by_beginning(path, of_no_image); }
+std::string kind_of_no_image(const std::string& path) {
+    std::string kind = told_by_beginning(path, of_no_image);
+    return !kind.empty() && is_polarised(path)
+               ? "it is a polarised BRDF of the RGL database, which acdf does not read"
+               : kind;
+}
 
 } // namespace acdf::input

@@ -1,4 +1,5 @@
 // acdf batch: many sources to many files.
+#include "input/sha256.h"
 #include "tools/batch/gallery.h"
 #include "tools/batch/job_conversion.h"
 #include "tools/batch/jobs.h"
@@ -45,11 +46,10 @@ constexpr std::size_t kErrorsShown = 50;
 void refuse(const std::vector<std::string>& errors) {
     if (errors.empty()) return;
     const std::vector<std::string> lines = grouped(errors);
-    for (std::size_t i = 0; i + 1 < std::min(lines.size(), kErrorsShown); ++i)
-        say("acdf: " + told_in_batch(lines[i]));
+    for (std::size_t i = 0; i + 1 < std::min(lines.size(), kErrorsShown); ++i) say("acdf: " + lines[i]);
     if (lines.size() > kErrorsShown)
         throw Failure(std::to_string(lines.size() - kErrorsShown + 1) + " more errors; nothing was started");
-    throw Failure(told_in_batch(lines.back()) + "; nothing was started");
+    throw Failure(lines.back() + "; nothing was started");
 }
 
 // ---- what is asked for -----------------------------------------------------------------------------------
@@ -193,7 +193,7 @@ std::vector<JobResult> run_with_progress(const BatchArguments& options, const st
         if (result && result->status == JobResult::Status::failed) {
             ++failed;
             std::fprintf(to_person(), "%sacdf: %s\n", terminal ? "\r\033[K" : "",
-                         on_one_line(told_in_batch(result->error)).c_str());
+                         on_one_line(told_in_batch(*result)).c_str());
         }
         const std::string text = std::to_string(ended) + " of " + std::to_string(due) + " jobs" +
                                  (failed > 0 ? ", " + std::to_string(failed) + " failed" : "");
@@ -305,7 +305,7 @@ int merge(const BatchArguments& options) {
     }
     for (const std::string& problem : merged.problems) say("acdf: " + problem);
     for (const JobResult& job : merged.report.jobs)
-        if (!job.error.empty()) say("acdf: " + job.error);
+        if (!job.error.empty()) say("acdf: " + told_in_batch(job));
     const int code = tell(options, merged.report);
     return merged.problems.empty() ? code : exit_failed;
 }
@@ -315,6 +315,8 @@ int run(const BatchArguments& options) {
     if (options.merge) return merge(options);
     const BatchLimits limits = limits_of(options);
     shard_of(options); // wrong usage is told before files are looked at
+    input::text_sha256(
+        "", "OpenSSL"); // sets itself up at the first call, and crashes if that is a thread without memory
     const BatchJobs jobs = all_jobs(options);
     return options.emit.empty() ? run_batch(options, jobs, limits) : emit_ninja(options, jobs, limits);
 }

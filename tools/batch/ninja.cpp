@@ -2,6 +2,8 @@
 
 #include "input/brdf/models.h"
 #include "input/mesh/instances.h"
+#include "tools/cli/messages.h"
+#include "tools/commands.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -32,17 +34,29 @@ std::string shell_command(const std::vector<std::string>& words) {
     return text;
 }
 
+/// Ninja has no way to write the end of a line. Throws Failure.
+void require_one_line(const std::string& text) {
+    if (text.find_first_of("\r\n") != std::string::npos)
+        throw Failure(on_one_line(text) +
+                      ": has a line end in its name, which a build file of Ninja cannot hold; rename it, "
+                      "or run acdf batch without --emit");
+}
+
 /// Text as the value of a variable.
 std::string value(const std::string& text) {
+    require_one_line(text);
     std::string out;
     for (const char c : text) out += c == '$' ? "$$" : std::string(1, c);
     return out;
 }
 
-/// A path in a list of paths.
+/// A path in a list of paths. Ninja ends a path at a bar however it is escaped, but not at that of a variable.
 std::string path_text(const std::string& path) {
+    require_one_line(path);
     std::string out;
-    for (const char c : path) out += c == '$' || c == ' ' || c == ':' ? std::string("$") + c : std::string(1, c);
+    for (const char c : path)
+        if (c == '|') out += "${bar}";
+        else out += c == '$' || c == ' ' || c == ':' ? std::string("$") + c : std::string(1, c);
     return out;
 }
 
@@ -80,7 +94,8 @@ std::string ninja_text(const std::vector<PlannedJob>& plan, const NinjaBuild& bu
     std::uint64_t most = 1;
     for (const PlannedJob& job : plan) most = std::max(most, job.memory);
     std::string text =
-        std::string(ninja_mark) + "\nninja_required_version = 1.5\nacdf = " + value(shell_quoted(build.program)) +
+        std::string(ninja_mark) +
+        "\nninja_required_version = 1.5\nbar = |\nacdf = " + value(shell_quoted(build.program)) +
         "\n\npool large\n  depth = " + std::to_string(std::max<std::uint64_t>(1, build.memory / most)) +
         "\n\nrule convert\n  command = $at $acdf $arguments\n  description = $out\n\nrule plan\n"
         "  command = cd " +

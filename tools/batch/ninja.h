@@ -24,7 +24,8 @@ extern const char ninja_mark[];
 
 /// The text of build.ninja, to lie in the output folder. Each job is an edge that runs the job's own subcommand; it
 /// depends on its source and on the files among its options, and Ninja itself compares options. Jobs of which as
-/// many as `threads` would not fit into `memory` share a pool.
+/// many as `threads` would not fit into `memory` share a pool. Throws Failure for names with line ends, which Ninja
+/// does not take.
 std::string ninja_text(const std::vector<PlannedJob>& plan, const NinjaBuild& build, const MakeConversion& make);
 
 } // namespace acdf::tools

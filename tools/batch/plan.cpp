@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <new>
 
 namespace acdf::tools {
 namespace {
@@ -147,6 +148,8 @@ std::vector<PlannedJob> plan_jobs(const std::vector<BatchJob>& jobs, const std::
         plan[i].job = jobs[i];
         try {
             look_at(plan[i], folder, options, conversions.local());
+        } catch (const std::bad_alloc&) {
+            throw; // of all jobs, not of this one
         } catch (const std::exception& error) {
             wrong[i] = jobs[i].origin + ": " + on_one_line(error.what());
         }

@@ -1,6 +1,7 @@
 #include "tools/batch/report.h"
 
 #include "tools/cli/json.h"
+#include "tools/cli/messages.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
 
@@ -91,6 +92,31 @@ struct Sum {
 
 constexpr std::size_t most_rows = 60, most_named = 5;
 
+/// What errors advise, as an option of a batch: some sources of a folder need it, and others do not.
+struct Advised {
+    const char *option, *value, *folder;
+};
+constexpr Advised advised_options[] = {
+    {"projection", "angular", "angular"}, {"bad-pixels", "clamp", "suns"}, {"on-black", "uniform", "black"}};
+
+/// "a, b, c, d, e and 3 more"
+std::string first_few(const std::vector<std::string>& names) {
+    std::string line;
+    for (std::size_t i = 0; i < std::min(names.size(), most_named); ++i) line += (i > 0 ? ", " : "") + names[i];
+    if (names.size() > most_named) line += " and " + std::to_string(names.size() - most_named) + " more";
+    return line;
+}
+
+/// Each number as one #.
+std::string without_numbers(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        const bool digit = c >= '0' && c <= '9';
+        if (!digit || out.empty() || out.back() != '#') out += digit ? '#' : c;
+    }
+    return out;
+}
+
 std::string file_rows(const std::vector<JobResult>& jobs) {
     std::size_t width = 4;
     for (const JobResult& job : jobs) width = std::max(width, job.output.size());
@@ -109,11 +135,17 @@ std::string file_rows(const std::vector<JobResult>& jobs) {
 
 } // namespace
 
-std::string told_in_batch(const std::string& error) {
-    if (error.find("--projection") == std::string::npos) return error;
-    return error +
-           " (in a batch: --set 'angular/*:env.projection=angular' for a pattern of sources, or in a manifest "
-           "{\"source\": \"angular/a.hdr\", \"options\": {\"projection\": \"angular\"}})";
+std::string told_in_batch(const JobResult& job) {
+    for (const Advised& advised : advised_options) {
+        if (job.error.find(std::string("--") + advised.option) == std::string::npos) continue;
+        const std::string setting = std::string(advised.option) + "=" + advised.value,
+                          source = std::string(advised.folder) + "/a.hdr",
+                          kind = job.kind == "env" ? "" : "\"kind\": \"" + job.kind + "\", ";
+        return job.error + " (in a batch: --set '" + advised.folder + "/*:" + job.kind + "." + setting +
+               "' for a pattern of sources, or in a manifest {\"source\": \"" + source + "\", " + kind +
+               "\"options\": {\"" + advised.option + "\": \"" + advised.value + "\"}})";
+    }
+    return job.error;
 }
 
 std::vector<std::string> grouped(const std::vector<std::string>& errors) {
@@ -128,11 +160,38 @@ std::vector<std::string> grouped(const std::vector<std::string>& errors) {
     }
     std::vector<std::string> lines;
     for (const std::string& what : whats) {
-        const std::vector<std::string>& all = names[what];
-        std::string line;
-        for (std::size_t i = 0; i < std::min(all.size(), most_named); ++i) line += (i > 0 ? ", " : "") + all[i];
-        if (all.size() > most_named) line += " and " + std::to_string(all.size() - most_named) + " more";
+        const std::string line = first_few(names[what]);
         lines.push_back(line.empty() ? what : line + ": " + what);
+    }
+    return lines;
+}
+
+std::vector<std::string> remarks(const std::vector<JobResult>& jobs) {
+    struct Kind {
+        std::string first; // as it was said first
+        std::vector<std::string> sources;
+        bool alike = true; // in their numbers, too
+    };
+    std::vector<std::string> order;
+    std::map<std::string, Kind> kinds;
+    for (const JobResult& job : jobs)
+        for (const std::string& note : job.notes) {
+            const std::string key = without_numbers(note);
+            const auto [found, is_new] = kinds.try_emplace(key);
+            Kind& kind = found->second;
+            if (is_new) {
+                order.push_back(key);
+                kind.first = note;
+            }
+            kind.alike &= note == kind.first;
+            if (std::find(kind.sources.begin(), kind.sources.end(), job.input) == kind.sources.end())
+                kind.sources.push_back(job.input);
+        }
+    std::vector<std::string> lines;
+    for (const std::string& key : order) {
+        const Kind& kind = kinds[key];
+        lines.push_back(on_one_line(first_few(kind.sources) + ": " + kind.first +
+                                    (kind.alike ? "" : " (numbers of " + kind.sources.front() + ")")));
     }
     return lines;
 }
@@ -205,7 +264,11 @@ std::string summary_table(const BatchReport& report) {
     text += "kind      jobs    done  up to date  failed        bytes  relative variance   "
             "noise at 16, 64, 256   seconds\n";
     for (const auto& [name, sum] : kinds) text += sum.row(name);
-    return kinds.size() > 1 ? text + all.row("all") : text;
+    if (kinds.size() > 1) text += all.row("all");
+    const std::vector<std::string> lines = remarks(report.jobs);
+    if (!lines.empty()) text += "\n";
+    for (const std::string& line : lines) text += line + "\n";
+    return text;
 }
 
 } // namespace acdf::tools

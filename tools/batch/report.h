@@ -46,13 +46,17 @@ struct MergedReport {
 /// batches, or there are none.
 MergedReport merge_reports(const std::vector<BatchReport>& reports);
 
-/// What a conversion says of an option of its own, told as an option of a batch.
-std::string told_in_batch(const std::string& error);
+/// The error of a job; where it names an option of the job's command, also how that is written for a batch.
+std::string told_in_batch(const JobResult& job);
 
 /// Errors "NAME: what" of the same `what` as one line that names the first few, in the order of the first of each.
 std::vector<std::string> grouped(const std::vector<std::string>& errors);
 
-/// A row for each of up to 60 files, one for each kind, and one for all of more than one.
+/// What conversions remarked, a line for each kind of remark: those that differ by their numbers alone are one,
+/// which names the first few sources and has the numbers of the first.
+std::vector<std::string> remarks(const std::vector<JobResult>& jobs);
+
+/// A row for each of up to 60 files, one for each kind, and one for all of more than one; then the remarks.
 std::string summary_table(const BatchReport& report);
 
 } // namespace acdf::tools

@@ -17,6 +17,7 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <system_error>
 #include <thread>
 
 namespace acdf::tools {
@@ -68,7 +69,8 @@ void run_job(const BatchJob& job, const std::string& folder, const MakeConversio
     try {
         convert(job, folder, make, progress, result);
     } catch (const std::bad_alloc&) {
-        result.error = job.source + ": out of memory; a smaller --memory would help";
+        result.status = JobResult::Status::failed;
+        result.error = job.source + ": out of memory; a smaller --memory or fewer --jobs would help";
     } catch (const std::exception& error) {
         result.error = on_one_line(error.what());
     }
@@ -127,14 +129,26 @@ public:
 
     std::vector<JobResult> run() {
         refuse_too_large();
-        std::vector<std::thread> workers;
         const std::size_t count = std::min(static_cast<std::size_t>(limits_.workers), queue_.size());
-        for (std::size_t i = 0; i < count; ++i) workers.emplace_back([this] { work(); });
+        std::vector<std::thread> workers = start(count);
+        if (workers.empty()) work();
         for (std::thread& worker : workers) worker.join();
         return std::move(results_);
     }
 
 private:
+    /// As many workers as there is memory for, and threads that this user may have: fewer do the same jobs.
+    std::vector<std::thread> start(std::size_t count) {
+        std::vector<std::thread> workers;
+        workers.reserve(count);
+        try {
+            while (workers.size() < count) workers.emplace_back([this] { work(); });
+        } catch (const std::bad_alloc&) {
+        } catch (const std::system_error&) {
+        }
+        return workers;
+    }
+
     void refuse_too_large() {
         for (std::size_t i = 0; i < plan_.size(); ++i) {
             if (!plan_[i].due || plan_[i].memory <= limits_.memory) continue;
@@ -162,26 +176,42 @@ private:
                 continue;
             }
             lock.unlock();
-            JobResult result = results_[job]; // this job's alone
-            arena.execute([&] { run_job(plan_[job].job, folder_, make_, progress_of(job), result); });
+            run_in(arena, job);
             lock.lock();
-            results_[job] = std::move(result);
             queue_.give_back(job);
             tell_end(job);
         }
         set(false);
     }
 
-    /// The threads that run no job are there for the loops of those that do. `mutex_` is held.
-    void set_running(int running) {
+    /// What is thrown here was thrown while there was no memory to tell it, or for a thread of the arena.
+    void run_in(tbb::task_arena& arena, std::size_t job) noexcept {
+        JobResult& result = results_[job]; // this job's alone
+        try {
+            arena.execute([&] { run_job(plan_[job].job, folder_, make_, progress_of(job), result); });
+        } catch (const std::bad_alloc&) { // texts are short: a string holds them by itself
+            result.status = JobResult::Status::failed;
+            result.error = "out of memory";
+        } catch (...) {
+            result.status = JobResult::Status::failed;
+            result.error = "out of threads";
+        }
+    }
+
+    /// The threads that run no job are there for the loops of those that do. `mutex_` is held. Where there is no
+    /// memory for another limit the one before stays: no file depends on it.
+    void set_running(int running) noexcept {
         running_ = running;
         const auto helpers = static_cast<std::size_t>(std::max(0, limits_.threads - std::max(1, running)));
         if (helpers == helpers_ && limit_) return;
-        helpers_ = helpers;
-        // The limit counts one thread that calls.
-        auto next =
-            std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, helpers + 1);
-        limit_ = std::move(next);
+        try {
+            // The limit counts one thread that calls.
+            auto next =
+                std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, helpers + 1);
+            limit_ = std::move(next);
+            helpers_ = helpers;
+        } catch (const std::exception&) {
+        }
     }
 
     build::Progress progress_of(std::size_t job) {
@@ -191,8 +221,12 @@ private:
         };
     }
 
-    void tell_end(std::size_t job) {
-        if (watcher_) tell(job, 1.0, &results_[job]);
+    /// Where there is no memory to tell it now, the report does at the end.
+    void tell_end(std::size_t job) noexcept {
+        try {
+            if (watcher_) tell(job, 1.0, &results_[job]);
+        } catch (const std::exception&) {
+        }
     }
 
     void tell(std::size_t job, double share, const JobResult* result) {

@@ -19,9 +19,11 @@ struct RunOptions {
     bool json = false, quiet = false, force = false;
 };
 
-Converted convert(Conversion& conversion, bool quiet) {
+/// Remarks are said, unless `quiet`, and kept in `notes`.
+Converted convert(Conversion& conversion, bool quiet, std::vector<std::string>& notes) {
     ProgressBar bar(quiet);
     return conversion.convert({bar.callback(), [&](const std::string& text) {
+                                   notes.push_back(on_one_line(text));
                                    if (!quiet) say(conversion.source + ": " + text);
                                }});
 }
@@ -32,7 +34,8 @@ void run(Conversion& conversion, const RunOptions& options) {
     std::vector<std::string> inputs;
     for (const std::string* file : conversion.files()) inputs.push_back(*file);
     Output output(options.output, options.force, inputs); // refuses early, before the work
-    const Converted made = convert(conversion, options.quiet);
+    std::vector<std::string> notes;
+    const Converted made = convert(conversion, options.quiet, notes);
     output.write(made.bytes.data(), made.bytes.size());
     output.commit(check_reads_back);
 
@@ -40,6 +43,7 @@ void run(Conversion& conversion, const RunOptions& options) {
     if (options.json) {
         nlohmann::ordered_json report{{"file", options.output}};
         report.update(nlohmann::ordered_json::parse(made.report));
+        report["notes"] = notes;
         std::fputs(json_text(report).c_str(), out);
     } else if (!options.quiet) {
         std::fprintf(out, "%s: %s, %s\n", printable(options.output).c_str(),

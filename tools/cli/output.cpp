@@ -25,11 +25,19 @@ std::atomic<const char*> doomed[256];        // paths to unlink; lock-free, as a
 std::atomic<const char*> doomed_folders[64]; // to remove where they are empty by then, the deepest first
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-void remove_and_die(int signal) {
+} // namespace
+
+void remove_unfinished() noexcept {
     for (const auto& slot : doomed)
         if (const char* path = slot.load()) unlink(path);
     for (const auto& slot : doomed_folders)
         if (const char* path = slot.load()) rmdir(path);
+}
+
+namespace {
+
+void remove_and_die(int signal) {
+    remove_unfinished();
     std::signal(signal, SIG_DFL);
     raise(signal);
 }

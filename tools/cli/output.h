@@ -54,6 +54,10 @@ private:
     void finish_temporary(const Verify& verify);
 };
 
+/// Removes the temporary files and empty folders of all outputs that are not finished, as before the program ends
+/// at once. Allocates nothing.
+void remove_unfinished() noexcept;
+
 /// All of an output at once; `verify` runs for stdout, pipes and devices too.
 void write_output(const std::string& path, const std::vector<std::uint8_t>& bytes, bool force,
                   const std::vector<std::string>& inputs = {}, const Verify& verify = {});

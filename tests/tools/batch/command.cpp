@@ -4,6 +4,7 @@
 
 #include <cctype>
 #include <csignal>
+#include <cstdlib>
 #include <random>
 #include <thread>
 
@@ -175,6 +176,69 @@ TEST_F(BatchCommand, TellsWhatToWriteForSourcesThatItCannotTell) {
     report({probes}, 1);
     EXPECT_NE(messages.find("--set 'angular/*:env.projection=angular'"), std::string::npos) << messages;
     EXPECT_EQ(report({probes, "--set", "d*:env.projection=angular"})["done"], 1);
+    report({probes, "--kind", "local", "--set", "local.budget=12KiB"}, 1);
+    EXPECT_NE(messages.find("--set 'angular/*:local.projection=angular'"), std::string::npos) << messages;
+    EXPECT_NE(messages.find("\"kind\": \"local\""), std::string::npos) << messages;
+    EXPECT_EQ(report({probes, "--kind", "local", "--set", "local.budget=12KiB", "--set",
+                      "d*:local.projection=angular"})["done"],
+              1);
+}
+
+/// A remark on several sources is one line at the end of the table, and none with --quiet.
+TEST_F(BatchCommand, RemarksEndTheTableOnceAKind) {
+    fs::create_directories(probes);
+    for (const int bad : {1, 2, 3, 0}) write_mended_probe(probes + "/bad" + std::to_string(bad) + ".pfm", bad);
+    const Result result =
+        batch({probes, "--kind", "env,local", "--set", "env.cells=20", "--set", "local.budget=12KiB"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto probe = [&](int bad) { return probes + "/bad" + std::to_string(bad) + ".pfm"; };
+    const std::string what = " negative texels set to 0",
+                      remark = probe(1) + ", " + probe(2) + ", " + probe(3) + ": 0 NaN, 0 infinite and 1" + what;
+    EXPECT_NE(result.out.find(remark), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("(numbers of " + probe(1) + ")"), std::string::npos) << result.out;
+    EXPECT_GT(result.out.find(remark), result.out.find("noise at 16, 64, 256"));
+    EXPECT_EQ(result.out.find(what), result.out.rfind(what)) << result.out;
+    EXPECT_EQ(batch({probes, "--force", "--quiet"}).out, "");
+}
+
+/// The same in reports, also once they are merged, and in those of the subcommands.
+TEST_F(BatchCommand, RemarksAreInReports) {
+    fs::create_directories(probes);
+    write_mended_probe(probes + "/bad.pfm", 1);
+    const std::string what = "1 negative texels set to 0", path = folder / "report.json";
+    const json all = report({probes});
+    EXPECT_NE(all["jobs"][0]["notes"].dump().find(what), std::string::npos) << all;
+    write_text(path, all.dump());
+    EXPECT_NE(run_acdf({"batch", "--merge-reports", path}).out.find(what), std::string::npos);
+    for (const char* kind : {"env", "local"}) {
+        const Result one = run_acdf({kind, probes + "/bad.pfm", "-o", folder / "one.acdf", "--force", "--json"});
+        ASSERT_EQ(one.code, 0) << one.err;
+        EXPECT_NE(json::parse(one.out)["notes"].dump().find(what), std::string::npos) << one.out;
+    }
+}
+
+TEST_F(BatchCommand, RunningOutOfMemoryIsAFailureLikeOthers) {
+    if (acdf_test::kSanitized) GTEST_SKIP() << "sanitizers reserve all address space";
+    write_small_probes(probes, 2, 16);
+    for (int kib = 40000; kib < 100000; kib += 2000)
+        for (const char* threads : {"1", "2", "8"}) {
+            const std::string run = "ulimit -c 0; ulimit -v " + std::to_string(kib) + "; '" + acdf_test::kProgram +
+                                    "' batch '" + probes + "' -o '" + out + "' -f -q --threads " + threads +
+                                    " >/dev/null 2>'" + (folder / "err") + "'";
+            const int status = std::system(run.c_str());
+            ASSERT_TRUE(WIFEXITED(status)) << run;
+            const int code = WEXITSTATUS(status); // 127: not even the program's own libraries are loaded
+            EXPECT_TRUE(code <= 1 || code == 127) << code << ": " << run << ": " << read_text(folder / "err");
+        }
+}
+
+TEST_F(BatchCommand, ABuildFileHoldsNoNameOfTwoLines) {
+    write_small_probes(folder / "two\nlines", 1);
+    const Result result = batch({folder / "two\nlines", "--emit", "ninja"});
+    EXPECT_EQ(result.code, 1);
+    EXPECT_EQ(lines_in(result.err), 1u) << result.err;
+    EXPECT_NE(result.err.find("has a line end in its name"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(out + "/build.ninja"));
 }
 
 TEST_F(BatchCommand, PicturesOfRendersAreNoProbes) {
@@ -296,6 +360,15 @@ TEST_F(BatchCommand, TheBuildFileQuotesWhatItMust) {
     const std::string text = read_text(out + "/build.ninja");
     EXPECT_NE(text.find("build it's$ a$ $$kind$:$ sky/probe000.acdf: convert "), std::string::npos) << text;
     EXPECT_NE(text.find("'\\''s a $$kind: sky/probe000.pfm'"), std::string::npos) << text;
+    const std::string bar = probes + "/a|b";
+    write_small_probes(bar, 1);
+    ASSERT_EQ(batch({probes, "--emit", "ninja", "--set", "env.cells=40"}).code, 0);
+    if (std::system("command -v ninja >/dev/null") == 0) {
+        EXPECT_EQ(std::system(("ninja -C '" + out + "' >'" + (folder / "log") + "'").c_str()), 0)
+            << read_text(folder / "log");
+        EXPECT_TRUE(fs::exists(out + "/a|b/probe000.acdf"));
+        EXPECT_TRUE(fs::exists(out + "/it's a $kind: sky/probe000.acdf"));
+    }
     write_text(out + "/build.ninja", "rule mine\n");
     EXPECT_EQ(batch({probes, "--emit", "ninja"}).code, 1);
     EXPECT_EQ(batch({probes, "--emit", "ninja", "--force"}).code, 0);

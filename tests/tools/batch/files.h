@@ -3,6 +3,7 @@
 
 #include "tests/inputs/float_map.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -20,6 +21,13 @@ inline void write_small_probe(const std::string& path, std::uint32_t seed, std::
     const std::size_t bright = random() % (rgb.size() / 3);
     for (std::size_t c = 0; c < 3; ++c) rgb[3 * bright + c] = 100.0f;
     write_float_map(path, static_cast<int>(2 * rows), static_cast<int>(rows), rgb);
+}
+
+/// A lat-long probe of 16 x 8 texels, all alike but for the first few, which are negative.
+inline void write_mended_probe(const std::string& path, int negative) {
+    std::vector<float> rgb(std::size_t{3} * 16 * 8, 1.0f);
+    std::fill_n(rgb.begin(), 3 * negative, -1.0f);
+    write_float_map(path, 16, 8, rgb);
 }
 
 /// probe000.pfm to probe<count - 1>.pfm in `folder`, which is made.

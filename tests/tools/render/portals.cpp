@@ -72,6 +72,29 @@ TEST(MeshPortals, AreToldByCornersAndByAScene) {
     EXPECT_EQ(Json::parse(measured.out).at("places").at("support_violations"), 0);
 }
 
+TEST(MeshPortals, ThoseThatDoNotFitTheirWindowsAreRemarkedOn) {
+    PortalFolder folder;
+    const auto remarks = [&](const std::string& portal) {
+        const Result made = folder.local("a.acdf", {"--places", "--portal", portal, "--force"});
+        EXPECT_EQ(made.code, 0) << made.err;
+        return made.err;
+    };
+    EXPECT_EQ(remarks(kOpening).find("portal 1"), std::string::npos);
+    const std::string larger = remarks("-2,-2,2 2,-2,2 2,2,2"); // half of it is roof
+    EXPECT_NE(larger.find("portal 1 is larger than its window: nothing comes in through 50 % of it"),
+              std::string::npos)
+        << larger;
+    const std::string past = remarks("-4,0,2 4,0,2 4,2,2"); // half of it is beside the room
+    EXPECT_NE(past.find("portal 1 is larger than its window"), std::string::npos) << past;
+    const std::string far = remarks("-2,0,9 2,0,9 2,2,9");
+    EXPECT_NE(far.find("portal 1 lies outside of the box around the scene"), std::string::npos) << far;
+
+    write_text(folder / "y.obj", room(true));
+    const Result y_up =
+        folder.local("y.acdf", {"--scene-up", "y", "--places", "--portal", "-2,2,-2 -2,2,2 2,2,2"}, "y.obj");
+    EXPECT_NE(y_up.err.find("through 50 % of it"), std::string::npos) << y_up.err;
+}
+
 TEST(MeshPortals, AreDrawnThroughInPictures) {
     PortalFolder folder;
     const Result result = run_acdf({"render", "--scene", folder / "scene.json", "--data", folder.data(), "-o",

@@ -32,6 +32,10 @@ TEST(InputHostile, FilesOfOtherKindsAreCalledByTheirNames) {
     EXPECT_CONTAINS(refusal(folder / "a"), "it is an .acdf file; give the image");
     write_text(folder / "a", "tensor_file" + std::string(100, '\0'));
     EXPECT_CONTAINS(refusal(folder / "a"), "acdf brdf takes");
+    // Fields "M" and "wvls", of one dimension each, as a .pbsdf has them: brdf refuses it as well.
+    write_text(folder / "a", "tensor_file\0\1\0\2\0\0\0"s + "\1\0M\1\0\12"s + std::string(16, '\0') +
+                                 "\4\0wvls\1\0\12"s + std::string(16, '\0'));
+    EXPECT_CONTAINS(refusal(folder / "a"), "a polarised BRDF of the RGL database, which acdf does not read");
     write_text(folder / "a", "\x93NUMPY" + std::string(100, '\0'));
     EXPECT_CONTAINS(refusal(folder / "a"), "acdf table takes");
     write_text(folder / "a", "\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0"s);
