@@ -131,6 +131,10 @@ if(TARGET acdf)
     get_target_property(modules acdf_images ACDF_MODULES)
     install(TARGETS ${modules}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/acdf COMPONENT tools)
+    get_target_property(page acdf ACDF_VIEWER_PAGE)
+    if(page) # OPTIONAL: compilers for WebAssembly without its libraries make none
+        install(FILES ${page} DESTINATION ${CMAKE_INSTALL_DATADIR}/acdf COMPONENT tools OPTIONAL)
+    endif()
 endif()
 
 # The Python package: where Debian's interpreter looks; in a wheel at its root.

@@ -192,18 +192,20 @@ std::unique_ptr<Conversion> brdf_conversion() { return std::make_unique<BrdfConv
 void add_brdf(CLI::App& program, int& exit_code) {
     CLI::App& command =
         *program.add_subcommand("brdf", "Compress a BRDF: directions of light by what they reflect");
-    add_conversion(command, brdf_conversion(),
-                   {"BRDF",
-                    "MERL .binary, RGL .bsdf, an .npy over (theta_o, phi_o, theta_h, phi_h), or a model: lambert, "
-                    "ggx:alpha=0.1[,0.3], cook-torrance:m=0.2,n=1.5,k=0, blinn:e=100",
-                    help_footer("Prints the size and the relative variance of the stored densities over random "
-                                "views, cos(theta_o) uniform in "
-                                "[0.1, 1]: n samples have that over n.",
-                                "acdf brdf nickel.binary -o nickel.acdf\n"
-                                "acdf brdf cc_ibiza_sunset_rgb.bsdf -o ibiza.acdf --budget 200KiB\n"
-                                "acdf brdf ggx:alpha=0.1,0.3 -o brushed.acdf --target-variance 0.01\n"
-                                "acdf brdf nickel.binary -o paper.acdf --fit cdf --knots 10x30 --views 32x16")},
-                   exit_code);
+    add_conversion(
+        command, brdf_conversion(),
+        {"BRDF", ".acdf",
+         "MERL .binary, RGL .bsdf, an .npy over (theta_o, phi_o, theta_h, phi_h), or a model: lambert, "
+         "ggx:0.1[,0.3] (or ggx:alpha=0.1), cook-torrance:m=0.2,n=1.5,k=0, blinn:100. Several become a file each",
+         help_footer("Prints the size and the relative variance of the stored densities over random "
+                     "views, cos(theta_o) uniform in "
+                     "[0.1, 1]: n samples have that over n.",
+                     "acdf brdf nickel.binary\n"
+                     "acdf brdf ggx:0.1 -o ggx.acdf\n"
+                     "acdf brdf cc_ibiza_sunset_rgb.bsdf -o ibiza.acdf --budget 200KiB\n"
+                     "acdf brdf ggx:alpha=0.1,0.3 -o brushed.acdf --target-variance 0.01\n"
+                     "acdf brdf nickel.binary -o paper.acdf --fit cdf --knots 10x30 --views 32x16")},
+        exit_code);
 }
 
 } // namespace acdf::tools

@@ -14,6 +14,7 @@ enum ExitCode {
     exit_failed = 1, ///< input or I/O error
     exit_usage = 2,
     exit_faults = 3, ///< `validate` found faults
+    exit_differ = 3, ///< `diff` found a difference
 };
 
 /// An input or output error that ends the program with exit_failed. The text is one line without "acdf: ":
@@ -41,6 +42,9 @@ void add_export(CLI::App& program, int& exit_code);
 void add_scanline(CLI::App& program, int& exit_code);
 void add_sweep(CLI::App& program, int& exit_code);
 void add_completion(CLI::App& program, int& exit_code);
+void add_help(CLI::App& program, int& exit_code);
+void add_diff(CLI::App& program, int& exit_code);
+void add_view(CLI::App& program, int& exit_code);
 void add_render(CLI::App& program, int& exit_code);
 
 /// The whole program, as main calls it and `demo` calls it in turn.

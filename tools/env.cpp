@@ -45,6 +45,7 @@ public:
     std::vector<std::string*> files() override;
     std::string option_text() const override { return builder::option_text(with_source()); }
     std::uint64_t memory() const override;
+    const input::ProbeOptions* reading() const override { return &input_; }
     Converted convert(const Listener& listener) override;
 
 private:
@@ -323,11 +324,12 @@ void add_env(CLI::App& program, int& exit_code) {
     CLI::App& command = *program.add_subcommand("env", "Compress an environment map: directions by what they emit");
     add_conversion(
         command, env_conversion(),
-        {"PROBE", "The environment map: any image OpenImageIO reads",
+        {"PROBE", ".acdf", "The environment map: any image OpenImageIO reads. Several become a file each",
          help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
                      "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
-                     "acdf env probe.exr -o probe.acdf\n"
+                     "acdf env probe.exr\n"
                      "acdf env probe.hdr -o probe.acdf --budget 64KiB\n"
+                     "acdf env noon.exr dusk.exr -o skies/\n"
                      "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
                      "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
                      "acdf env probe.exr -o paper.acdf --fit cdf --knots 64x64 --order z --gradient 16")},

@@ -45,6 +45,7 @@ public:
     std::vector<std::string*> files() override;
     std::string option_text() const override;
     std::uint64_t memory() const override;
+    const input::ProbeOptions* reading() const override { return &input_; }
     Converted convert(const Listener& listener) override;
 
 private:
@@ -381,10 +382,10 @@ void add_local(CLI::App& program, int& exit_code) {
         "local", "Compress an environment map for every normal: clipped at its horizon, times the cosine");
     add_conversion(
         command, local_conversion(),
-        {"PROBE", "The environment map: any image OpenImageIO reads",
+        {"PROBE", ".local.acdf", "The environment map: any image OpenImageIO reads. Several become a file each",
          help_footer("Prints the exact relative variance of irradiance estimates, mean over 256 random normals (or "
                      "those of the scene), beside that of the probe's full-resolution CDF.",
-                     "acdf local probe.exr -o probe.local.acdf\n"
+                     "acdf local probe.exr\n"
                      "acdf local probe.exr -o small.acdf --budget 128KiB\n"
                      "acdf local probe.exr -o car.acdf --scene car.obj --scene-up y --cosine-share 0.2\n"
                      "acdf local probe.exr -o room.acdf --scene walls.obj --scene things.ply --places\n"

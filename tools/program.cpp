@@ -49,6 +49,9 @@ constexpr Command commands[] = {
     {"Use", "export", add_export},
     {"Use", "completion", add_completion},
     {"Make", "batch", add_batch},
+    {"Start here", "help", add_help},
+    {"Inspect", "diff", add_diff},
+    {"Inspect", "view", add_view},
 };
 
 constexpr const char* program_description =
@@ -56,9 +59,10 @@ constexpr const char* program_description =
     "measures them exactly, and draws and evaluates samples.";
 
 constexpr const char* program_footer =
-    "`acdf COMMAND --help` explains a command, with examples.\n\n"
+    "`acdf help COMMAND` explains a command, with examples.\n\n"
     "Results go to stdout, messages to stderr; - stands for stdin or stdout.\n"
-    "Exit codes: 0 done, 1 input or I/O error (one line on stderr), 2 wrong usage, 3 `validate` found faults";
+    "Exit codes: 0 done, 1 input or I/O error (one line on stderr), 2 wrong usage, 3 `validate` found faults, "
+    "or `diff` a difference";
 
 // Of libraries: those that it was compiled with.
 std::string version_text() {
@@ -72,20 +76,9 @@ std::string called(const CLI::App& program) {
     return parsed.empty() ? "acdf" : "acdf " + parsed.front()->get_name();
 }
 
-// CLI11 tells words that nothing takes last first, and knows no word for a command that is none.
-std::string what_is_extra(const CLI::App& program) {
-    const std::vector<std::string> words = program.remaining(true);
-    if (program.get_subcommands().empty() && !words.empty() && words.front().rfind('-', 0) != 0)
-        return "there is no command '" + on_one_line(words.front()) + "'";
-    std::string text;
-    for (const std::string& word : words) text += " " + word;
-    return "not expected:" + on_one_line(text);
-}
-
 int usage_error(const CLI::App& program, const CLI::ParseError& error) {
     const std::string name = called(program);
-    const bool extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
-    say(name + ": " + (extra ? what_is_extra(program) : what_is_wrong(error)) + "; see `" + name + " --help`");
+    say(name + ": " + what_is_wrong(program, error) + "; see `" + name + " --help`");
     return exit_usage;
 }
 
@@ -95,10 +88,11 @@ int failure(const std::string& what) {
 }
 
 // The options of all commands together take longer to set up than short commands to run. So only the command that
-// is called is added, if one is: `completion` writes of all.
+// is called is added, if one is: `completion` and `help` write of all.
 void add_commands(CLI::App& program, std::string_view called, int& exit_code) {
     const auto is_called = [&](const Command& command) { return command.name == called; };
-    const bool one = called != "completion" && std::any_of(std::begin(commands), std::end(commands), is_called);
+    const bool of_all = called == "completion" || called == "help";
+    const bool one = !of_all && std::any_of(std::begin(commands), std::end(commands), is_called);
     for (const Command& command : commands) {
         if (one && !is_called(command)) continue;
         command.add(program, exit_code);

@@ -14,6 +14,7 @@
 #include "tools/cli/number_range.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
+#include "tools/cli/output_names.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/sizes.h"
 #include "tools/commands.h"
@@ -96,12 +97,13 @@ void set_ranges(TableArguments& options, const std::vector<std::uint32_t>& shape
     }
 }
 
-void remark(const TableArguments& options, const input::NpyArray& array) {
+/// What a user should know of the array.
+std::vector<std::string> remarks(const input::NpyArray& array) {
     const input::BadValues& bad = array.bad;
-    if (bad.count() > 0 && !options.quiet)
-        say(options.array + ": " + std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) +
-            " infinite and " + std::to_string(bad.negative) + " negative numbers set to 0, the first at [" +
-            input::index_text(array.shape, bad.first) + "]");
+    if (bad.count() == 0) return {};
+    return {std::to_string(bad.nan) + " NaN, " + std::to_string(bad.infinite) + " infinite and " +
+            std::to_string(bad.negative) + " negative numbers set to 0, the first at [" +
+            input::index_text(array.shape, bad.first) + "]"};
 }
 
 nlohmann::ordered_json report(const TableArguments& options, const input::NpyArray& array, std::size_t bins,
@@ -126,6 +128,7 @@ nlohmann::ordered_json report(const TableArguments& options, const input::NpyArr
         {"max_weight", a.max_weight},
         {"support_violations", a.support_violations}};
     if (a.combined) out["combined"] = true; // of the file and its company
+    out["notes"] = remarks(array);
     return out;
 }
 
@@ -160,7 +163,8 @@ void run(TableArguments& options) {
     const auto limit = limit_threads(options.threads);
     Output output(options.output, options.force, {options.array, options.other}); // refuses early, before the work
     const input::NpyArray array = input::read_npy(options.array, options.input);
-    remark(options, array);
+    if (!options.quiet)
+        for (const std::string& text : remarks(array)) say(options.array + ": " + text);
     const input::NpyArray other = read_other(options);
     if (!options.other.empty() && other.shape != array.shape)
         throw Failure(options.other + ": its shape is not that of " + options.array);
@@ -251,7 +255,8 @@ void add_table(CLI::App& program, int& exit_code) {
     add_axis_options(command, *options);
     add_size_options(command, *options);
     add_company_options(command, *options);
-    add_output(command, options->output, options->force, "The .acdf file to write")->required();
+    add_output(command, options->output, options->force,
+               "The .acdf file to write, or a folder for it; without it NAME.acdf beside the array");
     add_codec(command, options->table.codec);
     add_threads(command, options->threads);
     add_json(command, options->json);
@@ -265,6 +270,7 @@ void add_table(CLI::App& program, int& exit_code) {
         "acdf table field.npy -o field.acdf --indexed 2 --names s,t,u,v --range u=-1:1 --range v=-1:1\n"
         "acdf table volume.npy -o volume.acdf --budget 64KiB --json"));
     command.callback([options, &exit_code] {
+        options->output = output_names({options->array}, options->output, ".acdf")[0];
         run(*options);
         exit_code = exit_done;
     });

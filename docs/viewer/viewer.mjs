@@ -228,6 +228,10 @@ function tellDensity(event) {
 
 const ready = loadReader(Uint8Array.from(atob(WASM), c => c.charCodeAt(0)));
 ready.catch(error => fail(`This browser does not run the reader: ${error.message}`));
+// What `acdf view` put into the page (base64).
+const opened = $("opened");
+if (opened)
+    show(new File([Uint8Array.from(atob(opened.textContent.trim()), c => c.charCodeAt(0))], opened.dataset.name));
 $("file").addEventListener("change", event => event.target.files[0] && show(event.target.files[0]));
 for (const name of ["dragover", "dragleave", "drop"])
     addEventListener(name, event => {

@@ -23,6 +23,11 @@ cd "$work"
 printf 'not a file of ours, but long enough to be one if bytes were all that it takes' >broken.acdf
 echo '0.6 0 0.8' | "$acdf" pdf sky.acdf >density
 "$acdf" info sky.acdf --json >info.json
+# The page that `acdf view` makes, of the build's own page where there is one.
+if ! "$acdf" view sky.acdf -o opened.html --quiet; then
+    sed "s|<!-- OPENED -->|<script type=\"text/plain\" id=\"opened\" data-name=\"sky.acdf\">$(base64 -w 0 sky.acdf)</script>|" \
+        viewer.html >opened.html
+fi
 for width in 1280 390; do
     python3 "$here/../shaders/browser.py" . "viewer_test.html?width=$width" --window-size=1400,1300
 done

@@ -231,7 +231,7 @@ int run_batch(const BatchArguments& options, const BatchJobs& all, const BatchLi
     const BatchReport report{batch_id(all.jobs), shard, run_with_progress(options, plan, limits)};
     const int code = tell(options, report); // also where the page cannot be written
     if (!gallery.empty()) {
-        const std::string page = gallery_page(report, options.output);
+        const std::string page = gallery_page(report, options.output, plan, make_conversion);
         write_output(gallery, {page.begin(), page.end()}, true);
     }
     return code;

@@ -1,5 +1,6 @@
 #include "tools/batch/gallery.h"
 
+#include "tools/batch/source_picture.h"
 #include "tools/cli/html.h"
 #include "tools/cli/noise.h"
 #include "tools/cli/sizes.h"
@@ -25,13 +26,28 @@ body{margin:0 auto;max-width:1440px;padding:20px;background:var(--page);color:va
 font:15px/1.45 system-ui,-apple-system,"Segoe UI",sans-serif}
 h1{font-size:1.5rem;margin:0}
 p{margin:6px 0;color:var(--soft)}
-main{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:16px;margin-top:16px}
+main{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(460px,100%),1fr));gap:16px;margin-top:16px}
 figure{margin:0;padding:10px;background:var(--card);border:1px solid var(--rule);border-radius:8px;min-width:0}
-img{display:block;width:100%;height:160px;object-fit:contain}
+figure div{display:grid;grid-template-columns:1fr 1fr;gap:6px}
+img{display:block;width:100%;height:auto;max-height:160px;object-fit:contain}
 h2{font-size:1rem;margin:8px 0 0;overflow-wrap:anywhere}
 figcaption{font-size:.88rem;color:var(--soft);overflow-wrap:anywhere}
 .failed{color:var(--bad)}
 )";
+
+/// What the file was made from; empty where that cannot be read any more.
+std::string source_thumbnail(const JobResult& job, const BatchJob& planned, const MakeConversion& make) {
+    try {
+        const std::shared_ptr<Conversion> conversion = make(planned);
+        const input::ProbeOptions* reading = conversion->reading();
+        const images::Picture picture =
+            reading ? probe_picture(job.input, *reading, kMapWidth) : brdf_picture(job.input, kDiscWidth);
+        return html_image(encode_png(picture, {"acdf", "the source"}), picture.width, picture.height,
+                          "source of " + job.output);
+    } catch (const std::exception&) {
+        return "";
+    }
+}
 
 /// A density as a small picture; empty where the file cannot be read.
 std::string thumbnail(const std::string& path, const std::string& name) {
@@ -63,10 +79,13 @@ std::string caption(const JobResult& job) {
            noise_texts(job.relative_variance) + " at 16, 64, 256 samples";
 }
 
-std::string figure(const JobResult& job, const std::string& folder) {
+std::string figure(const JobResult& job, const BatchJob& planned, const std::string& folder,
+                   const MakeConversion& make) {
     std::string out = "<figure>\n";
     const bool failed = job.status == JobResult::Status::failed;
-    if (!failed) out += thumbnail((std::filesystem::path(folder) / job.output).string(), job.output) + "\n";
+    if (!failed)
+        out += "<div>" + source_thumbnail(job, planned, make) +
+               thumbnail((std::filesystem::path(folder) / job.output).string(), job.output) + "</div>\n";
     out += "<h2><bdi>" + escaped(job.output) + "</bdi></h2>\n<figcaption>";
     if (failed) out += "<span class=\"failed\">failed: " + escaped(job.error) + "</span>";
     else out += escaped(caption(job));
@@ -80,17 +99,20 @@ const char gallery_mark[] = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta 
                             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
                             "<title>acdf batch: gallery</title>\n";
 
-std::string gallery_page(const BatchReport& report, const std::string& folder) {
+std::string gallery_page(const BatchReport& report, const std::string& folder, const std::vector<PlannedJob>& plan,
+                         const MakeConversion& make) {
     const std::size_t failed = report.count(JobResult::Status::failed), made = report.jobs.size() - failed;
-    std::string out =
-        gallery_mark + std::string(closed_page_policy) + "<style>" + kStyle +
-        "</style>\n</head>\n<body>\n<header>\n<h1>" + std::to_string(made) + (made == 1 ? " file" : " files") +
-        (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
-        "</h1>\n<p>Densities in false colours, logarithmic, from violet over green to red; each picture "
-        "has a range of its own. Dark grey: no sample falls there.</p>\n</header>\n<main>\n";
+    std::string out = gallery_mark + std::string(closed_page_policy) + "<style>" + kStyle +
+                      "</style>\n</head>\n<body>\n<header>\n<h1>" + std::to_string(made) +
+                      (made == 1 ? " file" : " files") +
+                      (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
+                      "</h1>\n<p>Sources, and beside them densities in false colours, logarithmic, from violet "
+                      "over green to red; each picture "
+                      "has a range of its own. Dark grey: no sample falls there.</p>\n</header>\n<main>\n";
     for (const bool wanted : {false, true})
-        for (const JobResult& job : report.jobs)
-            if ((job.status == JobResult::Status::failed) == wanted) out += figure(job, folder);
+        for (std::size_t i = 0; i < report.jobs.size(); ++i)
+            if ((report.jobs[i].status == JobResult::Status::failed) == wanted)
+                out += figure(report.jobs[i], plan[i].job, folder, make);
     return out + "</main>\n</body>\n</html>\n";
 }
 

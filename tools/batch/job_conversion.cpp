@@ -38,7 +38,7 @@ std::shared_ptr<Conversion> make_conversion(const BatchJob& job) {
             if (file != &conversion.source) *file = (std::filesystem::path(job.base) / *file).string();
         conversion.check();
     } catch (const CLI::ParseError& error) {
-        throw OptionError(what_is_wrong(error));
+        throw OptionError(what_is_wrong(parsed->command, error));
     }
     return {parsed, &conversion};
 }

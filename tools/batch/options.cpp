@@ -46,10 +46,10 @@ void add_how(CLI::App& command, BatchArguments& options) {
     command.add_flag("-n,--dry-run", options.dry_run, "Only tell what would be made or skipped, and why")
         ->group("Output");
     command
-        .add_flag(
-            "--gallery", options.gallery,
-            "Write DIR/gallery.html too: a thumbnail of each density, its size and noise, on one page that needs "
-            "no other file")
+        .add_flag("--gallery", options.gallery,
+                  "Write DIR/gallery.html too: thumbnails of each source and its density, size and noise, on one "
+                  "page that "
+                  "needs no other file")
         ->group("Output");
     add_json(command, options.json);
     add_quiet(command, options.quiet);

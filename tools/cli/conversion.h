@@ -56,6 +56,9 @@ public:
     /// as the source is missing or damaged.
     virtual std::uint64_t memory() const = 0;
 
+    /// How the source is read; null: it is no probe.
+    virtual const input::ProbeOptions* reading() const { return nullptr; }
+
     /// Deterministic for any number of threads. Throws Failure or input::Error: one line.
     virtual Converted convert(const Listener& listener) = 0;
 };
@@ -67,11 +70,12 @@ std::unique_ptr<Conversion> brdf_conversion();
 /// What a subcommand that converts says of itself.
 struct ConversionHelp {
     const char* source; ///< "PROBE"
+    const char* suffix; ///< of outputs without a name: of "sky.exr" instead of ".exr"
     const char* source_text;
     std::string footer;
 };
 
-/// Makes `command` convert: its source, -o, the options of the conversion, and those on how to run and report.
+/// Makes `command` convert: its sources, -o, the options of the conversion, and those on how to run and report.
 void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, const ConversionHelp& help,
                     int& exit_code);
 

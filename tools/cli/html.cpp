@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace acdf::tools {
-namespace {
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {
     constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -16,8 +15,6 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     }
     return out;
 }
-
-} // namespace
 
 std::string escaped(const std::string& text) {
     std::string out;

@@ -16,6 +16,9 @@ constexpr const char* closed_page_policy =
 /// Text in HTML and XML, in elements and in quoted attributes.
 std::string escaped(const std::string& text);
 
+/// Bytes in the 64 letters of RFC 4648, with padding.
+std::string base64(const std::vector<std::uint8_t>& bytes);
+
 /// A PNG as an element that holds all of it.
 std::string html_image(const std::vector<std::uint8_t>& png, int width, int height, const std::string& alternative);
 

@@ -6,6 +6,7 @@
 #include "tools/cli/normal_option.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
+#include "tools/cli/output_names.h"
 #include "tools/cli/probe_options.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/scene_option.h"
@@ -299,15 +300,16 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->group("Input");
     add_mesh_options(command, *options);
     add_picture_options(command, *options);
-    add_output(command, options->output, options->force,
-               "The picture to write: .png, or .exr for the densities themselves as floats, for other programs")
-        ->required();
+    add_output(
+        command, options->output, options->force,
+        "The picture to write: .png, or .exr for the densities themselves as floats, for other programs; without "
+        "it NAME.png beside the input");
     add_quiet(command, options->quiet);
     command.footer(
         help_footer("Colours follow the logarithm of the density per steradian, from violet over green to red; "
                     "dark grey is density "
                     "0, where no sample ever falls. Each pixel shows the density of the direction at its centre.",
-                    "acdf plot sky.acdf -o sky.png\n"
+                    "acdf plot sky.acdf\n"
                     "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
                     "acdf plot local.acdf -o six.png\n"
                     "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
@@ -316,6 +318,7 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "acdf plot nickel.acdf -o lobe.png --view 60\n"
                     "acdf plot sky.acdf -o density.exr --width 4096"));
     command.callback([options, &command, &exit_code] {
+        if (options->output.empty()) options->output = output_names({options->file}, "", ".png")[0];
         check_mesh(command, *options);
         run(*options);
         exit_code = exit_done;

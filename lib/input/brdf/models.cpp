@@ -17,13 +17,18 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 
-/// "name:key=1,key=1,2": numbers by key.
+/// What numbers before any key are: of each model its own parameter.
+std::string first_parameter(const std::string& model) {
+    return model == "lambert" ? "albedo" : model == "ggx" ? "alpha" : model == "cook-torrance" ? "m" : "e";
+}
+
+/// "name:key=1,key=1,2": numbers by key. "name:1" is "name:key=1" of the first one.
 class Parameters {
 public:
     explicit Parameters(const std::string& text) : text_(text) {
         const std::size_t colon = text.find(':');
         if (colon == std::string::npos) return;
-        std::string key;
+        std::string key = first_parameter(text.substr(0, colon));
         for (std::size_t begin = colon + 1, end; begin <= text.size(); begin = end + 1) {
             end = std::min(text.find(',', begin), text.size());
             std::string item = text.substr(begin, end - begin);
@@ -32,7 +37,6 @@ public:
                 item = item.substr(equals + 1);
                 if (numbers_.count(key)) fail("'" + key + "' comes twice");
             }
-            if (key.empty()) fail("parameters are written as key=number");
             numbers_[key].push_back(number(item));
         }
     }
@@ -63,7 +67,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw input_error(text_, what + "; for example ggx:alpha=0.1 or cook-torrance:m=0.2,n=1.5,k=0");
+        throw input_error(text_, what + "; for example ggx:0.1, ggx:alpha=0.1 or cook-torrance:m=0.2,n=1.5,k=0");
     }
     double number(const std::string& item) const {
         char* end = nullptr;

@@ -28,9 +28,10 @@ TEST(BatchGallery, ShowsEveryFileAndWhatFailed) {
         run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "--kind", "env", "-q"});
     EXPECT_EQ(made.code, 1); // the last one fails
     const std::string page = read_text(folder / "out/gallery.html");
-    EXPECT_EQ(count(page, "<img "), 3u) << made.err;
+    EXPECT_EQ(count(page, "<img "), 6u) << made.err; // source and density
+    EXPECT_EQ(count(page, "alt=\"source of "), 3u);
     EXPECT_EQ(count(page, "<figure>"), 4u);
-    EXPECT_EQ(count(page, "data:image/png;base64,iVBORw0KGgo"), 3u);
+    EXPECT_EQ(count(page, "data:image/png;base64,iVBORw0KGgo"), 6u);
     EXPECT_EQ(count(page, "src=\"http"), 0u);
     EXPECT_EQ(count(page, "a<b>"), 0u); // names are text
     EXPECT_NE(page.find("<h2><bdi>a&lt;b&gt;&amp;.acdf</bdi></h2>"), std::string::npos);
@@ -40,7 +41,7 @@ TEST(BatchGallery, ShowsEveryFileAndWhatFailed) {
     EXPECT_LT(policy, page.find("<style>")) << "it counts for what follows it";
     // Once more, all up to date but the last.
     EXPECT_EQ(run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "-q"}).code, 1);
-    EXPECT_EQ(count(read_text(folder / "out/gallery.html"), "<img "), 3u);
+    EXPECT_EQ(count(read_text(folder / "out/gallery.html"), "<img "), 6u);
     EXPECT_EQ(run_acdf({"batch", folder / "jobs.jsonl", "-o", folder / "out", "--gallery", "--dry-run"}).code, 2);
 }
 
