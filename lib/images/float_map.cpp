@@ -70,7 +70,7 @@ bool is_side(int side) { return side >= 1 && side <= kMostOnASide; }
 /// All but `header`, taken off a text up to the end of the last number.
 std::optional<Layout> take_layout(std::string_view& text) {
     Layout layout;
-    layout.channels = take(text, "PF") ? 3 : take(text, "Pf") ? 1 : 0;
+    layout.channels = take(text, "PF4") ? 4 : take(text, "PF") ? 3 : take(text, "Pf") ? 1 : 0;
     if (!(layout.channels && take_gap(text) && take_number(text, layout.width) && take_gap(text) &&
           take_number(text, layout.height) && take_gap(text) && take_number(text, layout.scale)))
         return std::nullopt;
@@ -122,8 +122,9 @@ void* open(const std::string& path, int, Header& header, std::string&) {
     header.format = "pnm";
     header.data = header.display = {0, 0, map->layout.width, map->layout.height};
     header.channel_count = map->layout.channels;
-    header.channels =
-        header.channel_count == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+    header.channels = {"R", "G", "B", "A"};
+    header.channels.resize(static_cast<std::size_t>(header.channel_count));
+    if (header.channel_count == 1) header.channels = {"Y"};
     header.floating = true;
     header.sample_bytes = sizeof(float);
     return map.release();

@@ -31,6 +31,9 @@ struct Header {
     bool deep = false;
     bool floating = false; ///< of any width; else integers
     int sample_bytes = 0;
+    std::vector<int> channel_bytes; ///< of a sample of each channel where they differ
+    /// CIE x and y of red, green, blue and white, as the file says them, not checked; empty where it does not.
+    std::vector<float> chromaticities;
 };
 
 /// Rows and channels of the data window, all from a first to before a last, and the bytes between pixels and rows
@@ -64,6 +67,8 @@ struct ReaderModule {
 };
 
 struct OpenExrModule : ReaderModule {
+    /// Of luminance beside chroma (Y, RY, BY): the channels that have all pixels.
+    ImageReader luminance;
     /// An image file in memory: floats, a name for each channel of the picture. False and `error` where it cannot
     /// be made.
     bool (*encode)(const Picture& picture, const std::vector<std::string>& channels, const std::vector<Note>& notes,

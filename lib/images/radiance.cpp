@@ -2,6 +2,7 @@
 
 #include "images/one_part.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -14,23 +15,32 @@
 namespace acdf::images {
 namespace {
 
-constexpr int kFewestColumns = 8, kMostColumns = 32767, kMostPictureRows = 1 << 16;
-constexpr std::size_t kLongestLine = 2000, kMostLines = 100; // Radiance's own commands are long
+constexpr int kMostOnASide = 1 << 16;
+constexpr int kFewestColumns = 8, kMostColumns = 32767;             // of rows that are divided into components
+constexpr std::size_t kLongestLine = 1 << 16, kMostLines = 1 << 10; // Radiance's own commands are long
 
 struct Radiance {
     std::ifstream file;
     int width = 0, height = 0;
-    std::streamoff pixels = 0; ///< where they begin
-    bool whole_pixels = false; ///< rows are not divided into components
-    int next = 0;              ///< the row that the file stands at
+    bool has_format = false;           ///< the header names it
+    std::streamoff size = 0;           ///< of the file
+    std::streamoff pixels = 0;         ///< where they begin
+    std::vector<float> chromaticities; ///< images::Header
+    bool flat = false;                 ///< no row is encoded
+    bool marked = false;               ///< the first row is encoded by components
+    bool mixed = false;                ///< rows that are encoded otherwise follow, and end where the file does
+    int next = 0;                      ///< the row that the file stands at
     std::vector<unsigned char> row;
 };
 
-/// A line without its end; none where there is none, or a long one.
+/// A line without its end and the blanks before it; none where there is none, or a long one.
 std::optional<std::string> line_of(std::istream& file) {
     std::string line;
     for (int c; line.size() < kLongestLine && (c = file.get()) != std::char_traits<char>::eof();) {
-        if (c == '\n') return line;
+        if (c == '\n') {
+            line.resize(line.find_last_not_of(" \t\r") + 1); // 0 where there is nothing else
+            return line;
+        }
         line.push_back(static_cast<char>(c));
     }
     return std::nullopt;
@@ -38,20 +48,6 @@ std::optional<std::string> line_of(std::istream& file) {
 
 bool begins_with(std::string_view line, std::string_view beginning) {
     return line.substr(0, beginning.size()) == beginning;
-}
-
-/// Whether a line tells a command that made the picture, as Radiance's programs add one each.
-bool is_command(std::string_view line) {
-    const bool begins = line[0] == '\t' || (line[0] >= 'a' && line[0] <= 'z');
-    const std::size_t end = line.find_first_of(" \t=", 1);
-    return begins && (end == std::string_view::npos || line[end] != '=');
-}
-
-/// Whether a line of the header changes nothing of how pixels are taken.
-bool is_harmless(std::string_view line) {
-    return is_command(line) || begins_with(line, "VIEW=") || begins_with(line, "SOFTWARE=") ||
-           begins_with(line, "#") || begins_with(line, "EXPOSURE=") || begins_with(line, "PRIMARIES=") ||
-           line == "GAMMA=1" || line == "GAMMA=1.0";
 }
 
 bool take_number(std::string_view& text, std::string_view before, int& number) {
@@ -62,42 +58,104 @@ bool take_number(std::string_view& text, std::string_view before, int& number) {
     return error == std::errc();
 }
 
+/// "PRIMARIES= 0.64 0.33 0.29 0.6 0.15 0.06 0.333 0.333": as images::Header has them.
+std::vector<float> numbers_of(std::string_view text) {
+    std::vector<float> out;
+    for (;;) {
+        text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+        float number = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        if (error != std::errc()) return out;
+        out.push_back(number);
+        text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    }
+}
+
+const std::vector<float> kXyz = {1, 0, 0, 1, 0, 0, 1.0f / 3, 1.0f / 3};
+
+/// Takes what a line says of pixels: their format and primaries. What else it says, exposure, gamma and views among
+/// it, renderers ignore. False where the format is none that we read.
+bool take_line(std::string_view line, Radiance& picture) {
+    constexpr std::string_view format = "FORMAT=", primaries = "PRIMARIES=";
+    if (begins_with(line, primaries) && picture.chromaticities.empty())
+        picture.chromaticities = numbers_of(line.substr(primaries.size()));
+    if (!begins_with(line, format)) return true;
+    const std::string_view name = line.substr(std::min(line.find_first_not_of(' ', format.size()), line.size()));
+    if (name == "32-bit_rle_xyze") picture.chromaticities = kXyz;
+    picture.has_format = name == "32-bit_rle_rgbe" || name == "32-bit_rle_xyze";
+    return picture.has_format;
+}
+
 bool read_header(Radiance& picture) {
-    if (line_of(picture.file) != "#?RADIANCE") return false;
-    bool encoded = false;
-    for (std::size_t i = 0; i < kMostLines; ++i) {
+    const auto first = line_of(picture.file);
+    if (!first || !begins_with(*first, "#?")) return false;
+    for (std::size_t i = 0;; ++i) {
         const auto line = line_of(picture.file);
-        if (!line) return false;
+        if (!line || i == kMostLines) return false;
         if (line->empty()) break;
-        if (*line == "FORMAT=32-bit_rle_rgbe") encoded = true;
-        else if (!is_harmless(*line)) return false;
+        if (!take_line(*line, picture)) return false;
     }
     const auto line = line_of(picture.file);
     std::string_view size = line ? *line : std::string_view{};
     picture.pixels = picture.file.tellg();
-    return encoded && take_number(size, "-Y ", picture.height) && take_number(size, " +X ", picture.width) &&
-           size.empty() && picture.height >= 1 && picture.height <= kMostPictureRows &&
-           picture.width >= kFewestColumns && picture.width <= kMostColumns;
+    return picture.has_format && take_number(size, "-Y ", picture.height) &&
+           take_number(size, " +X ", picture.width) && size.empty() && picture.height >= 1 &&
+           picture.height <= kMostOnASide && picture.width >= 1 && picture.width <= kMostOnASide;
 }
 
-/// What a row begins with whose components are encoded one after the other.
-std::array<int, 4> row_mark(const Radiance& picture) { return {2, 2, picture.width >> 8, picture.width & 255}; }
+using Pixel = std::array<unsigned char, 4>;
 
-/// Looks at how rows are encoded. False where they are not at all: OpenImageIO reads all pixels of such pictures.
+bool take_pixel(std::streambuf& bytes, Pixel& pixel) {
+    return bytes.sgetn(reinterpret_cast<char*>(pixel.data()), 4) == 4;
+}
+
+/// Whether a row begins as one whose components are encoded one after the other.
+bool is_mark(const Radiance& picture, const Pixel& pixel) {
+    return picture.width >= kFewestColumns && picture.width <= kMostColumns && pixel[0] == 2 && pixel[1] == 2 &&
+           pixel[2] == picture.width >> 8 && pixel[3] == (picture.width & 255);
+}
+
+bool next_row(Radiance& picture);
+
+void go_to(Radiance& picture, int row, std::streamoff position) {
+    picture.file.clear();
+    picture.file.seekg(position);
+    picture.next = row;
+}
+
+void rewind(Radiance& picture) { go_to(picture, 0, picture.pixels); }
+
+bool read_to_end(Radiance& picture) {
+    while (picture.next < picture.height)
+        if (!next_row(picture)) return false;
+    return true;
+}
+
+/// Looks at whether rows are encoded. Those of a file that has bytes for all pixels are not, unless they end, read
+/// as encoded, where the file does: its first pixel may look like the mark of a row. Behind a mark more may follow.
+/// False where that is the mark of rows of another width, and damaged.
 bool find_encoding(Radiance& picture) {
-    std::streambuf& bytes = *picture.file.rdbuf();
-    for (const int expected : row_mark(picture)) picture.whole_pixels |= bytes.sbumpc() != expected;
-    picture.file.seekg(0, std::ios::end);
-    const std::streamoff size = picture.file.tellg() - picture.pixels;
-    picture.file.seekg(picture.pixels);
-    return !picture.whole_pixels || size < 4 * std::streamoff{picture.width} * picture.height;
+    Pixel first{};
+    rewind(picture);
+    picture.marked = take_pixel(*picture.file.rdbuf(), first) && is_mark(picture, first);
+    rewind(picture);
+    const std::streamoff flat = picture.pixels + 4 * std::streamoff{picture.width} * picture.height;
+    if (picture.size < flat || (picture.size > flat && picture.marked)) return true;
+    if (picture.size > flat && first[0] == 2 && first[1] == 2 && first[2] < 128) return false;
+    picture.flat =
+        (picture.size == flat && !picture.marked) || !read_to_end(picture) || picture.file.tellg() != picture.size;
+    rewind(picture);
+    return true;
 }
 
 void* open_radiance(const std::string& path, int, Header& header, std::string&) {
     auto picture = std::make_unique<Radiance>();
     picture->file.open(path, std::ios::binary);
-    if (!read_header(*picture) || !find_encoding(*picture)) return nullptr;
+    if (!read_header(*picture)) return nullptr;
+    picture->file.seekg(0, std::ios::end);
+    picture->size = picture->file.tellg();
     picture->row.resize(4 * static_cast<std::size_t>(picture->width));
+    if (!find_encoding(*picture)) return nullptr;
     header = {};
     header.format = "hdr";
     header.data = header.display = {0, 0, picture->width, picture->height};
@@ -105,6 +163,7 @@ void* open_radiance(const std::string& path, int, Header& header, std::string&) 
     header.channels = {"R", "G", "B"};
     header.floating = true;
     header.sample_bytes = sizeof(float);
+    header.chromaticities = picture->chromaticities;
     return picture.release();
 }
 
@@ -132,8 +191,6 @@ bool read_component(std::streambuf& bytes, unsigned char* at, unsigned char* end
 bool read_components(Radiance& picture) {
     std::streambuf& bytes = *picture.file.rdbuf();
     const auto width = static_cast<std::size_t>(picture.width);
-    for (const int expected : row_mark(picture))
-        if (bytes.sbumpc() != expected) return false;
     for (std::size_t component = 0; component < 4; ++component)
         if (!read_component(bytes, picture.row.data() + component * width,
                             picture.row.data() + (component + 1) * width))
@@ -141,16 +198,13 @@ bool read_components(Radiance& picture) {
     return true;
 }
 
-/// The older code: pixels, of which 1 1 1 n stands for n more of the one before, times 256 right after another
-/// such.
-bool read_whole_pixels(Radiance& picture) {
-    std::streambuf& bytes = *picture.file.rdbuf();
+/// Whole pixels, of which the first is read already. In the older code 1 1 1 n stands for n more of the one before,
+/// times 256 right after another such.
+bool read_whole_pixels(Radiance& picture, Pixel pixel) {
     const auto width = static_cast<std::size_t>(picture.width);
     unsigned shift = 0;
-    for (std::size_t x = 0; x < width;) {
-        unsigned char pixel[4];
-        if (bytes.sgetn(reinterpret_cast<char*>(pixel), 4) != 4) return false;
-        const bool run = pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1;
+    for (std::size_t x = 0;;) {
+        const bool run = !picture.flat && pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1;
         if (run && (x == 0 || shift > 8)) return false; // no row is as long as that
         const std::size_t count = run ? std::size_t{pixel[3]} << shift : 1;
         if (count > width - x) return false;
@@ -160,12 +214,32 @@ bool read_whole_pixels(Radiance& picture) {
         }
         x += count;
         shift = run ? shift + 8 : 0;
+        if (x == width) return true;
+        if (!take_pixel(*picture.file.rdbuf(), pixel)) return false;
     }
-    return true;
 }
 
+/// Whether rows that are encoded in another way than the first end where the file does; else what looks like them
+/// is damage.
+bool ends_as_mixed(Radiance& picture) {
+    const int row = picture.next;
+    const std::streamoff position = picture.file.tellg();
+    picture.mixed = true;
+    picture.mixed = read_to_end(picture) && picture.file.tellg() == picture.size;
+    go_to(picture, row, position);
+    return picture.mixed;
+}
+
+/// Each row may be encoded in its own way.
 bool next_row(Radiance& picture) {
-    if (!(picture.whole_pixels ? read_whole_pixels(picture) : read_components(picture))) return false;
+    Pixel first;
+    if (!take_pixel(*picture.file.rdbuf(), first)) return false;
+    const bool components = !picture.flat && is_mark(picture, first);
+    if (!picture.flat && components != picture.marked && !picture.mixed) {
+        picture.file.seekg(-4, std::ios::cur);
+        return ends_as_mixed(picture) && next_row(picture);
+    }
+    if (!(components ? read_components(picture) : read_whole_pixels(picture, first))) return false;
     ++picture.next;
     return true;
 }
@@ -192,15 +266,11 @@ void decode(const Radiance& picture, const Rows& rows, unsigned char* pixel) {
 
 bool read_radiance(void* image, const Rows& rows, float* to, std::string& error) {
     Radiance& picture = *static_cast<Radiance*>(image);
-    if (rows.first_row < picture.next) {
-        picture.file.clear();
-        picture.file.seekg(picture.pixels);
-        picture.next = 0;
-    }
+    if (rows.first_row < picture.next) rewind(picture);
     auto* line = reinterpret_cast<unsigned char*>(to);
     while (picture.next < rows.last_row) {
         if (!next_row(picture)) {
-            error = "a row is damaged, or encoded in another way";
+            error = "a row is damaged or cut short";
             return false;
         }
         if (picture.next <= rows.first_row) continue;
@@ -213,7 +283,7 @@ bool read_radiance(void* image, const Rows& rows, float* to, std::string& error)
 } // namespace
 
 const ImageReader& radiance_reader() {
-    // It is upright and linear: nothing has to be said.
+    // Upright and linear, whatever gamma it declares, as renderers take it: nothing has to be said.
     static const ImageReader functions = {open_radiance, close_radiance, seek_one_part, read_radiance,
                                           no_text,       no_integer,     no_real};
     return functions;

@@ -1,6 +1,7 @@
 #include "input/file_name.h"
 
 #include "input/error.h"
+#include "input/stand_in.h"
 #include "reader/utf8.h"
 
 #include <cstdint>
@@ -41,6 +42,7 @@ void require_regular_file(const std::string& path, const char* give) {
     if (std::filesystem::is_directory(status)) throw input_error(path, std::string("it is a folder; give ") + give);
     if (!std::filesystem::is_regular_file(status))
         throw input_error(path, std::string("it is a pipe or a device; give ") + give);
+    refuse_stand_in(path);
 }
 
 } // namespace acdf::input

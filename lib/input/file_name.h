@@ -9,7 +9,7 @@ namespace acdf::input {
 std::string file_name(const std::string& path);
 
 /// Throws Error unless `path` is a file with an end: folders, pipes and devices are refused, as is what is not
-/// there. `give`: what to give instead, such as "an image file".
+/// there, and what stands for another file (stand_in.h). `give`: what to give instead, such as "an image file".
 void require_regular_file(const std::string& path, const char* give);
 
 /// The letters A to Z of a text made small, whatever the locale.

@@ -2,6 +2,7 @@
 
 #include "input/error.h"
 #include "input/file_name.h"
+#include "input/line_ends.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -102,8 +103,9 @@ NpyArray convert(Numbers& numbers, const NpyHeader& header, const build::Survey&
 void check_size(const std::string& name, const NpyHeader& header, std::uint64_t size) {
     const std::uint64_t needed = header.size + header.count() * header.item_size;
     if (size < needed)
-        throw input_error(name, "it is cut short: its shape needs " + std::to_string(needed) + " bytes, it has " +
-                                    std::to_string(size) + "; copy it again");
+        throw input_error(name, "it is cut short" + maybe_converted_line_ends(name) + ": its shape needs " +
+                                    std::to_string(needed) + " bytes, it has " + std::to_string(size) +
+                                    "; copy it again");
     if (size > needed)
         throw input_error(name, std::to_string(size - needed) +
                                     " bytes follow its array; save one array a file with numpy.save");
@@ -129,6 +131,7 @@ NpyArray read_npy(std::FILE* file, std::uint64_t size, const std::string& name, 
 
 NpyArray read_npy(const std::string& path, const NpyOptions& options) {
     require_regular_file(path, "an .npy file"); // before it is opened: a pipe without a writer would never be
+    refuse_converted_line_ends(path, 1);        // its header ends in LF
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) throw input_error(path, std::string("it cannot be opened: ") + std::strerror(errno));
     struct stat status = {};

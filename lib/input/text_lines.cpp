@@ -1,6 +1,7 @@
 #include "input/text_lines.h"
 
 #include "input/error.h"
+#include "input/stand_in.h"
 #include "reader/utf8.h"
 
 #include <charconv>
@@ -22,6 +23,7 @@ const char* skip_separators(const char* at, const char* end) {
 
 void for_each_line(const std::string& path, const std::string& what,
                    const std::function<void(const TextLine&)>& take) {
+    refuse_stand_in(path);
     std::ifstream file(path, std::ios::binary);
     if (!file) throw input_error(path, "it cannot be opened; check its permissions");
     char text[longest_line];

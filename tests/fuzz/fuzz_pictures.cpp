@@ -90,7 +90,7 @@ void try_reader(const ImageReader& reader, const std::string& path, bool radianc
     void* const image = reader.open(path, 1, header, error);
     if (!image) return;
     require(header.data.width >= 1 && header.data.height >= 1 && header.data == header.display);
-    require(header.channel_count >= 1 && header.channel_count <= 3);
+    require(header.channel_count >= 1 && header.channel_count <= 4);
     require(static_cast<std::size_t>(header.channel_count) == header.channels.size());
     require_rows({reader, image, header}, radiance);
     reader.close(image);

@@ -49,6 +49,13 @@ builder::Target lit(const std::string& path, const input::Probe& probe, const Ma
     }
 }
 
+/// A sun that is more than its file can hold is infinite there, and all of the light may be in it.
+std::string advice_on(const build::BadTexels& bad, const input::ProbeOptions& options) {
+    return bad.infinite > 0 && options.bad_pixels == build::BadPixels::zero
+               ? "; --bad-pixels clamp keeps the light of the infinite ones"
+               : "";
+}
+
 /// `grid`: what the probe was resampled to; empty where it was not.
 void tell(const input::Probe& probe, const input::ProbeOptions& options, const std::string& grid,
           const Note& note) {
@@ -60,7 +67,7 @@ void tell(const input::Probe& probe, const input::ProbeOptions& options, const s
     const build::BadTexels& bad = probe.bad;
     if (bad.count() > 0)
         note(counts(bad) + " texels " + (options.bad_pixels == build::BadPixels::clamp ? "clamped" : "set to 0") +
-             ", the first at " + std::to_string(bad.x) + "," + std::to_string(bad.y));
+             ", the first at " + std::to_string(bad.x) + "," + std::to_string(bad.y) + advice_on(bad, options));
     for (const std::string& warning : probe.warnings) note(warning);
 }
 
@@ -76,6 +83,7 @@ builder::Target probe_target(const std::string& path, const input::Probe& probe,
                              const builder::TargetOptions& options) {
     return lit(path, probe, [&] {
         builder::TargetRows rows(options);
+        if (probe.luminance) rows.set_luminance(*probe.luminance);
         rows.begin(probe.width, probe.height);
         rows.take(0, probe.height, probe.rgb.data());
         return rows.finish();

@@ -45,8 +45,10 @@ struct Rows {
 
 /// What becomes of NaN, infinite and negative values. None of them ever reaches a density.
 enum class BadTexelPolicy {
-    zero,  ///< all are 0
-    clamp, ///< +infinity is the largest finite value of its channel; the others are 0
+    zero, ///< all are 0
+    /// +infinity is the largest finite value of its channel, of half floats 65504, at which they end; the others
+    /// are 0
+    clamp,
     error, ///< ErrorCode::bad_source
 };
 

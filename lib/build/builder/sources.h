@@ -43,6 +43,8 @@ public:
                         std::optional<build::Domain> grid = {})
         : options_(options), progress_(std::move(progress)), grid_(grid) {}
 
+    /// Whoever asked for luminance gets it by these.
+    void set_luminance(const ChannelWeights& weights) override;
     bool take_map(const build::Map& map, const std::vector<float>& rgb) override;
     void begin(int width, int height) override;
     void take(int first, int count, const float* rgb) override;

@@ -41,10 +41,10 @@ build::Channels largest_of_all(std::uint32_t width, std::uint32_t height, const 
 }
 
 void take_latlong(std::uint32_t width, std::uint32_t height, const ReadRows& read, const TargetOptions& options,
-                  int threads, build::RepairedRows& repaired) {
-    build::Channels largest{};
+                  int threads, bool half, build::RepairedRows& repaired) {
+    build::Channels largest = build::largest_half;
     const bool clamp = options.bad_texels == BadTexelPolicy::clamp;
-    if (clamp) largest = largest_of_all(width, height, read, threads);
+    if (clamp && !half) largest = largest_of_all(width, height, read, threads);
     repaired.begin(static_cast<int>(width), static_cast<int>(height));
     for_each_band(width, height, read, [&](std::uint32_t first, std::uint32_t count, float* rgb) {
         repaired.take(static_cast<int>(first), static_cast<int>(count), rgb, clamp ? &largest : nullptr);
@@ -55,7 +55,8 @@ void take_projection(const Pixels& pixels, build::RepairedRows& repaired) {
     std::vector<float> rgb(std::size_t{3} * pixels.width * pixels.height);
     read_rows(pixels, 0, pixels.height, rgb.data());
     const auto width = static_cast<int>(pixels.width), height = static_cast<int>(pixels.height);
-    repaired.repair_whole(width, height, rgb.data());
+    repaired.repair_whole(width, height, rgb.data(),
+                          pixels.number == Number::float16 ? &build::largest_half : nullptr);
     repaired.take_whole({pixels.projection, width, height}, std::move(rgb));
 }
 
@@ -89,7 +90,8 @@ Target make_target(const Pixels& pixels, const TargetOptions& options, int threa
     };
     return make(options, threads, progress, name_of(pixels.projection), [&](build::RepairedRows& repaired) {
         if (pixels.projection != Projection::latlong) return take_projection(pixels, repaired);
-        take_latlong(pixels.width, pixels.height, read, options, threads, repaired);
+        take_latlong(pixels.width, pixels.height, read, options, threads, pixels.number == Number::float16,
+                     repaired);
     });
 }
 
@@ -106,7 +108,7 @@ Target make_target(const Rows& rows, const TargetOptions& options, int threads, 
         if (!going_on) throw build::CallbackFailed();
     };
     return make(options, threads, progress, name_of(Projection::latlong), [&](build::RepairedRows& repaired) {
-        take_latlong(rows.width, rows.height, read, options, threads, repaired);
+        take_latlong(rows.width, rows.height, read, options, threads, false, repaired);
     });
 }
 
@@ -130,6 +132,14 @@ Target target_of(compress::Target grid, const TargetOptions& options) {
                 static_cast<int>(grid.columns), static_cast<int>(grid.rows), repeats(options)};
     data.grid = std::move(grid);
     return held(std::move(data));
+}
+
+void TargetRows::set_luminance(const ChannelWeights& weights) {
+    const ChannelWeights usual;
+    ChannelWeights& asked = options_.channels.weights;
+    if (options_.channels.mode == ACDF_CHANNELS_WEIGHTED && asked.r == usual.r && asked.g == usual.g &&
+        asked.b == usual.b)
+        asked = weights;
 }
 
 bool TargetRows::take_map(const build::Map& map, const std::vector<float>& rgb) {

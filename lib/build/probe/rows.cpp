@@ -19,8 +19,8 @@ void RepairedRows::take(int first, int count, float* rgb, const Channels* larges
     pass_on(first, count, rgb);
 }
 
-void RepairedRows::repair_whole(int width, int height, float* rgb) {
-    repair_texels(rgb, width, 0, height, options_.bad_pixels, options_.threads, bad_);
+void RepairedRows::repair_whole(int width, int height, float* rgb, const Channels* largest) {
+    repair_texels(rgb, width, 0, height, options_.bad_pixels, options_.threads, bad_, largest);
 }
 
 void RepairedRows::take_whole(const Map& map, std::vector<float> rgb) {

@@ -12,6 +12,8 @@ namespace acdf::build {
 class ProbeRows {
 public:
     virtual ~ProbeRows() = default;
+    /// What luminance is by the source's own primaries, before anything else; not called where it is Rec. 709's.
+    virtual void set_luminance(const builder::ChannelWeights&) {}
     /// A map that is not lat-long, as it is: map.height x map.width x 3, finite and >= 0. False, and nothing is
     /// kept, where it is wanted as rows of a lat-long map.
     virtual bool take_map(const Map&, const std::vector<float>& /*rgb*/) { return false; }
@@ -33,13 +35,15 @@ class RepairedRows {
 public:
     RepairedRows(const RepairOptions& options, ProbeRows& rows) : options_(options), rows_(rows) {}
 
+    void set_luminance(const builder::ChannelWeights& weights) { rows_.set_luminance(weights); }
+
     /// A lat-long probe, whose bands follow from the top to the bottom.
     void begin(int width, int height);
     /// `largest`: of all bands, needed with BadPixels::clamp where a band is not all there is. `rgb` is mended.
     void take(int first, int count, float* rgb, const Channels* largest = nullptr);
 
-    /// Mends an image of any layout as a whole.
-    void repair_whole(int width, int height, float* rgb);
+    /// Mends an image of any layout as a whole. `largest`: what is clamped to, where that is not what it holds.
+    void repair_whole(int width, int height, float* rgb, const Channels* largest = nullptr);
     /// An image that was mended as a whole; it is used up. It has the shape that its layout needs.
     void take_whole(const Map& map, std::vector<float> rgb);
 

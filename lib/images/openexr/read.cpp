@@ -1,11 +1,14 @@
 // The module that writes OpenEXR files (write.cpp) and reads usual ones: one part in rows, of R, G and B, maybe
-// with A, in floats. What else there is, and whatever is wrong with a file, is left to OpenImageIO, which takes a
+// with A, in floats. It also reads luminance beside chroma that is stored for every other pixel alone, which
+// OpenImageIO refuses. What else there is, and whatever is wrong with a file, is left to OpenImageIO, which takes a
 // hundred times longer to load.
 #include "images/one_part.h"
 #include "threads.h"
 #include "write.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfEnvmapAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
@@ -66,26 +69,78 @@ std::vector<std::string> usual_channels(const Imf::ChannelList& channels) {
     return found == names.size() ? names : std::vector<std::string>{};
 }
 
+bool ends_in(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Those that have all pixels, where others are chroma: RY and BY, of every other pixel. None where there is no
+/// such chroma.
+std::vector<std::string> channels_beside_chroma(const Imf::ChannelList& channels) {
+    std::vector<std::string> names;
+    bool chroma = false;
+    for (auto i = channels.begin(); i != channels.end(); ++i) {
+        const Imf::Channel& channel = i.channel();
+        const std::string name = lower_case(i.name());
+        if (channel.xSampling == 1 && channel.ySampling == 1) {
+            if (channel.type == Imf::UINT) return {};
+            names.emplace_back(i.name());
+        } else if (ends_in(name, "ry") || ends_in(name, "by")) {
+            chroma = true;
+        } else {
+            return {};
+        }
+    }
+    return chroma ? names : std::vector<std::string>{};
+}
+
 struct OpenExr {
     std::unique_ptr<Imf::InputFile> file;
     std::vector<std::string> channels;
 };
 
-bool open_file(const std::string& path, int threads, OpenExr& out) {
+/// What `channels` has of an open file; nothing where it does not read such files.
+using ChooseChannels = std::vector<std::string> (*)(const Imf::Header& header);
+
+std::vector<std::string> of_usual(const Imf::Header& header) {
+    return attributes_are_usual(header) ? usual_channels(header.channels()) : std::vector<std::string>{};
+}
+
+std::vector<std::string> of_luminance(const Imf::Header& header) {
+    return channels_beside_chroma(header.channels());
+}
+
+bool open_file(const std::string& path, int threads, ChooseChannels choose, OpenExr& out) {
     const int count = thread_count(threads);
     out.file = std::make_unique<Imf::InputFile>(path.c_str(), count);
     const Imf::Header& header = out.file->header();
     const Window data = window_of(header.dataWindow());
     start_threads(count, std::int64_t{data.width} * data.height);
-    out.channels = usual_channels(header.channels());
-    return !header.hasTileDescription() && out.file->isComplete() && !out.channels.empty() &&
-           attributes_are_usual(header);
+    out.channels = choose(header);
+    return !header.hasTileDescription() && out.file->isComplete() && !out.channels.empty();
 }
 
-void* open(const std::string& path, int threads, Header& header, std::string& error) {
+/// An attribute of a type; null where there is none. No dynamic_cast: its types would have to be one.
+template <class Value>
+const Value* attribute_of(const Imf::Header& header, const char* name, const char* type) {
+    const auto found = header.find(name);
+    if (found == header.end() || std::strcmp(found.attribute().typeName(), type) != 0) return nullptr;
+    return &static_cast<const Imf::TypedAttribute<Value>&>(found.attribute()).value();
+}
+
+std::vector<float> chromaticities_of(const Imf::Header& header) {
+    const auto* c = attribute_of<Imf::Chromaticities>(header, "chromaticities", "chromaticities");
+    if (!c) return {};
+    return {c->red.x, c->red.y, c->green.x, c->green.y, c->blue.x, c->blue.y, c->white.x, c->white.y};
+}
+
+int bytes_of(const Imf::Header& header, const std::string& channel) {
+    return header.channels().findChannel(channel)->type == Imf::HALF ? 2 : 4;
+}
+
+void* open_chosen(const std::string& path, int threads, ChooseChannels choose, Header& header, std::string& error) {
     auto out = std::make_unique<OpenExr>();
     try {
-        if (!open_file(path, threads, *out)) return nullptr;
+        if (!open_file(path, threads, choose, *out)) return nullptr;
     } catch (const std::exception& e) {
         error = e.what();
         return nullptr;
@@ -98,8 +153,18 @@ void* open(const std::string& path, int threads, Header& header, std::string& er
     header.channels = out->channels;
     header.channel_count = static_cast<int>(out->channels.size());
     header.floating = true;
-    header.sample_bytes = stored.channels().findChannel("R")->type == Imf::HALF ? 2 : 4;
+    for (const std::string& channel : out->channels) header.channel_bytes.push_back(bytes_of(stored, channel));
+    header.sample_bytes = *std::max_element(header.channel_bytes.begin(), header.channel_bytes.end());
+    header.chromaticities = chromaticities_of(stored);
     return out.release();
+}
+
+void* open(const std::string& path, int threads, Header& header, std::string& error) {
+    return open_chosen(path, threads, of_usual, header, error);
+}
+
+void* open_luminance(const std::string& path, int threads, Header& header, std::string& error) {
+    return open_chosen(path, threads, of_luminance, header, error);
 }
 
 void close(void* image) { std::unique_ptr<OpenExr>(static_cast<OpenExr*>(image)); }
@@ -129,8 +194,19 @@ bool read(void* image, const Rows& rows, float* to, std::string& error) {
     }
 }
 
-std::string text(const void*, const char* name) {
-    return std::strcmp(name, "oiio:ColorSpace") == 0 ? "Linear" : "";
+/// In OpenImageIO's words.
+std::string text(const void* image, const char* name) {
+    if (std::strcmp(name, "oiio:ColorSpace") == 0) return "Linear";
+    if (std::strcmp(name, "textureformat") != 0) return "";
+    const Imf::Header& header = static_cast<const OpenExr*>(image)->file->header();
+    const auto* map = attribute_of<Imf::Envmap>(header, "envmap", "envmap");
+    return !map ? "" : *map == Imf::ENVMAP_CUBE ? "CubeFace Environment" : "LatLong Environment";
+}
+
+int integer(const void* image, const char* name, int otherwise) {
+    if (std::strcmp(name, "Orientation") != 0) return otherwise;
+    const auto* found = attribute_of<int>(static_cast<const OpenExr*>(image)->file->header(), "Orientation", "int");
+    return found ? *found : otherwise;
 }
 
 } // namespace
@@ -139,6 +215,8 @@ std::string text(const void*, const char* name) {
 extern "C" __attribute__((visibility("default"))) const acdf::images::OpenExrModule* acdf_openexr_module() {
     using namespace acdf::images;
     static const OpenExrModule functions = {
-        {ACDF_VERSION, {open, close, seek_one_part, read, text, no_integer, no_real}}, encode_openexr};
+        {ACDF_VERSION, {open, close, seek_one_part, read, text, integer, no_real}},
+        {open_luminance, close, seek_one_part, read, text, integer, no_real},
+        encode_openexr};
     return &functions;
 }

@@ -26,6 +26,13 @@ Header header_of(const OIIO::ImageInput& input) {
     header.floating = s.format.basetype == OIIO::TypeDesc::HALF || s.format.basetype == OIIO::TypeDesc::FLOAT ||
                       s.format.basetype == OIIO::TypeDesc::DOUBLE;
     header.sample_bytes = static_cast<int>(s.format.basesize());
+    for (const OIIO::TypeDesc& format : s.channelformats)
+        header.channel_bytes.push_back(static_cast<int>(format.basesize()));
+    constexpr int kNumbers = 8;
+    header.chromaticities.resize(kNumbers);
+    if (!s.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, kNumbers),
+                        header.chromaticities.data()))
+        header.chromaticities.clear();
     return header;
 }
 

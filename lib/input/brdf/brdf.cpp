@@ -6,8 +6,10 @@
 #include "input/brdf/table.h"
 #include "input/error.h"
 #include "input/file_name.h"
+#include "input/line_ends.h"
 #include "input/other_kind.h"
 #include "input/sha256.h"
+#include "input/stand_in.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -28,6 +30,8 @@ std::vector<std::uint8_t> read_bytes(const std::string& path) {
                           "there is no such file, and no model of this name (lambert, ggx, cook-torrance, blinn)");
     if (!std::filesystem::is_regular_file(path, error))
         throw input_error(path, "it is a pipe or a device; give a BRDF file");
+    refuse_stand_in(path);
+    refuse_converted_line_ends(path);
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (error) throw input_error(path, "it cannot be read: " + error.message());
     if (size > max_file) throw input_error(path, "it is larger than 2 GiB; give a BRDF file");

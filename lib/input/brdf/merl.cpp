@@ -2,6 +2,7 @@
 
 #include "compress/trigonometry.h"
 #include "input/error.h"
+#include "input/line_ends.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,8 @@ void check_header(const std::string& name, const std::uint8_t* data, std::size_t
                               " entries, a MERL file has 90 x 90 x 180; give a .binary file of that database");
     if (size != MerlLayout::bytes)
         throw input_error(name, "it has " + std::to_string(size) + " bytes, a MERL file has " +
-                                    std::to_string(MerlLayout::bytes) + "; copy it again");
+                                    std::to_string(MerlLayout::bytes) + ": it is cut short or damaged" +
+                                    maybe_converted_line_ends(name) + "; copy it again");
 }
 
 /// Mean difference between entries whose phi_d are mirrored, over their mean.

@@ -1,6 +1,7 @@
 #include "input/mesh/ply_counts.h"
 
 #include "input/error.h"
+#include "input/line_ends.h"
 
 #include <cstdint>
 #include <cstdlib>
@@ -55,13 +56,15 @@ public:
 
     void check() {
         const PlyHeader header = read_header();
+        if (header.format != "ascii") refuse_converted_line_ends(path_);
         for (const PlyElement& element : header.elements)
             if (!(header.format == "ascii" ? check_lines(element) : check_bytes(element, header.format)))
-                fail("it ends before the elements that its header claims; it is cut short or damaged");
+                fail("it ends before the elements that its header claims; it is cut short or damaged" +
+                     (header.format == "ascii" ? "" : maybe_converted_line_ends(path_)));
     }
 
 private:
-    [[noreturn]] void fail(const char* what) const { throw input_error(path_, what); }
+    [[noreturn]] void fail(const std::string& what) const { throw input_error(path_, what); }
     [[noreturn]] void fail_list() const {
         fail("a list in it claims more elements than the file has bytes; it is damaged");
     }

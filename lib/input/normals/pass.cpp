@@ -1,6 +1,7 @@
 #include "images/image_file.h"
 #include "input/error.h"
 #include "input/file_name.h"
+#include "input/line_ends.h"
 #include "input/normals/sources.h"
 
 #include <algorithm>
@@ -135,6 +136,7 @@ private:
 } // namespace
 
 void add_pixel_normals(const std::string& path, bool rgb, NormalHistogram& histogram) {
+    refuse_converted_line_ends(path);
     PassReader(path).add(rgb, histogram);
 }
 

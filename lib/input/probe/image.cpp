@@ -3,11 +3,17 @@
 #include "images/image_file.h"
 #include "input/error.h"
 #include "input/file_name.h"
+#include "input/line_ends.h"
 #include "input/other_kind.h"
+#include "input/probe/gain_map.h"
+#include "input/probe/layers.h"
+#include "input/probe/primaries.h"
 #include "input/probe/transfer.h"
+#include "input/stand_in.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <new>
 
@@ -23,65 +29,6 @@ constexpr std::int64_t max_pixels_per_byte = 10'000;
 constexpr std::int64_t small_image_pixels = std::int64_t{1} << 24;
 
 std::string shape(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
-
-// ---- channels ---------------------------------------------------------------------------------------
-
-struct Channels {
-    int index[3] = {0, 0, 0}; // all equal: grey
-    bool grey() const { return index[0] == index[1] && index[1] == index[2]; }
-    bool in_order() const { return index[1] == index[0] + 1 && index[2] == index[0] + 2; }
-};
-
-std::string list(const std::vector<std::string>& names) {
-    std::string text;
-    for (std::size_t i = 0; i < names.size() && i < 12; ++i) text += (i ? ", " : "") + names[i];
-    return names.size() > 12 ? text + ", ..." : text;
-}
-
-int find_channel(const std::vector<std::string>& names, const std::string& name) {
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (lower(names[i]) == lower(name)) return static_cast<int>(i);
-    return -1;
-}
-
-bool is_no_colour(const std::string& name) {
-    const std::string n = lower(name);
-    return n == "a" || n == "alpha" || n == "z" || n == "zback";
-}
-
-// R, G and B without a layer, else those of the first layer that has them ("beauty"), else the only channel that is
-// a colour. Most formats name no channels: then the first three, or with one or two the first, as grey. `layers`:
-// those that have the three.
-bool choose_channels(const images::Header& header, Channels& channels, std::vector<std::string>& layers) {
-    const bool named = header.format == "openexr";
-    const std::vector<std::string>& names = header.channels;
-    const int count = header.channel_count;
-    if (count < 1) return false;
-    if (!named || names.size() != static_cast<std::size_t>(count)) {
-        for (int c = 0; c < 3; ++c) channels.index[c] = count < 3 ? 0 : c;
-        return true;
-    }
-    for (const std::string& name : names) {
-        const std::string n = lower(name);
-        const bool ends_in_r = n == "r" || (n.size() > 2 && n.compare(n.size() - 2, 2, ".r") == 0);
-        if (!ends_in_r) continue;
-        const std::string layer = name.substr(0, name.size() - 1);
-        const int r = find_channel(names, name), g = find_channel(names, layer + "g");
-        const int b = find_channel(names, layer + "b");
-        if (g < 0 || b < 0) continue;
-        if (layers.empty()) channels = {{r, g, b}};
-        layers.push_back(layer.empty() ? "" : layer.substr(0, layer.size() - 1));
-        if (layer.empty()) channels = {{r, g, b}};
-    }
-    if (!layers.empty()) return true;
-    int colours = 0;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (is_no_colour(names[i])) continue;
-        std::fill_n(channels.index, 3, static_cast<int>(i));
-        ++colours;
-    }
-    return colours == 1;
-}
 
 // ---- windows ----------------------------------------------------------------------------------------
 
@@ -103,16 +50,28 @@ bool overlap(const Window& a, const Window& b) {
 
 // ---- reading ----------------------------------------------------------------------------------------
 
+std::string text_of(const builder::ChannelWeights& luminance) {
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "its primaries are not those of Rec. 709: luminance is %.3g R + %.3g G + %.3g B", luminance.r,
+                  luminance.g, luminance.b);
+    return text;
+}
+
 class Reader {
 public:
     Reader(const std::string& path, int threads) : path_(path), file_(path_of_image(), threads) {
+        if (!file_.is_open()) refuse_converted_line_ends(path_, 1);
         if (!file_.is_open())
             fail("no image that can be read (" + file_.error() + "); give an .exr, .hdr, .tif or .tx");
     }
 
     Image read(const std::function<TakeRows(const Image& image)>& stream) {
+        choose_channels();
         check_spec();
         Image image;
+        image.half = is_half();
+        image.luminance = luminance_of(header().chromaticities);
         image.tag = environment_tag();
         const Window data = header().data, display = display_window(header());
         image.width = display.width;
@@ -136,6 +95,13 @@ private:
     /// OpenImageIO reads large files of other kinds to the end before it finds that they are none of its own.
     const std::string& path_of_image() const {
         if (const std::string kind = kind_of_no_image(path_); !kind.empty()) fail(kind);
+        refuse_stand_in(path_);
+        refuse_converted_line_ends(path_);
+        if (has_gain_map(path_))
+            fail(
+                "it is an Ultra HDR JPEG: its pixels end at the white of a display, and what is brighter is in its "
+                "gain map, which acdf does not read; convert it to .exr or .hdr with a program that applies the "
+                "map");
         return path_;
     }
 
@@ -159,6 +125,45 @@ private:
                  " bytes; the file is damaged");
     }
 
+    /// Goes to the part that is the light. Most formats name no channels: of their first part the first three are
+    /// taken, or with one or two the first, as grey.
+    void choose_channels() {
+        if (!has_names()) {
+            if (header().channel_count < 1) fail("it has no channels; the file is damaged");
+            if (header().channel_count >= 3) channels_ = {{0, 1, 2}};
+            return;
+        }
+        const Choice choice = choose_layer(parts());
+        if (!choice.error.empty()) fail(choice.error);
+        file_.seek(choice.part);
+        channels_ = choice.channels;
+        remark_ = choice.remark;
+    }
+
+    bool has_names() const {
+        return header().format == "openexr" &&
+               header().channels.size() == static_cast<std::size_t>(header().channel_count);
+    }
+
+    /// Those that are deep count where there are no others.
+    std::vector<PartNames> parts() {
+        std::vector<PartNames> flat, deep;
+        for (int part = 0; file_.seek(part); ++part)
+            (header().deep ? deep : flat)
+                .push_back(
+                    {part, file_.text("oiio:subimagename"), header().channels, are_xyz(header().chromaticities)});
+        return flat.empty() ? deep : flat;
+    }
+
+    bool is_half() const {
+        const std::vector<int>& bytes = header().channel_bytes;
+        const auto of = [&](int channel) {
+            return bytes.empty() ? header().sample_bytes : bytes[static_cast<std::size_t>(channel)];
+        };
+        return header().floating && std::all_of(std::begin(channels_.index), std::end(channels_.index),
+                                                [&](int channel) { return of(channel) == 2; });
+    }
+
     void check_spec() {
         const images::Header& s = header();
         if (s.deep) fail("it is a deep image; flatten it (oiiotool IN --flatten -o OUT)");
@@ -169,20 +174,6 @@ private:
             fail("it is stored rotated or flipped; turn it upright (oiiotool IN --reorient -o OUT)");
         if (!overlap(s.data, display_window(s)))
             fail("its data window lies outside its display window; crop it (oiiotool IN --fullpixels -o OUT)");
-        if (!choose_channels(s, channels_, layers_)) {
-            const std::string channels = list(s.channels); // before another part is looked at
-            const bool several = file_.seek(1);
-            fail((several ? "the channels of the first of its parts are " : "its channels are ") + channels +
-                 ", where R, G, B or a single one is needed; rename or choose them (oiiotool IN " +
-                 (several ? "--subimage 1 -o OUT, or " : "") + "--ch R=...,G=...,B=... -o OUT)");
-        }
-    }
-
-    // A layer that nobody chose is told: the one wanted may be another.
-    void warn_of_layers(Image& image) const {
-        if (layers_.size() < 2 || std::count(layers_.begin(), layers_.end(), "") > 0) return;
-        image.warnings.push_back("there is no R, G and B without a layer; of the layers " + list(layers_) + ", " +
-                                 layers_[0] + " is read (oiiotool IN --ch R=...,G=...,B=... -o OUT takes another)");
     }
 
     EnvironmentTag environment_tag() const {
@@ -230,9 +221,10 @@ private:
 
     // Reads rows [y0, y1) of the data window, counted from its top, of channels [begin, end).
     void read_rows(int y0, int y1, int begin, int end, float* at, std::ptrdiff_t pixel, std::ptrdiff_t row) {
-        if (!file_.read({y0, y1, begin, end, pixel, row}, at))
-            fail("its pixels cannot be read" + (file_.error().empty() ? "" : " (" + file_.error() + ")") +
-                 "; the file is cut short or damaged");
+        if (file_.read({y0, y1, begin, end, pixel, row}, at)) return;
+        refuse_converted_line_ends(path_, 1);
+        fail("its pixels cannot be read" + (file_.error().empty() ? "" : " (" + file_.error() + ")") +
+             "; the file is cut short or damaged" + maybe_converted_line_ends(path_));
     }
 
     // The same of the channels that are wanted, as RGB texels with rows of `row_pixels`.
@@ -283,15 +275,16 @@ private:
             image.warnings.push_back(
                 "OpenEXR puts texel centres on the poles and the seam; texels are read as areas, "
                 "at most half a texel off");
-        warn_of_layers(image);
-        if (file_.seek(1)) image.warnings.push_back("the file has several parts; the first is used");
-        file_.seek(0);
+        if (image.luminance) image.warnings.push_back(text_of(*image.luminance));
+        if (!remark_.empty()) image.warnings.push_back(remark_);
+        if (!has_names() && file_.seek(1))
+            image.warnings.push_back("the file has several parts; the first is used");
     }
 
     std::string path_;
     images::ImageFile file_;
     Channels channels_;
-    std::vector<std::string> layers_; ///< that have R, G and B
+    std::string remark_; ///< on how they were chosen
 };
 
 } // namespace

@@ -1,7 +1,10 @@
 // The pixels of an image file, before anything is known of its projection.
 #pragma once
 
+#include <acdf/builder.h>
+
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,9 @@ enum class EnvironmentTag { none, latlong, cube };
 struct Image {
     int width = 0, height = 0;
     std::vector<float> rgb; ///< height x width x 3
+    bool half = false;      ///< stored as half floats, which end at 65504
+    /// What luminance is by the primaries of the file; none where they are as good as those of Rec. 709.
+    std::optional<builder::ChannelWeights> luminance;
     EnvironmentTag tag = EnvironmentTag::none;
     std::vector<std::string> warnings;
 };
@@ -22,7 +28,7 @@ struct Image {
 /// Takes `count` rows of RGB texels, of which `first` is the number of the first, from the top to the bottom.
 using TakeRows = std::function<void(int first, int count, float* rgb)>;
 
-/// Reads the first part, at full resolution. `threads` as in ProbeOptions. Throws Error.
+/// Reads the part that is the light (layers.h), at full resolution. `threads` as in ProbeOptions. Throws Error.
 ///
 /// `stream` is asked first, with an image that has no pixels yet: what it returns, if anything, takes the rows in
 /// bands, and the image stays without them. Memory is then that of a band.

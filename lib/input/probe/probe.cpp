@@ -63,16 +63,21 @@ Probe read_probe(const std::string& path, const ProbeOptions& options, ProbeRows
     };
     try {
         Image image = read_image(path, options.threads, [&](const Image& header) -> TakeRows {
-            if (options.bad_pixels == build::BadPixels::clamp || !is_latlong(header, options.projection)) return {};
+            if (header.luminance) repaired.set_luminance(*header.luminance);
+            probe.luminance = header.luminance;
+            const bool clamp = options.bad_pixels == build::BadPixels::clamp;
+            if ((clamp && !header.half) || !is_latlong(header, options.projection)) return {};
             tell(detect_layout(path, header, options.projection), header);
             repaired.begin(header.width, header.height);
-            return [&](int first, int count, float* rgb) { repaired.take(first, count, rgb); };
+            return
+                [&](int first, int count, float* rgb) { repaired.take(first, count, rgb, &build::largest_half); };
         });
         probe.warnings = std::move(image.warnings);
         probe.source_width = image.width;
         probe.source_height = image.height;
         if (!image.rgb.empty()) {
-            repaired.repair_whole(image.width, image.height, image.rgb.data());
+            repaired.repair_whole(image.width, image.height, image.rgb.data(),
+                                  image.half ? &build::largest_half : nullptr);
             const Detected detected = detect_layout(path, image, options.projection);
             tell(detected, image);
             repaired.take_whole(probe.source_map, std::move(image.rgb));

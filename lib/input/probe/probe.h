@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct Probe {
     build::Map source_map;                       ///< the source's layout and size
     std::string projection_reason;               ///< why, for a person: "2:1 shape", "envmap attribute"
     build::BadTexels bad;
+    /// What luminance is by the primaries that the file declares; none where it is Rec. 709's.
+    std::optional<builder::ChannelWeights> luminance;
     std::vector<std::string> warnings; ///< what a user should know, one line each: clipped integers, crops, ...
 };
 

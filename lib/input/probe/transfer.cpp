@@ -12,6 +12,7 @@ namespace {
 double declared_gamma(const images::ImageFile& file, bool& declared) {
     const std::string space = lower(file.text("oiio:ColorSpace"));
     declared = true;
+    if (file.header().format == "hdr") return 1.0; // whatever it declares: renderers ignore that
     if (space == "srgb") return 0.0;
     if (space == "linear" || space == "scene_linear") return 1.0;
     if (space.rfind("gamma", 0) == 0) {

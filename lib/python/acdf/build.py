@@ -77,7 +77,8 @@ def build_environment(
     wrap: what a bilinear lookup finds beyond the first and the last row: "clamp" (that row, the default) or "repeat" (the row at
         the other end).
     channel: whose noise counts: "luminance" (the default), "rgb", "max", "red", "green", "blue", "average".
-    bad_texels: what NaN, infinite and negative values become: "zero", "clamp"; or "error".
+    bad_texels: what NaN, infinite and negative values become: "zero"; "clamp": +infinity is 65504 in arrays of half floats, else
+        the largest value of its channel, and the others are 0; or "error".
     fit: "variance", "cdf", "pdf" or "uniform".
     max_weight: the largest weight of a sample over the mean, at least 1; 0: no bound.
     company, heuristic, shares, normals, normal_weights: the sampler that it is to be combined with, "none" (the default),

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,25 @@ TEST(WithoutOpenImageIO, OpenExrRadianceAndPfmAreRead) {
         ASSERT_TRUE(file.read(all, read.data())) << file.error();
         for (std::size_t i = 0; i < read.size(); ++i) EXPECT_NEAR(read[i], pixels()[i], 0.02f) << name << " " << i;
     }
+}
+
+// As stb, OpenCV and others write Radiance pictures, in rows that are encoded and in some that are not.
+TEST(WithoutOpenImageIO, RadianceOfOtherProgramsIsRead) {
+    const Folder folder;
+    const std::string flat_row(4 * kWidth, '\x80');
+    std::string row = {2, 2, 0, kWidth};
+    for (int i = 0; i < 4; ++i) row += {static_cast<char>(128 + kWidth), '\x80'};
+    for (const char* first : {"#?RADIANCE\n", "#?RGBE\n"})
+        for (const std::string& rows : {row + row, row + flat_row, flat_row + row, flat_row + flat_row}) {
+            std::ofstream(folder / "a.hdr", std::ios::binary)
+                << first << "FORMAT=32-bit_rle_rgbe\n\n-Y 2 +X " << kWidth << "\n"
+                << rows;
+            ImageFile file(folder / "a.hdr");
+            ASSERT_TRUE(file.is_open()) << file.error();
+            std::vector<float> read(3 * kWidth * kHeight);
+            ASSERT_TRUE(file.read({0, kHeight, 0, 3, 3 * sizeof(float), 3 * kWidth * sizeof(float)}, read.data()));
+            EXPECT_EQ(read, std::vector<float>(read.size(), 0.5f));
+        }
 }
 
 TEST(WithoutOpenImageIO, OtherFormatsAreToldWhy) {

@@ -91,6 +91,23 @@ struct Form {
     const char *type, *scale;
     bool large_first;
 };
+/// Of four channels, which OpenImageIO does not know.
+TEST(FloatMap, FourChannelsAreColoursAndAlpha) {
+    const Folder folder;
+    const Pixels sky = latlong_sky(32);
+    std::string bytes = "PF4\n32 16\n-1.0\n";
+    for (int y = 15; y >= 0; --y)
+        for (int x = 0; x < 32; ++x) {
+            bytes.append(reinterpret_cast<const char*>(sky.at(x, y)), 12);
+            bytes.append("\0\0\0", 4); // an alpha of 0 changes nothing
+        }
+    write_text(folder / "a.pfm", bytes);
+    EXPECT_TRUE(is_float_map(folder / "a.pfm"));
+    EXPECT_EQ(input::read_probe(folder / "a.pfm").rgb, sky.rgb);
+    write_text(folder / "a.pfm", bytes + "x");
+    EXPECT_FALSE(is_float_map(folder / "a.pfm"));
+}
+
 constexpr Form kForms[] = {{"PF", "-1.0", false}, {"PF", "1.0", true}, {"PF", "-2.5", false}, {"PF", "3e-1", true},
                            {"Pf", "-1.0", false}, {"Pf", "1.0", true}, {"Pf", "-0.3", false}, {"Pf", "7", true}};
 

@@ -1,0 +1,43 @@
+#include "input/probe/gain_map.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+namespace acdf::input {
+namespace {
+
+/// The names of what says so: of namespaces in XMP, and of an application segment.
+constexpr std::string_view kNames[] = {"http://ns.adobe.com/hdr-gain-map/",
+                                       "urn:iso:std:iso:ts:21496:", "http://ns.apple.com/HDRGainMap/",
+                                       "urn:com:apple:photo:2020:aux:hdrgainmap"};
+constexpr std::size_t kLongestName = 64;
+
+bool has_name(std::string_view text) {
+    return std::any_of(std::begin(kNames), std::end(kNames),
+                       [&](std::string_view name) { return text.find(name) != std::string_view::npos; });
+}
+
+} // namespace
+
+// Anywhere: some say so in the first image alone, some in the second, behind the pixels of the first.
+bool has_gain_map(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> block(kLongestName + (1 << 20)); // its first bytes are the last of the one before
+    std::size_t kept = 0;
+    for (bool first = true; file; first = false) {
+        file.read(block.data() + kept, static_cast<std::streamsize>(block.size() - kept));
+        const std::string_view text(block.data(), kept + static_cast<std::size_t>(file.gcount()));
+        if (first && text.substr(0, 3) != "\xFF\xD8\xFF") return false;
+        if (has_name(text)) return true;
+        kept = std::min(kLongestName, text.size());
+        std::copy(text.end() - static_cast<std::ptrdiff_t>(kept), text.end(), block.begin());
+    }
+    return false;
+}
+
+} // namespace acdf::input
