@@ -26,6 +26,7 @@ struct Radiance {
     std::streamoff size = 0;           ///< of the file
     std::streamoff pixels = 0;         ///< where they begin
     std::vector<float> chromaticities; ///< images::Header
+    int orientation = 1;               ///< of TIFF
     bool flat = false;                 ///< no row is encoded
     bool marked = false;               ///< the first row is encoded by components
     bool mixed = false;                ///< rows that are encoded otherwise follow, and end where the file does
@@ -49,6 +50,14 @@ std::optional<std::string> line_of(std::istream& file) {
 bool begins_with(std::string_view line, std::string_view beginning) {
     return line.substr(0, beginning.size()) == beginning;
 }
+
+/// In which order pixels are stored: the axis and the direction of rows, then those of the pixels of a row.
+struct Order {
+    std::string_view rows, pixels;
+    int orientation; ///< of TIFF
+};
+constexpr Order kOrders[] = {{"-Y ", " +X ", 1}, {"-Y ", " -X ", 2}, {"+Y ", " -X ", 3}, {"+Y ", " +X ", 4},
+                             {"+X ", " -Y ", 5}, {"-X ", " -Y ", 6}, {"-X ", " +Y ", 7}, {"+X ", " +Y ", 8}};
 
 bool take_number(std::string_view& text, std::string_view before, int& number) {
     if (!begins_with(text, before)) return false;
@@ -86,6 +95,19 @@ bool take_line(std::string_view line, Radiance& picture) {
     return picture.has_format;
 }
 
+/// "-Y 16 +X 32": 16 rows of 32 pixels, stored from the top left corner on.
+bool take_size(std::string_view line, Radiance& picture) {
+    for (const Order& order : kOrders) {
+        std::string_view size = line;
+        if (!take_number(size, order.rows, picture.height) || !take_number(size, order.pixels, picture.width))
+            continue;
+        picture.orientation = order.orientation;
+        return size.empty() && picture.height >= 1 && picture.height <= kMostOnASide && picture.width >= 1 &&
+               picture.width <= kMostOnASide;
+    }
+    return false;
+}
+
 bool read_header(Radiance& picture) {
     const auto first = line_of(picture.file);
     if (!first || !begins_with(*first, "#?")) return false;
@@ -95,12 +117,9 @@ bool read_header(Radiance& picture) {
         if (line->empty()) break;
         if (!take_line(*line, picture)) return false;
     }
-    const auto line = line_of(picture.file);
-    std::string_view size = line ? *line : std::string_view{};
+    const auto size = line_of(picture.file);
     picture.pixels = picture.file.tellg();
-    return picture.has_format && take_number(size, "-Y ", picture.height) &&
-           take_number(size, " +X ", picture.width) && size.empty() && picture.height >= 1 &&
-           picture.height <= kMostOnASide && picture.width >= 1 && picture.width <= kMostOnASide;
+    return picture.has_format && size && take_size(*size, picture);
 }
 
 using Pixel = std::array<unsigned char, 4>;
@@ -280,12 +299,16 @@ bool read_radiance(void* image, const Rows& rows, float* to, std::string& error)
     return true;
 }
 
+int integer_of(const void* image, const char* name, int otherwise) {
+    return std::strcmp(name, "Orientation") == 0 ? static_cast<const Radiance*>(image)->orientation : otherwise;
+}
+
 } // namespace
 
 const ImageReader& radiance_reader() {
-    // Upright and linear, whatever gamma it declares, as renderers take it: nothing has to be said.
+    // Linear, whatever gamma it declares, as renderers take it: no colour space has to be named.
     static const ImageReader functions = {open_radiance, close_radiance, seek_one_part, read_radiance,
-                                          no_text,       no_integer,     no_real};
+                                          no_text,       integer_of,     no_real};
     return functions;
 }
 

@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <cstring>
 #include <memory>
 
 namespace acdf::images {
@@ -100,8 +101,14 @@ bool read_rows(void* image, const Rows& rows, float* to, std::string& error) {
 
 std::string text_of(const void* image, const char* name) { return spec_of(image).get_string_attribute(name); }
 
+/// Of Radiance pictures, OpenImageIO 2.4 exchanges the two that are turned by a quarter: the first row of
+/// "+X 32 +Y 16" is the left side from below (8), that of "-X 32 -Y 16" the right side from above (6).
+int radiance_orientation(int said) { return said == 6 ? 8 : said == 8 ? 6 : said; }
+
 int integer_of(const void* image, const char* name, int otherwise) {
-    return spec_of(image).get_int_attribute(name, otherwise);
+    const int value = spec_of(image).get_int_attribute(name, otherwise);
+    const bool radiance = std::strcmp(static_cast<const OIIO::ImageInput*>(image)->format_name(), "hdr") == 0;
+    return radiance && std::strcmp(name, "Orientation") == 0 ? radiance_orientation(value) : value;
 }
 
 float real_of(const void* image, const char* name, float otherwise) {

@@ -7,6 +7,7 @@
 #include "input/other_kind.h"
 #include "input/probe/gain_map.h"
 #include "input/probe/layers.h"
+#include "input/probe/orientation.h"
 #include "input/probe/primaries.h"
 #include "input/probe/transfer.h"
 #include "input/stand_in.h"
@@ -69,21 +70,30 @@ public:
     Image read(const std::function<TakeRows(const Image& image)>& stream) {
         choose_channels();
         check_spec();
+        const Window data = header().data, display = image_window();
+        const int orientation = orientation_of(file_);
         Image image;
         image.half = is_half();
         image.luminance = luminance_of(header().chromaticities);
         image.tag = environment_tag();
-        const Window data = header().data, display = display_window(header());
         image.width = display.width;
         image.height = display.height;
+        turn_upright(image, orientation); // its sides, for whoever takes rows
         const TakeRows take = stream ? stream(image) : TakeRows{};
-        if (take && data == display) {
+        if (take && data == display && orientation == 1) {
             read_bands(take, image);
         } else {
+            image.width = display.width;
+            image.height = display.height;
             read_windows(data, display, image);
             linearize(image, file_);
+            turn_upright(image, orientation);
         }
         add_warnings(image);
+        if (orientation != 1)
+            image.warnings.push_back("its rows are stored turned or mirrored (orientation " +
+                                     std::to_string(orientation) +
+                                     " of TIFF); it is read upright, as the file says");
         if (take && !image.rgb.empty()) {
             take(0, image.height, image.rgb.data());
             image.rgb = {};
@@ -169,10 +179,8 @@ private:
         if (s.deep) fail("it is a deep image; flatten it (oiiotool IN --flatten -o OUT)");
         if (s.depth > 1) fail("it is a volume, not an image; give a lat-long or another projection");
         check_size(s.data);
-        check_size(display_window(s));
-        if (file_.integer("Orientation", 1) != 1)
-            fail("it is stored rotated or flipped; turn it upright (oiiotool IN --reorient -o OUT)");
-        if (!overlap(s.data, display_window(s)))
+        check_size(image_window());
+        if (!overlap(s.data, image_window()))
             fail("its data window lies outside its display window; crop it (oiiotool IN --fullpixels -o OUT)");
     }
 
@@ -181,6 +189,12 @@ private:
         if (format.find("latlong") != std::string::npos) return EnvironmentTag::latlong;
         if (format.find("cubeface") != std::string::npos) return EnvironmentTag::cube;
         return EnvironmentTag::none;
+    }
+
+    /// Where the image is that is meant. Of cube maps OpenImageIO makes the display window one face if they are
+    /// mip-mapped: their six faces are the data window (OpenEXR, ImfEnvmap.h).
+    Window image_window() const {
+        return environment_tag() == EnvironmentTag::cube ? header().data : display_window(header());
     }
 
     void read_windows(const Window& data, const Window& display, Image& image) {

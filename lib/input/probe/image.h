@@ -13,8 +13,8 @@ namespace acdf::input {
 /// What the file says it is: OpenEXR's envmap attribute, or the texture format of maketx.
 enum class EnvironmentTag { none, latlong, cube };
 
-/// RGB of the display window, row-major from the top left. Linear, as stored otherwise: no exposure, no
-/// change of primaries, bad texels included.
+/// RGB of the display window, row-major from the top left, turned upright. Linear, as stored otherwise: no
+/// exposure, no change of primaries, bad texels included.
 struct Image {
     int width = 0, height = 0;
     std::vector<float> rgb; ///< height x width x 3

@@ -1,6 +1,7 @@
 #include "input/probe/image_header.h"
 
 #include "images/image_file.h"
+#include "input/probe/orientation.h"
 
 #include <algorithm>
 
@@ -13,7 +14,8 @@ ImageSize image_size(const std::string& path) {
         return ImageSize{std::max(window.width, 0), std::max(window.height, 0)};
     };
     const ImageSize data = size(file.header().data), display = size(file.header().display);
-    return data.pixels() > display.pixels() ? data : display;
+    const ImageSize stored = data.pixels() > display.pixels() ? data : display;
+    return swaps_sides(orientation_of(file)) ? ImageSize{stored.height, stored.width} : stored;
 }
 
 } // namespace acdf::input

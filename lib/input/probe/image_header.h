@@ -11,8 +11,8 @@ struct ImageSize {
     std::uint64_t pixels() const { return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height); }
 };
 
-/// That of the image's display window or of its data window, whichever has more pixels; 0 x 0 where its header
-/// cannot be read.
+/// That of the image's display window or of its data window, whichever has more pixels, turned upright; 0 x 0 where
+/// its header cannot be read.
 ImageSize image_size(const std::string& path);
 
 } // namespace acdf::input

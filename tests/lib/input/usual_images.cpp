@@ -220,6 +220,19 @@ TEST_F(UsualImages, Radiance) {
         EXPECT_TRUE(is_taken(hdr)) << head;
         expect_same(read_file(hdr), theirs);
     }
+    for (const char* const order : {"-Y 16 -X 32\n", "+Y 16 -X 32\n", "+Y 16 +X 32\n", "+X 16 -Y 32\n",
+                                    "-X 16 -Y 32\n", "-X 16 +Y 32\n", "+X 16 +Y 32\n"}) {
+        write_text(hdr, "#?RADIANCE\n" + format + "\n" + order + pixels);
+        EXPECT_TRUE(is_taken(hdr)) << order;
+        expect_same(read_file(hdr), theirs); // as stored: who reads it turns it
+        const images::ImageFile ours(hdr, 1);
+        images::Header header;
+        std::string error;
+        const images::ImageReader& other = images::module().reader;
+        const std::unique_ptr<void, void (*)(void*)> image(other.open(hdr, 1, header, error), other.close);
+        EXPECT_EQ(ours.integer("Orientation", 0), other.integer(image.get(), "Orientation", 0)) << order;
+    }
+    write_text(hdr, bytes);
     // Rows in another order than they are stored in.
     images::ImageFile file(hdr, 1);
     std::vector<float> row(3 * kImageWidth);
@@ -235,9 +248,7 @@ TEST_F(UsualImages, UnusualRadianceIsLeftToOpenImageIO) {
     const std::string bytes = read_text(hdr), pixels = bytes.substr(bytes.find("+X 32\n") + 6);
     const std::string begin = "#?RADIANCE\n", format = "FORMAT=32-bit_rle_rgbe\n", size = "-Y 16 +X 32\n";
     for (const std::string& head :
-         {begin + "FORMAT=32-bit_rle_rgb\n\n" + size, begin + format + size,
-          begin + format + "\n" + "+Y 16 +X 32\n", begin + format + "\n" + "-Y 16 -X 32\n",
-          begin + format + "\n" + "+X 16 -Y 32\n", begin + format + "\n" + "-Y 0 +X 32\n",
+         {begin + "FORMAT=32-bit_rle_rgb\n\n" + size, begin + format + size, begin + format + "\n" + "-Y 0 +X 32\n",
           begin + format + "\n" + "-Y 99999999999 +X 32\n", format + "\n" + size, begin + format}) {
         write_text(hdr, head + pixels);
         EXPECT_FALSE(is_taken(hdr)) << head;

@@ -357,15 +357,6 @@ TEST(InputFiles, DeepIsRefusedAndSoArePartsThatAreAlike) {
     EXPECT_CONTAINS(refusal(folder / "deep.exr"), "deep");
 }
 
-TEST(InputFiles, TurnedImagesAreRefused) {
-    const Folder folder;
-    const Pixels sky = latlong_sky(16);
-    OIIO::ImageSpec spec = rgb_spec(sky);
-    spec.attribute("Orientation", 3);
-    write_image(folder / "turned.tif", spec, sky.rgb);
-    EXPECT_CONTAINS(refusal(folder / "turned.tif"), "--reorient");
-}
-
 // FIPS 180-2: the digest of "abc" is known; of an image, that of its bytes, whatever it holds.
 TEST(InputFiles, Sha256IsOfTheFilesBytes) {
     const Folder folder;
