@@ -301,6 +301,7 @@ void EnvConversion::add_fit_options(CLI::App& command) {
 void EnvConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
+    add_faces(command, input_.faces);
     add_domain(command, input_.domain);
     add_renderer(command, renderer_);
     add_repairs(command, input_);
@@ -324,7 +325,9 @@ void add_env(CLI::App& program, int& exit_code) {
     CLI::App& command = *program.add_subcommand("env", "Compress an environment map: directions by what they emit");
     add_conversion(
         command, env_conversion(),
-        {"PROBE", ".acdf", "The environment map: any image OpenImageIO reads. Several become a file each",
+        {"PROBE", ".acdf",
+         "The environment map: any image OpenImageIO reads, or the six faces of a cube (--faces). Several become a "
+         "file each",
          help_footer("Prints the size and the exact relative variance of the stored density: n samples have "
                      "that over n. The default is the least noise for 4096 cells (about 18 KiB).",
                      "acdf env probe.exr\n"
@@ -332,6 +335,7 @@ void add_env(CLI::App& program, int& exit_code) {
                      "acdf env noon.exr dusk.exr -o skies/\n"
                      "acdf env probe.hdr -o probe.acdf --target-variance 0.01 --compress zlib\n"
                      "acdf env grace_probe.hdr --projection angular -o grace.acdf\n"
+                     "acdf env sky_{px,nx,py,ny,pz,nz}.hdr --faces directx -o sky.acdf\n"
                      "acdf env probe.exr -o paper.acdf --fit cdf --knots 64x64 --order z --gradient 16")},
         exit_code);
 }

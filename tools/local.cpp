@@ -361,6 +361,7 @@ void LocalConversion::add_separate(CLI::App& command) {
 void LocalConversion::add_options(CLI::App& command) {
     command_ = &command;
     add_projection(command, input_.projection);
+    add_faces(command, input_.faces);
     add_domain(command, input_.domain);
     add_renderer(command, renderer_);
     add_repairs(command, input_);
@@ -382,7 +383,9 @@ void add_local(CLI::App& program, int& exit_code) {
         "local", "Compress an environment map for every normal: clipped at its horizon, times the cosine");
     add_conversion(
         command, local_conversion(),
-        {"PROBE", ".local.acdf", "The environment map: any image OpenImageIO reads. Several become a file each",
+        {"PROBE", ".local.acdf",
+         "The environment map: any image OpenImageIO reads, or the six faces of a cube (--faces). Several become a "
+         "file each",
          help_footer("Prints the exact relative variance of irradiance estimates, mean over 256 random normals (or "
                      "those of the scene), beside that of the probe's full-resolution CDF.",
                      "acdf local probe.exr\n"

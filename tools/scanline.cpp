@@ -168,6 +168,7 @@ void add_scanline(CLI::App& program, int& exit_code) {
         ->check(CLI::Validator(row_problem, ""))
         ->option_text("N|auto-smooth|auto-peaky [auto-peaky]");
     add_projection(*command, options->reading.projection);
+    add_faces(*command, options->reading.faces);
     add_repairs(*command, options->reading);
     add_json(*command, options->json);
     command->add_flag("--csv", options->csv, "The table as CSV")->excludes("--json");

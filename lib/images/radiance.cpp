@@ -15,7 +15,7 @@
 namespace acdf::images {
 namespace {
 
-constexpr int kMostOnASide = 1 << 16;
+constexpr int kMostRadianceSide = 1 << 16;
 constexpr int kFewestColumns = 8, kMostColumns = 32767;             // of rows that are divided into components
 constexpr std::size_t kLongestLine = 1 << 16, kMostLines = 1 << 10; // Radiance's own commands are long
 
@@ -102,8 +102,8 @@ bool take_size(std::string_view line, Radiance& picture) {
         if (!take_number(size, order.rows, picture.height) || !take_number(size, order.pixels, picture.width))
             continue;
         picture.orientation = order.orientation;
-        return size.empty() && picture.height >= 1 && picture.height <= kMostOnASide && picture.width >= 1 &&
-               picture.width <= kMostOnASide;
+        return size.empty() && picture.height >= 1 && picture.height <= kMostRadianceSide && picture.width >= 1 &&
+               picture.width <= kMostRadianceSide;
     }
     return false;
 }

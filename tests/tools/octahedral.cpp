@@ -182,6 +182,21 @@ TEST_F(OctahedralCommand, PresetsAreDocumented) {
     }
 }
 
+// Noise, and light that is the same all round, prove nothing; but what pbrt-v4 looks up can be nothing else.
+TEST_F(OctahedralCommand, SquaresForRenderersThatReadNoOthers) {
+    std::vector<float> rgb;
+    for (int i = 0; i < 64 * 64; ++i) rgb.insert(rgb.end(), 3, 1.0f + static_cast<float>(i * 37 % 101));
+    write_rgb(square, 64, 64, rgb);
+    EXPECT_EQ(run_acdf({"env", square, "-o", output, "--force"}).code, 1);
+    const json report = made(square, {"--for", "pbrt-v4"});
+    EXPECT_EQ(report["projection"], "octahedral");
+    EXPECT_EQ(report["resampling_error"], 0.0);
+    EXPECT_EQ(measured(square)["relative_variance"], report["relative_variance"]) << "need not be told again";
+    EXPECT_EQ(run_acdf({"env", square, "-o", output, "--force", "--for", "cycles"}).code, 1);
+    EXPECT_EQ(run_acdf({"env", disc, "-o", output, "--force", "--for", "pbrt-v4"}).code, 1);
+    EXPECT_EQ(made(disc, {"--for", "pbrt-v4", "--projection", "angular"})["projection"], "angular");
+}
+
 TEST_F(OctahedralCommand, PresetsSetDomainFilterAndChannel) {
     const json report = made(latlong, {"--for", "pbrt-v4"});
     EXPECT_EQ(report["domain"], "octahedral");

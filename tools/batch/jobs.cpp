@@ -2,6 +2,7 @@
 
 #include "input/brdf/models.h"
 #include "input/file_name.h"
+#include "input/probe/source.h"
 #include "tools/cli/file_input.h"
 #include "tools/commands.h"
 
@@ -34,6 +35,11 @@ bool is_rendering(const fs::path& path) {
     std::error_code ignored;
     return input::lower_extension(path) == ".exr" && fs::exists(path.parent_path() / "render.json", ignored) &&
            fs::exists(fs::path(path).replace_extension(".png"), ignored);
+}
+
+/// A source whose paths are relative to a folder.
+std::string below(const fs::path& folder, const std::string& source) {
+    return input::with_paths(source, [&](const std::string& file) { return (folder / file).string(); });
 }
 
 class Collector {
@@ -136,11 +142,12 @@ private:
         job.kind = line.kind                                        ? line.kind
                    : model || is_one_of(brdf_extensions, extension) ? find_kind("brdf")
                                                                     : defaults_.probe_kinds.front();
-        job.source = model && job.kind == find_kind("brdf") ? line.source : (base / line.source).string();
+        job.source = model && job.kind == find_kind("brdf") ? line.source : below(base, line.source);
         job.base = base.string();
         job.options = line.options ? *line.options : defaults_.options(*job.kind, line.source);
         const std::string stem =
-            model ? line.source : fs::path(line.source).filename().replace_extension().string();
+            model ? line.source
+                  : fs::path(input::probe_files(line.source)[0]).filename().replace_extension().string();
         job.output = line.output.empty() ? stem + job.kind->suffix : line.output;
         out_.jobs.push_back(std::move(job));
     }
@@ -156,19 +163,27 @@ private:
     BatchJobs out_;
 };
 
+/// Adds the size of a file, or tells what is wrong with it.
+std::string add_bytes(const std::string& path, std::uint64_t& bytes) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) return "there is no file " + path;
+    if (status.type() == fs::file_type::none) return path + ": " + error.message();
+    if (status.type() == fs::file_type::directory) return path + " is a folder, not a file";
+    if (status.type() != fs::file_type::regular) return path + " is no regular file";
+    bytes += fs::file_size(path, error);
+    return error ? path + ": " + error.message() : "";
+}
+
 /// Adds the size of the source, or tells what is wrong with it.
 std::string check_source(BatchJob& job) {
     if (find_non_utf8(job.source) != std::string::npos)
         return "the name of the source is not UTF-8, which files tell it in; rename it";
     if (job.kind == find_kind("brdf") && input::is_model(job.source)) return "";
-    std::error_code error;
-    const fs::file_status status = fs::status(job.source, error);
-    if (status.type() == fs::file_type::not_found) return "there is no file " + job.source;
-    if (status.type() == fs::file_type::none) return job.source + ": " + error.message();
-    if (status.type() == fs::file_type::directory) return job.source + " is a folder, not a file";
-    if (status.type() != fs::file_type::regular) return job.source + " is no regular file";
-    job.bytes = fs::file_size(job.source, error);
-    return error ? job.source + ": " + error.message() : "";
+    job.bytes = 0;
+    for (const std::string& file : input::probe_files(job.source))
+        if (std::string what = add_bytes(file, job.bytes); !what.empty()) return what;
+    return "";
 }
 
 /// Symbolic links below the output folder could lead anywhere.

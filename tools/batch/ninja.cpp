@@ -2,6 +2,7 @@
 
 #include "input/brdf/models.h"
 #include "input/mesh/instances.h"
+#include "input/probe/source.h"
 #include "tools/cli/messages.h"
 #include "tools/commands.h"
 
@@ -67,8 +68,10 @@ std::string edge(const PlannedJob& planned, bool large, const std::string& folde
     const BatchJob& job = planned.job;
     const std::shared_ptr<Conversion> conversion = make(job);
     const bool model = job.kind == find_kind("brdf") && input::is_model(job.source);
-    const std::string source = model ? job.source : absolute(job.source);
-    std::string text = "build " + path_text(job.output) + ": convert" + (model ? "" : " " + path_text(source));
+    const std::string source = model ? job.source : input::with_paths(job.source, absolute);
+    std::string text = "build " + path_text(job.output) + ": convert";
+    if (!model)
+        for (const std::string& file : input::probe_files(source)) text += " " + path_text(file);
     // Paths among the options are relative to their manifest.
     const std::vector<std::string*> files = conversion->files();
     std::string output = job.output, at, between = " | ";

@@ -2,8 +2,7 @@
 
 #include "build/text/format_names.h"
 #include "compress/parallel.h"
-#include "input/file_name.h"
-#include "input/sha256.h"
+#include "input/probe/source.h"
 #include "reader/check/check.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/messages.h"
@@ -46,9 +45,9 @@ std::string first_fault(const std::vector<std::uint8_t>& bytes) {
 /// Whether the file was made of the job's source, which is hashed only here: it costs most.
 bool is_of_source(const File& file, const BatchJob& job) {
     const std::string hash = value_of(file, "source.sha256");
-    const std::string name = input::file_name(job.source);
+    const std::string name = input::probe_name(job.source);
     if (job.bytes == 0) return hash.empty() && value_of(file, "source.name") == job.source;
-    return value_of(file, "source.name") == name && hash == input::file_sha256(job.source);
+    return value_of(file, "source.name") == name && hash == input::probe_sha256(job.source);
 }
 
 /// The conversion of the job before, for one with the same options.

@@ -52,9 +52,8 @@ void convert(const BatchJob& job, const std::string& folder, const MakeConversio
     const fs::path path = fs::path(folder) / job.output;
     make_folder(path.parent_path().string());
     const Stopwatch watch{result.seconds}; // the job's own work
-    std::vector<std::string> inputs;
-    for (const std::string* file : conversion->files()) inputs.push_back(*file);
-    Output output(path.string(), true, inputs); // what is there was found to be no more than an older file
+    Output output(path.string(), true,
+                  input_paths(*conversion)); // what is there was found to be no more than an older file
     const Converted made = conversion->convert(
         {progress, [&](const std::string& note) { result.notes.push_back(on_one_line(note)); }});
     output.write(made.bytes.data(), made.bytes.size());

@@ -2,6 +2,7 @@
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
 
+#include "input/probe/source.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -32,11 +33,10 @@ Converted convert(Conversion& conversion, bool quiet, std::vector<std::string>& 
                                }});
 }
 
-/// What --json tells.
+/// What --json prints.
 nlohmann::ordered_json run_one(Conversion& conversion, const RunOptions& options, const std::string& path) {
-    std::vector<std::string> inputs, notes;
-    for (const std::string* file : conversion.files()) inputs.push_back(*file);
-    Output output(path, options.force, inputs); // refuses early, before the work
+    std::vector<std::string> notes;
+    Output output(path, options.force, input_paths(conversion)); // refuses early, before the work
     const Converted made = convert(conversion, options.quiet, notes);
     output.write(made.bytes.data(), made.bytes.size());
     output.commit(check_reads_back);
@@ -68,6 +68,21 @@ bool run_several(Conversion& conversion, const RunOptions& options, const std::v
     return all;
 }
 
+/// The six faces of a cube become one source (lib/input/probe/source.h).
+void join_faces(RunOptions& options) {
+    const std::vector<std::string> files = options.sources;
+    if (files.size() == 1) return;
+    if (files.size() != 6) throw CLI::ValidationError("--faces", "takes one file, or six: the faces of a cube");
+    if (options.output.empty()) throw CLI::ValidationError("--output", "is needed where six faces are one map");
+    std::string joined;
+    for (const std::string& file : files) {
+        if (file.find(',') != std::string::npos)
+            throw CLI::ValidationError("PROBE", "may not have commas in the names of faces");
+        joined += (joined.empty() ? "" : ",") + file;
+    }
+    options.sources = {joined};
+}
+
 int run(Conversion& conversion, const RunOptions& options, const std::string& suffix) {
     conversion.source = options.sources[0];
     conversion.check();
@@ -87,6 +102,13 @@ int run(Conversion& conversion, const RunOptions& options, const std::string& su
 
 } // namespace
 
+std::vector<std::string> input_paths(Conversion& conversion) {
+    std::vector<std::string> out;
+    for (const std::string* file : conversion.files())
+        for (const std::string& path : input::probe_files(*file)) out.push_back(path);
+    return out;
+}
+
 void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, const ConversionHelp& help,
                     int& exit_code) {
     auto options = std::make_shared<RunOptions>();
@@ -99,7 +121,9 @@ void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, c
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help.footer);
-    command.callback([conversion, options, suffix = std::string(help.suffix), &exit_code] {
+    command.callback([conversion, options, suffix = std::string(help.suffix), &command, &exit_code] {
+        const CLI::Option* faces = command.get_option_no_throw("--faces");
+        if (faces && faces->count() > 0) join_faces(*options);
         exit_code = run(*conversion, *options, suffix);
     });
 }

@@ -37,7 +37,7 @@ public:
     Conversion(const Conversion&) = delete;
     Conversion& operator=(const Conversion&) = delete;
 
-    std::string source; ///< a path or, for BRDFs, a model
+    std::string source; ///< a path, six (lib/input/probe/source.h) or, for BRDFs, a model
 
     /// Registers the options that shape the file, once. `command` must live as long as this.
     virtual void add_options(CLI::App& command) = 0;
@@ -62,6 +62,9 @@ public:
     /// Deterministic for any number of threads. Throws Failure or input::Error: one line.
     virtual Converted convert(const Listener& listener) = 0;
 };
+
+/// The paths of all files that are read: a source may be six.
+std::vector<std::string> input_paths(Conversion& conversion);
 
 std::unique_ptr<Conversion> env_conversion();
 std::unique_ptr<Conversion> local_conversion();

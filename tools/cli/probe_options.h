@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 
 namespace acdf::tools {
@@ -21,6 +22,27 @@ inline void add_projection(CLI::App& command, input::Projection& projection, con
                "How the probe lays out directions: auto (metadata, then shape), latlong, angular (Debevec), "
                "mirrorball, cube-cross, octahedral (equal-area). Set it where auto refuses")
         ->option_text("NAME [auto]")
+        ->group("Input");
+}
+
+/// The faces of a cube, as six files or in a strip.
+inline void add_faces(CLI::App& command, std::optional<input::Faces>& faces) {
+    command
+        .add_option_function<std::string>(
+            "--faces",
+            [&faces](const std::string& text) {
+                input::Faces parsed;
+                if (!input::parse_faces(text, parsed))
+                    throw CLI::ValidationError("--faces",
+                                               "needs directx, opengl, openexr, or six faces in the order "
+                                               "of the files, such as +x,-x,+y,-y,+z,-z");
+                faces = parsed;
+            },
+            "The probe is six faces of a cube: six files, or one strip (1:6, 6:1, 2:3, 3:2), in the order +X -X +Y "
+            "-Y +Z -Z of directx (pictures as seen from inside), opengl (mirrored pictures) or openexr (texel "
+            "centres "
+            "on the borders); or in another order: six of +x,-x,+y,-y,+z,-z (px, posx, right ... too), as directx")
+        ->option_text("ORDER")
         ->group("Input");
 }
 

@@ -3,7 +3,7 @@
 #include "tools/cli/source_check.h"
 
 #include "build/errors.h"
-#include "input/sha256.h"
+#include "input/probe/source.h"
 #include "tools/commands.h"
 
 #include <algorithm>
@@ -20,6 +20,7 @@ std::string reading_text(const input::ProbeOptions& options) {
     std::string text;
     if (options.projection != input::Projection::automatic)
         text += std::string("--projection ") + input::to_string(options.projection) + " ";
+    if (options.faces) text += "--faces " + options.faces->name + " ";
     if (options.domain != input::Domain::source)
         text += std::string("--domain ") + (options.domain == input::Domain::latlong ? "latlong " : "octahedral ");
     if (options.bad_pixels == build::BadPixels::clamp) text += "--bad-pixels clamp ";
@@ -146,19 +147,42 @@ builder::TargetOptions stored_options(const File& file) {
 
 namespace {
 
-/// The projection that had to be told when a file was made of that very source; else `automatic`.
-input::Projection projection_as_made(const File& file, const std::string& source) {
+std::string metadata_of(const File& file, const char* key) {
+    const Text text = file.metadata(key);
+    return {text.data, text.size};
+}
+
+/// The projection that had to be given when a file was made; else `automatic`.
+input::Projection projection_as_made(const File& file) {
     using Projection = input::Projection;
-    for (const Projection told : {Projection::latlong, Projection::angular, Projection::mirrorball,
-                                  Projection::cube_cross, Projection::octahedral})
-        if (made_with(file, std::string("--projection ") + input::to_string(told)))
-            return made_from_another(file, input::file_sha256(source)) ? Projection::automatic : told;
+    for (const Projection given : {Projection::latlong, Projection::angular, Projection::mirrorball,
+                                   Projection::cube_cross, Projection::octahedral})
+        if (made_with(file, std::string("--projection ") + input::to_string(given))) return given;
     return Projection::automatic;
 }
 
-input::ProbeOptions options_as_made(input::ProbeOptions options, const File& file, const std::string& source) {
-    if (options.projection == input::Projection::automatic) options.projection = projection_as_made(file, source);
-    return options;
+/// How the faces of a source were ordered when a file was made of it; none where they were not.
+std::optional<input::Faces> faces_as_made(const File& file) {
+    const std::string options = metadata_of(file, "fit.options") + " ", option = "--faces ";
+    const std::size_t at = options.find(option);
+    if (at == std::string::npos) return {};
+    const std::size_t begin = at + option.size();
+    input::Faces faces;
+    if (!input::parse_faces(options.substr(begin, options.find(' ', begin) - begin), faces)) return {};
+    return faces;
+}
+
+/// What need not be given again of the very source that a file was made of.
+input::ProbeOptions options_as_made(const input::ProbeOptions& given, const File& file, const std::string& source) {
+    if (given.projection != input::Projection::automatic || given.faces) return given;
+    input::ProbeOptions options = given;
+    options.projection = projection_as_made(file);
+    options.faces = faces_as_made(file);
+    options.squares_are_octahedral =
+        metadata_of(file, "source.projection") == input::to_string(input::Projection::octahedral);
+    const bool any =
+        options.projection != input::Projection::automatic || options.faces || options.squares_are_octahedral;
+    return any && made_from_another(file, input::probe_sha256(source)) ? given : options;
 }
 
 } // namespace

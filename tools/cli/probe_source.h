@@ -49,9 +49,9 @@ input::Probe load_probe(const std::string& path, const input::ProbeOptions& opti
 builder::TargetOptions stored_options(const File& file);
 
 /// What a renderer that looks `source` up integrates, on the grid of a file: what that says of channels and filter.
-/// The source may have any layout and resolution; a projection that was told when the file was made of this very
-/// source need not be told again. Tells on stderr, unless `quiet`, where it is another file than the file was made
-/// from.
+/// The source may have any layout and resolution; the projection or the faces that the file was made with need not
+/// be given again where this is its very source. Tells on stderr, unless `quiet`, where it is another file than the
+/// file was made from.
 ProbeTarget source_target(const std::string& path, const File& file, const std::string& source,
                           const input::ProbeOptions& options, bool quiet);
 

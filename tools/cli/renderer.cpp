@@ -40,6 +40,7 @@ void use_renderer(const CLI::App& command, const builder::Renderer* chosen, inpu
     if (!chosen) return;
     const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
     if (!given("--domain")) input.domain = chosen->target.domain;
+    input.squares_are_octahedral = chosen->target.domain == input::Domain::octahedral;
     if (!given("--filter")) target.filter = chosen->target.filter;
     if (!given("--wrap")) target.wrap = chosen->target.wrap;
     if (!given("--channel")) target.channels = chosen->target.channels;

@@ -180,6 +180,7 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->option_text("OTHER.npy")
         ->group("Input");
     add_projection(command, options->input.projection);
+    add_faces(command, options->input.faces);
     add_repairs(command, options->input);
     command
         .add_option("--normals", options->normals, "Of a local environment: random normals to take the mean over")

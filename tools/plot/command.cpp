@@ -282,6 +282,7 @@ void add_plot(CLI::App& program, int& exit_code) {
         ->type_name("")
         ->group("Input");
     add_projection(command, options->input.projection, "--probe-projection");
+    add_faces(command, options->input.faces);
     command
         .add_option(
             "--view", options->view,

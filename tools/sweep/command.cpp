@@ -307,6 +307,7 @@ void add_sweep(CLI::App& program, int& exit_code) {
         ->type_name("")
         ->group("Input");
     add_projection(command, options->input.projection);
+    add_faces(command, options->input.faces);
     add_domain(command, options->input.domain);
     add_repairs(command, options->input);
     add_sweep_options(command, *options);

@@ -10,13 +10,13 @@ namespace acdf::input {
 namespace {
 
 /// The names of what says so: of namespaces in XMP, and of an application segment.
-constexpr std::string_view kNames[] = {"http://ns.adobe.com/hdr-gain-map/",
-                                       "urn:iso:std:iso:ts:21496:", "http://ns.apple.com/HDRGainMap/",
-                                       "urn:com:apple:photo:2020:aux:hdrgainmap"};
+constexpr std::string_view kGainMapNames[] = {"http://ns.adobe.com/hdr-gain-map/",
+                                              "urn:iso:std:iso:ts:21496:", "http://ns.apple.com/HDRGainMap/",
+                                              "urn:com:apple:photo:2020:aux:hdrgainmap"};
 constexpr std::size_t kLongestName = 64;
 
 bool has_name(std::string_view text) {
-    return std::any_of(std::begin(kNames), std::end(kNames),
+    return std::any_of(std::begin(kGainMapNames), std::end(kGainMapNames),
                        [&](std::string_view name) { return text.find(name) != std::string_view::npos; });
 }
 

@@ -2,13 +2,19 @@
 
 #include "images/image_file.h"
 #include "input/probe/orientation.h"
+#include "input/probe/source.h"
 
 #include <algorithm>
 
 namespace acdf::input {
 
-ImageSize image_size(const std::string& path) {
-    const images::ImageFile file(path);
+ImageSize image_size(const std::string& source) {
+    const std::vector<std::string> paths = probe_files(source);
+    if (paths.size() > 1) { // a cross
+        const ImageSize face = image_size(paths[0]);
+        return {4 * face.width, 3 * face.height};
+    }
+    const images::ImageFile file(source);
     if (!file.is_open()) return {}; // what is wrong is told when the image is read
     const auto size = [](const images::Window& window) {
         return ImageSize{std::max(window.width, 0), std::max(window.height, 0)};

@@ -12,7 +12,7 @@ struct ImageSize {
 };
 
 /// That of the image's display window or of its data window, whichever has more pixels, turned upright; 0 x 0 where
-/// its header cannot be read.
-ImageSize image_size(const std::string& path);
+/// its header cannot be read. Of six faces, that of the cross that they make.
+ImageSize image_size(const std::string& source);
 
 } // namespace acdf::input

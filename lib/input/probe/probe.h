@@ -3,6 +3,7 @@
 
 #include "build/probe/rows.h"
 #include "input/error.h"
+#include "input/probe/faces.h"
 
 #include <array>
 #include <cstdint>
@@ -22,6 +23,10 @@ using Domain = builder::Domain;
 
 struct ProbeOptions {
     Projection projection = Projection::automatic;
+    /// Of a cube in six files, or in a strip; with Projection::automatic or cube_cross.
+    std::optional<Faces> faces = {};
+    /// Squares that nothing proves anything of are octahedral, but for discs: of a renderer that reads no other.
+    bool squares_are_octahedral = false;
     Domain domain = Domain::source; ///< for who makes targets; read_probe alone knows lat-long maps
     build::BadPixels bad_pixels = build::BadPixels::zero;
     /// A probe without any light counts as one of the faintest constant light, so that it can be sampled.
@@ -34,9 +39,9 @@ struct ProbeOptions {
 struct Probe {
     int width = 0, height = 0;
     std::vector<float> rgb;    ///< height x width x 3, finite, >= 0; empty where rows were taken as they came
-    std::string source_name;   ///< file name without folders
+    std::string source_name;   ///< file name without folders (lib/input/probe/source.h)
     std::string source_sha256; ///< of the file's bytes, hex
-    int source_width = 0, source_height = 0;
+    int source_width = 0, source_height = 0;     ///< of six faces, of the map that they are put together to
     Projection projection = Projection::latlong; ///< what was used, never `automatic`
     build::Map source_map;                       ///< the source's layout and size
     std::string projection_reason;               ///< why, for a person: "2:1 shape", "envmap attribute"
@@ -48,7 +53,7 @@ struct Probe {
 
 using build::ProbeRows;
 
-/// Reads any image OpenImageIO reads. Throws Error.
+/// Reads any image OpenImageIO reads; `path` may name six (lib/input/probe/source.h). Throws Error.
 Probe read_probe(const std::string& path, const ProbeOptions& options = {});
 
 /// The same without keeping `rgb`: a lat-long image is read in bands of rows, and never in memory as a whole (but

@@ -99,7 +99,7 @@ TEST(InputOrientation, AllEightOfRadiance) {
         const std::string rows = usual.substr(usual.find('\n', usual.find("\n-Y ") + 1) + 1);
         // The second header has what only OpenImageIO reads.
         for (const char* const more : {"", "COLORCORR=1 1 1\n"}) {
-            write_text(folder / "a.hdr", std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n") + more + "\n" +
+            write_text(folder / "a.hdr", std::string("#?RADIANCE\n") + more + "FORMAT=32-bit_rle_rgbe\n\n" +
                                              turn.radiance + "\n" + rows);
             expect_upright(folder / "a.hdr", turn);
         }
