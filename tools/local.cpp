@@ -280,7 +280,7 @@ void LocalConversion::add_bins(CLI::App& command) {
         .add_flag(
             "--places", places_,
             "Tell the places of the scene (a mesh) apart: what it hides from a place is not drawn there. Positions "
-            "are told in the mesh's own coordinates; three quarters of the budget, by default 4 MiB, are for this")
+            "are told in the mesh's own coordinates; more than half of the budget, by default 4 MiB, is for this")
         ->group("Normals");
     command
         .add_flag(

@@ -4,6 +4,7 @@
 #include "build/errors.h"
 #include "build/lit_bins.h"
 #include "build/local_size.h"
+#include "build/local_whole.h"
 #include "build/text/company.h"
 #include "build/text/options.h"
 #include "build/weight_bound.h"
@@ -110,10 +111,19 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
 /// Of a file with places: one part in so many is for all that is there without them.
 constexpr std::uint64_t kLocalPart = 4;
 
-/// What a file of `budget` bytes gives to all that is there without places.
-std::uint64_t local_budget(const LocalOptions& options, std::uint64_t budget) {
-    if (!options.places.scene) return budget;
-    return options.places.local_bytes > 0 ? options.places.local_bytes : budget / kLocalPart;
+/// The bytes of a file, before compression.
+struct Budget {
+    std::uint64_t all;
+    std::uint64_t whole; ///< for a tree of the environment alone
+    std::uint64_t local; ///< for that, and all else that is there without places
+};
+
+Budget budget_of(const LocalOptions& options, std::uint64_t all, compress::WholeTree tree) {
+    const std::uint64_t whole = tree == compress::WholeTree::own ? std::min(whole_tree_bytes(all), all) : 0;
+    const std::uint64_t others = all - whole;
+    if (!options.places.scene) return {all, whole, all};
+    return {all, whole,
+            whole + (options.places.local_bytes > 0 ? options.places.local_bytes : others / kLocalPart)};
 }
 
 std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
@@ -142,18 +152,20 @@ std::uint64_t bytes_of_bins(const compress::Target& target, const Source& source
     return bytes_of(shared_draft(nothing, target, source, options, bins));
 }
 
-/// Of a file that has these bins, two tiles, and as little in them as can be.
+/// Of a file that has these bins, two tiles, and as little in them as can be; but for a tree of the environment.
 std::uint64_t least_bytes(const compress::Target& target, const Source& source, const LocalOptions& options,
                           LitBins& bins, compress::LocalSize size) {
     size.tiles = 2;
+    size.whole_bytes = 0;
     compress::LocalFitter fitter(target, bins.bins(), bins.light(), size, {}, options.company);
     return bytes_of(shared_draft(fitter.outlined(64), target, source, options, bins.bins())) + kSlack;
 }
 
-/// The file in which what is there without places has `local` bytes.
-std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local) {
-    if (!options.places.scene) return local;
-    return options.places.local_bytes > 0 ? local : local * kLocalPart;
+/// The file in which what is there without places, and without a tree of the environment alone, has `local` bytes.
+std::uint64_t whole_of(const LocalOptions& options, std::uint64_t local, compress::WholeTree tree) {
+    const bool part = options.places.scene && options.places.local_bytes == 0;
+    const std::uint64_t others = part ? local * kLocalPart : local;
+    return tree == compress::WholeTree::own ? file_of_others(others) : others;
 }
 
 /// Adds places in what `budget` leaves.
@@ -180,33 +192,40 @@ void add_places(LocalDraft& draft, const compress::Target& target, const LocalOp
     if (made > budget) throw OutOfReach(budget, made); // a single cell, or a map of portals, is more than is left
 }
 
-/// More tiles, where grids are as fine as they can be and leave bytes: false where there are none to be had.
+/// More tiles, where grids are as fine as they can be and leave `left` of `budget` bytes: false where there are
+/// none to be had.
 bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compress::LocalFit& fit,
-                std::uint64_t budget, std::uint64_t bytes, compress::LocalSize& size) {
-    const bool ran_out = bytes + budget / 50 < budget && options.shape == compress::LocalShape::fast;
+                std::uint64_t budget, std::uint64_t left, compress::LocalSize& size) {
+    const bool ran_out = left > budget / 50 && options.shape == compress::LocalShape::fast;
     if (!ran_out || options.tiles > 0 || fit.tiles.tiles.size() < size.tiles || size.tiles >= ACDF_MAX_TILES)
         return false;
     // Grids of more tiles take more bytes, too.
-    const double used = double(fit.shared.grid.size()) / double(bytes);
+    const double used = double(fit.shared.grid.size()) / double(budget - std::min(left, budget / 2));
     const compress::LocalSize next = size_for(options, bins, double(budget), used);
     if (next.tiles <= size.tiles) return false;
-    size = next;
+    size.tiles = next.tiles;
+    size.inside_bytes = next.inside_bytes;
     return true;
 }
 
-/// At most `whole_budget` bytes before compression, and nearly as many.
+/// At most `all` bytes before compression, and nearly as many.
 Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
-                  std::uint64_t whole_budget, double max_weight, LastBins& last, Least least,
+                  std::uint64_t all, WholeChoice choice, double max_weight, LastBins& last, Least least,
                   const Progress& progress) {
-    const std::uint64_t budget = local_budget(options, whole_budget);
-    LitBins& lit = bins_for(options, double(budget), target, last);
+    const compress::WholeTree tree = choice.tree;
+    const Budget budgets = budget_of(options, all, tree);
+    const std::uint64_t budget = budgets.local, others = budget - budgets.whole;
+    LitBins& lit = bins_for(options, double(others), target, last);
     const NormalBins& bins = lit.bins();
-    compress::LocalSize size = size_for(options, bins, double(budget));
+    compress::LocalSize size = size_for(options, bins, double(others));
+    size.whole = tree;
+    size.whole_worth = choice.worth;
+    size.whole_bytes = budgets.whole;
     if (max_weight > 0.0) size.max_weight = max_weight;
-    if (const std::uint64_t bytes = bytes_of_bins(target, source, options, bins); bytes > budget)
+    if (const std::uint64_t bytes = bytes_of_bins(target, source, options, bins); bytes > others)
         throw OutOfReach(
-            whole_budget,
-            whole_of(options, least == Least::unheard ? bytes : least_bytes(target, source, options, lit, size)));
+            all, whole_of(options,
+                          least == Least::unheard ? bytes : least_bytes(target, source, options, lit, size), tree));
     std::optional<compress::LocalFitter> fitter; // of so many tiles
     std::optional<Local> grown;                  // the best of those that left bytes
     for (int tries = 0, growths = 0;; ++tries) {
@@ -216,17 +235,20 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const std::uint64_t bytes = bytes_of(draft);
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
+        if (fits && tree == compress::WholeTree::of_tiles && !serves_points(target, fit.tree, all))
+            return build_plain(target, source, options, all, next_choice(choice), max_weight, last, least,
+                               progress);
         const auto completed = [&] {
             fitter->fill(fit);
             draft = shared_draft(fit, target, source, options, bins);
-            if (options.places.scene) add_places(draft, target, options, whole_budget, progress);
+            if (options.places.scene) add_places(draft, target, options, all, progress);
             Local made = finish(std::move(draft), target, source, options, bins);
             // More tiles may take more from grids than they give.
             if (grown && grown->accuracy.relative_variance < made.accuracy.relative_variance)
                 return std::move(*grown);
             return made;
         };
-        if (fits && growths < kMostGrowths && more_tiles(options, bins, fit, budget, bytes, size)) {
+        if (fits && growths < kMostGrowths && more_tiles(options, bins, fit, others, budget - bytes, size)) {
             grown = completed();
             fitter.reset();
             ++growths;
@@ -237,10 +259,11 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const auto miss = static_cast<std::int64_t>(budget) - static_cast<std::int64_t>(bytes);
         const std::int64_t next = static_cast<std::int64_t>(size.inside_bytes) + miss - 192;
         if (next < 64 || tries == 6) {
-            if (size.tiles <= 2) throw OutOfReach(whole_budget, whole_of(options, bytes));
+            if (size.tiles <= 2)
+                throw OutOfReach(all, whole_of(options, bytes - std::min(bytes, budgets.whole), tree));
             size.tiles = size.tiles * 3 / 4;
             fitter.reset();
-            size.inside_bytes = size_for(options, bins, double(budget)).inside_bytes;
+            size.inside_bytes = size_for(options, bins, double(others)).inside_bytes;
             tries = 0;
             continue;
         }
@@ -253,7 +276,8 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
     if (options.codec != ACDF_CODEC_NONE) least = Least::told; // by which it goes on
     return within_weight(options.max_weight, [&](double max_weight) {
         const auto build = [&](std::uint64_t bytes) {
-            return build_plain(target, source, options, bytes, max_weight, last, least, progress);
+            return build_plain(target, source, options, bytes, first_choice(options), max_weight, last, least,
+                               progress);
         };
         if (options.codec == ACDF_CODEC_NONE) return build(budget);
         try {
@@ -264,6 +288,28 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
             return made;
         }
     });
+}
+
+/// Cells in tiles as asked for, and a tree of the environment that suits them.
+compress::LocalFit fit_cells(const compress::Target& target, const Source& source, const LocalOptions& options,
+                             LitBins& lit, compress::LocalSize size, const Progress& progress) {
+    const auto bytes = [&](const compress::LocalFit& fit) {
+        return bytes_of(shared_draft(fit, target, source, options, lit.bins()));
+    };
+    size.whole_bytes = 0;
+    for (WholeChoice choice = first_choice(options);;) {
+        size.whole = choice.tree;
+        size.whole_worth = choice.worth;
+        compress::LocalFitter fitter(target, lit.bins(), lit.light(), size, fitting(progress), options.company);
+        compress::LocalFit fit = fitter.outlined(size.inside_bytes);
+        const bool own = size.whole == compress::WholeTree::own;
+        if (own ? size.whole_bytes > 0 : serves_points(target, fit.tree, bytes(fit))) {
+            fitter.fill(fit);
+            return fit;
+        }
+        if (own) size.whole_bytes = whole_tree_bytes(file_of_others(bytes(fit)));
+        else choice = next_choice(choice);
+    }
 }
 
 /// The smallest file whose measured variance is low enough.
@@ -338,7 +384,8 @@ Local build_separate(const compress::Target& target, const Source& source, const
     };
     for (std::uint64_t over = 0;; fit.goal.budget -= std::min(over, fit.goal.budget)) {
         draft.description.shares.assign(bins.normals.size(), 0.0f);
-        compress::SeparateFit fitted = compress::fit_local_separate(target, bins, options.bin_target, fit);
+        compress::SeparateFit fitted = compress::fit_local_separate(
+            target, bins, options.bin_target, fit, budgeted ? whole_tree_bytes(options.goal.budget) : 0);
         draft.tree = std::move(fitted.tree);
         draft.description.shares = std::move(fitted.shares);
         if (over = bytes_over(); over == 0) return finish(std::move(draft), target, source, options, bins);
@@ -387,9 +434,7 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
         return within_weight(options.max_weight, [&](double max_weight) {
             if (max_weight > 0.0) size.max_weight = max_weight;
             const NormalBins& bins = lit.bins();
-            compress::LocalFitter fitter(target, bins, lit.light(), size, fitting(progress), options.company);
-            compress::LocalFit fit = fitter.outlined(size.inside_bytes);
-            fitter.fill(fit);
+            const compress::LocalFit fit = fit_cells(target, source, options, lit, size, progress);
             return finish(shared_draft(fit, target, source, options, bins), target, source, options, bins);
         });
     }

@@ -19,7 +19,8 @@ namespace acdf::build {
 /// Where a scene gathers light, and what hides it there.
 struct ScenePlaces {
     compress::PlaceScene scene;    ///< empty: places are not told apart
-    std::uint64_t local_bytes = 0; ///< of the budget, for what is there without places; 0: a quarter
+    std::uint64_t local_bytes = 0; ///< of the budget, for what is there without places and the tree of the
+                                   ///< environment; 0: a quarter of the rest
     compress::PlacesFrame frame;
     std::vector<compress::PortalRectangle> portals; ///< among the cells
 };

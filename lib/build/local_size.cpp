@@ -71,11 +71,9 @@ constexpr double kInsideOfCells = 0.3; // of files that are asked for by their c
 compress::LocalSize size_for(const LocalOptions& o, const NormalBins& bins, double bytes, double inside) {
     constexpr double fixed = 2600.0;
     const std::size_t of_bin = sizeof(AcdfBin) + (o.company ? sizeof(AcdfCompanyRecord) : 0);
-    const double whole = o.shape == LocalShape::fast && bins.stored() < bins.normals.size() ? bytes / 16.0 : 0.0;
-    const double room = bytes - fixed - whole - double(bins.normals.size() * of_bin);
+    const double room = bytes - fixed - double(bins.normals.size() * of_bin);
     compress::LocalSize size;
     size.shape = o.shape;
-    size.whole_bytes = static_cast<std::uint64_t>(std::max(whole, 64.0));
     size.tiles =
         o.tiles > 0 ? std::min(o.tiles, ACDF_MAX_TILES) : tiles_in(o.shape, bins.stored(), (1.0 - inside) * room);
     const double left = room - bytes_of_tiles(o.shape, bins.stored(), size.tiles);

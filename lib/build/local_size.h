@@ -14,7 +14,7 @@ compress::NormalBins bins_of(const LocalOptions& options, std::uint32_t subdivis
 /// Bins for a file of `bytes`. For the few normals of a scene they can be denser at the same cost.
 compress::NormalBins bins_for(const LocalOptions& options, double bytes);
 
-/// Tiles, and curves or grids in them, that fill a budget.
+/// Tiles, and curves or grids in them, that fill a budget: what else there is than a tree of the environment alone.
 compress::LocalSize size_for(const LocalOptions& options, const compress::NormalBins& bins, double bytes);
 /// The same where of the bytes for both so much is inside tiles.
 compress::LocalSize size_for(const LocalOptions& options, const compress::NormalBins& bins, double bytes,

@@ -1,6 +1,7 @@
 // A cascade as a fit makes it, before it is stored: a tree of curves with real probabilities.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,10 +18,18 @@ struct Curve {
     std::size_t segments() const { return knots.size() + 1; }
 };
 
+/// The first curve within a tile, to which no other curve leads.
+struct TileRoot {
+    std::uint32_t curve = 0;
+    double reach = 0.0;                 ///< how often sampling comes to it
+    std::array<std::uint32_t, 2> low{}; ///< where the tile begins on axes 0 and 1
+};
+
 /// Curves, children after their parents; `roots` has one a bin.
 struct Cascade {
     std::vector<Curve> curves;
     std::vector<std::uint32_t> roots;
+    std::vector<TileRoot> tiles{}; ///< where curves within tiles are no parts of a tree of the whole
 };
 
 } // namespace acdf::compress

@@ -5,6 +5,7 @@
 #include "tools/cli/source_check.h"
 
 #include "build/accuracy/cells.h"
+#include "build/accuracy/environment.h"
 #include "build/accuracy/fine_texels.h"
 #include "build/accuracy/local.h"
 #include "build/local.h"
@@ -140,8 +141,17 @@ void print_places(const PlacesAccuracy& p) {
     std::printf("    support violations   %" PRIu64 "\n", p.support_violations);
 }
 
-nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
-                              const std::vector<Rival>& rivals, const PlacesAccuracy& places) {
+/// What is printed.
+struct LocalMeasured {
+    build::LocalAccuracy normals;
+    build::Accuracy whole; ///< for points without a normal
+    std::vector<Rival> rivals;
+    PlacesAccuracy places;
+};
+
+nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& options, const LocalMeasured& measured) {
+    const build::LocalAccuracy& a = measured.normals;
+    const build::Accuracy& whole = measured.whole;
     nlohmann::ordered_json out = {
         {"file", options.file},
         {"source", options.source},
@@ -161,16 +171,22 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
         {"bytes", file.size()},
         {"cells", count_cells(file)},
         {"bins", file.description().bin_count},
-        {"total", file.description().total}};
+        {"total", file.description().total},
+        {"environment",
+         {{"relative_variance", whole.relative_variance},
+          {"max_weight", whole.max_weight},
+          {"support_violations", whole.support_violations},
+          {"cells", whole.cells}}}};
     if (a.combined) out["combined"] = true; // of the file and its company
-    for (const Rival& rival : rivals)
+    for (const Rival& rival : measured.rivals)
         out["rivals"][rival.key] = {{"relative_variance", rival.relative_variance}, {"bytes", rival.bytes}};
-    if (places.points > 0) out["places"] = places_json(places);
+    if (measured.places.points > 0) out["places"] = places_json(measured.places);
     return out;
 }
 
-void print_text(const File& file, const LocalMeasureOptions& options, const build::LocalAccuracy& a,
-                const std::vector<Rival>& rivals, const PlacesAccuracy& places) {
+void print_text(const File& file, const LocalMeasureOptions& options, const LocalMeasured& measured) {
+    const build::LocalAccuracy& a = measured.normals;
+    const PlacesAccuracy& places = measured.places;
     std::printf("%s against %s, %u %s\n", printable(options.file).c_str(), printable(options.source).c_str(),
                 a.lit_normals,
                 options.mesh.empty() || places.points > 0 ? "random normals" : "normals of the scene");
@@ -189,8 +205,11 @@ void print_text(const File& file, const LocalMeasureOptions& options, const buil
     std::printf("  largest weight         %.6g   f/p over its mean\n", a.max_weight);
     std::printf("  support violations     %" PRIu64 "\n", a.support_violations);
     std::printf("  cells                  %" PRIu64 "\n", count_cells(file));
+    std::printf("  without a normal       %.6g   relative variance of environment(), used alone\n",
+                measured.whole.relative_variance);
+    std::printf("    largest weight       %.6g\n", measured.whole.max_weight);
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
-    for (const Rival& rival : rivals)
+    for (const Rival& rival : measured.rivals)
         std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", rival.text, rival.relative_variance,
                     rival.bytes);
     if (places.points > 0) print_places(places);
@@ -203,22 +222,23 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
     if (mesh && file.company()) throw Failure(options.file + ": is made for a company; leave out --scene");
     const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
     const std::vector<build::Normal> normals = normals_of(options, !mesh && !options.mesh.empty());
-    const build::LocalAccuracy accuracy =
-        build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
-    std::vector<Rival> rivals;
-    PlacesAccuracy places;
+    LocalMeasured measured;
+    measured.normals = build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
+    measured.whole = build::measure_whole(file, builder::grid_of(source.target));
     compress::Target map;
-    if (options.rivals) rivals = rivals_of(compress::looked_up(builder::grid_of(source.target), map), normals);
+    if (options.rivals)
+        measured.rivals = rivals_of(compress::looked_up(builder::grid_of(source.target), map), normals);
     if (mesh) { // whose points see lat-long texels
         const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
         const builder::Target light =
             square ? latlong_target(file, options.source, options.input).target : source.target;
-        places = measure_places(file, options, compress::looked_up(builder::grid_of(light), map));
+        measured.places = measure_places(file, options, compress::looked_up(builder::grid_of(light), map));
     }
-    if (options.json) std::fputs(json_text(report(file, options, accuracy, rivals, places)).c_str(), stdout);
-    else print_text(file, options, accuracy, rivals, places);
+    if (options.json) std::fputs(json_text(report(file, options, measured)).c_str(), stdout);
+    else print_text(file, options, measured);
     require_support(options.file, file, options.source, source.probe.source_sha256,
-                    accuracy.support_violations + places.support_violations);
+                    measured.normals.support_violations + measured.whole.support_violations +
+                        measured.places.support_violations);
 }
 
 } // namespace acdf::tools

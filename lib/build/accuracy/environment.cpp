@@ -80,11 +80,11 @@ struct Work {
 };
 
 /// Runs of about the same number of texels; they do not depend on the number of threads, nor does the result.
-Work divide(const File& file) {
+Work divide(const EnvironmentView& environment) {
     constexpr std::uint64_t kTexels = 1 << 17;
     Work work;
     std::uint64_t texels = kTexels;
-    for_each_cell(file.environment(), [&](const Cell& cell) {
+    for_each_cell(environment, [&](const Cell& cell) {
         if (texels >= kTexels) {
             work.begin.push_back(work.cells.size());
             texels = 0;
@@ -128,18 +128,22 @@ Accuracy measure_combined(const File& file, const Target& target) {
 
 } // namespace
 
-Accuracy measure_environment(const File& file, const Target& target) {
+namespace {
+
+void require_same_grid(const File& file, const Target& target) {
     if (file.description().parameterization != target.parameterization)
         throw std::invalid_argument("the file lies on another grid");
     if (file.axis(ACDF_AXIS_PHI).resolution != target.columns ||
         file.axis(ACDF_AXIS_THETA).resolution != target.rows)
         throw std::invalid_argument("the file was made from another resolution");
-    if (file.company()) return measure_combined(file, target);
+}
+
+Accuracy measure_alone(const EnvironmentView& environment, const Target& target) {
     Accuracy a;
     const double perfect = integral(target);
     a.total = target.total > 0.0 ? target.total : perfect;
     if (!(perfect > 0.0)) throw std::invalid_argument("a target without energy");
-    const Work work = divide(file);
+    const Work work = divide(environment);
     const Sums sums = sum_all(work, target, perfect);
     a.cells = work.cells.size();
     a.support_violations = sums.violations;
@@ -152,6 +156,19 @@ Accuracy measure_environment(const File& file, const Target& target) {
     a.kl_divergence = sums.violations > 0 ? kInfinite : std::max(0.0, sums.kl.value());
     a.max_weight = sums.violations > 0 ? kInfinite : sums.max_weight / perfect * std::sqrt(least);
     return a;
+}
+
+} // namespace
+
+Accuracy measure_environment(const File& file, const Target& target) {
+    require_same_grid(file, target);
+    if (file.company()) return measure_combined(file, target);
+    return measure_alone(file.environment(), target);
+}
+
+Accuracy measure_whole(const File& file, const Target& target) {
+    require_same_grid(file, target);
+    return measure_alone(file.local().environment(), target);
 }
 
 } // namespace acdf::build

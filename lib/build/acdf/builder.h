@@ -268,7 +268,7 @@ struct LocalOptions {
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
-    Places places; ///< both callbacks: bins share tiles, the goal is a budget, and places take three quarters of it
+    Places places; ///< both callbacks: bins share tiles, the goal is a budget, and places take more than half of it
 };
 
 /// The file of a local environment, and what is known of it.

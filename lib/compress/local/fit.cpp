@@ -10,6 +10,7 @@
 #include "compress/local/tile_grids.h"
 #include "compress/local/tile_light.h"
 #include "compress/local/tile_size.h"
+#include "compress/local/whole.h"
 #include "compress/parallel.h"
 
 #include <acdf/local.h>
@@ -143,9 +144,10 @@ LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const Bin
     report(0.4);
     if (beside_) filled_ = beside_->filled(target);
     worth_of_tiles_ = worth_of_tiles(target, tiles_.tiles, light.worth);
-    if (!fast()) return;
-    grids_.emplace(target, tiles_.tiles, worth_of_tiles_);
-    whole_ = fit_whole();
+    if (whole_tree() == WholeTree::of_tiles) // of all normals the light times its worth adds up to 1
+        for (double& worth : worth_of_tiles_) worth += size.whole_worth / total_;
+    if (whole_tree() == WholeTree::own) whole_ = fit_whole(target, size_.whole_bytes);
+    if (fast()) grids_.emplace(target, tiles_.tiles, worth_of_tiles_);
 }
 
 /// The curves at the lowest price at which they take at most `bytes`.
@@ -154,12 +156,13 @@ LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {
     const auto byte_price = [](double price) { return 2.0 * price; };
     const auto at = [&](double price) {
         Curves out;
-        out.cascade = std::make_unique<TileCascade>(tiles_, *tile_curves_, price);
-        out.tree = encode_tree(out.cascade->cascade, byte_price(price), most_ratio);
+        out.cascade = std::make_unique<TileCascade>(tiles_, *tile_curves_, price, whole_tree());
+        out.tree = encode_tree(out.cascade->cascade, byte_price(price), most_ratio, whole_.tree.bytes);
         return out;
     };
-    TileSizer sizer(tiles_, *tile_curves_, most_ratio);
-    const auto too_large = [&](double price) { return sizer.bytes(price, byte_price(price)) > bytes; };
+    const std::uint64_t before = whole_.tree.bytes.size();
+    TileSizer sizer(tiles_, *tile_curves_, most_ratio, whole_tree(), before);
+    const auto too_large = [&](double price) { return sizer.bytes(price, byte_price(price)) > before + bytes; };
     constexpr double cheapest = 1e-14; // of the sum of costs: rounding, no gain
     double low = 1e-4, high = 1.0;
     for (;; low *= 0.25) {
@@ -173,21 +176,6 @@ LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {
         (too_large(middle) ? low : high) = middle;
     }
     return at(high);
-}
-
-/// What serves normals whose bins are not stored: none, and one cell will do.
-Fitted LocalFitter::fit_whole() const {
-    Fitted out;
-    if (bins_.stored() == bins_.normals.size()) {
-        Flattened nothing;
-        flatten_nothing(ACDF_AXIS_PHI, nothing);
-        out.cascade = std::move(nothing.cascade);
-        out.tree = encode_tree(out.cascade);
-        return out;
-    }
-    FitOptions options;
-    options.goal = {Goal::Kind::budget, 0, size_.whole_bytes, 0.0};
-    return compress::fit(target_, options);
 }
 
 void LocalFitter::outline_curves(std::uint64_t bytes, LocalFit& out) {
@@ -259,7 +247,7 @@ void LocalFitter::fill_mixed(LocalFit& out) const {
 void LocalFitter::fill(LocalFit& out) const {
     if (beside_) fill_beside(out);
     else fill_mixed(out);
-    out.cascade = fast() ? whole_.cascade : curves_.cascade->cascade;
+    out.cascade = whole_tree() == WholeTree::own ? whole_.cascade : curves_.cascade->cascade;
     report(1.0);
 }
 

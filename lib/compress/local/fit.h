@@ -29,8 +29,10 @@ struct LocalSize {
     std::uint32_t tiles = 900;           ///< at most so many
     std::uint64_t inside_bytes = 131072; ///< of curves or grids in tiles, at most (but for the least there must be)
     LocalShape shape = LocalShape::small; ///< fast: without a company or a bound on weights
-    /// Of the fast shape: of the tree of the environment as a whole, where there are bins that are not stored.
-    std::uint64_t whole_bytes = 16384;
+    /// What the whole environment counts beside all normals together where its tree is made of curves in tiles.
+    double whole_worth = 0.0;
+    WholeTree whole = WholeTree::of_tiles; ///< of the fast shape, and beside a company, it has curves of its own
+    std::uint64_t whole_bytes = 16384;     ///< of those, at most
     /// What weights are held to, over their mean, as far as bins tell; not beside a company.
     double max_weight = std::numeric_limits<double>::infinity();
 };
@@ -38,7 +40,7 @@ struct LocalSize {
 /// A local environment map, ready to be stored.
 struct LocalFit {
     TileTree tiles;
-    Cascade cascade;   ///< root 0: the environment as a whole; of the fast shape one cell where it serves no bin
+    Cascade cascade;   ///< root 0: the environment as a whole
     EncodedTree tree;  ///< roots: one a bin, its row or ACDF_NO_ROOT where it is not stored
     StoredRows shared; ///< tiles, and a row for each bin
     std::vector<AcdfLight> lights;
@@ -72,12 +74,12 @@ private:
     };
 
     Curves fit_curves(std::uint64_t bytes);
-    Fitted fit_whole() const;
     void outline_curves(std::uint64_t bytes, LocalFit& out);
     void outline_grids(std::uint64_t bytes, LocalFit& out);
     void fill_beside(LocalFit& out) const;
     void fill_mixed(LocalFit& out) const;
     bool fast() const { return size_.shape == LocalShape::fast; }
+    WholeTree whole_tree() const { return fast() || beside_ ? WholeTree::own : size_.whole; }
     const TileInsides& insides() const {
         if (fast()) return *grids_;
         return *curves_.cascade;
@@ -100,9 +102,8 @@ private:
     // Of the fit that was outlined last:
     std::optional<TileCurves> tile_curves_;
     Curves curves_;
-    // Of the fast shape:
-    std::optional<TileGrids> grids_;
-    Fitted whole_; ///< the environment
+    std::optional<TileGrids> grids_; ///< of the fast shape
+    Fitted whole_;                   ///< the environment, where it has curves of its own
 };
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size,

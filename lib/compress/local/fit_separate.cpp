@@ -3,6 +3,7 @@
 #include "compress/fit/partition.h"
 #include "compress/fit/prune.h"
 #include "compress/local/light.h"
+#include "compress/local/whole.h"
 #include "compress/parallel.h"
 
 #include <acdf/local.h>
@@ -136,16 +137,9 @@ OneBin target_of(const Target& target, const std::vector<LightPoint>& light, con
     return out;
 }
 
-/// The trees of bins, appended to that of the environment.
+/// The trees of bins.
 class Trees {
 public:
-    Trees(const Target& target, const FitOptions& options) {
-        FitOptions own = options;
-        own.progress = {};
-        own.file_size = {};
-        if (own.goal.kind != Goal::Kind::cells) own.goal = Goal{}; // what bins share is not the environment's
-        append(fit(target, own).cascade);
-    }
     void append(const Cascade& tree) {
         const auto base = static_cast<std::int32_t>(cascade_.curves.size());
         cascade_.roots.push_back(static_cast<std::uint32_t>(base) + tree.roots.front());
@@ -155,11 +149,12 @@ public:
             cascade_.curves.push_back(std::move(curve));
         }
     }
-    /// Encodes all; `stored` tells which bins have one, in the order in which they were appended.
-    EncodedTree encode(const std::vector<bool>& stored, double price) const {
-        EncodedTree tree = encode_tree(cascade_, price);
+    /// Encodes all behind the curves of the environment; `stored` tells which bins have one, in the order in which
+    /// they were appended.
+    EncodedTree encode(const std::vector<bool>& stored, double price, const EncodedTree& environment) const {
+        EncodedTree tree = encode_tree(cascade_, price, std::numeric_limits<double>::infinity(), environment.bytes);
         std::vector<std::uint32_t> roots(stored.size(), ACDF_NO_ROOT);
-        std::size_t next = 1;
+        std::size_t next = 0;
         for (std::size_t b = 0; b < stored.size(); ++b)
             if (stored[b]) roots[b] = tree.roots[next++];
         tree.roots = std::move(roots);
@@ -169,6 +164,17 @@ public:
 private:
     Cascade cascade_;
 };
+
+std::uint64_t file_size(const FitOptions& options, const EncodedTree& tree) {
+    return options.file_size ? options.file_size(tree) : tree.bytes.size();
+}
+
+/// Trees of bins, and that of the environment at a quarter of the file.
+EncodedTree with_environment(const Target& target, const Trees& trees, const std::vector<bool>& stored,
+                             double price, const FitOptions& options) {
+    const std::uint64_t others = file_size(options, trees.encode(stored, price, {}));
+    return trees.encode(stored, price, fit_whole(target, others / 3).tree);
+}
 
 /// Partitions of all bins, each grown on its own and then forgotten but for its parts: memory does not hold the
 /// targets of all bins at once.
@@ -226,7 +232,7 @@ private:
 };
 
 SeparateFit fit_at_one_price(const Target& target, const std::vector<LightPoint>& light, const NormalBins& bins,
-                             BinTarget kind, const FitOptions& options) {
+                             BinTarget kind, const FitOptions& options, std::uint64_t whole_bytes) {
     SeparateFit out;
     out.shares.assign(bins.normals.size(), 0.0f);
     const bool budget = options.goal.kind == Goal::Kind::budget;
@@ -234,26 +240,28 @@ SeparateFit fit_at_one_price(const Target& target, const std::vector<LightPoint>
     const Partitions partitions(target, light, bins, kind, 2 * mean + 16, out.shares, options.progress);
     std::vector<bool> stored(bins.normals.size());
     for (std::size_t b = 0; b < stored.size(); ++b) stored[b] = partitions.stored(b);
-    const Trees environment(target, options);
-    const auto at = [&](double price) {
-        Trees trees = environment;
+    const EncodedTree environment = whole_bytes > 0 ? fit_whole(target, whole_bytes).tree : EncodedTree();
+    const auto trees_at = [&](double price) {
+        Trees trees;
         for (std::size_t b = 0; b < stored.size(); ++b)
             if (stored[b]) trees.append(partitions.at(b, price).cascade);
-        return trees.encode(stored, 2.0 * price / double(bins.stored()));
+        return trees;
     };
-    const auto beyond = [&](double price, EncodedTree& tree) {
+    const auto byte_price = [&](double price) { return 2.0 * price / double(bins.stored()); };
+    const auto beyond = [&](double price) {
         if (!budget) return partitions.cells(price) > std::size_t{options.goal.cells} * bins.stored();
-        tree = at(price);
-        return (options.file_size ? options.file_size(tree) : tree.bytes.size()) > options.goal.budget;
+        return file_size(options, trees_at(price).encode(stored, byte_price(price), environment)) >
+               options.goal.budget;
     };
     double low = partitions.cheapest(), high = 1.0;
-    if (EncodedTree tree; beyond(high, tree)) throw std::runtime_error("so small a size is out of reach");
+    if (beyond(high)) throw std::runtime_error("so small a size is out of reach");
     for (int step = 0; step < 24; ++step) {
         const double middle = std::sqrt(low * high);
-        EncodedTree tree;
-        (beyond(middle, tree) ? low : high) = middle;
+        (beyond(middle) ? low : high) = middle;
     }
-    out.tree = at(high);
+    const Trees trees = trees_at(high);
+    out.tree = whole_bytes > 0 ? trees.encode(stored, byte_price(high), environment)
+                               : with_environment(target, trees, stored, byte_price(high), options);
     return out;
 }
 
@@ -263,7 +271,7 @@ SeparateFit fit_each(const Target& target, const std::vector<LightPoint>& light,
     out.shares.assign(bins.normals.size(), 0.0f);
     FitOptions own = options;
     own.progress = {};
-    Trees trees(target, own);
+    Trees trees;
     std::vector<bool> stored(bins.normals.size(), false);
     const double total = integral(target);
     for (std::size_t b = 0; b < stored.size(); ++b) {
@@ -280,7 +288,7 @@ SeparateFit fit_each(const Target& target, const std::vector<LightPoint>& light,
         }
         if (options.progress) options.progress(double(b + 1) / double(stored.size()));
     }
-    out.tree = trees.encode(stored, 1e-8);
+    out.tree = with_environment(target, trees, stored, 1e-8, options);
     return out;
 }
 
@@ -291,10 +299,10 @@ Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin,
 }
 
 SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
-                               const FitOptions& options) {
+                               const FitOptions& options, std::uint64_t whole_bytes) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     const std::vector<LightPoint> light = light_points(target);
-    return options.fit == ACDF_FIT_VARIANCE ? fit_at_one_price(target, light, bins, kind, options)
+    return options.fit == ACDF_FIT_VARIANCE ? fit_at_one_price(target, light, bins, kind, options, whole_bytes)
                      : fit_each(target, light, bins, kind, options);
 }
 

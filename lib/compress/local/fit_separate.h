@@ -24,8 +24,11 @@ struct SeparateFit {
 /// and those and a budget (of the bytes of all trees, or as options.file_size has it) are shared by one price a
 /// byte over all bins. Deterministic for any number of threads. Throws std::invalid_argument where the target has
 /// no energy, and std::runtime_error where the goal is out of reach.
+///
+/// The environment's own tree is that of the variance fit, whatever those of bins are: of at most `whole_bytes`,
+/// or, if that is 0, of a quarter of the file.
 SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, BinTarget kind,
-                               const FitOptions& options);
+                               const FitOptions& options, std::uint64_t whole_bytes = 0);
 
 /// The target of one bin: g times the root of the mean of (max(0, n . omega) / E_n)^2. Exposed for tests.
 Target bin_target(const Target& target, const NormalBins& bins, std::size_t bin, BinTarget kind);

@@ -42,7 +42,7 @@ double TileCurves::cost(std::size_t tile, const Pruned& pruned) const {
     return out;
 }
 
-TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double price)
+TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double price, WholeTree whole)
     : tile_curve(tiles.tiles.size(), -1), tiles_(tiles), curves_(curves), pruned_(tiles.tiles.size()),
       cost_(tiles.tiles.size(), 0.0), split_cost_(tiles.splits.size()) {
     parallel_for(std::size_t{0}, tiles.tiles.size(), [&](std::size_t t) {
@@ -51,6 +51,10 @@ TileCascade::TileCascade(const TileTree& tiles, const TileCurves& curves, double
     });
     for (std::size_t s = tiles.splits.size(); s-- > 0;)
         split_cost_[s] = child_cost(tiles.splits[s].child[0]) + child_cost(tiles.splits[s].child[1]);
+    if (whole == WholeTree::own) {
+        add_tiles();
+        return;
+    }
     cascade.roots = {0};
     add(tiles.splits.empty() ? TileTree::tile : 0);
 }
@@ -67,12 +71,26 @@ std::vector<LitCell> TileCascade::lit_cells(std::size_t tile) const {
 }
 
 std::int32_t TileCascade::add(std::uint32_t child) {
-    return child & TileTree::tile ? add_tile(child & ~TileTree::tile) : add_split(child);
+    return child & TileTree::tile ? add_tile(child & ~TileTree::tile, WholeTree::of_tiles) : add_split(child);
 }
 
-std::int32_t TileCascade::add_tile(std::uint32_t tile) {
+void TileCascade::add_tiles() {
+    double sum = 0.0;
+    for (const double cost : cost_) sum += cost;
+    for (std::uint32_t t = 0; t < cost_.size(); ++t) {
+        const std::int32_t curve = cost_[t] > 0.0 ? add_tile(t, WholeTree::own) : -1;
+        if (curve < 0) continue;
+        TileRoot root{static_cast<std::uint32_t>(curve), cost_[t] / sum, {}};
+        root.low[ACDF_AXIS_THETA] = tiles_.tiles[t].begin[0];
+        root.low[ACDF_AXIS_PHI] = tiles_.tiles[t].begin[1];
+        cascade.tiles.push_back(root);
+    }
+}
+
+std::int32_t TileCascade::add_tile(std::uint32_t tile, WholeTree whole) {
     const auto index = static_cast<std::int32_t>(cascade.curves.size());
-    if (!pruned_[tile].divided[0] && index > 0) return -1; // the root needs a curve even so
+    const bool needs_curve = whole == WholeTree::of_tiles && index == 0; // the root of the environment
+    if (!pruned_[tile].divided[0] && !needs_curve) return -1;
     Flattened inside;
     flatten(curves_.partition(tile), curves_.nodes(tile), pruned_[tile], inside);
     for (Curve& curve : inside.cascade.curves) {

@@ -47,13 +47,17 @@ private:
     std::vector<PruneNodes> nodes_; ///< of the partitions: they are pruned at many prices
 };
 
-/// The tree of a whole environment: the splits between tiles as curves of two segments, then the curves in tiles.
+/// Whether the curves in tiles are parts of the tree of the whole environment, too, or that has curves of its own.
+enum class WholeTree { of_tiles, own };
+
+/// The curves in tiles. WholeTree::of_tiles: the tree of a whole environment, whose splits between tiles are curves
+/// of two segments above them.
 class TileCascade : public TileInsides {
 public:
     /// Prunes at `price` a byte. `tiles` and `curves` must outlive it.
-    TileCascade(const TileTree& tiles, const TileCurves& curves, double price);
+    TileCascade(const TileTree& tiles, const TileCurves& curves, double price, WholeTree whole);
 
-    Cascade cascade;                      ///< root 0 is the environment
+    Cascade cascade;                      ///< root 0 is the environment; of WholeTree::own there are none
     std::vector<std::int32_t> tile_curve; ///< one a tile: its first curve; -1: it is a cell
 
     /// The sum of the shares of the cells of a tile: its part of the environment.
@@ -72,7 +76,8 @@ private:
         return child & TileTree::tile ? cost_[child & ~TileTree::tile] : split_cost_[child];
     }
     std::int32_t add(std::uint32_t child);
-    std::int32_t add_tile(std::uint32_t tile);
+    std::int32_t add_tile(std::uint32_t tile, WholeTree whole);
+    void add_tiles();
     std::int32_t add_split(std::uint32_t split);
 
     const TileTree& tiles_;

@@ -25,10 +25,18 @@ struct TileSizer::Tree {
         return child & TileTree::tile ? add_tile(sizer.inside_[child & ~TileTree::tile], reach)
                                       : add_split(child, reach, low);
     }
+    /// All tiles, and nothing above them.
+    void add_tiles() {
+        double sum = 0.0;
+        for (const Inside& inside : sizer.inside_) sum += inside.cost;
+        for (Inside& inside : sizer.inside_)
+            if (inside.cost > 0.0) add_tile(inside, inside.cost / sum);
+    }
 
 private:
     std::uint32_t add_tile(Inside& inside, double root_reach) {
-        if (!inside.divided[0] && !shapes.empty()) return none; // the root needs a curve even so
+        const bool needs_curve = sizer.whole_ == WholeTree::of_tiles && shapes.empty(); // the environment's root
+        if (!inside.divided[0] && !needs_curve) return none;
         const auto base = static_cast<std::uint32_t>(shapes.size());
         std::vector<double> reach;
         for (std::size_t c = 0; c < inside.curves.curves.size(); ++c) {
@@ -74,8 +82,10 @@ private:
     }
 };
 
-TileSizer::TileSizer(const TileTree& tiles, const TileCurves& curves, double most_ratio)
-    : tiles_(tiles), curves_(curves), most_ratio_(most_ratio), inside_(tiles.tiles.size()) {}
+TileSizer::TileSizer(const TileTree& tiles, const TileCurves& curves, double most_ratio, WholeTree whole,
+                     std::size_t before)
+    : tiles_(tiles), curves_(curves), most_ratio_(most_ratio), whole_(whole), before_(before),
+      inside_(tiles.tiles.size()) {}
 
 void TileSizer::forget() {
     for (Inside& inside : inside_) inside = {};
@@ -97,11 +107,16 @@ void TileSizer::prune(double price) {
 std::uint64_t TileSizer::bytes(double price, double byte_price) {
     prune(price);
     Tree tree{*this, byte_price, std::vector<double>(tiles_.splits.size())};
+    const auto farthest = [&](std::size_t i, const auto& test) { return test(std::size_t{tree.last_child[i]}); };
+    const auto end = [&] { return place(tree.shapes, farthest, before_).back(); }; // asks only of curves with links
+    if (whole_ == WholeTree::own) {
+        tree.add_tiles();
+        return end();
+    }
     for (std::size_t s = tiles_.splits.size(); s-- > 0;)
         tree.split_cost[s] = tree.cost(tiles_.splits[s].child[0]) + tree.cost(tiles_.splits[s].child[1]);
     tree.add(tiles_.splits.empty() ? TileTree::tile : 0, 1.0, {});
-    const auto farthest = [&](std::size_t i, const auto& test) { return test(std::size_t{tree.last_child[i]}); };
-    return place(tree.shapes, farthest).back(); // asks only of curves that have links
+    return end();
 }
 
 } // namespace acdf::compress

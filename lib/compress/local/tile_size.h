@@ -13,10 +13,13 @@ namespace acdf::compress {
 /// looked at again.
 class TileSizer {
 public:
-    /// `most_ratio`: see quantize. `tiles` and `curves` must outlive it.
-    TileSizer(const TileTree& tiles, const TileCurves& curves, double most_ratio);
+    /// `most_ratio`, `before`: see encode_tree; the latter is of so many bytes. `tiles` and `curves` must outlive
+    /// it.
+    TileSizer(const TileTree& tiles, const TileCurves& curves, double most_ratio, WholeTree whole,
+              std::size_t before);
 
-    /// The bytes of encode_tree(TileCascade(tiles, curves, price).cascade, `byte_price`, most_ratio).
+    /// The bytes of encode_tree(TileCascade(tiles, curves, price, whole).cascade, `byte_price`, most_ratio,
+    /// before).
     std::uint64_t bytes(double price, double byte_price);
     /// The partitions have changed.
     void forget();
@@ -37,6 +40,8 @@ private:
     const TileTree& tiles_;
     const TileCurves& curves_;
     double most_ratio_;
+    WholeTree whole_;
+    std::size_t before_;
     std::vector<Inside> inside_; ///< one a tile
 };
 

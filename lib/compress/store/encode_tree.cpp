@@ -17,6 +17,7 @@ namespace {
 std::vector<double> reach(const Cascade& cascade) {
     std::vector<double> reach(cascade.curves.size(), 0.0);
     for (std::uint32_t root : cascade.roots) reach[root] += 1.0 / static_cast<double>(cascade.roots.size());
+    for (const TileRoot& tile : cascade.tiles) reach[tile.curve] += tile.reach;
     for (std::size_t i = 0; i < cascade.curves.size(); ++i) {
         const Curve& curve = cascade.curves[i];
         for (std::size_t s = 0; s < curve.children.size(); ++s)
@@ -43,6 +44,11 @@ std::vector<Lows> range_lows(const Cascade& cascade) {
     zero.fill(0);
     std::vector<Lows> lows(cascade.curves.size(), unset);
     for (std::uint32_t root : cascade.roots) meet(lows[root], zero);
+    for (const TileRoot& tile : cascade.tiles) {
+        Lows low = zero;
+        std::copy(tile.low.begin(), tile.low.end(), low.begin());
+        meet(lows[tile.curve], low);
+    }
     for (std::size_t i = 0; i < cascade.curves.size(); ++i) {
         const Curve& curve = cascade.curves[i];
         for (std::size_t s = 0; s < curve.children.size(); ++s) {
@@ -123,7 +129,8 @@ void write_curve(const Packed& packed, const CurveShape& shape, std::size_t at,
     block.align(2);
 }
 
-EncodedTree encode(const Cascade& cascade, double price, double most_ratio) {
+EncodedTree encode(const Cascade& cascade, double price, double most_ratio,
+                   const std::vector<std::uint8_t>& before) {
     const std::vector<double> weight = reach(cascade);
     const std::vector<Lows> lows = range_lows(cascade);
     std::vector<Packed> packed;
@@ -131,15 +138,17 @@ EncodedTree encode(const Cascade& cascade, double price, double most_ratio) {
     std::vector<CurveShape> shapes(cascade.curves.size());
     for (std::size_t i = 0; i < cascade.curves.size(); ++i)
         packed.push_back(pack(cascade.curves[i], lows[i], weight[i], price, most_ratio, shapes[i]));
-    const std::vector<std::size_t> offset = place(shapes, [&](std::size_t i, const auto& test) {
+    const auto any_child = [&](std::size_t i, const auto& test) {
         const std::vector<std::int32_t>& children = cascade.curves[i].children;
         return std::any_of(children.begin(), children.end(),
                            [&](std::int32_t child) { return child >= 0 && test(std::size_t(child)); });
-    });
+    };
+    const std::vector<std::size_t> offset = place(shapes, any_child, before.size());
     if (offset.back() / 2 > 0xFFFFFFFFu) throw std::invalid_argument("a tree of more than 8 GiB");
 
     EncodedTree tree;
     tree.bytes.reserve(offset.back());
+    tree.bytes = before;
     for (std::size_t i = 0; i < packed.size(); ++i)
         write_curve(packed[i], shapes[i], offset[i], offset, Block(tree.bytes));
     for (std::size_t i = 0; i < packed.size(); ++i)
@@ -178,17 +187,24 @@ Cascade sharing_bare_roots(const Cascade& cascade, std::vector<std::uint32_t>& n
         for (std::int32_t& child : curve.children)
             if (child >= 0) child = static_cast<std::int32_t>(now[static_cast<std::size_t>(child)]);
     for (const std::uint32_t r : cascade.roots) out.roots.push_back(now[r]);
+    for (TileRoot tile : cascade.tiles) {
+        tile.curve = now[tile.curve];
+        out.tiles.push_back(tile);
+    }
     return out;
 }
 
 } // namespace
 
-EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio) {
-    EncodedTree tree = encode(cascade, price, most_ratio);
-    if (cascade.curves.size() <= tree.bytes.size() / 4 + 1) return tree;
+EncodedTree encode_tree(const Cascade& cascade, double price, double most_ratio,
+                        const std::vector<std::uint8_t>& before) {
+    EncodedTree tree = encode(cascade, price, most_ratio, before);
+    // The curves in `before` keep to the same limit.
+    const std::size_t one_more = before.empty() ? 1 : 0;
+    if (cascade.curves.size() <= (tree.bytes.size() - before.size()) / 4 + one_more) return tree;
     // Many bins of one cell, whose curves have two bytes: readers take no more curves than a quarter of the bytes.
     std::vector<std::uint32_t> now;
-    EncodedTree shared = encode(sharing_bare_roots(cascade, now), price, most_ratio);
+    EncodedTree shared = encode(sharing_bare_roots(cascade, now), price, most_ratio, before);
     tree.offsets.clear();
     for (const std::uint32_t curve : now) tree.offsets.push_back(shared.offsets[curve]);
     return {std::move(shared.bytes), std::move(shared.roots), std::move(tree.offsets)};

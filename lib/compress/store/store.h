@@ -58,10 +58,12 @@ struct EncodedTree {
 };
 
 /// Quantizes and packs the curves in the order given. Probabilities get the width at which bytes, at `price`
-/// each, and what rounding adds to E[(f/p)^2] cost least together. `most_ratio`: see quantize. Throws
-/// std::invalid_argument where the cascade breaks a limit of the format.
+/// each, and what rounding adds to E[(f/p)^2] cost least together. `most_ratio`: see quantize. `before`: a chunk
+/// TREE, behind whose curves these stand. Throws std::invalid_argument where the cascade breaks a limit of the
+/// format.
 EncodedTree encode_tree(const Cascade& cascade, double price = 1e-8,
-                        double most_ratio = std::numeric_limits<double>::infinity());
+                        double most_ratio = std::numeric_limits<double>::infinity(),
+                        const std::vector<std::uint8_t>& before = {});
 
 /// What the bins of local environments and BRDFs share, and a row for each; of the fast shape of local environments
 /// where it has `grid`.

@@ -1,0 +1,178 @@
+// Points without a normal: environment() of a local file of any kind is as accurate, used alone, as an environment
+// file of a quarter of its bytes.
+#include "build/accuracy/environment.h"
+#include "build/own_terms.h"
+#include "tests/inputs/directions.h"
+#include "tests/inputs/sanitized.h"
+#include "tests/inputs/synthetic.h"
+
+#include <acdf/builder.h>
+#include <acdf/reader.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+namespace acdf {
+namespace {
+
+/// A sky with a sun, on a grass of noise; and the same on the octahedral square.
+const builder::Target& sky(bool square) {
+    static const auto make = [](bool octahedral) {
+        std::mt19937 rng(7);
+        std::lognormal_distribution<double> noise(0.0, 1.0);
+        const auto light = [&](std::uint32_t c, std::uint32_t r) {
+            const double phi = acdf_test::centre_phi(c, 192), z = acdf_test::centre_z(r, 96);
+            if (std::hypot(phi - 0.6, z - 0.4) < 0.04) return 3000.0;
+            return (z < 0.0 ? 0.3 : acdf_test::smooth_sky(phi, z)) * noise(rng);
+        };
+        compress::Target grid = acdf_test::texel_target(192, 96, light);
+        return builder::target_of(octahedral ? acdf_test::octahedral(grid) : std::move(grid), {});
+    };
+    static const builder::Target latlong = make(false), folded = make(true);
+    return square ? folded : latlong;
+}
+
+struct Made {
+    builder::Local local;
+    File file;
+
+    Made(const builder::Target& target, const builder::LocalOptions& options) {
+        const builder::Status status = builder::local(target, options, local);
+        EXPECT_TRUE(status.ok()) << status.message;
+        if (!status.ok()) return;
+        EXPECT_TRUE(File::from_memory(local.bytes.data(), local.bytes.size(), file).ok());
+    }
+};
+
+/// The relative variance of an environment file of so many bytes.
+double of_environment(const builder::Target& target, std::uint64_t bytes) {
+    builder::EnvironmentOptions options;
+    options.goal = builder::Goal::of_budget(bytes);
+    builder::Environment made;
+    const builder::Status status = builder::environment(target, options, made);
+    EXPECT_TRUE(status.ok()) << status.message;
+    return made.accuracy.relative_variance;
+}
+
+void expect_samples_agree(const EnvironmentView& view) {
+    std::mt19937_64 random(3);
+    for (int i = 0; i < acdf_test::repeated(1000); ++i) {
+        const DirectionSample s = view.sample(acdf_test::uniform(random), acdf_test::uniform(random));
+        ASSERT_GT(s.pdf, 0.0f);
+        ASSERT_EQ(view.pdf(s.direction), s.pdf);
+        double u[2];
+        ASSERT_TRUE(view.invert(s.direction, u));
+        EXPECT_EQ(view.sample(u[0], u[1]).pdf, s.pdf);
+    }
+}
+
+void expect_serves_points(const builder::LocalOptions& options, const std::string& what, bool square = false) {
+    const builder::Target& target = sky(square);
+    const Made made(target, options);
+    if (made.local.bytes.empty()) return;
+    const build::Accuracy whole = build::measure_whole(made.file, builder::grid_of(target));
+    EXPECT_EQ(whole.support_violations, 0u) << what;
+    EXPECT_LE(whole.relative_variance, of_environment(target, made.local.bytes.size() / 4)) << what;
+    expect_samples_agree(made.file.local().environment());
+}
+
+builder::LocalOptions of_budget(std::uint64_t bytes, builder::LocalShape shape) {
+    builder::LocalOptions out;
+    out.goal = builder::Goal::of_budget(bytes);
+    out.shape = shape;
+    return out;
+}
+
+constexpr builder::LocalShape kShapes[] = {builder::LocalShape::fast, builder::LocalShape::small};
+
+TEST(PointsWithoutNormal, OfBothShapes) {
+    for (const builder::LocalShape shape : kShapes)
+        for (const std::uint64_t bytes : {12u << 10, 48u << 10, 160u << 10}) {
+            if (acdf_test::kSanitized && bytes > 12u << 10) break; // the same code, on more of it
+            const std::string what = std::to_string(int(shape)) + ", " + std::to_string(bytes);
+            expect_serves_points(of_budget(bytes, shape), what);
+            if (bytes == 48u << 10) expect_serves_points(of_budget(bytes, shape), what + ", square", true);
+        }
+}
+
+TEST(PointsWithoutNormal, OfSmallScenes) {
+    for (const builder::LocalShape shape : kShapes) {
+        builder::LocalOptions options = of_budget(48 << 10, shape);
+        options.normals = {{{0.0f, 0.0f, 1.0f}, 1.0}, {{0.3f, -0.9f, 0.1f}, 0.5}};
+        expect_serves_points(options, "scene " + std::to_string(int(shape)));
+    }
+}
+
+TEST(PointsWithoutNormal, OfOtherGoals) {
+    ACDF_NOT_SANITIZED();
+    for (const builder::LocalShape shape : kShapes) {
+        builder::LocalOptions options = of_budget(0, shape);
+        options.goal = builder::Goal::of_cells(3000);
+        expect_serves_points(options, "cells " + std::to_string(int(shape)));
+        options.goal = builder::Goal::of_variance(0.5);
+        expect_serves_points(options, "variance " + std::to_string(int(shape)));
+    }
+    builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::small);
+    options.max_weight = 30.0;
+    expect_serves_points(options, "largest weight");
+    options = of_budget(48 << 10, builder::LocalShape::automatic);
+    expect_serves_points(options, "any shape");
+}
+
+TEST(PointsWithoutNormal, BesideEveryPartner) {
+    for (const AcdfCompanyKind kind : {ACDF_COMPANY_COSINE, ACDF_COMPANY_BRDF})
+        for (const AcdfHeuristic heuristic : {ACDF_HEURISTIC_BALANCE, ACDF_HEURISTIC_POWER}) {
+            builder::LocalOptions options = of_budget(48 << 10, builder::LocalShape::automatic);
+            options.company.kind = kind;
+            options.company.heuristic = heuristic;
+            expect_serves_points(options, "beside " + std::to_string(int(kind)));
+            if (acdf_test::kSanitized) return;
+        }
+}
+
+TEST(PointsWithoutNormal, OfBinsThatShareNothing) {
+    for (const AcdfFit fit : {ACDF_FIT_VARIANCE, ACDF_FIT_CDF, ACDF_FIT_PDF, ACDF_FIT_UNIFORM}) {
+        builder::LocalOptions options = of_budget(100 << 10, builder::LocalShape::automatic);
+        options.sharing = false;
+        options.columns = 12;
+        options.rows = 6;
+        options.fit.fit = fit;
+        options.fit.phi_segments = options.fit.theta_segments = 12;
+        expect_serves_points(options, "fit " + std::to_string(int(fit)));
+        if (acdf_test::kSanitized) break;
+    }
+    builder::LocalOptions options = of_budget(100 << 10, builder::LocalShape::automatic);
+    options.sharing = false;
+    options.subdivisions = 4;
+    options.goal = builder::Goal::of_cells(100);
+    expect_serves_points(options, "cells");
+}
+
+/// The half of all points below z = 0 sees nothing above it.
+builder::LocalOptions with_places() {
+    builder::LocalOptions options = of_budget(96 << 10, builder::LocalShape::automatic);
+    options.places.point = [](std::uint64_t index, builder::PlacePoint& point) {
+        std::mt19937 random(static_cast<std::uint32_t>(index));
+        const auto u = [&] { return float(random() % 1024) / 512.0f - 1.0f; };
+        point = {{u(), u(), u()}, {0.0f, 0.0f, index % 2 ? 1.0f : -1.0f}};
+        return true;
+    };
+    options.places.occluded = [](const builder::PlacePoint& p, const float* d) {
+        return p.position[2] < 0.0f && d[2] > 0.0f;
+    };
+    return options;
+}
+
+TEST(PointsWithoutNormal, OfPlacesAndPortals) {
+    ACDF_NOT_SANITIZED();
+    builder::LocalOptions options = with_places();
+    expect_serves_points(options, "places");
+    options.places.portals = {{{2.0f, -1.0f, 0.2f}, {0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 1.0f}}};
+    expect_serves_points(options, "portals");
+}
+
+} // namespace
+} // namespace acdf
