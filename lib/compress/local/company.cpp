@@ -106,7 +106,7 @@ double LocalCompany::share(std::size_t bin, double cosine, double alone, double 
 FilledTiles::FilledTiles(const Target& target, const TileTree& tiles, const TileCurves& curves,
                          const TileCascade& cascade, const std::vector<AcdfLight>& lights,
                          const LocalCompany& company, const NormalBins& bins)
-    : lights_(lights), company_(company), bins_(bins), is_light_(tiles.tiles.size(), false),
+    : target_(target), lights_(lights), company_(company), bins_(bins), is_light_(tiles.tiles.size(), false),
       pieces_(tiles.tiles.size()) {
     for (const AcdfLight& light : lights) is_light_[light.tile] = true;
     parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t t) {
@@ -125,7 +125,8 @@ FilledTiles::FilledTiles(const Target& target, const TileTree& tiles, const Tile
             if (!(energy > 0.0)) return;
             const double light = std::sqrt(energy / measure) * curves.total(), density = share_of(part) / measure;
             for_each_block(target, part.box, kPieceStep, [&](const Box& block, double share) {
-                pieces_[t].push_back({centre(target, block), light, measure * share, density});
+                pieces_[t].push_back({centre(target, block), block, radius(target, block) + kHorizonMargin, light,
+                                      measure * share, density});
             });
         });
     });

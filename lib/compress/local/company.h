@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/company.h"
+#include "compress/local/horizon.h"
 #include "compress/local/light.h"
 #include "compress/local/tile_curves.h"
 
@@ -26,6 +27,8 @@ public:
 
     /// Of light of a bin, `alone` and measure as in Moments: its share, see Filling.
     double share(std::size_t bin, double cosine, double alone, double measure) const;
+    /// Whether a bin takes samples for such light, wherever it comes from.
+    bool takes(std::size_t bin, double light) const { return light * lobes_.brightness(1.0) > threshold(bin, 1.0); }
     const Lobes& lobes() const { return lobes_; }
 
 private:
@@ -53,6 +56,8 @@ public:
 private:
     struct Piece {
         Direction direction{};
+        Box box;
+        double reach;   ///< of any direction in it, from the middle
         double light;   ///< root mean square in its cell
         double measure; ///< over 4 pi for all light
         double density; ///< within the tile, per measure
@@ -60,11 +65,15 @@ private:
     template <class Visit>
     void for_each_seen(std::size_t tile, std::size_t bin, const Visit& visit) const {
         for (const Piece& piece : pieces_[tile]) {
-            const double cosine = dot(piece.direction, bins_.normals[bin]);
+            const Direction& normal = bins_.normals[bin];
+            double cosine = dot(piece.direction, normal);
+            if (std::abs(cosine) < piece.reach && company_.takes(bin, piece.light))
+                cosine = mean_cosine(target_, piece.box, normal);
             if (cosine > 0.0) visit(piece, cosine);
         }
     }
 
+    const Target& target_;
     const std::vector<AcdfLight>& lights_;
     const LocalCompany& company_;
     const NormalBins& bins_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compress/fit/tiles.h"
+#include "compress/local/horizon.h"
 #include "compress/local/light.h"
 #include "compress/local/tile_insides.h"
 
@@ -12,9 +13,6 @@
 #include <vector>
 
 namespace acdf::compress {
-
-/// Rounding of normals and directions to float must not take light over the horizon that was not expected.
-constexpr double kHorizonMargin = 1e-4;
 
 /// What a normal sees of each tile.
 struct TileView {
