@@ -289,9 +289,9 @@ void print(const Json& report) {
                 text_of(report["kind"]).c_str(), text_of(report["version"]).c_str(),
                 static_cast<unsigned long long>(bytes), to_readable_size(bytes).c_str());
     line("target", target_text(report));
-    line("fit", text_of(report["fit"]) + "; stored: " + text_of(report["cells"]) + " cells in " +
-                    text_of(report["curves"]) + " curves, " + text_of(report["bins"]) +
-                    (report["bins"] == 1 ? " bin" : " bins"));
+    const std::string structure = report["curves"] == 0 ? "" : " in " + text_of(report["curves"]) + " curves";
+    line("fit", text_of(report["fit"]) + "; stored: " + text_of(report["cells"]) + " cells" + structure + ", " +
+                    text_of(report["bins"]) + (report["bins"] == 1 ? " bin" : " bins"));
     if (const std::uint64_t tables = report["table_bytes"]; tables > 0)
         line("in memory", to_readable_size(tables) + " of tables besides, made when it is opened");
     if (report.contains("local")) line("normals", local_text(report["local"]));

@@ -321,7 +321,7 @@ void LocalConversion::add_shape(CLI::App& command) {
     add_choice(
         command, "--shape", local_.shape, shapes,
         "small: the least noise for its bytes; fast: tables that are searched by vectors, for renderers whose "
-        "time goes into calls: these take some 0.6 of the time, at 0.6 to 1.7 times the variance; auto: both are "
+        "time goes into calls: these take some 0.6 of the time, at 0.9 to 1.8 times the variance; auto: both are "
         "made, and fast is chosen where it has no more noise after the same time, and no option asks for what it "
         "has not")
         ->option_text("small|fast|auto [auto]")

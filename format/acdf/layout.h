@@ -161,9 +161,9 @@ typedef struct AcdfBin {
 #define ACDF_CURVE_SEGMENTS_SHIFT 10 /* 1 to 63 segments; 0: the count follows */
 #define ACDF_CURVE_SHORT_SEGMENTS 63u
 
-/* Chunk HALV: a tree of halvings (SPEC.md §5.12), instead of BINS and TREE. This, then two runs of bits, the lowest of
- * each byte first, each padded with zeros to a multiple of 32: the nodes in preorder, 0 for a leaf, else 1 and the
- * number of a sampled axis; then `code_bits` a halving, in the same order. */
+/* Chunk HALV: a tree of halvings (SPEC.md §5.12), instead of BINS and TREE. This, then two runs of bits, the lowest
+ * of each byte first, each padded with zeros to a multiple of 32: the nodes in preorder, 0 for a leaf, else 1 and
+ * the number of a sampled axis; then `code_bits` a halving, in the same order. */
 typedef struct AcdfHalvingsHeader {
     uint32_t halving_count;
     uint32_t code_bits; /* ACDF_LEAST_CODE_BITS to ACDF_MOST_CODE_BITS */

@@ -208,6 +208,25 @@ bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compr
     return true;
 }
 
+/// build(bytes). Where that is out of reach, the least that the error names was made once.
+template <class Build>
+Local within_reach(std::uint64_t bytes, const Build& build) {
+    try {
+        return build(bytes);
+    } catch (const OutOfReach& first) {
+        std::uint64_t least = first.least;
+        for (int tries = 0; tries < 4; ++tries) {
+            try {
+                build(least);
+                break;
+            } catch (const OutOfReach& again) {
+                least = std::max(again.least, least + kSlack);
+            }
+        }
+        throw OutOfReach(bytes, least);
+    }
+}
+
 /// At most `all` bytes before compression, and nearly as many.
 Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
                   std::uint64_t all, WholeChoice choice, double max_weight, LastBins& last, Least least,
@@ -235,7 +254,8 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         const std::uint64_t bytes = bytes_of(draft);
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
-        if (fits && tree == compress::WholeTree::of_tiles && !serves_points(target, fit.tree, all))
+        const bool checked = tree == compress::WholeTree::of_tiles && !options.places.scene;
+        if (fits && checked && !serves_points(target, fit.tree, all))
             return build_plain(target, source, options, all, next_choice(choice), max_weight, last, least,
                                progress);
         const auto completed = [&] {
@@ -279,7 +299,7 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
             return build_plain(target, source, options, bytes, first_choice(options), max_weight, last, least,
                                progress);
         };
-        if (options.codec == ACDF_CODEC_NONE) return build(budget);
+        if (options.codec == ACDF_CODEC_NONE) return within_reach(budget, build);
         try {
             return fill_compressed(budget, build);
         } catch (const OutOfReach& plain) { // compressed, the least may be small enough
@@ -303,7 +323,7 @@ compress::LocalFit fit_cells(const compress::Target& target, const Source& sourc
         compress::LocalFitter fitter(target, lit.bins(), lit.light(), size, fitting(progress), options.company);
         compress::LocalFit fit = fitter.outlined(size.inside_bytes);
         const bool own = size.whole == compress::WholeTree::own;
-        if (own ? size.whole_bytes > 0 : serves_points(target, fit.tree, bytes(fit))) {
+        if (own ? size.whole_bytes > 0 : options.places.scene || serves_points(target, fit.tree, bytes(fit))) {
             fitter.fill(fit);
             return fit;
         }

@@ -18,8 +18,8 @@ struct HalvedSource {
     bool lookup;                     ///< whether a lookup grid is made, where the tree is of two axes
 };
 
-/// The tree, in `block`, which the caller gives back; null where there is no memory. A lookup grid for which there is
-/// no memory is left out. Linear in the nodes and the squares of the grid.
+/// The tree, in `block`, which the caller gives back; null where there is no memory. A lookup grid for which there
+/// is no memory is left out. Linear in the nodes and the squares of the grid.
 AcdfHalvedTree* make_halved_tree(const HalvedSource& source, const AcdfAllocator& allocator,
                                  AcdfBlock& block) noexcept;
 

@@ -106,7 +106,7 @@ TEST(Summation, AccuracyIsThatOfAnyOrder) {
 TEST(Summation, FitsAreAsGoodInAnyOrder) {
     for (const NamedTarget& t : all_targets()) {
         acdf::compress::FitOptions options;
-        options.goal.cells = 60;
+        options.goal.cells = 240;
         double variance[2];
         for (int i = 0; i < 2; ++i) {
             const Target target = i == 0 ? t.target : reversed(t.target);

@@ -56,9 +56,9 @@ TEST_F(Make, OptionsThatAreGivenWin) {
     EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--heuristic", "balance"})), "mean balance");
     EXPECT_EQ(partner(made({"env", "--for", "pbrt-v4", "--with", "cosine"})), "cosine power");
     const std::vector<std::vector<std::string>> alone = {
-        {"env", "--max-weight", "9"},  {"env", "--target-variance", "2"}, {"env", "--fit", "cdf"},
-        {"env", "--shape", "cascade"}, {"local", "--max-weight", "9"},    {"local", "--cosine-share", "0.2"},
-        {"local", "--no-sharing"},     {"local", "--shape", "fast"}};
+        {"env", "--max-weight", "9"},   {"env", "--target-variance", "2"},  {"env", "--fit", "cdf"},
+        {"local", "--max-weight", "9"}, {"local", "--cosine-share", "0.2"}, {"local", "--no-sharing"},
+        {"local", "--shape", "fast"}};
     for (std::vector<std::string> words : alone) {
         words.insert(words.end(), {"--for", "luxcore"});
         EXPECT_EQ(partner(made(words)), "none") << words[1];

@@ -102,13 +102,6 @@ int run(Conversion& conversion, const RunOptions& options, const std::string& su
 
 } // namespace
 
-std::vector<std::string> input_paths(Conversion& conversion) {
-    std::vector<std::string> out;
-    for (const std::string* file : conversion.files())
-        for (const std::string& path : input::probe_files(*file)) out.push_back(path);
-    return out;
-}
-
 void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, const ConversionHelp& help,
                     int& exit_code) {
     auto options = std::make_shared<RunOptions>();

@@ -1,6 +1,7 @@
 // From one source to one file: what `acdf env`, `acdf local` and `acdf brdf` do once and `acdf batch` many times.
 #pragma once
 
+#include "input/probe/source.h"
 #include "tools/cli/probe_source.h"
 #include "tools/cli/progress.h"
 
@@ -64,7 +65,12 @@ public:
 };
 
 /// The paths of all files that are read: a source may be six.
-std::vector<std::string> input_paths(Conversion& conversion);
+inline std::vector<std::string> input_paths(Conversion& conversion) {
+    std::vector<std::string> out;
+    for (const std::string* file : conversion.files())
+        for (const std::string& path : input::probe_files(*file)) out.push_back(path);
+    return out;
+}
 
 std::unique_ptr<Conversion> env_conversion();
 std::unique_ptr<Conversion> local_conversion();

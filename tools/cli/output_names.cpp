@@ -48,7 +48,8 @@ std::vector<std::string> output_names(const std::vector<std::string>& inputs, co
         (output == "-" || (!output.empty() && !is_folder(output) && fs::path(output).has_extension())))
         throw CLI::ValidationError("--output", "'" + output + "' is one file, and there are " +
                                                    std::to_string(inputs.size()) +
-                                                   " inputs; give a folder, such as library/, or leave it out");
+                                                   " inputs; give a folder, such as library/, leave it out, or say "
+                                                   "with --faces that they are those of a cube");
     if (inputs.size() == 1 && !output.empty() && (output == "-" || !is_folder(output))) {
         if (output != "-") check_extension(output, extension);
         return {output};

@@ -91,7 +91,7 @@ enum class Conditional { energy, mean };
 struct FitOptions {
     AcdfFit fit = ACDF_FIT_VARIANCE;
     Order order = Order::best;
-    double max_weight = 0.0;   ///< variance: the largest f/p over its mean, at least 1; 0: no bound
+    double max_weight = 0.0; ///< variance: the largest f/p over its mean, at least 1; 0: no bound
     std::uint32_t phi_segments = 64, theta_segments = 64; ///< cdf, pdf, uniform: of a curve, 1 to ACDF_MAX_SEGMENTS
     double epsilon = 0.0;             ///< cdf, pdf: deviation at which a curve has knots enough, in [0, 1]; 0: none
     std::uint32_t gradient_knots = 0; ///< cdf, pdf: extra knots of the first curve (ibid., eq. 5), up to 2^20

@@ -38,8 +38,7 @@ Fitted fit(const Target& target, const FitOptions& options) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (options.fit == ACDF_FIT_VARIANCE && options.goal.kind == Goal::Kind::cells && options.goal.cells == 0)
         throw std::invalid_argument("a goal of 0 cells");
-    if (options.fit == ACDF_FIT_VARIANCE)
-        return fit_trees({grid_of(target)}, of_best_density(target, options));
+    if (options.fit == ACDF_FIT_VARIANCE) return fit_trees({grid_of(target)}, of_best_density(target, options));
     Fitted out;
     out.cascade = fit_two_levels(target, options);
     out.tree = encode_tree(out.cascade);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <stdexcept>
+#include <vector>
 
 namespace acdf::compress {
 namespace {
@@ -14,11 +16,13 @@ constexpr std::uint32_t kFewestCodeBits = kCodeBits[0], kMostCodeBits = 12;
 constexpr std::uint32_t kUsualCodeBits = 8;
 /// A code of 8 bits adds about so much to the relative variance a level of the tree, one of b bits 4^(8 - b) times
 /// that.
+constexpr double kEven = 4e-6; // relative variance of one cell
 constexpr double kLossOfLevel = 1.3e-5;
 
 /// The most leaves that fit into a chunk.
 std::size_t leaves_within(std::uint64_t bytes, std::uint32_t code_bits) {
-    std::size_t leaves = bytes * 8 / (2 + kAxisBits + code_bits) + 1;
+    const std::uint64_t bits = std::min<std::uint64_t>(bytes, std::uint64_t{1} << 32) * 8;
+    std::size_t leaves = std::min<std::uint64_t>(bits / (2 + kAxisBits + code_bits) + 1, ACDF_MOST_HALVINGS);
     while (leaves > 0 && halvings_bytes(leaves, kAxisBits, code_bits) > bytes) --leaves;
     return leaves;
 }
@@ -66,7 +70,12 @@ private:
         return out;
     }
 
-    GrownTree grown(const GrowthLimits& limits) const { return grow(sums_, integral_, limits); }
+    /// One cell where the map is as even as sums in floats are exact.
+    GrownTree grown(GrowthLimits limits) const {
+        const double whole = sums_.cost(sums_.whole()) / sums_.unit();
+        if (whole * (whole / mean_square_) - 1.0 < kEven) limits.leaves = 1;
+        return grow(sums_, integral_, limits);
+    }
 
     Quantised stored(const GrownTree& tree, std::size_t leaves, std::uint32_t code_bits) const {
         return quantise(sums_, tree, leaves, code_bits, options_.max_weight > 0.0 ? integral_ : 0.0);
@@ -85,9 +94,15 @@ private:
         return stored.max_weight * (integral_ / std::sqrt(mean_square_));
     }
 
+    /// Codes of few bits round small shares by a tenth, which a bound on weights does not allow.
+    std::vector<std::uint32_t> code_bits_tried() const {
+        if (options_.max_weight > 0.0) return {kMostCodeBits};
+        return {std::begin(kCodeBits), std::end(kCodeBits)};
+    }
+
     Quantised of_cells() const {
         const GrownTree tree = grown(limits(options_.goal.cells));
-        std::uint32_t code_bits = kUsualCodeBits;
+        std::uint32_t code_bits = options_.max_weight > 0.0 ? kMostCodeBits : kUsualCodeBits;
         while (code_bits < 10 &&
                ideal_variance(tree, tree.leaves()) < 4.0 * predicted_loss(tree.leaves(), code_bits))
             ++code_bits;
@@ -96,12 +111,12 @@ private:
 
     Quantised of_bytes() const {
         const std::size_t usual = leaves_within(options_.chunk_bytes, kUsualCodeBits);
-        if (leaves_within(options_.chunk_bytes, kFewestCodeBits) == 0)
+        if (leaves_within(options_.chunk_bytes, kMostCodeBits) == 0)
             throw std::runtime_error("no tree fits into the budget");
         const GrownTree tree = grown(limits(std::max<std::size_t>(usual, 1)));
-        std::uint32_t best = kUsualCodeBits;
+        std::uint32_t best = kMostCodeBits;
         double least = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t code_bits : kCodeBits) {
+        for (const std::uint32_t code_bits : code_bits_tried()) {
             const std::size_t leaves = std::min(leaves_within(options_.chunk_bytes, code_bits), tree.leaves());
             if (leaves == 0) continue;
             const double variance = ideal_variance(tree, leaves) + predicted_loss(leaves, code_bits);
@@ -123,7 +138,7 @@ private:
         if (variance_of(stored(tree, tree.leaves(), kMostCodeBits)) > wanted) refuse_variance(tree);
         Quantised best;
         std::size_t least = std::numeric_limits<std::size_t>::max();
-        for (const std::uint32_t code_bits : kCodeBits) {
+        for (const std::uint32_t code_bits : code_bits_tried()) {
             if (variance_of(stored(tree, tree.leaves(), code_bits)) > wanted) continue;
             Quantised smallest = smallest_of_variance(tree, code_bits);
             const std::size_t bytes = halvings_bytes(smallest.halvings.leaves(), kAxisBits, code_bits);
@@ -138,17 +153,23 @@ private:
         std::size_t enough = tree.leaves(), few = 0;
         while (enough > few + 1) {
             const std::size_t middle = few + (enough - few) / 2;
-            const bool reaches = ideal_variance(tree, middle) <= options_.goal.variance &&
-                                 variance_of(stored(tree, middle, code_bits)) <= options_.goal.variance;
-            (reaches ? enough : few) = middle;
+            (reaches_goals(tree, middle, code_bits) ? enough : few) = middle;
         }
         return stored(tree, enough, code_bits);
+    }
+
+    /// The first halvings alone may leave boxes heavy that the whole tree halves.
+    bool reaches_goals(const GrownTree& tree, std::size_t leaves, std::uint32_t code_bits) const {
+        if (ideal_variance(tree, leaves) > options_.goal.variance) return false;
+        const Quantised part = stored(tree, leaves, code_bits);
+        return variance_of(part) <= options_.goal.variance &&
+               (!(options_.max_weight > 0.0) || weight_of(part) <= options_.max_weight);
     }
 
     [[noreturn]] void refuse_variance(const GrownTree& tree) const {
         const double reached = ideal_variance(tree, tree.leaves());
         char text[200];
-        if (halvings_bytes(tree.leaves() + 1, kAxisBits, kFewestCodeBits) > options_.most_bytes)
+        if (halvings_bytes(tree.leaves() + 64, kAxisBits, kFewestCodeBits) > options_.most_bytes)
             std::snprintf(
                 text, sizeof text,
                 "a relative variance of %.9g takes more than about %.4g MiB, which come to %.4g; a larger "

@@ -57,7 +57,7 @@ private:
     void consider(std::uint32_t number) {
         GrownNode& node = tree_.nodes[number];
         const bool heavy = limits_.heaviest > 0.0 && leaf_weight(sums_, node, total_, integral_) > limits_.heaviest;
-        float best = heavy ? -1.0f : 0.0f;
+        float best = heavy ? std::numeric_limits<float>::lowest() : 0.0f;
         for (int axis = 0; axis < 2; ++axis) {
             if (!sums_.can_halve(node.box, axis)) continue;
             const HalvedBox lower = sums_.half(node.box, axis, 0), upper = sums_.half(node.box, axis, 1);

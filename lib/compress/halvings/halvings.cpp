@@ -10,6 +10,9 @@
 namespace acdf::compress {
 namespace {
 
+/// Of random numbers, on an axis: floats, which have 24 bits, reach every cell of so many.
+constexpr std::uint32_t kStepsOfFloats = 1u << (31 - 24);
+
 /// The shares that codes stand for.
 std::vector<std::uint32_t> shares_of(std::uint32_t code_bits) {
     std::vector<std::uint32_t> shares(std::size_t{1} << code_bits);
@@ -71,7 +74,7 @@ private:
         const AcdfSpan steps = part.steps[node.axis];
         const double a = weights_[node.lower], b = weights_[node.lower + 1];
         const bool both = a > 0.0 && b > 0.0;
-        if (both && steps.end[1] - steps.end[0] < 2) return false;
+        if (both && steps.end[1] - steps.end[0] < 2 * least_steps_) return false;
         const std::uint32_t code = both ? best_code(steps, a, b) : a > 0.0 ? last_code_ : 0;
         lower = upper = part;
         lower.node = node.lower;
@@ -86,18 +89,20 @@ private:
         return acdf_halving_threshold(&steps, code, out_.halvings.code_bits, shares_[code]);
     }
 
-    /// The code between the first and the last that makes a^2 / p + b^2 / (1 - p) smallest.
+    /// The code that makes a^2 / p + b^2 / (1 - p) smallest, of those that leave both halves enough steps.
     std::uint32_t best_code(const AcdfSpan& steps, double a, double b) const {
+        const std::uint32_t wide = steps.end[1] - steps.end[0];
+        const auto lower = [&](std::uint32_t code) { return threshold(steps, code) - steps.end[0]; };
+        const auto loss = [&](std::uint32_t code) {
+            return a * (a / lower(code)) + b * (b / (wide - lower(code)));
+        };
         const auto share = static_cast<std::uint32_t>(a / (a + b) * 0x1p31);
         const auto above = std::lower_bound(shares_.begin(), shares_.end(), share) - shares_.begin();
-        const std::uint32_t second = std::clamp(static_cast<std::uint32_t>(above), 1u, last_code_ - 1);
-        const std::uint32_t first = second > 1 ? second - 1 : 1;
-        const double wide = steps.end[1] - steps.end[0];
-        const auto loss = [&](std::uint32_t code) {
-            const double lower = threshold(steps, code) - steps.end[0];
-            return a * (a / lower) + b * (b / (wide - lower));
-        };
-        return loss(first) < loss(second) ? first : second;
+        std::uint32_t code = std::clamp(static_cast<std::uint32_t>(above), 1u, last_code_ - 1);
+        if (code > 1 && loss(code - 1) < loss(code)) --code;
+        while (code + 1 < last_code_ && lower(code) < least_steps_) ++code;
+        while (code > 1 && wide - lower(code) < least_steps_) --code;
+        return code;
     }
 
     void end(const Part& part) {
@@ -116,6 +121,8 @@ private:
     const GrownTree& grown_;
     std::size_t leaves_;
     double integral_;
+    /// A bound on weights needs the smallest shares as they are: all 31 bits of random numbers.
+    std::uint32_t least_steps_ = integral_ > 0.0 ? 1 : kStepsOfFloats;
     std::vector<std::uint32_t> shares_;
     std::uint32_t last_code_;
     std::vector<double> weights_;

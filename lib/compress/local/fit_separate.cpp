@@ -303,7 +303,7 @@ SeparateFit fit_local_separate(const Target& target, const NormalBins& bins, Bin
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     const std::vector<LightPoint> light = light_points(target);
     return options.fit == ACDF_FIT_VARIANCE ? fit_at_one_price(target, light, bins, kind, options, whole_bytes)
-                     : fit_each(target, light, bins, kind, options);
+                                            : fit_each(target, light, bins, kind, options);
 }
 
 } // namespace acdf::compress

@@ -11,6 +11,8 @@
 namespace acdf::input {
 namespace {
 
+constexpr int kLeastRowsToDoubt = 128; // of maps with fewer rows a few texels prove nothing
+
 bool has_ratio(const Image& image, int across, int down) {
     return image.width % across == 0 && image.width / across * down == image.height;
 }
@@ -135,7 +137,8 @@ bool is_latlong(const Image& image, Projection projection) {
 }
 
 bool is_latlong_by_shape(const Image& image, Projection projection) {
-    return projection == Projection::automatic && image.tag == EnvironmentTag::none && has_ratio(image, 2, 1);
+    return projection == Projection::automatic && image.tag == EnvironmentTag::none && has_ratio(image, 2, 1) &&
+           image.height >= kLeastRowsToDoubt;
 }
 
 Projection projection_of(build::Layout layout) {

@@ -110,10 +110,13 @@ std::vector<Words> components_of(const std::string& name) {
 LayerKind kind_of_layer(const std::string& name) {
     const std::vector<Words> components = components_of(name);
     if (components.empty()) return LayerKind::unnamed;
-    if (is_whole(components.back()))
-        return joined(components.front()) == "composite" ? LayerKind::composite : LayerKind::whole;
-    if (components.size() == 1 && joined(components.back()) == "composite") return LayerKind::composite;
-    if (std::any_of(components.begin(), components.end(), holds_no_light)) return LayerKind::no_light;
+    const std::string first = joined(components.front()), last = joined(components.back());
+    const bool no_light = std::any_of(components.begin(), components.end(), holds_no_light);
+    // A part "AO" may have a layer "rgb"; Blender's Combined is the picture of any view layer, whatever its name.
+    if (is_whole(components.back()) && (!no_light || last == "combined"))
+        return first == "composite" ? LayerKind::composite : LayerKind::whole;
+    if (components.size() == 1 && first == "composite") return LayerKind::composite;
+    if (no_light) return LayerKind::no_light;
     return std::any_of(components.begin(), components.end(), has_whole) ? LayerKind::variant : LayerKind::other;
 }
 

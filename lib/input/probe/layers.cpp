@@ -4,6 +4,7 @@
 #include "input/probe/layer_names.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 namespace acdf::input {

@@ -56,6 +56,7 @@ typedef struct AcdfHalvedTree {
     uint32_t heights;           /* double[rows + 1]: acdf_row_z of lat-long grids; 0: there are none */
 } AcdfHalvedTree;
 
+/* The array that begins at a word of a tree, and its nodes. */
 #define ACDF_WORDS(tree, offset) ((const uint32_t*)(const void*)(tree) + (offset))
 ACDF_INLINE const AcdfHalving* acdf_halvings_nodes(const AcdfHalvedTree* tree) {
     return (const AcdfHalving*)(const void*)ACDF_WORDS(tree, tree->nodes);

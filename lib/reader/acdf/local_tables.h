@@ -7,8 +7,8 @@
 #ifndef ACDF_LOCAL_TABLES_H
 #define ACDF_LOCAL_TABLES_H
 
-#include <acdf/tile_blocks.h>
 #include <acdf/cells.h>
+#include <acdf/tile_blocks.h>
 #include <acdf/tile_tables.h>
 
 #ifdef __cplusplus

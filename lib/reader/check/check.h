@@ -55,7 +55,7 @@ struct Parts {
     const AcdfAxis* axes = nullptr; ///< description->axis_count
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
-    std::uint32_t tree_units = 0; ///< bins and tree: of curves alone
+    std::uint32_t tree_units = 0;              ///< bins and tree: of curves alone
     const AcdfViews* views = nullptr;          ///< of a BRDF
     const float* nodes = nullptr;              ///< views->theta_count
     const AcdfTiles* tiles = nullptr;          ///< null where bins share nothing
@@ -70,7 +70,7 @@ struct Parts {
     AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
-    AcdfHalving* halvings = nullptr;           ///< nodes of chunk HALV, of the C library; the caller frees them
+    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library; the caller frees them
     std::uint32_t halving_count = 0;
     class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing
     AcdfBlock inflated = {};            ///< of the inflated chunks, from take_block; the caller gives it back

@@ -143,7 +143,8 @@ const Rule rules[] = {
     {6031, error, malformed, "halved-nodes", "`halving_count` nodes of HALV are halved, and every half is there."},
     {6032, error, malformed, "halved-axis", "A node is halved on a sampled axis that it has two steps or more of."},
     {6033, error, malformed, "halved-numbers",
-     "A node that no random number leads to is a leaf; one with a code between the first and the last is reached by two "
+     "A node that no random number leads to is a leaf; one with a code between the first and the last is reached "
+     "by two "
      "steps of random numbers or more on its axis."},
     {6034, error, malformed, "halvings-padding", "The padding of HALV is zero."},
     {6035, error, malformed, "halvings-alone", "HALV comes without BINS and TREE, and with fit 4."},

@@ -1,8 +1,8 @@
 // The directions of acdf/pieces.h and acdf/shader_square.h over vectors of floats, operation by operation. Internal
-// linkage: see vectors.h.
+// linkage: see shared_vectors.h.
 #pragma once
 
-#include "waves/vectors.h"
+#include "waves/shared_vectors.h"
 
 namespace {
 

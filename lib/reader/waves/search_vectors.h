@@ -1,8 +1,8 @@
 // acdf/squares.h over vectors: the entries of grids are loaded for all lanes at a time, the boxes of a block
-// compared lane by lane. Internal linkage: see vectors.h.
+// compared lane by lane. Internal linkage: see shared_vectors.h.
 #pragma once
 
-#include "waves/vectors.h"
+#include "waves/shared_vectors.h"
 
 #include <acdf/squares.h>
 

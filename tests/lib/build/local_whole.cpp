@@ -1,7 +1,9 @@
-// Points without a normal: environment() of a local file of any kind is as accurate, used alone, as an environment
-// file of a quarter of its bytes.
+// Points without a normal: environment() of a local file of any kind is as accurate, used alone, as a tree with
+// free borders in a quarter of its bytes.
 #include "build/accuracy/environment.h"
 #include "build/own_terms.h"
+#include "compress/fit/fit.h"
+#include "compress/store/store.h"
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
@@ -35,11 +37,11 @@ const builder::Target& sky(bool square) {
     return square ? folded : latlong;
 }
 
-struct Made {
+struct MadeLocal {
     builder::Local local;
     File file;
 
-    Made(const builder::Target& target, const builder::LocalOptions& options) {
+    MadeLocal(const builder::Target& target, const builder::LocalOptions& options) {
         const builder::Status status = builder::local(target, options, local);
         EXPECT_TRUE(status.ok()) << status.message;
         if (!status.ok()) return;
@@ -47,14 +49,21 @@ struct Made {
     }
 };
 
-/// The relative variance of an environment file of so many bytes.
+/// The relative variance of an environment file of so many bytes whose tree has free borders.
 double of_environment(const builder::Target& target, std::uint64_t bytes) {
-    builder::EnvironmentOptions options;
-    options.goal = builder::Goal::of_budget(bytes);
-    builder::Environment made;
-    const builder::Status status = builder::environment(target, options, made);
-    EXPECT_TRUE(status.ok()) << status.message;
-    return made.accuracy.relative_variance;
+    const compress::Target& grid = builder::grid_of(target);
+    compress::Description description =
+        compress::environment_description(grid.columns, grid.rows, grid.parameterization);
+    description.metadata = {{"about.as.long.as.usual", std::string(300, ' ')}};
+    compress::FitOptions options;
+    options.goal = {compress::Goal::Kind::budget, 0, bytes, 0.0};
+    options.file_size = [&](const compress::EncodedTree& tree) {
+        return std::uint64_t{compress::store(tree, description).size()};
+    };
+    const std::vector<std::uint8_t> made = compress::store(compress::fit(grid, options).tree, description);
+    File file;
+    EXPECT_TRUE(File::from_memory(made.data(), made.size(), file).ok());
+    return build::measure_environment(file, grid).relative_variance;
 }
 
 void expect_samples_agree(const EnvironmentView& view) {
@@ -71,7 +80,7 @@ void expect_samples_agree(const EnvironmentView& view) {
 
 void expect_serves_points(const builder::LocalOptions& options, const std::string& what, bool square = false) {
     const builder::Target& target = sky(square);
-    const Made made(target, options);
+    const MadeLocal made(target, options);
     if (made.local.bytes.empty()) return;
     const build::Accuracy whole = build::measure_whole(made.file, builder::grid_of(target));
     EXPECT_EQ(whole.support_violations, 0u) << what;
@@ -149,29 +158,6 @@ TEST(PointsWithoutNormal, OfBinsThatShareNothing) {
     options.subdivisions = 4;
     options.goal = builder::Goal::of_cells(100);
     expect_serves_points(options, "cells");
-}
-
-/// The half of all points below z = 0 sees nothing above it.
-builder::LocalOptions with_places() {
-    builder::LocalOptions options = of_budget(96 << 10, builder::LocalShape::automatic);
-    options.places.point = [](std::uint64_t index, builder::PlacePoint& point) {
-        std::mt19937 random(static_cast<std::uint32_t>(index));
-        const auto u = [&] { return float(random() % 1024) / 512.0f - 1.0f; };
-        point = {{u(), u(), u()}, {0.0f, 0.0f, index % 2 ? 1.0f : -1.0f}};
-        return true;
-    };
-    options.places.occluded = [](const builder::PlacePoint& p, const float* d) {
-        return p.position[2] < 0.0f && d[2] > 0.0f;
-    };
-    return options;
-}
-
-TEST(PointsWithoutNormal, OfPlacesAndPortals) {
-    ACDF_NOT_SANITIZED();
-    builder::LocalOptions options = with_places();
-    expect_serves_points(options, "places");
-    options.places.portals = {{{2.0f, -1.0f, 0.2f}, {0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 1.0f}}};
-    expect_serves_points(options, "portals");
 }
 
 } // namespace

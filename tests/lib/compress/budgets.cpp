@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -49,12 +48,10 @@ protected:
             const input::Probe map = input::read_probe(folder + probe.file, options);
             ASSERT_EQ(map.width, 1024) << probe.file;
             targets_.push_back(compress::environment_target(map.rgb.data(), 1024, 512, {}));
-            maps_.push_back(map.rgb);
         }
     }
     static void TearDownTestSuite() {
         targets_.clear();
-        maps_.clear();
         made_.clear();
     }
     void SetUp() override {
@@ -65,11 +62,9 @@ protected:
     static double mean_variance(std::uint64_t budget);
 
     static std::vector<compress::Target> targets_;
-    static std::vector<std::vector<float>> maps_; ///< rows x columns x 3
     static std::map<std::pair<std::size_t, std::uint64_t>, Made> made_;
 };
 std::vector<compress::Target> Budgets::targets_;
-std::vector<std::vector<float>> Budgets::maps_;
 std::map<std::pair<std::size_t, std::uint64_t>, Made> Budgets::made_;
 
 compress::Description usual_description(const compress::Target& target) {
@@ -96,25 +91,6 @@ std::vector<std::uint8_t> within(const compress::Target& target, std::uint64_t b
     options.goal.kind = compress::Goal::Kind::budget;
     options.chunk_bytes = compress::halvings_room(usual_description(target), budget);
     return usual_file(target, options);
-}
-
-/// A lat-long map of 1024 x 512 texels on the octahedral square: the mean of 4 x 4 directions a texel.
-compress::Target octahedral(const std::vector<float>& rgb, int width) {
-    std::vector<float> square(std::size_t(width) * std::size_t(width) * 3, 0.0f);
-    for (int y = 0; y < 4 * width; ++y)
-        for (int x = 0; x < 4 * width; ++x) {
-            double d[3];
-            acdf_octahedral_direction((x + 0.5) / (4.0 * width), (y + 0.5) / (4.0 * width), d);
-            const auto column = std::min(1023, int(1024.0 * (0.5 - 0.5 * acdf_atan2pi(d[1], d[0]))));
-            const auto row = std::min(511, int(512.0 * acdf_atan2pi(std::hypot(d[0], d[1]), d[2])));
-            for (std::size_t k = 0; k < 3; ++k)
-                square[3 * (std::size_t(y / 4) * std::size_t(width) + std::size_t(x / 4)) + k] +=
-                    rgb[3 * (std::size_t(row) * 1024 + std::size_t(column)) + k] / 16.0f;
-        }
-    compress::TargetOptions options;
-    options.parameterization = ACDF_PARAM_OCTAHEDRAL;
-    const auto side = static_cast<std::uint32_t>(width);
-    return compress::environment_target(square.data(), side, side, options);
 }
 
 /// The file of a probe within a budget; each is made once.
@@ -146,17 +122,6 @@ TEST_F(Budgets, SixteenKiB) { EXPECT_LE(mean_variance(16 << 10), 0.0048); }
 TEST_F(Budgets, SixtyFourKiB) { EXPECT_LE(mean_variance(64 << 10), 0.0011); }
 
 TEST_F(Budgets, TwoHundredAndFiftySixKiB) { EXPECT_LE(mean_variance(256 << 10), 0.00012); }
-
-// Halving gains more where texels are equal: squares of as many pixels, and of twice as many, cost no more noise.
-TEST_F(Budgets, OctahedralMapsTakeNoMoreThanLatLongOnes) {
-    for (const std::size_t i : {std::size_t{0}, std::size_t{4}, std::size_t{5}})
-        for (const int width : {512, 1024}) {
-            const compress::Target square = octahedral(maps_[i], width);
-            const double variance = measured(within(square, 64 << 10), square).relative_variance;
-            std::printf("%-18s octahedral %d: relative variance %.4g\n", probes[i].file, width, variance);
-            EXPECT_LE(variance, 1.1 * made(i, 64 << 10).accuracy.relative_variance) << probes[i].file;
-        }
-}
 
 /// A file of the paper's fit: its size and relative variance, the better of both orders.
 struct Point {

@@ -2,7 +2,7 @@
 // for every direction.
 #pragma once
 
-#include "tests/inputs/synthetic.h"
+#include "tests/inputs/directions.h"
 #include "tests/lib/reader/random.h"
 
 #include <acdf/reader.h>

@@ -45,7 +45,7 @@ fi
 cat >"$work/script.html" <<'HTML'
 <script>addEventListener("load", () => {
     const wrong = [];
-    if (document.images.length !== 1 || !document.images[0].naturalWidth) wrong.push("pictures");
+    if (document.images.length !== 2 || ![...document.images].every(i => i.naturalWidth)) wrong.push("pictures");
     if (getComputedStyle(document.querySelector("main")).display !== "grid") wrong.push("style");
     if (document.querySelector("h2").textContent !== "<b>&\"'.acdf") wrong.push("name");
     document.title = wrong.length ? "WRONG: " + wrong.join("; ") : "all well";

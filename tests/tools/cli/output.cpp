@@ -199,8 +199,8 @@ TEST_F(Outputs, InterruptLeavesNoFolder) {
     for (int i = 0; i < 512 * 256 * 3; ++i) rgb.push_back(1.0f + static_cast<float>(i % 1009));
     write_float_map(sky, 512, 256, rgb);
     for (const int signal : {SIGINT, SIGTERM}) {
-        const pid_t pid =
-            start_acdf({"sweep", sky, "-o", folder / "new/out", "--quiet"}, "/dev/null", "/dev/null", "/dev/null");
+        const pid_t pid = start_acdf({"sweep", sky, "-o", folder / "new/out", "--quiet", "--projection", "latlong"},
+                                     "/dev/null", "/dev/null", "/dev/null");
         ASSERT_GT(pid, 0);
         while (!std::filesystem::exists(folder / "new/out") && waitpid(pid, nullptr, WNOHANG) == 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(5));

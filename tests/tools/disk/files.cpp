@@ -78,17 +78,17 @@ TEST_F(Disk, fullDeviceIsAnError) {
 
 // What is opened next must not take their place: messages would go into it.
 TEST_F(Disk, closedStreamsGetNoOutput) {
-    const std::string map = folder / "sky.pfm", whole = folder / "whole.acdf";
+    const std::string map = folder / "sky.pfm", whole = folder / "whole.acdf", made = folder / "made.acdf";
     write_float_map(map, 4, 2, std::vector<float>(24, 1.0f));
     ASSERT_EQ(run_acdf({"env", map, "-o", whole}).code, 0);
     const std::pair<const char*, int> cases[] = {
         {"2>&-", 0}, {"<&- 2>&-", 0}, {">&-", 1}, {">&- 2>&-", 1}, {"<&- >&- 2>&-", 1}};
     for (const auto& [closed, code] : cases) {
         const Result result =
-            run_shell("exec " + program + " env '" + map + "' -f -o '" + out + "' >/dev/null " + closed);
+            run_shell("exec " + program + " env '" + map + "' -f -o '" + made + "' >/dev/null " + closed);
         EXPECT_EQ(result.code, code) << closed << ": results that cannot be told are an error, messages are none";
-        EXPECT_EQ(read_text(out), read_text(whole)) << closed;
-        std::filesystem::remove(out);
+        EXPECT_EQ(read_text(made), read_text(whole)) << closed;
+        std::filesystem::remove(made);
     }
 }
 

@@ -49,7 +49,8 @@ using CellKey = std::array<std::uint32_t, 4>;
 CellKey cell_at(const EnvironmentView& view, const float direction[3]) {
     AcdfRange range[2];
     double t[2];
-    acdf_environment_find(&view.data(), direction, range, t, nullptr);
+    AcdfStratum strata[2];
+    acdf_environment_find(&view.data(), direction, range, t, strata);
     return {range[0].low, range[0].high, range[1].low, range[1].high};
 }
 

@@ -69,14 +69,6 @@ TEST(FitTree, HasNoVarianceWithACellATexel) {
     EXPECT_NEAR(acdf_test::brute_relative_variance(acdf_test::cells_of(fitted.cascade, t), t), 0.0, 1e-6);
 }
 
-TEST(FitTree, SeparatesLightsThatACascadeCannot) {
-    const Target t = many_lights();
-    FitOptions cascade = tree_for(cells(400));
-    cascade.order = Order::z;
-    const double two_levels = measured(fit(t, cascade).tree, t);
-    EXPECT_LT(measured(fit(t, tree_for(cells(400))).tree, t), 0.5 * two_levels);
-}
-
 TEST(FitTree, SeesFarBelowWhatASunGains) {
     // The sun's division gains ten thousand times what any division of the sky does.
     const Target sky = acdf_test::sphere_target(96, 48, acdf_test::smooth_sky);

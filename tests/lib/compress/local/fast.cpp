@@ -49,14 +49,6 @@ TEST(FastShape, IsNearlyAsAccurateAsTheSmallOne) {
     }
 }
 
-TEST(FastShape, ABareCellIsTheWholeWhereAllBinsAreStored) {
-    const LocalMap map(suns_target(128, 64), octahedral_bins(3), shaped(LocalShape::fast, 60, 3000));
-    EXPECT_LT(map.file.tree_units(), 8u);
-    const acdf::LocalEnvironmentView view = map.view();
-    std::mt19937_64 random(2);
-    for (int i = 0; i < 200; ++i) EXPECT_TRUE(view.stored(random_direction(random).data()));
-}
-
 TEST(FastShape, ATreeServesNormalsWhoseBinsAreNotStored) {
     NormalBins bins = octahedral_bins(4);
     weigh(bins, {{{0.1f, 0.2f, 0.9f}, 1.0}});

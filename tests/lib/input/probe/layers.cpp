@@ -71,7 +71,8 @@ TEST(Layers, WhatIsNoLightIsNeverChosen) {
                               "motionVector",
                               "Shadow",
                               "matte",
-                              "depth.left"}) {
+                              "depth.left",
+                              "AO.rgb"}) {
         EXPECT_NE(of_layers({other}).error.find("where R, G, B or a single one is needed"), std::string::npos)
             << other;
         EXPECT_EQ(chosen({other, "sky"}), "sky") << other;

@@ -12,13 +12,13 @@ namespace {
 using namespace acdf::input;
 using namespace acdf::test;
 
-constexpr int kWidth = 32, kHeight = 16;
+constexpr int kStoredWidth = 32, kStoredHeight = 16;
 
 /// No two texels of it are alike.
 Pixels upright() {
-    Pixels pixels{kWidth, kHeight, std::vector<float>(std::size_t{3} * kWidth * kHeight)};
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
+    Pixels pixels{kStoredWidth, kStoredHeight, std::vector<float>(std::size_t{3} * kStoredWidth * kStoredHeight)};
+    for (int y = 0; y < kStoredHeight; ++y)
+        for (int x = 0; x < kStoredWidth; ++x) {
             float* const rgb = pixels.at(x, y);
             rgb[0] = 0.5f + static_cast<float>(x) / 64.0f; // numbers that .hdr files hold exactly
             rgb[1] = 0.5f + static_cast<float>(y) / 64.0f;
@@ -43,15 +43,16 @@ const Turn turns[] = {{1, "top", "left", "-Y 16 +X 32"},     {2, "top", "right",
 /// What is seen `i` steps from a side of the upright image.
 void step_from(const std::string& side, int i, int& x, int& y) {
     if (side == "left") x = i;
-    else if (side == "right") x = kWidth - 1 - i;
+    else if (side == "right") x = kStoredWidth - 1 - i;
     else if (side == "top") y = i;
-    else y = kHeight - 1 - i;
+    else y = kStoredHeight - 1 - i;
 }
 
 Pixels stored(const Turn& turn) {
     const Pixels image = upright();
     const bool rows = turn.number < 5;
-    Pixels out{rows ? kWidth : kHeight, rows ? kHeight : kWidth, std::vector<float>(image.rgb.size())};
+    Pixels out{rows ? kStoredWidth : kStoredHeight, rows ? kStoredHeight : kStoredWidth,
+               std::vector<float>(image.rgb.size())};
     for (int row = 0; row < out.height; ++row)
         for (int column = 0; column < out.width; ++column) {
             int x = 0, y = 0;
@@ -65,12 +66,12 @@ Pixels stored(const Turn& turn) {
 void expect_upright(const std::string& path, const Turn& turn) {
     SCOPED_TRACE(path + " " + turn.radiance);
     const ImageSize size = image_size(path);
-    EXPECT_EQ(size.width, kWidth);
-    EXPECT_EQ(size.height, kHeight);
+    EXPECT_EQ(size.width, kStoredWidth);
+    EXPECT_EQ(size.height, kStoredHeight);
     const Probe probe = read_probe(path);
-    ASSERT_EQ(probe.width, kWidth);
-    ASSERT_EQ(probe.height, kHeight);
-    EXPECT_EQ(probe.source_width, kWidth);
+    ASSERT_EQ(probe.width, kStoredWidth);
+    ASSERT_EQ(probe.height, kStoredHeight);
+    EXPECT_EQ(probe.source_width, kStoredWidth);
     EXPECT_EQ(probe.rgb, upright().rgb);
     ASSERT_EQ(probe.warnings.size(), turn.number == 1 ? 0u : 1u);
     if (turn.number != 1) {
@@ -129,17 +130,18 @@ TEST(InputOrientation, BadTexelsAreLocatedInTheUprightImage) {
 TEST(InputOrientation, DataWindowsAreThoseOfTheStoredImage) {
     const Folder folder;
     const Pixels pixels = stored(turns[4]); // 16 x 32
-    OIIO::ImageSpec spec(kHeight, kWidth - 8, 3, OIIO::TypeDesc::FLOAT);
+    OIIO::ImageSpec spec(kStoredHeight, kStoredWidth - 8, 3, OIIO::TypeDesc::FLOAT);
     spec.y = 8; // the eight columns at the left are missing
-    spec.full_width = kHeight;
-    spec.full_height = kWidth;
+    spec.full_width = kStoredHeight;
+    spec.full_height = kStoredWidth;
     spec.attribute("Orientation", 5);
-    write_image(folder / "a.exr", spec, {pixels.at(0, 8), pixels.at(0, 8) + 3 * kHeight * (kWidth - 8)});
+    write_image(folder / "a.exr", spec,
+                {pixels.at(0, 8), pixels.at(0, 8) + 3 * kStoredHeight * (kStoredWidth - 8)});
     const Probe probe = read_probe(folder / "a.exr");
-    ASSERT_EQ(probe.width, kWidth);
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-            EXPECT_EQ(probe.rgb[3 * static_cast<std::size_t>(y * kWidth + x)],
+    ASSERT_EQ(probe.width, kStoredWidth);
+    for (int y = 0; y < kStoredHeight; ++y)
+        for (int x = 0; x < kStoredWidth; ++x)
+            EXPECT_EQ(probe.rgb[3 * static_cast<std::size_t>(y * kStoredWidth + x)],
                       x < 8 ? 0.0f : upright().at(x, y)[0]);
 }
 

@@ -22,20 +22,20 @@ EnvironmentSpec halved() {
 }
 
 // Changes the chunks of the file: DESC, HALV.
-Make file(Action<void(FileSpec&)> change) {
+Make halved_file(Action<void(FileSpec&)> change) {
     return [=] {
         FileSpec file = halved().file();
         change(file);
         return file.encode();
     };
 }
-Make payload(Action<void(Bytes&)> change) {
-    return file([=](FileSpec& f) { change(f.chunks[1].raw); });
+Make halv_payload(Action<void(Bytes&)> change) {
+    return halved_file([=](FileSpec& f) { change(f.chunks[1].raw); });
 }
-Make field(std::size_t at, int size, std::uint64_t value) {
-    return payload([=](Bytes& raw) { set(raw, at, size, value); });
+Make halv_field(std::size_t at, int size, std::uint64_t value) {
+    return halv_payload([=](Bytes& raw) { set(raw, at, size, value); });
 }
-Make record(std::size_t at, int size, std::uint64_t value) {
+Make halv_record(std::size_t at, int size, std::uint64_t value) {
     return [=] {
         Bytes bytes = halved().encode();
         set(bytes, record_of(bytes, "HALV") + at, size, value);
@@ -62,13 +62,13 @@ Make broken(std::uint32_t columns, std::uint32_t rows, std::vector<HalvingSpec> 
 std::vector<HalvingSpec> below_one_step(std::uint32_t code) { return {{0, 1}, {0, 1}, {0, code}, {}, {}, {}, {}}; }
 
 Make with_chunks(const std::vector<std::size_t>& curves) { // 1: BINS, 2: TREE of the complete file
-    return file([=](FileSpec& f) {
+    return halved_file([=](FileSpec& f) {
         const FileSpec complete = complete_file();
         for (const std::size_t chunk : curves) f.chunks.push_back(complete.chunks[chunk]);
     });
 }
 Make of_fit(std::uint32_t fit) {
-    return file([=](FileSpec& f) { set(f.chunks[0].raw, 4, 4, fit); });
+    return halved_file([=](FileSpec& f) { set(f.chunks[0].raw, 4, 4, fit); });
 }
 Make beside(FileSpec other) {
     other.chunks.push_back(halved().file().chunks[1]);
@@ -79,10 +79,11 @@ Make beside(FileSpec other) {
 
 std::vector<Case> halvings_cases() {
     return {
-        {3004, "no_halvings", file([](FileSpec& f) { f.chunks.pop_back(); })},
-        {3004, "no_description_beside_halvings", file([](FileSpec& f) { f.chunks.erase(f.chunks.begin()); })},
-        {3005, "planes_of_halvings", record(8, 4, 2)},
-        {3009, "ancillary_halvings", record(4, 4, 0)},
+        {3004, "no_halvings", halved_file([](FileSpec& f) { f.chunks.pop_back(); })},
+        {3004, "no_description_beside_halvings",
+         halved_file([](FileSpec& f) { f.chunks.erase(f.chunks.begin()); })},
+        {3005, "planes_of_halvings", halv_record(8, 4, 2)},
+        {3009, "ancillary_halvings", halv_record(4, 4, 0)},
         {3013, "halvings_of_a_table", beside(table_file())},
         {3013, "halvings_instead_of_curves_of_a_table",
          [] {
@@ -99,26 +100,26 @@ std::vector<Case> halvings_cases() {
              brdf.chunks.push_back(spec.file().chunks[1]);
              return brdf.encode();
          }},
-        {6030, "empty", payload([](Bytes& raw) { raw.clear(); })},
-        {6030, "cut_in_the_header", payload([](Bytes& raw) { raw.resize(15); })},
-        {6030, "header_alone", payload([](Bytes& raw) { raw.resize(16); })},
-        {6030, "too_short", payload([](Bytes& raw) { raw.pop_back(); })},
-        {6030, "too_long", payload([](Bytes& raw) { raw.push_back(0); })},
-        {6030, "a_word_too_long", payload([](Bytes& raw) { raw.resize(28); })},
-        {6030, "more_halvings", field(0, 4, 5)},
-        {6030, "most_halvings", field(0, 4, 0x7FFFFFF)},
-        {6030, "too_many_halvings", field(0, 4, 0x8000000)},
-        {6030, "enormous_count", field(0, 4, 0xFFFFFFFF)},
-        {6030, "no_code_bits", field(4, 4, 0)},
-        {6030, "1_code_bit", field(4, 4, 1)},
-        {6030, "13_code_bits", field(4, 4, 13)},
-        {6030, "enormous_code_bits", field(4, 4, 0xFFFFFFFF)},
-        {6030, "first_reserved", field(8, 4, 1)},
-        {6030, "last_reserved", field(15, 1, 0x80)},
-        {6031, "one_node_more", field(0, 4, 1)},
-        {6031, "one_node_fewer", field(0, 4, 3)},
-        {6031, "a_leaf_instead", field(16, 4, 0)},
-        {6031, "no_end", field(16, 4, 0xFFFFFFFF)},
+        {6030, "empty", halv_payload([](Bytes& raw) { raw.clear(); })},
+        {6030, "cut_in_the_header", halv_payload([](Bytes& raw) { raw.resize(15); })},
+        {6030, "header_alone", halv_payload([](Bytes& raw) { raw.resize(16); })},
+        {6030, "too_short", halv_payload([](Bytes& raw) { raw.pop_back(); })},
+        {6030, "too_long", halv_payload([](Bytes& raw) { raw.push_back(0); })},
+        {6030, "a_word_too_long", halv_payload([](Bytes& raw) { raw.resize(28); })},
+        {6030, "more_halvings", halv_field(0, 4, 5)},
+        {6030, "most_halvings", halv_field(0, 4, 0x7FFFFFF)},
+        {6030, "too_many_halvings", halv_field(0, 4, 0x8000000)},
+        {6030, "enormous_count", halv_field(0, 4, 0xFFFFFFFF)},
+        {6030, "no_code_bits", halv_field(4, 4, 0)},
+        {6030, "1_code_bit", halv_field(4, 4, 1)},
+        {6030, "13_code_bits", halv_field(4, 4, 13)},
+        {6030, "enormous_code_bits", halv_field(4, 4, 0xFFFFFFFF)},
+        {6030, "first_reserved", halv_field(8, 4, 1)},
+        {6030, "last_reserved", halv_field(15, 1, 0x80)},
+        {6031, "one_node_more", halv_field(0, 4, 1)},
+        {6031, "one_node_fewer", halv_field(0, 4, 3)},
+        {6031, "a_leaf_instead", halv_field(16, 4, 0)},
+        {6031, "no_end", halv_field(16, 4, 0xFFFFFFFF)},
         {6032, "one_column", broken(1, 8, {{0, 100}, {}, {}})},
         {6032, "one_row", broken(8, 1, {{1, 100}, {}, {}})},
         {6032, "one_column_left", broken(2, 8, {{0, 100}, {0, 100}, {}, {}, {}})},
@@ -130,10 +131,10 @@ std::vector<Case> halvings_cases() {
         {6033, "dark_half_with_the_last_code", broken(8, 8, {{0, 255}, {}, {1, 255}, {}, {}})},
         {6033, "one_step_of_random_numbers", broken(16, 1, below_one_step(2048), 12)},
         {6033, "one_step_with_the_second_code", broken(16, 1, below_one_step(1), 12)},
-        {6034, "behind_the_structure", field(16, 1, 0x80 | 0x0D)},
-        {6034, "at_the_end_of_the_structure", field(19, 1, 0x80)},
-        {6034, "behind_the_codes", field(22, 1, 1)},
-        {6034, "at_the_end_of_the_codes", field(23, 1, 0x80)},
+        {6034, "behind_the_structure", halv_field(16, 1, 0x80 | 0x0D)},
+        {6034, "at_the_end_of_the_structure", halv_field(19, 1, 0x80)},
+        {6034, "behind_the_codes", halv_field(22, 1, 1)},
+        {6034, "at_the_end_of_the_codes", halv_field(23, 1, 0x80)},
         {6034, "of_a_leaf",
          [] {
              FileSpec spec = tree(8, 8, {{}}).file();

@@ -68,6 +68,7 @@ struct Made {
 void compare(const std::vector<std::uint8_t>& bytes, Made& made) {
     const Checked checked(bytes);
     const AcdfEnvironment environment = checked.environment();
+    if (!environment.tree) return; // halvings
     const TreeSurvey walked(environment, checked.units());
     std::vector<const TreeSurvey*> surveys;
     if (walked.done()) surveys.push_back(&walked);

@@ -1,5 +1,5 @@
-// Vectors of ACDF_WIDTH doubles, or of twice as many floats, and what their instructions are called. Compiled once for
-// each set of instructions, with internal linkage, so that no linker mixes them.
+// Vectors of ACDF_WIDTH doubles, or of twice as many floats, and what their instructions are called. Compiled once
+// for each set of instructions, with internal linkage, so that no linker mixes them.
 #pragma once
 
 #include <acdf/cells.h>
