@@ -35,7 +35,7 @@ def tables_of_calls():
     """Those of environment files, one a width: {row: {column: text}}."""
     page = (ROOT / "docs/performance.md").read_text(encoding="utf-8")
     found = {}
-    for width, body in re.findall(r"\n(\d+) x \d+ texels;[^\n]*\n\n((?:\|[^\n]*\n)+)", page):
+    for width, body in re.findall(r"\n(\d+) x \d+ texels;[^\n]*\n(?:- [^\n]*\n)*\n((?:\|[^\n]*\n)+)", page):
         lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in body.splitlines()]
         found[int(width)] = {line[0]: dict(zip(lines[0], line)) for line in lines[2:]}
     return found
@@ -50,7 +50,7 @@ def headline():
     local = [numbers(row["1 MB"])[1] for row in table("accuracy.md", "probe", "1 MB") if "×" in row["1 MB"] and "geometric" not in row["probe"]]
     gain = math.exp(sum(map(math.log, local)) / len(local))
     calls = tables_of_calls()
-    draws = [numbers(calls[width]["draw"]["64 KiB"])[0] for width in calls]
+    draws = [numbers(calls[width]["sample"]["64 KiB"])[0] for width in calls]
     waves = [row for row in table("performance.md", "", "ns a sample") if "AVX-512" in row[""]]
     wave_draws = [float(row["ns a sample"]) for row in waves]
     return f"""- **Small.** 16 to 64 KiB stand for a full-resolution table of megabytes. They stay in the cache. At 64 KiB one sample of the
@@ -58,7 +58,7 @@ def headline():
 - **Local.** A density for every normal: at 1 MB {min(local):.0f} to {max(local):.0f} times less variance than the probe's full-resolution CDF
   (geometric mean {gain:.0f}), with samples of the light alone and nothing in its way
   ([docs/accuracy.md](docs/accuracy.md#e4-local-environment-maps)). Shadows take most of that: [with a wall](docs/accuracy.md#what-hides-light).
-- **Fast.** A draw of 64 KiB takes {min(draws):.0f} to {max(draws):.0f} ns: {ratio(1024, "draw", calls):.2g} of the time of the full-resolution CDF at 1024×512, {ratio(4096, "draw", calls):.2g} at 4096×2048
+- **Fast.** Sampling a 64 KiB file takes {min(draws):.0f} to {max(draws):.0f} ns: {ratio(1024, "sample", calls):.2g} of the time of the full-resolution CDF at 1024×512, {ratio(4096, "sample", calls):.2g} at 4096×2048
   ([docs/performance.md](docs/performance.md#environment-files)). Measured BRDFs are drawn from in {min(wave_draws):.0f} to {max(wave_draws):.0f} ns in waves with AVX-512
   ([docs/performance.md](docs/performance.md#brdfs))."""
 

@@ -208,16 +208,16 @@ bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compr
     return true;
 }
 
-/// build(bytes). Where that is out of reach, the least that the error names was made once.
-template <class Build>
-Local within_reach(std::uint64_t bytes, const Build& build) {
+/// build(bytes). Where that is out of reach, the least that the error names was made once, by `attempt`.
+template <class Build, class Attempt>
+Local within_reach(std::uint64_t bytes, const Build& build, const Attempt& attempt) {
     try {
         return build(bytes);
     } catch (const OutOfReach& first) {
         std::uint64_t least = first.least;
         for (int tries = 0; tries < 4; ++tries) {
             try {
-                build(least);
+                attempt(least);
                 break;
             } catch (const OutOfReach& again) {
                 least = std::max(again.least, least + kSlack);
@@ -295,11 +295,13 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
                       std::uint64_t budget, LastBins& last, Least least, const Progress& progress) {
     if (options.codec != ACDF_CODEC_NONE) least = Least::told; // by which it goes on
     return within_weight(options.max_weight, [&](double max_weight) {
-        const auto build = [&](std::uint64_t bytes) {
+        const auto build_with = [&](std::uint64_t bytes, const Progress& told) {
             return build_plain(target, source, options, bytes, first_choice(options), max_weight, last, least,
-                               progress);
+                               told);
         };
-        if (options.codec == ACDF_CODEC_NONE) return within_reach(budget, build);
+        const auto build = [&](std::uint64_t bytes) { return build_with(bytes, progress); };
+        if (options.codec == ACDF_CODEC_NONE)
+            return within_reach(budget, build, [&](std::uint64_t bytes) { return build_with(bytes, {}); });
         try {
             return fill_compressed(budget, build);
         } catch (const OutOfReach& plain) { // compressed, the least may be small enough

@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
     acdf::File files[3];
     for (int i = 0; i < 3; ++i)
         if (argc != 4 || !acdf::File::open(argv[i + 1], files[i]).ok()) return std::fprintf(stderr, "no file\n"), 1;
-    const acdf::EnvironmentWavefront sky(files[0].environment());
+    const auto sky = files[0].environment();
     const acdf::LocalWavefront local(files[1].local());
     acdf::BrdfWavefront brdf;
     if (!acdf::BrdfWavefront::prepare(files[2].brdf(), brdf).ok()) return 1;
@@ -57,9 +57,13 @@ int main(int argc, char** argv) {
     const auto views = reinterpret_cast<const float(*)[3]>(normals.data());
     const auto numbers = reinterpret_cast<const double(*)[2]>(u.data());
     const auto towards = reinterpret_cast<const float(*)[3]>(directions.data());
-    std::printf("environment.sample %.1f\n", nanoseconds([&] { sky.sample(numbers, kCalls, drawn.data()); }));
+    std::printf("environment.sample %.1f\n", nanoseconds([&] {
+                    for (std::size_t i = 0; i < kCalls; ++i) drawn[i] = sky.sample(numbers[i]);
+                }));
     keep();
-    std::printf("environment.pdf %.1f\n", nanoseconds([&] { sky.pdf(towards, kCalls, pdf.data()); }));
+    std::printf("environment.pdf %.1f\n", nanoseconds([&] {
+                    for (std::size_t i = 0; i < kCalls; ++i) pdf[i] = sky.pdf(towards[i]);
+                }));
     std::printf("local.sample %.1f\n", nanoseconds([&] { local.sample(views, numbers, kCalls, drawn.data()); }));
     keep();
     std::printf("local.pdf %.1f\n", nanoseconds([&] { local.pdf(views, towards, kCalls, pdf.data()); }));

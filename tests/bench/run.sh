@@ -18,23 +18,7 @@ trap 'rm -rf "$work"' EXIT
 . "$here/instructions.sh"
 put=$here/../../docs/make/put_table.sh
 
-"$build/tests/bench/bench_environment" "$@" >"$work/times"
-"$build/tests/bench/bench_environment" --write "$work/64" $((64 << 10))
-"$build/tests/bench/bench_environment" --write "$work/4" $((4 << 10))
-"$build/tests/bench/bench_environment" --write "$work/octahedral" $((64 << 10)) octahedral
-{
-    cat "$work/times"
-    printf '\n| instructions a call, 1024 x 512 | draw | density of uniform directions |\n|---|---|---|\n'
-    for file in 64 4 octahedral; do
-        name="$file KiB"
-        [ "$file" != octahedral ] || name='64 KiB, octahedral (1024 x 1024)'
-        for walk in '' walk; do
-            printf '| %s%s | %s | %s |\n' "$name" "${walk:+, no tables}" \
-                "$(instructions bench_environment draw "$work/$file" $walk)" \
-                "$(instructions bench_environment pdf "$work/$file" $walk)"
-        done
-    done
-} | "$put" times
+"$build/tests/bench/bench_environment" "$@" | "$put" times
 
 "$build/tests/bench/bench_brdf" >"$work/times"
 "$build/tests/bench/bench_brdf" --write "$work/128" 128

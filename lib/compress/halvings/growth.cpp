@@ -48,7 +48,7 @@ private:
     /// The least that a box costs once it is halved at most once more.
     float least_cost(const HalvedBox& box, float as_leaf) const {
         float least = as_leaf;
-        for (int axis = 0; axis < 2; ++axis)
+        for (std::size_t axis = 0; axis < 2; ++axis)
             if (sums_.can_halve(box, axis))
                 least = std::min(least, cost(sums_.half(box, axis, 0)) + cost(sums_.half(box, axis, 1)));
         return least;
@@ -58,7 +58,7 @@ private:
         GrownNode& node = tree_.nodes[number];
         const bool heavy = limits_.heaviest > 0.0 && leaf_weight(sums_, node, total_, integral_) > limits_.heaviest;
         float best = heavy ? std::numeric_limits<float>::lowest() : 0.0f;
-        for (int axis = 0; axis < 2; ++axis) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
             if (!sums_.can_halve(node.box, axis)) continue;
             const HalvedBox lower = sums_.half(node.box, axis, 0), upper = sums_.half(node.box, axis, 1);
             const float a = cost(lower), b = cost(upper);
@@ -77,7 +77,7 @@ private:
         const GrownNode node = tree_.nodes[number];
         total_ -= double{node.cost};
         for (std::uint32_t upper = 0; upper < 2; ++upper) {
-            const HalvedBox half = sums_.half(node.box, node.axis, upper);
+            const HalvedBox half = sums_.half(node.box, static_cast<std::size_t>(node.axis), upper);
             tree_.nodes.push_back({half, 0, cost(half), -1});
             total_ += double{tree_.nodes.back().cost};
         }

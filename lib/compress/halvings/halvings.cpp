@@ -71,7 +71,8 @@ private:
     bool divide(const Part& part, Part& lower, Part& upper) {
         const GrownNode& node = grown_.nodes[part.node];
         if (!grown_.is_halved(part.node, leaves_) || !(weights_[part.node] > 0.0)) return false;
-        const AcdfSpan steps = part.steps[node.axis];
+        const auto axis = static_cast<std::size_t>(node.axis);
+        const AcdfSpan steps = part.steps[axis];
         const double a = weights_[node.lower], b = weights_[node.lower + 1];
         const bool both = a > 0.0 && b > 0.0;
         if (both && steps.end[1] - steps.end[0] < 2 * least_steps_) return false;
@@ -79,8 +80,8 @@ private:
         lower = upper = part;
         lower.node = node.lower;
         upper.node = node.lower + 1;
-        lower.steps[node.axis].end[1] = upper.steps[node.axis].end[0] = threshold(steps, code);
-        out_.halvings.axes.push_back(static_cast<std::int8_t>(sums_.grid().axes[node.axis]));
+        lower.steps[axis].end[1] = upper.steps[axis].end[0] = threshold(steps, code);
+        out_.halvings.axes.push_back(static_cast<std::int8_t>(sums_.grid().axes[axis]));
         out_.halvings.codes.push_back(static_cast<std::uint16_t>(code));
         return true;
     }

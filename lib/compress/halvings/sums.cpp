@@ -45,7 +45,7 @@ std::vector<float> roots(const std::vector<double>& measure, double scale) {
 // ---- tables ----
 
 void HalvedTables::choose_kept(std::size_t most_values) {
-    for (int axis = 0; axis < 2; ++axis) kept_[axis] = axes_[axis].levels();
+    for (std::size_t axis = 0; axis < 2; ++axis) kept_[axis] = axes_[axis].levels();
     while (std::size_t{axes_[0].count(kept_[0])} * axes_[1].count(kept_[1]) > most_values / 4)
         --kept_[kept_[0] >= kept_[1] ? 0 : 1];
     tables_.resize((kept_[0] + 1) * (kept_[1] + 1));

@@ -78,10 +78,10 @@ public:
 
     const HalvedAxis& axis(std::size_t i) const { return axes_[i]; }
     HalvedBox whole() const { return {}; }
-    bool can_halve(const HalvedBox& box, int axis) const {
+    bool can_halve(const HalvedBox& box, std::size_t axis) const {
         return axes_[axis].can_halve(box.level[axis], box.index[axis]);
     }
-    HalvedBox half(HalvedBox box, int axis, std::uint32_t upper) const {
+    HalvedBox half(HalvedBox box, std::size_t axis, std::uint32_t upper) const {
         box.index[axis] = axes_[axis].lower(box.level[axis], box.index[axis]) + upper;
         ++box.level[axis];
         return box;

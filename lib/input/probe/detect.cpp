@@ -11,8 +11,6 @@
 namespace acdf::input {
 namespace {
 
-constexpr int kLeastRowsToDoubt = 128; // of maps with fewer rows a few texels prove nothing
-
 bool has_ratio(const Image& image, int across, int down) {
     return image.width % across == 0 && image.width / across * down == image.height;
 }
@@ -137,8 +135,7 @@ bool is_latlong(const Image& image, Projection projection) {
 }
 
 bool is_latlong_by_shape(const Image& image, Projection projection) {
-    return projection == Projection::automatic && image.tag == EnvironmentTag::none && has_ratio(image, 2, 1) &&
-           image.height >= kLeastRowsToDoubt;
+    return projection == Projection::automatic && image.tag == EnvironmentTag::none && has_ratio(image, 2, 1);
 }
 
 Projection projection_of(build::Layout layout) {

@@ -9,6 +9,7 @@
 namespace acdf::input {
 namespace {
 
+constexpr int kLeastRowsOfSides = 128; // where fewer texels do not meet, that proves nothing
 constexpr int kMostRows = 128;
 constexpr char kInsist[] = "; if it is a lat-long map, set --projection latlong";
 
@@ -35,7 +36,7 @@ std::string LatlongCheck::objection() const {
         return std::string("is two discs with nothing around them, as a camera with two fisheye lenses takes, and "
                            "no lat-long map; stitch them to one") +
                kInsist;
-    if (sides_do_not_meet(rows_))
+    if (height_ >= kLeastRowsOfSides && sides_do_not_meet(rows_))
         return std::string(
                    "has the shape of a lat-long map, but its left and right sides do not meet, as those of the "
                    "whole sphere do") +

@@ -9,13 +9,13 @@
 namespace acdf::input {
 namespace {
 
-constexpr std::ptrdiff_t kFaces = 6;
+constexpr std::ptrdiff_t kCommas = 5; // between six faces
 
 } // namespace
 
 std::vector<std::string> probe_files(const std::string& source) {
     std::error_code none;
-    if (std::count(source.begin(), source.end(), ',') != kFaces - 1 || std::filesystem::exists(source, none))
+    if (std::count(source.begin(), source.end(), ',') != kCommas || std::filesystem::exists(source, none))
         return {source};
     std::vector<std::string> files;
     std::size_t begin = 0;
