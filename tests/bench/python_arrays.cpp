@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
     const auto numbers = reinterpret_cast<const double(*)[2]>(u.data());
     const auto towards = reinterpret_cast<const float(*)[3]>(directions.data());
     std::printf("environment.sample %.1f\n", nanoseconds([&] {
-                    for (std::size_t i = 0; i < kCalls; ++i) drawn[i] = sky.sample(numbers[i]);
+                    for (std::size_t i = 0; i < kCalls; ++i) drawn[i] = sky.sample(numbers[i][0], numbers[i][1]);
                 }));
     keep();
     std::printf("environment.pdf %.1f\n", nanoseconds([&] {

@@ -9,7 +9,7 @@
 namespace acdf::input {
 namespace {
 
-constexpr int kLeastRowsOfSides = 128; // where fewer texels do not meet, that proves nothing
+constexpr int kLeastRowsOfDiscs = 32, kLeastRowsOfSides = 128; // what fewer texels show proves nothing
 constexpr int kMostRows = 128;
 constexpr char kInsist[] = "; if it is a lat-long map, set --projection latlong";
 
@@ -32,7 +32,7 @@ void LatlongCheck::take(int first, int count, const float* rgb) {
 }
 
 std::string LatlongCheck::objection() const {
-    if (is_pair_of_discs(rows_))
+    if (height_ >= kLeastRowsOfDiscs && is_pair_of_discs(rows_))
         return std::string("is two discs with nothing around them, as a camera with two fisheye lenses takes, and "
                            "no lat-long map; stitch them to one") +
                kInsist;
