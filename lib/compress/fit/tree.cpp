@@ -8,6 +8,7 @@
 #include "compress/fit/partition.h"
 #include "compress/fit/polish.h"
 #include "compress/fit/prune.h"
+#include "compress/fit/refusals.h"
 #include "compress/fit/tree_size.h"
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
-#include <string>
 
 namespace acdf::compress {
 namespace {
@@ -65,8 +65,7 @@ public:
     Fitted run() {
         Candidate best = store_trees(search());
         for (int tries = 0; options_.max_weight > 0.0 && best.max_weight > options_.max_weight; ++tries) {
-            if (tries == 16)
-                throw std::runtime_error(out_of_reach("a largest weight", options_.max_weight, best.max_weight));
+            if (tries == 16) throw out_of_reach("a largest weight", options_.max_weight, best.max_weight);
             heaviest_ *= 0.95 * std::min(1.0, options_.max_weight / best.max_weight);
             best = store_trees(search());
         }
@@ -91,8 +90,7 @@ private:
             return bisect(std::move(grown));
         }
         if (goal_.kind == Goal::Kind::variance)
-            throw std::runtime_error(
-                out_of_reach("a relative variance", goal_.variance, store_trees(grown.price).variance));
+            throw out_of_reach("a relative variance", goal_.variance, store_trees(grown.price).variance);
         return grown.price;
     }
 
@@ -285,13 +283,7 @@ private:
         }
         forget(coarse / kLeastBytes);
         const double price = coarse / kLeastBytes;
-        char text[200];
-        std::snprintf(
-            text, sizeof text,
-            "a relative variance of %.9g takes more than about %.4g MiB, which come to %.4g; a larger file "
-            "takes a budget",
-            goal_.variance, double(options_.most_bytes) / 1048576.0, store_trees(price).variance);
-        throw std::runtime_error(text);
+        throw variance_beyond(options_.most_bytes, goal_.variance, store_trees(price).variance);
     }
 
     /// Halves the interval of prices, on a logarithmic scale, until the trees no longer change.
@@ -311,20 +303,13 @@ private:
         const double wanted = cells ? double(goal_.cells) : double(goal_.budget);
         const double least = cells ? double(smallest.cells) : double(size(store_trees(smallest.price)));
         if (!(options_.max_weight > 0.0))
-            throw std::runtime_error(out_of_reach(cells ? "a number of cells" : "a size in bytes", wanted, least));
+            throw out_of_reach(cells ? "a number of cells" : "a size in bytes", wanted, least);
         char text[160];
         std::snprintf(
             text, sizeof text,
             "so low a bound on weights takes about %.6g %s; %.9g are allowed: allow more, or raise the bound",
             least, cells ? "cells" : "bytes", wanted);
         throw std::runtime_error(text);
-    }
-
-    static std::string out_of_reach(const char* what, double wanted, double best) {
-        char text[160];
-        std::snprintf(text, sizeof text, "%s of %.9g is out of reach; the least that can be had is %.6g", what,
-                      wanted, best);
-        return text;
     }
 
     void progress(double share) const {

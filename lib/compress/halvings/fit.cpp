@@ -1,5 +1,7 @@
 #include "compress/halvings/fit.h"
 
+#include "compress/fit/refusals.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -42,8 +44,7 @@ public:
         Quantised best = search();
         for (int tries = 0; options_.max_weight > 0.0 && weight_of(best) > options_.max_weight; ++tries) {
             const double weight = weight_of(best);
-            if (tries == 16)
-                throw std::runtime_error(out_of_reach("a largest weight", options_.max_weight, weight));
+            if (tries == 16) throw out_of_reach("a largest weight", options_.max_weight, weight);
             heaviest_ *= 0.95 * std::min(1.0, options_.max_weight / weight);
             best = search();
         }
@@ -168,24 +169,12 @@ private:
 
     [[noreturn]] void refuse_variance(const GrownTree& tree) const {
         const double reached = ideal_variance(tree, tree.leaves());
-        char text[200];
         if (halvings_bytes(tree.leaves() + 64, kAxisBits, kFewestCodeBits) > options_.most_bytes)
-            std::snprintf(
-                text, sizeof text,
-                "a relative variance of %.9g takes more than about %.4g MiB, which come to %.4g; a larger "
-                "file takes a budget",
-                options_.goal.variance, double(options_.most_bytes) / 1048576.0, reached);
-        else
-            std::snprintf(text, sizeof text, "a relative variance of %.9g is out of reach: texels alone have %.3g",
-                          options_.goal.variance, reached);
+            throw variance_beyond(options_.most_bytes, options_.goal.variance, reached);
+        char text[120];
+        std::snprintf(text, sizeof text, "a relative variance of %.9g is out of reach: texels alone have %.3g",
+                      options_.goal.variance, reached);
         throw std::runtime_error(text);
-    }
-
-    static std::string out_of_reach(const char* what, double wanted, double best) {
-        char text[160];
-        std::snprintf(text, sizeof text, "%s of %.9g is out of reach; the least that can be had is %.6g", what,
-                      wanted, best);
-        return text;
     }
 
     const HalvingsOptions& options_;

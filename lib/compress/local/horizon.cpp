@@ -6,7 +6,7 @@
 namespace acdf::compress {
 namespace {
 
-constexpr double kFinest = 0.002; // radians across which the part above the horizon is guessed
+constexpr double kLeastReach = 0.002; // radians across which the part above the horizon is guessed
 
 /// A part of a box, in texels.
 struct Area {
@@ -34,7 +34,7 @@ double mean_square(const Target& target, const Area& area, const Direction& norm
     const double height = dot(middle, normal);
     if (height <= -reach - kHorizonMargin) return 0.0;
     if (height >= reach) return height * height;
-    if (reach < kFinest) {
+    if (reach < kLeastReach) {
         const double above = 0.5 * (height + reach + kHorizonMargin);
         return above * above;
     }
