@@ -1,5 +1,5 @@
-/* Cells of a tree with what a sample and a pdf need precomputed: parts of the pieces of the sphere (acdf/pieces.h),
- * or of the octahedral square (acdf/shader_square.h), by which the runtime tables of local environments answer. */
+/* Where a direction lies in the pieces of the sphere (acdf/pieces.h), or on the octahedral square
+ * (acdf/shader_square.h), by which the runtime tables of local environments answer. */
 #ifndef ACDF_CELLS_H
 #define ACDF_CELLS_H
 
@@ -11,41 +11,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* The random numbers of an axis that surely lead into a piece, and where they lead. They begin at low, in steps of
- * 2^-31; d steps of 2^-52 above it, 0 <= d < width, the local azimuth (radians), 1 - |z| or the place on an axis of
- * the square is origin + d * slope.
- * In the south `low` is the upper end, at the pole, and -width < d < 0. Directions from origin to there surely lie
- * in the piece; where numbers do not tell (they may be too few, or none) only that is meant. */
-typedef struct AcdfPieceAxis {
-    uint32_t low;
-    float width; /* its lowest bits: of azimuth two, the quarter; of height one, whether it is south; else 0 */
-    float origin, slope;
-} AcdfPieceAxis;
-typedef struct AcdfPiece {
-    AcdfPieceAxis azimuth, height;
-} AcdfPiece;
-
-/* ---- drawing ---------------------------------------------------------------------------------------- */
-
-/* Numbers in [0, 1) in steps of 2^-52, which are the bits of their fractions where 1 is added. Returns 0 for
- * others.
- */
-ACDF_INLINE int acdf_number_steps(double u0, double u1, uint64_t n[2]) {
-    const double shifted0 = u0 + 1.0, shifted1 = u1 + 1.0;
-    memcpy(&n[0], &shifted0, sizeof shifted0);
-    memcpy(&n[1], &shifted1, sizeof shifted1);
-    n[0] ^= 0x3FF0000000000000u;
-    n[1] ^= 0x3FF0000000000000u;
-    return (n[0] | n[1]) >> 52 == 0;
-}
-
-/* d of a number in steps of 2^-52. */
-ACDF_INLINE float acdf_draw_distance(uint64_t number, uint32_t low) {
-    return (float)(int64_t)(number - ((uint64_t)low << 21));
-}
-
-/* ---- finding ---------------------------------------------------------------------------------------- */
 
 /* Whether floats tell a direction, by its x x + y y and the square of its length: 0.9999 to 1.0001 and 2^-40 up, by
  * their bits, which tell what is not finite, too. */

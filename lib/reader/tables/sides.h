@@ -126,8 +126,6 @@ struct Side {
 
 /// A draw stays this angle (radians) inside its piece: four times ACDF_BORDER, for what floats round.
 constexpr double kSideMargin = 0x1p-20;
-/// A draw stays this part of its numbers inside its piece: more than a float rounds.
-constexpr double kPiecePart = 0x1p-21;
 constexpr std::uint32_t kSouthKeys = (1u << ACDF_DIRECTION_BITS) - 1;
 
 /// Cuts cells of a grid.

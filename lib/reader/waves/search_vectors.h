@@ -6,8 +6,6 @@
 
 #include <acdf/squares.h>
 
-#include <cstring>
-
 namespace {
 
 constexpr std::size_t kSearched = 32; // points that are searched for at a time: loads do not wait for each other
@@ -93,47 +91,6 @@ ACDF_LANE std::uint32_t find_cells(const Search& s, Sought* sought, const Next& 
     if (__builtin_expect(gaps >> 31, 0))
         for (std::size_t i = 0; i < kSearched; ++i) none |= (std::uint32_t)(candidates_of(s, *sought, i) == 0) << i;
     return none;
-}
-
-// ---- random numbers --------------------------------------------------------------------------------------------
-
-/* acdf_number_steps of kLanes lanes: numbers and 1, of each half and axis, and the keys that they are searched by.
- * Returns the lanes that are refused. */
-ACDF_LANE std::uint32_t load_numbers(const double (*u)[2], Doubles shifted[2][2], Words key[2]) {
-    Longs number[2][2];
-    for (std::size_t half = 0; half < 2; ++half) {
-        load_pairs(u + ACDF_WIDTH * half, shifted[half]);
-        for (int axis = 0; axis < 2; ++axis) {
-            shifted[half][axis] = shifted[half][axis] + 1.0;
-            number[half][axis] = (Longs)shifted[half][axis] ^ 0x3FF0000000000000u;
-        }
-    }
-    for (int axis = 0; axis < 2; ++axis)
-        key[axis] = low_words(number[0][axis] >> 21, number[1][axis] >> 21) & 0x7FFFFFFFu;
-    const Words high = low_words((number[0][0] | number[0][1]) >> 52, (number[1][0] | number[1][1]) >> 52);
-    return bits(high != 0u);
-}
-
-// ---- all of an array -------------------------------------------------------------------------------------------
-
-/* Takes all blocks through three stages: begin(from, state), go_on(state) and end(from, state, to). What each asks
- * memory for has come when the next one needs it, as stages of other blocks lie between. What does not fill a block
- * is copied to the front of one. */
-template <class State, class In, class Out, class Begin, class GoOn, class End>
-ACDF_LANE void in_stages(const In* in, std::size_t count, Out* out, const Begin& begin, const GoOn& go_on,
-                         const End& end) {
-    const std::size_t whole = count / kSearched, blocks = (count + kSearched - 1) / kSearched;
-    State state[3];
-    In last[kSearched] = {};
-    Out result[kSearched];
-    const auto from = [&](std::size_t block) { return block < whole ? in + kSearched * block : last; };
-    if (whole < blocks) std::memcpy(last, in + kSearched * whole, (count - kSearched * whole) * sizeof(In));
-    for (std::size_t t = 0; t < blocks + 2; ++t) {
-        if (t < blocks) begin(from(t), &state[t % 3]);
-        if (t >= 1 && t <= blocks) go_on(&state[(t - 1) % 3]);
-        if (t >= 2) end(from(t - 2), &state[(t - 2) % 3], t - 2 < whole ? out + kSearched * (t - 2) : result);
-    }
-    if (whole < blocks) std::memcpy(out + kSearched * whole, result, (count - kSearched * whole) * sizeof(Out));
 }
 
 } // namespace

@@ -60,11 +60,6 @@ ACDF_LANE Floats shuffled(Floats a, Floats b) {
 }
 ACDF_LANE Floats unpacked_low(Floats a, Floats b) { return (Floats)_mm512_unpacklo_ps((__m512)a, (__m512)b); }
 ACDF_LANE Floats unpacked_high(Floats a, Floats b) { return (Floats)_mm512_unpackhi_ps((__m512)a, (__m512)b); }
-/* Eight floats of each of ACDF_WIDTH / 4 lanes, four lanes apart. */
-ACDF_LANE Floats load_eights(const float* base, const std::uint32_t* lane) {
-    return (Floats)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(base + 8 * std::size_t{lane[0]})),
-                                      _mm256_load_ps(base + 8 * std::size_t{lane[4]}), 1);
-}
 /* The first half of both, and the second. */
 ACDF_LANE Floats low_fours(Floats a, Floats b) { return (Floats)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0x44); }
 ACDF_LANE Floats high_fours(Floats a, Floats b) { return (Floats)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0xEE); }
@@ -112,9 +107,6 @@ ACDF_LANE Floats shuffled(Floats a, Floats b) {
 }
 ACDF_LANE Floats unpacked_low(Floats a, Floats b) { return (Floats)_mm256_unpacklo_ps((__m256)a, (__m256)b); }
 ACDF_LANE Floats unpacked_high(Floats a, Floats b) { return (Floats)_mm256_unpackhi_ps((__m256)a, (__m256)b); }
-ACDF_LANE Floats load_eights(const float* base, const std::uint32_t* lane) {
-    return (Floats)_mm256_load_ps(base + 8 * std::size_t{lane[0]});
-}
 ACDF_LANE Floats even_fours(Floats a, Floats b) {
     return (Floats)_mm256_permute2f128_ps((__m256)a, (__m256)b, 0x20);
 }
@@ -150,26 +142,6 @@ ACDF_LANE void load_vectors(const float (*w)[3], Floats out[3]) {
     out[0] = shuffled<_MM_SHUFFLE(2, 0, 3, 0)>(a, xy);
     out[1] = shuffled<_MM_SHUFFLE(3, 1, 2, 0)>(yz, xy);
     out[2] = shuffled<_MM_SHUFFLE(3, 0, 3, 1)>(yz, c);
-}
-
-/* The eight words of each lane's piece. */
-ACDF_LANE void load_pieces(const AcdfPiece* pieces, const std::uint32_t* cell, Floats out[8]) {
-    const float* const base = (const float*)(const void*)pieces;
-    Floats four[2][4]; /* word k and, four floats on, word k + 4 of four lanes, then of others */
-    for (int g = 0; g < 2; ++g) {
-        Floats row[4];
-        for (std::size_t i = 0; i < 4; ++i) row[i] = load_eights(base, cell + ACDF_WIDTH * g + i);
-        const Floats low[2] = {unpacked_low(row[0], row[1]), unpacked_low(row[2], row[3])};
-        const Floats high[2] = {unpacked_high(row[0], row[1]), unpacked_high(row[2], row[3])};
-        four[g][0] = shuffled<_MM_SHUFFLE(1, 0, 1, 0)>(low[0], low[1]);
-        four[g][1] = shuffled<_MM_SHUFFLE(3, 2, 3, 2)>(low[0], low[1]);
-        four[g][2] = shuffled<_MM_SHUFFLE(1, 0, 1, 0)>(high[0], high[1]);
-        four[g][3] = shuffled<_MM_SHUFFLE(3, 2, 3, 2)>(high[0], high[1]);
-    }
-    for (int k = 0; k < 4; ++k) {
-        out[k] = even_fours(four[0][k], four[1][k]);
-        out[k + 4] = odd_fours(four[0][k], four[1][k]);
-    }
 }
 
 ACDF_LANE void store_samples(const Floats direction[3], Floats pdf, AcdfDirectionSample* out) {
