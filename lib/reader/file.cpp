@@ -184,10 +184,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     if (options.tables) parts.survey = &survey;
     check(static_cast<const u8*>(data), size, options.limits, first_error, &status, parts, options.allocator);
     loaded.owned_[1] = parts.inflated;
-    if (!status.ok()) {
-        std::free(parts.halvings);
-        return status;
-    }
+    if (!status.ok()) return status;
     loaded.bytes_ = static_cast<const u8*>(data);
     loaded.size_ = size;
     loaded.description_ = parts.description;
@@ -206,9 +203,8 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.nodes_ = parts.nodes;
     loaded.metadata_ = parts.metadata;
     loaded.metadata_count_ = parts.metadata_count;
-    const bool halved = !parts.halvings || loaded.make_halved(parts, options.tables);
-    std::free(parts.halvings);
-    if (!halved) return failure(1003, "%llu halvings", ull{parts.halving_count});
+    if (parts.halvings && !loaded.make_halved(parts, options.tables))
+        return failure(1003, "%llu halvings", ull{parts.halving_count});
     if (options.tables) loaded.make_tables(survey);
     file = std::move(loaded);
     return status;

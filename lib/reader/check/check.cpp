@@ -366,7 +366,6 @@ Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* co
     }
     verdict = check(data, size, limits, sink, context, parts);
     give_block({}, parts.inflated);
-    std::free(parts.halvings);
     std::free(copy);
     return verdict;
 }

@@ -3,6 +3,7 @@
 
 #include "check/rules.h"
 
+#include <cstdlib>
 #include <cstring>
 #include <type_traits>
 
@@ -49,8 +50,13 @@ inline std::uint32_t load_u32(const std::uint8_t* bytes) noexcept {
     return value;
 }
 
-/// Where the parts of a file lie once found: what `File` keeps.
+/// Where the parts of a file lie once found: what `File` keeps. Owns the nodes of halvings.
 struct Parts {
+    Parts() = default;
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
+    ~Parts() { std::free(halvings); }
+
     const AcdfDescription* description = nullptr;
     const AcdfAxis* axes = nullptr; ///< description->axis_count
     const AcdfBin* bins = nullptr;  ///< description->bin_count
@@ -70,7 +76,7 @@ struct Parts {
     AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
-    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library; the caller frees them
+    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library
     std::uint32_t halving_count = 0;
     class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing
     AcdfBlock inflated = {};            ///< of the inflated chunks, from take_block; the caller gives it back
