@@ -13,8 +13,7 @@ ImageFile::ImageFile(const std::string& path, int threads) : path_(path), thread
     if (regular && (open(float_map_reader()) || open(radiance_reader()))) return;
     if (regular) error_ = openexr_claims_too_much(path);
     if (!error_.empty()) return;
-    if (regular && is_usual_openexr(path) && (open(openexr_module().reader) || open(openexr_module().luminance)))
-        return;
+    if (regular && is_usual_openexr(path) && open(openexr_module().reader)) return;
     open(module().reader);
 }
 

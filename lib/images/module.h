@@ -67,8 +67,6 @@ struct ReaderModule {
 };
 
 struct OpenExrModule : ReaderModule {
-    /// Of luminance beside chroma (Y, RY, BY): the channels that have all pixels.
-    ImageReader luminance;
     /// An image file in memory: floats, a name for each channel of the picture. False and `error` where it cannot
     /// be made.
     bool (*encode)(const Picture& picture, const std::vector<std::string>& channels, const std::vector<Note>& notes,

@@ -33,10 +33,17 @@ std::string lower_case(std::string text) {
     return text;
 }
 
+/// The value of an attribute of a type; null where it has another. No dynamic_cast: its types would have to be one.
+template <class Value>
+const Value* value_of(const Imf::Attribute& attribute, const char* type) {
+    if (std::strcmp(attribute.typeName(), type) != 0) return nullptr;
+    return &static_cast<const Imf::TypedAttribute<Value>&>(attribute).value();
+}
+
 template <class Value>
 bool says(const Imf::Attribute& attribute, const char* type, const Value& usual) {
-    return std::strcmp(attribute.typeName(), type) == 0 && // no dynamic_cast: its types would have to be one
-           static_cast<const Imf::TypedAttribute<Value>&>(attribute).value() == usual;
+    const Value* value = value_of<Value>(attribute, type);
+    return value && *value == usual;
 }
 
 /// Whether an attribute says nothing that would change how pixels are taken (lib/input/probe/image.cpp).
@@ -98,33 +105,22 @@ struct OpenExr {
     std::vector<std::string> channels;
 };
 
-/// What `channels` has of an open file; nothing where it does not read such files.
-using ChooseChannels = std::vector<std::string> (*)(const Imf::Header& header);
-
-std::vector<std::string> of_usual(const Imf::Header& header) {
-    return attributes_are_usual(header) ? usual_channels(header.channels()) : std::vector<std::string>{};
-}
-
-std::vector<std::string> of_luminance(const Imf::Header& header) {
-    return channels_beside_chroma(header.channels());
-}
-
-bool open_file(const std::string& path, int threads, ChooseChannels choose, OpenExr& out) {
+bool open_file(const std::string& path, int threads, OpenExr& out) {
     const int count = thread_count(threads);
     out.file = std::make_unique<Imf::InputFile>(path.c_str(), count);
     const Imf::Header& header = out.file->header();
     const Window data = window_of(header.dataWindow());
     start_threads(count, std::int64_t{data.width} * data.height);
-    out.channels = choose(header);
+    if (attributes_are_usual(header)) out.channels = usual_channels(header.channels());
+    if (out.channels.empty()) out.channels = channels_beside_chroma(header.channels());
     return !header.hasTileDescription() && out.file->isComplete() && !out.channels.empty();
 }
 
-/// An attribute of a type; null where there is none. No dynamic_cast: its types would have to be one.
+/// The value of an attribute of a type; null where there is none.
 template <class Value>
 const Value* attribute_of(const Imf::Header& header, const char* name, const char* type) {
     const auto found = header.find(name);
-    if (found == header.end() || std::strcmp(found.attribute().typeName(), type) != 0) return nullptr;
-    return &static_cast<const Imf::TypedAttribute<Value>&>(found.attribute()).value();
+    return found == header.end() ? nullptr : value_of<Value>(found.attribute(), type);
 }
 
 std::vector<float> chromaticities_of(const Imf::Header& header) {
@@ -137,10 +133,10 @@ int bytes_of(const Imf::Header& header, const std::string& channel) {
     return header.channels().findChannel(channel)->type == Imf::HALF ? 2 : 4;
 }
 
-void* open_chosen(const std::string& path, int threads, ChooseChannels choose, Header& header, std::string& error) {
+void* open(const std::string& path, int threads, Header& header, std::string& error) {
     auto out = std::make_unique<OpenExr>();
     try {
-        if (!open_file(path, threads, choose, *out)) return nullptr;
+        if (!open_file(path, threads, *out)) return nullptr;
     } catch (const std::exception& e) {
         error = e.what();
         return nullptr;
@@ -157,14 +153,6 @@ void* open_chosen(const std::string& path, int threads, ChooseChannels choose, H
     header.sample_bytes = *std::max_element(header.channel_bytes.begin(), header.channel_bytes.end());
     header.chromaticities = chromaticities_of(stored);
     return out.release();
-}
-
-void* open(const std::string& path, int threads, Header& header, std::string& error) {
-    return open_chosen(path, threads, of_usual, header, error);
-}
-
-void* open_luminance(const std::string& path, int threads, Header& header, std::string& error) {
-    return open_chosen(path, threads, of_luminance, header, error);
 }
 
 void close(void* image) { std::unique_ptr<OpenExr>(static_cast<OpenExr*>(image)); }
@@ -215,8 +203,6 @@ int integer(const void* image, const char* name, int otherwise) {
 extern "C" __attribute__((visibility("default"))) const acdf::images::OpenExrModule* acdf_openexr_module() {
     using namespace acdf::images;
     static const OpenExrModule functions = {
-        {ACDF_VERSION, {open, close, seek_one_part, read, text, integer, no_real}},
-        {open_luminance, close, seek_one_part, read, text, integer, no_real},
-        encode_openexr};
+        {ACDF_VERSION, {open, close, seek_one_part, read, text, integer, no_real}}, encode_openexr};
     return &functions;
 }

@@ -17,8 +17,6 @@ bool has_ratio(const Image& image, int across, int down) {
 
 bool is_square(const Image& image) { return has_ratio(image, 1, 1); }
 
-std::string shape(const Image& image) { return std::to_string(image.width) + "x" + std::to_string(image.height); }
-
 [[noreturn]] void refuse(const std::string& path, const Image& image, const std::string& what) {
     throw input_error(path, shape(image) + " " + what);
 }

@@ -77,19 +77,15 @@ void copy_face(const Image& from, int x0, int y0, Image& to, int x1, int y1, int
     }
 }
 
-std::string size_text(const Image& image) {
-    return std::to_string(image.width) + "x" + std::to_string(image.height);
-}
-
 void check_sizes(const std::vector<std::string>& paths, const std::vector<Image>& images) {
     for (std::size_t i = 0; i < images.size(); ++i) {
         const Image& image = images[i];
         const std::string& path = paths[std::min(i, paths.size() - 1)];
         if (image.width != image.height)
-            throw input_error(path, size_text(image) + " is no face of a cube, which is square");
+            throw input_error(path, shape(image) + " is no face of a cube, which is square");
         if (image.width != images[0].width)
-            throw input_error(path, size_text(image) + " is not as large as the first of the six faces, " +
-                                        size_text(images[0]) + "; scale it");
+            throw input_error(path, shape(image) + " is not as large as the first of the six faces, " +
+                                        shape(images[0]) + "; scale it");
     }
 }
 

@@ -27,12 +27,14 @@ bool has_gain_map(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return false;
     std::ifstream file(path, std::ios::binary);
+    char magic[3] = {};
+    if (!file.read(magic, sizeof magic) || std::string_view(magic, sizeof magic) != "\xFF\xD8\xFF") return false;
+    file.seekg(0);
     std::vector<char> block(kLongestName + (1 << 20)); // its first bytes are the last of the one before
     std::size_t kept = 0;
-    for (bool first = true; file; first = false) {
+    while (file) {
         file.read(block.data() + kept, static_cast<std::streamsize>(block.size() - kept));
         const std::string_view text(block.data(), kept + static_cast<std::size_t>(file.gcount()));
-        if (first && text.substr(0, 3) != "\xFF\xD8\xFF") return false;
         if (has_name(text)) return true;
         kept = std::min(kLongestName, text.size());
         std::copy(text.end() - static_cast<std::ptrdiff_t>(kept), text.end(), block.begin());

@@ -303,6 +303,8 @@ private:
 
 } // namespace
 
+std::string shape(const Image& image) { return shape(image.width, image.height); }
+
 Image read_image(const std::string& path, int threads, const std::function<TakeRows(const Image& image)>& stream) {
     try {
         return Reader(path, threads).read(stream);

@@ -25,6 +25,8 @@ struct Image {
     std::vector<std::string> warnings;
 };
 
+std::string shape(const Image& image); ///< "1024x512"
+
 /// Takes `count` rows of RGB texels, of which `first` is the number of the first, from the top to the bottom.
 using TakeRows = std::function<void(int first, int count, float* rgb)>;
 

@@ -44,12 +44,14 @@ public:
 
     void run() {
         const std::vector<std::string> files = probe_files(path_);
-        if (options_.faces) take_cube(files);
-        else if (files.size() > 1)
+        if (!options_.faces && files.size() > 1)
             throw input_error(path_,
                               "six files are the faces of a cube; --faces says which is which: directx, opengl "
                               "or openexr, or a list such as +x,-x,+y,-y,+z,-z");
-        else take_image();
+        Image image = options_.faces ? take_cube(files) : take_image();
+        probe_.warnings = std::move(image.warnings);
+        probe_.source_width = image.width;
+        probe_.source_height = image.height;
         probe_.width = repaired_.width();
         probe_.height = repaired_.height();
         probe_.bad = repaired_.bad();
@@ -59,7 +61,8 @@ public:
     }
 
 private:
-    void take_image() {
+    // Both return the image without its pixels, which are taken.
+    Image take_image() {
         std::optional<LatlongCheck> check;
         Image image = read_image(path_, options_.threads, [&](const Image& header) -> TakeRows {
             take_luminance(header);
@@ -81,12 +84,10 @@ private:
             take(detected, image);
         }
         if (check) refuse_latlong(path_, image, *check);
-        probe_.warnings = std::move(image.warnings);
-        probe_.source_width = image.width;
-        probe_.source_height = image.height;
+        return image;
     }
 
-    void take_cube(const std::vector<std::string>& files) {
+    Image take_cube(const std::vector<std::string>& files) {
         if (options_.projection != Projection::automatic && options_.projection != Projection::cube_cross)
             throw input_error(path_, std::string("it cannot be ") + to_string(options_.projection) +
                                          " and have --faces, which cubes have");
@@ -98,9 +99,7 @@ private:
         take_luminance(image);
         repair(image);
         take(detected, image);
-        probe_.warnings = std::move(image.warnings);
-        probe_.source_width = image.width;
-        probe_.source_height = image.height;
+        return image;
     }
 
     void take_luminance(const Image& image) {

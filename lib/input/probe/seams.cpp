@@ -79,7 +79,6 @@ bool back_face_is_upright(const Brightness& image) {
 
 bool sides_do_not_meet(const Brightness& image) {
     const int width = image.width(), height = image.height(), half = width / 2;
-    if (width < 32 || height < 16) return false;
     const LogBrightness log(image);
     const auto step = [&](int x0, int x1) {
         double sum = 0.0;
