@@ -14,7 +14,6 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/acdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/allocator.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/blend.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/block_grids.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_about.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_half.h

@@ -2,7 +2,7 @@
 
 #include "memory.h"
 
-#include <acdf/grid.h>
+#include <acdf/sample.h>
 
 #include <cstring>
 
@@ -22,6 +22,11 @@ struct Squares {
     u32 first[(1u << most_bits) + 1];
 };
 
+template <class T>
+T* at_word(AcdfHalvedTree* tree, std::size_t word) {
+    return reinterpret_cast<T*>(reinterpret_cast<u32*>(tree) + word);
+}
+
 // Finds the deepest node that holds each square of a grid of random numbers or of positions.
 class LookupMaker {
 public:
@@ -29,12 +34,12 @@ public:
 
     u32 count = 0; // of starts
 
-    // `squares` and `starts` are null to count alone.
-    void make(const Squares axes[2], bool by_position, u16* squares, AcdfStart* starts) {
+    // `tree`, whose heights are there, gets the starts of `squares`; both are null to count alone.
+    void make(const Squares axes[2], bool by_position, AcdfHalvedTree* tree, u16* squares) {
         axes_ = axes;
         by_position_ = by_position;
+        tree_ = tree;
         squares_ = squares;
-        starts_ = starts;
         Open root = {};
         root.node = source_.count ? 0 : ACDF_LEAF;
         for (int axis = 0; axis < 2; ++axis) {
@@ -87,7 +92,7 @@ private:
     void put(const Open& node, const AcdfSpan at[2]) {
         if (!has_any(at)) return;
         if (squares_) {
-            AcdfStart& start = starts_[count];
+            AcdfStart& start = at_word<AcdfStart>(tree_, tree_->starts)[count];
             start.node = node.node;
             start.pdf = node.node == ACDF_LEAF ? leaf_pdf(node) : 0.0f;
             for (int axis = 0; axis < 2; ++axis) {
@@ -101,22 +106,25 @@ private:
         ++count;
     }
 
-    // Of environments, as acdf_environment_pdf computes it.
+    // As acdf_environment_pdf computes it.
     float leaf_pdf(const Open& leaf) const {
-        const AcdfGrid grid = {source_.resolution[0], source_.resolution[1], source_.parameterization};
-        const AcdfRange rows = {leaf.box[1].end[0], leaf.box[1].end[1], 0.0};
-        const double p = acdf_span_share(&leaf.steps[0]) * acdf_span_share(&leaf.steps[1]);
-        if (!(p > 0.0)) return 0.0f;
-        return acdf_cell_pdf(p, leaf.box[0].end[1] - leaf.box[0].end[0], grid.columns,
-                             acdf_grid_height(&grid, &rows), 1.0);
+        AcdfEnvironment environment = {};
+        environment.columns = source_.resolution[0];
+        environment.rows = source_.resolution[1];
+        environment.parameterization = source_.parameterization;
+        environment.halved = tree_;
+        AcdfRange range[2];
+        acdf_halved_ranges(leaf.box, range);
+        return acdf_halved_pdf(&environment, range,
+                               acdf_span_share(&leaf.steps[0]) * acdf_span_share(&leaf.steps[1]));
     }
 
     const HalvedSource& source_;
     u32 bits_;
     const Squares* axes_ = nullptr;
     bool by_position_ = false;
+    AcdfHalvedTree* tree_ = nullptr;
     u16* squares_ = nullptr;
-    AcdfStart* starts_ = nullptr;
     u32 open_count_ = 0;
     Open open_[most_waiting];
 };
@@ -172,11 +180,6 @@ Layout layout_of(const HalvedSource& source, u32 bits, u32 starts) {
     return out;
 }
 
-template <class T>
-T* at_word(AcdfHalvedTree* tree, std::size_t word) {
-    return reinterpret_cast<T*>(reinterpret_cast<u32*>(tree) + word);
-}
-
 void make_heights(AcdfHalvedTree* tree, const HalvedSource& source) {
     double* heights = at_word<double>(tree, tree->heights);
     for (u32 row = 0; row <= source.resolution[1]; ++row) heights[row] = acdf_row_z(row, source.resolution[1]);
@@ -221,10 +224,9 @@ AcdfHalvedTree* make_halved_tree(const HalvedSource& source, const AcdfAllocator
     tree->positions = static_cast<u32>(layout.positions);
     tree->starts = static_cast<u32>(layout.starts);
     for (int axis = 0; axis < 2; ++axis) tree->position_scale[axis] = position_scale(source.resolution[axis], bits);
-    auto* const starts = at_word<AcdfStart>(tree, layout.starts);
     maker.count = 0;
-    maker.make(by_number, false, at_word<u16>(tree, layout.numbers), starts);
-    maker.make(by_position, true, at_word<u16>(tree, layout.positions), starts);
+    maker.make(by_number, false, tree, at_word<u16>(tree, layout.numbers));
+    maker.make(by_position, true, tree, at_word<u16>(tree, layout.positions));
     return tree;
 }
 

@@ -165,7 +165,7 @@ ACDF_INLINE uint32_t acdf_cut_candidates(const AcdfCut* cut, int block, const ui
     return acdf_boxes_by_vectors(_mm_loadu_si128(box), _mm_loadu_si128(box + 1), _mm_loadu_si128(box + 2),
                                  _mm_loadu_si128(box + 3), step[0], step[1]);
 #else
-    return acdf_boxes_around(cut->boxes[block], 0, step[0], step[1]);
+    return acdf_boxes_around(cut->boxes[block], step[0], step[1]);
 #endif
 }
 

@@ -8,7 +8,7 @@
 #ifndef ACDF_SQUARES_H
 #define ACDF_SQUARES_H
 
-#include <acdf/block_grids.h>
+#include <acdf/elementary.h>
 #include <acdf/layout.h>
 
 /* What is wanted next, on its way while its place is searched for. */
@@ -44,8 +44,55 @@ typedef struct AcdfSquares {
 } AcdfSquares;
 
 enum { ACDF_BLOCK_CELLS = 16 };
-ACDF_STATIC_ASSERT(offsetof(AcdfSquares, bits0) == 4 * ACDF_SQUARES_BITS0);
-ACDF_STATIC_ASSERT(offsetof(AcdfSquares, cells) == 4 * ACDF_SQUARES_CELLS);
+
+/* An entry: shifts of both keys (5 bits each) and the number of a block; or the flag, and of a finer grid the bits
+ * along key 0 (3 bits) and the number. */
+#define ACDF_SQUARES_FINER 0x80000000u
+#define ACDF_SQUARES_BLOCK_BITS 21u
+#define ACDF_SQUARES_BLOCK_MASK 0x001FFFFFu
+#define ACDF_FINER_BITS 4u
+
+/* The entry of a point. */
+ACDF_INLINE uint32_t acdf_squares_entry(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
+                                        uint32_t key1) {
+    uint32_t shift0 = squares->shift0, shift1 = squares->shift1;
+    uint32_t entry = tables[squares->grid + ((key1 >> shift1) << squares->bits0) + (key0 >> shift0)];
+    while (entry & ACDF_SQUARES_FINER) {
+        const uint32_t bits0 = entry >> 28 & 7u, bits1 = ACDF_FINER_BITS - bits0;
+        shift0 -= bits0;
+        shift1 -= bits1;
+        entry =
+            tables[squares->finer + (entry & 0x0FFFFFFFu) * 16u +
+                   (((key1 >> shift1 & ((1u << bits1) - 1u)) << bits0) | (key0 >> shift0 & ((1u << bits0) - 1u)))];
+    }
+    return entry;
+}
+
+/* The highest bit of each byte: whether that of a is at least that of b; bytes are signed. */
+ACDF_INLINE uint32_t acdf_bytes_reach(uint32_t a, uint32_t b) {
+    const uint32_t difference = (a | 0x80808080u) - (b & 0x7F7F7F7Fu);
+    return (~a & b) | (~(a ^ b) & difference);
+}
+/* The same: whether each byte of a place lies from low to high. */
+ACDF_INLINE uint32_t acdf_bytes_within(uint32_t place, uint32_t low, uint32_t high) {
+    return acdf_bytes_reach(place, low) & acdf_bytes_reach(high, place);
+}
+/* These bits as the four lowest ones: no sum of the product carries. */
+ACDF_INLINE uint32_t acdf_four_bits(uint32_t bytes) { return (bytes >> 7 & 0x01010101u) * 0x01020408u >> 24; }
+/* A byte four times, less 128 as those of boxes are. */
+ACDF_INLINE uint32_t acdf_four_bytes(uint32_t number) { return (number ^ 0x80u) * 0x01010101u; }
+
+/* Bit i: whether cell i of the block of these boxes may hold the point; never of those that it lacks. */
+ACDF_INLINE uint32_t acdf_boxes_around(const uint32_t* boxes, uint32_t byte0, uint32_t byte1) {
+    const uint32_t place0 = acdf_four_bytes(byte0), place1 = acdf_four_bytes(byte1);
+    uint32_t mask = 0, word;
+    for (word = 0; word < 4; ++word) {
+        const uint32_t within0 = acdf_bytes_within(place0, boxes[word], boxes[word + 4]);
+        const uint32_t within1 = acdf_bytes_within(place1, boxes[word + 8], boxes[word + 12]);
+        mask |= acdf_four_bits(within0 & within1) << (word * 4);
+    }
+    return mask;
+}
 
 #ifdef ACDF_SSE2
 /* Bit i: whether the i-th of sixteen boxes, in bytes less 128, holds the bytes of a place. */
@@ -74,7 +121,7 @@ ACDF_INLINE uint32_t acdf_squares_candidates(const uint32_t* boxes, uint32_t byt
     const uint32_t w = acdf_bytes_within(at0, low0.w, high0.w) & acdf_bytes_within(at1, low1.w, high1.w);
     return acdf_four_bits(x) | acdf_four_bits(y) << 4 | acdf_four_bits(z) << 8 | acdf_four_bits(w) << 12;
 #else
-    return acdf_boxes_around(boxes, 0, byte0, byte1);
+    return acdf_boxes_around(boxes, byte0, byte1);
 #endif
 }
 
@@ -94,8 +141,7 @@ ACDF_INLINE uint32_t acdf_lowest_bit(uint32_t mask) {
 /* The cells that may hold a point: *cells[i] for each bit i that is set in what is returned. */
 ACDF_INLINE uint32_t acdf_squares_find(const uint32_t* tables, const AcdfSquares* squares, uint32_t key0,
                                        uint32_t key1, const uint16_t** cells) {
-    const uint32_t at = (uint32_t)((const uint32_t*)(const void*)squares - tables);
-    const uint32_t entry = acdf_squares_entry(tables, at, key0, key1);
+    const uint32_t entry = acdf_squares_entry(tables, squares, key0, key1);
     const uint32_t block = entry & ACDF_SQUARES_BLOCK_MASK;
     const uint32_t byte0 = key0 >> (entry >> 26) & 0xFFu, byte1 = key1 >> (entry >> 21 & 31u) & 0xFFu;
     *cells = (const uint16_t*)(const void*)(tables + squares->cells + 8u * block);

@@ -7,7 +7,6 @@ namespace acdf {
 
 namespace {
 
-using u8 = std::uint8_t;
 using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
@@ -133,7 +132,7 @@ private:
         const u32 threshold = acdf_halving_threshold(&node.steps[axis], code, header_.code_bits, share_[code]);
         const u32 middle = acdf_span_middle(&node.box[axis]);
         nodes[made_] = {threshold, axis};
-        Open lower = node;
+        Open& lower = open_[open_count_ + 1] = node;
         lower.parent = node.parent = made_++;
         lower.upper = false;
         node.upper = true;
@@ -141,8 +140,7 @@ private:
         node.dark = code == last;
         lower.steps[axis].end[1] = node.steps[axis].end[0] = threshold;
         lower.box[axis].end[1] = node.box[axis].end[0] = middle;
-        open_[++open_count_] = lower;
-        ++open_count_;
+        open_count_ += 2;
         return true;
     }
 

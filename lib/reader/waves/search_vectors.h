@@ -14,19 +14,13 @@ constexpr std::size_t kSearched = 32; // points that are searched for at a time:
 struct Search {
     const std::uint32_t *tables, *grid;
     const char *boxes, *cells;
-    std::uint32_t at, shift0, shift1, bits0;
+    const AcdfSquares* squares;
 };
 
 ACDF_LANE Search search_of(const void* all, const AcdfSquares& squares) {
     const auto* const tables = (const std::uint32_t*)all;
-    return {tables,
-            tables + squares.grid,
-            (const char*)(tables + squares.boxes),
-            (const char*)(tables + squares.cells),
-            (std::uint32_t)((const std::uint32_t*)(const void*)&squares - tables),
-            squares.shift0,
-            squares.shift1,
-            squares.bits0};
+    return {tables, tables + squares.grid, (const char*)(tables + squares.boxes),
+            (const char*)(tables + squares.cells), &squares};
 }
 
 /// Of the lanes of a block: the number of a block of boxes, where in it a point lies (bytes that turn comparisons
@@ -37,11 +31,11 @@ struct Sought {
 
 /* acdf_squares_entry of lanes, and what is to be compared. The blocks are asked for. */
 ACDF_LANE void find_blocks(const Search& s, Words key0, Words key1, Sought* sought, std::size_t first) {
-    Words entry = gathered(s.grid, ((key1 >> s.shift1) << s.bits0) + (key0 >> s.shift0));
+    Words entry = gathered(s.grid, ((key1 >> s.squares->shift1) << s.squares->bits0) + (key0 >> s.squares->shift0));
     std::uint32_t finer = bits((Signed)entry < 0);
     for (; __builtin_expect(finer != 0, 0); finer &= finer - 1) {
         const std::uint32_t i = acdf_lowest_bit(finer);
-        entry[i] = acdf_squares_entry(s.tables, s.at, key0[i], key1[i]);
+        entry[i] = acdf_squares_entry(s.tables, s.squares, key0[i], key1[i]);
     }
     const Words byte0 = (shifted_right(key0, entry >> 26) & 0xFFu) ^ 0x80u;
     const Words byte1 = (shifted_right(key1, entry >> 21 & 31u) & 0xFFu) ^ 0x80u;
