@@ -113,7 +113,6 @@ constexpr std::uint64_t kLocalPart = 4;
 
 /// The bytes of a file, before compression.
 struct Budget {
-    std::uint64_t all;
     std::uint64_t whole; ///< for a tree of the environment alone
     std::uint64_t local; ///< for that, and all else that is there without places
 };
@@ -121,9 +120,8 @@ struct Budget {
 Budget budget_of(const LocalOptions& options, std::uint64_t all, compress::WholeTree tree) {
     const std::uint64_t whole = tree == compress::WholeTree::own ? std::min(whole_tree_bytes(all), all) : 0;
     const std::uint64_t others = all - whole;
-    if (!options.places.scene) return {all, whole, all};
-    return {all, whole,
-            whole + (options.places.local_bytes > 0 ? options.places.local_bytes : others / kLocalPart)};
+    if (!options.places.scene) return {whole, all};
+    return {whole, whole + (options.places.local_bytes > 0 ? options.places.local_bytes : others / kLocalPart)};
 }
 
 std::uint64_t bytes_of(const LocalDraft& draft) { return compress::store(draft.tree, draft.description).size(); }
@@ -208,6 +206,14 @@ bool more_tiles(const LocalOptions& options, const NormalBins& bins, const compr
     return true;
 }
 
+/// What one try leaves to the next.
+struct Tried {
+    explicit Tried(const compress::Target& target) : alone(target) {}
+
+    LastBins bins;
+    AloneTree alone;
+};
+
 /// build(bytes). Where that is out of reach, the least that the error names was made once, by `attempt`.
 template <class Build, class Attempt>
 Local within_reach(std::uint64_t bytes, const Build& build, const Attempt& attempt) {
@@ -229,12 +235,12 @@ Local within_reach(std::uint64_t bytes, const Build& build, const Attempt& attem
 
 /// At most `all` bytes before compression, and nearly as many.
 Local build_plain(const compress::Target& target, const Source& source, const LocalOptions& options,
-                  std::uint64_t all, WholeChoice choice, double max_weight, LastBins& last, Least least,
+                  std::uint64_t all, WholeChoice choice, double max_weight, Tried& tried, Least least,
                   const Progress& progress) {
     const compress::WholeTree tree = choice.tree;
     const Budget budgets = budget_of(options, all, tree);
     const std::uint64_t budget = budgets.local, others = budget - budgets.whole;
-    LitBins& lit = bins_for(options, double(others), target, last);
+    LitBins& lit = bins_for(options, double(others), target, tried.bins);
     const NormalBins& bins = lit.bins();
     compress::LocalSize size = size_for(options, bins, double(others));
     size.whole = tree;
@@ -255,8 +261,8 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         // What lights and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
         const bool checked = tree == compress::WholeTree::of_tiles && !options.places.scene;
-        if (fits && checked && !serves_points(target, fit.tree, all))
-            return build_plain(target, source, options, all, next_choice(choice), max_weight, last, least,
+        if (fits && checked && !tried.alone.is_matched(fit.tree, all))
+            return build_plain(target, source, options, all, next_choice(choice), max_weight, tried, least,
                                progress);
         const auto completed = [&] {
             fitter->fill(fit);
@@ -292,11 +298,11 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
 }
 
 Local build_in_budget(const compress::Target& target, const Source& source, const LocalOptions& options,
-                      std::uint64_t budget, LastBins& last, Least least, const Progress& progress) {
+                      std::uint64_t budget, Tried& tried, Least least, const Progress& progress) {
     if (options.codec != ACDF_CODEC_NONE) least = Least::told; // by which it goes on
     return within_weight(options.max_weight, [&](double max_weight) {
         const auto build_with = [&](std::uint64_t bytes, const Progress& told) {
-            return build_plain(target, source, options, bytes, first_choice(options), max_weight, last, least,
+            return build_plain(target, source, options, bytes, first_choice(options), max_weight, tried, least,
                                told);
         };
         const auto build = [&](std::uint64_t bytes) { return build_with(bytes, progress); };
@@ -314,37 +320,38 @@ Local build_in_budget(const compress::Target& target, const Source& source, cons
 
 /// Cells in tiles as asked for, and a tree of the environment that suits them.
 compress::LocalFit fit_cells(const compress::Target& target, const Source& source, const LocalOptions& options,
-                             LitBins& lit, compress::LocalSize size, const Progress& progress) {
+                             LitBins& lit, AloneTree& alone, compress::LocalSize size, const Progress& progress) {
     const auto bytes = [&](const compress::LocalFit& fit) {
         return bytes_of(shared_draft(fit, target, source, options, lit.bins()));
     };
     size.whole_bytes = 0;
-    for (WholeChoice choice = first_choice(options);;) {
+    for (WholeChoice choice = first_choice(options);; choice = next_choice(choice)) {
         size.whole = choice.tree;
         size.whole_worth = choice.worth;
         compress::LocalFitter fitter(target, lit.bins(), lit.light(), size, fitting(progress), options.company);
         compress::LocalFit fit = fitter.outlined(size.inside_bytes);
-        const bool own = size.whole == compress::WholeTree::own;
-        if (own ? size.whole_bytes > 0 : options.places.scene || serves_points(target, fit.tree, bytes(fit))) {
-            fitter.fill(fit);
-            return fit;
+        if (size.whole == compress::WholeTree::own) {
+            fitter.refit_whole(whole_tree_bytes(file_of_others(bytes(fit))));
+            fit = fitter.outlined(size.inside_bytes);
+        } else if (!options.places.scene && !alone.is_matched(fit.tree, bytes(fit))) {
+            continue;
         }
-        if (own) size.whole_bytes = whole_tree_bytes(file_of_others(bytes(fit)));
-        else choice = next_choice(choice);
+        fitter.fill(fit);
+        return fit;
     }
 }
 
 /// The smallest file whose measured variance is low enough.
 Local build_to_variance(const compress::Target& target, const Source& source, const LocalOptions& options,
-                        LastBins& last, const Progress& progress) {
+                        Tried& tried, const Progress& progress) {
     double share = 0.0; // steps of the search are of about the same size
     const auto at = [&](double bytes) -> std::optional<Local> {
         const auto searching = [&](double, const char*) { // no news, but a chance to cancel
             if (progress) progress(share, "searching");
         };
         try {
-            return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), last, Least::unheard,
-                                   searching);
+            return build_in_budget(target, source, options, static_cast<std::uint64_t>(bytes), tried,
+                                   Least::unheard, searching);
         } catch (const OutOfReach&) {
             return std::nullopt; // bins alone may take more
         }
@@ -443,20 +450,20 @@ Local build_local(const compress::Target& target, const Source& source, const Lo
                   const Progress& progress) {
     if (!compress::has_energy(target)) throw NoEnergy("a target without energy");
     if (!options.sharing) return build_separate(target, source, options, progress);
-    LastBins last;
+    Tried tried(target);
     switch (options.goal.kind) {
     case Goal::Kind::budget:
-        return build_in_budget(target, source, options, options.goal.budget, last, Least::told, progress);
+        return build_in_budget(target, source, options, options.goal.budget, tried, Least::told, progress);
     case Goal::Kind::variance:
-        return build_to_variance(target, source, options, last, progress);
+        return build_to_variance(target, source, options, tried, progress);
     default: {
         const double bytes = bytes_of_cell(options.shape) * options.goal.cells;
-        LitBins& lit = bins_for(options, bytes_around(bytes), target, last);
+        LitBins& lit = bins_for(options, bytes_around(bytes), target, tried.bins);
         compress::LocalSize size = size_around(options, lit.bins(), bytes);
         return within_weight(options.max_weight, [&](double max_weight) {
             if (max_weight > 0.0) size.max_weight = max_weight;
             const NormalBins& bins = lit.bins();
-            const compress::LocalFit fit = fit_cells(target, source, options, lit, size, progress);
+            const compress::LocalFit fit = fit_cells(target, source, options, lit, tried.alone, size, progress);
             return finish(shared_draft(fit, target, source, options, bins), target, source, options, bins);
         });
     }

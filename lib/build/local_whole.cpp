@@ -51,9 +51,12 @@ WholeChoice next_choice(const WholeChoice& choice) {
     return {compress::WholeTree::of_tiles, choice.worth > 0.0 ? kMostWorth : kSomeWorth};
 }
 
-bool serves_points(const compress::Target& target, const compress::EncodedTree& tree, std::uint64_t bytes) {
-    const compress::Fitted alone = compress::fit_whole(target, whole_tree_bytes(bytes));
-    return relative_variance(target, tree) <= relative_variance(target, alone.tree);
+bool AloneTree::is_matched(const compress::EncodedTree& tree, std::uint64_t bytes) {
+    if (const std::uint64_t alone = whole_tree_bytes(bytes); alone != bytes_) {
+        bytes_ = alone;
+        relative_variance_ = relative_variance(target_, compress::fit_whole(target_, alone).tree);
+    }
+    return relative_variance(target_, tree) <= relative_variance_;
 }
 
 } // namespace acdf::build

@@ -26,7 +26,20 @@ WholeChoice first_choice(const LocalOptions& options);
 /// Where that is not accurate enough: it counts more or, at last, has curves of its own.
 WholeChoice next_choice(const WholeChoice& choice);
 
-/// Whether the tree at unit 0 of TREE, of WholeTree::of_tiles, is accurate enough for a file of `bytes`.
-bool serves_points(const compress::Target& target, const compress::EncodedTree& tree, std::uint64_t bytes);
+/// What trees are to be as accurate as.
+class AloneTree {
+public:
+    /// `target` must outlive it.
+    explicit AloneTree(const compress::Target& target) : target_(target) {}
+
+    /// Whether a tree at unit 0 of TREE, of WholeTree::of_tiles, is accurate enough for a file of `bytes`. The tree
+    /// that it is compared with is fitted again only for another number of bytes.
+    bool is_matched(const compress::EncodedTree& tree, std::uint64_t bytes);
+
+private:
+    const compress::Target& target_;
+    std::uint64_t bytes_ = 0; ///< of the tree that was fitted last; 0: none
+    double relative_variance_ = 0.0;
+};
 
 } // namespace acdf::build

@@ -128,15 +128,13 @@ private:
         return stored(tree, std::min(leaves_within(options_.chunk_bytes, best), tree.leaves()), best);
     }
 
-    /// Grows until the codes of most bits reach the variance, then looks for the smallest tree of each kind of
-    /// codes.
+    /// Grows until the variance is reached, then looks for the smallest tree of each kind of codes.
     Quantised of_variance() const {
         const double wanted = options_.goal.variance;
         GrowthLimits until = limits(leaves_within(options_.most_bytes, kFewestCodeBits));
         until.cost = std::sqrt((1.0 + 0.98 * wanted) * mean_square_) * sums_.unit();
         until.done = {};
         const GrownTree tree = grown(until);
-        if (variance_of(stored(tree, tree.leaves(), kMostCodeBits)) > wanted) refuse_variance(tree);
         Quantised best;
         std::size_t least = std::numeric_limits<std::size_t>::max();
         for (const std::uint32_t code_bits : code_bits_tried()) {
@@ -147,6 +145,7 @@ private:
             least = bytes;
             best = std::move(smallest);
         }
+        if (best.halvings.axes.empty()) refuse_variance(tree);
         return best;
     }
 

@@ -52,30 +52,34 @@ void HalvedTables::choose_kept(std::size_t most_values) {
 }
 
 double HalvedTables::added(const HalvedBox& box) const {
+    const std::uint32_t begin = axes_[1].low(box.level[1], box.index[1]),
+                        end = axes_[1].high(box.level[1], box.index[1]);
+    std::vector<float> line(end - begin);
     double sum = 0.0;
     for (std::uint32_t r = axes_[0].low(box.level[0], box.index[0]); r < axes_[0].high(box.level[0], box.index[0]);
-         ++r)
-        for (std::uint32_t c = axes_[1].low(box.level[1], box.index[1]);
-             c < axes_[1].high(box.level[1], box.index[1]); ++c)
-            sum += double{call_(value_, r, c)};
+         ++r) {
+        read_(value_, r, begin, end, line.data());
+        for (const float value : line) sum += double{value};
+    }
     return sum;
 }
 
-void HalvedTables::fill_finest(const void* row, Row fill) {
+void HalvedTables::fill_finest() {
     const std::uint32_t rows = axes_[0].count(kept_[0]), columns = axes_[1].count(kept_[1]);
     const std::uint32_t steps = axes_[1].count(axes_[1].levels());
     std::vector<float>& finest = of(kept_[0], kept_[1]);
     finest.resize(std::size_t{rows} * columns);
     if (kept_[0] == axes_[0].levels() && kept_[1] == axes_[1].levels()) {
-        parallel_for(std::uint32_t{0}, rows,
-                     [&](std::uint32_t r) { fill(row, r, finest.data() + std::size_t{r} * columns); });
+        parallel_for(std::uint32_t{0}, rows, [&](std::uint32_t r) {
+            read_(value_, r, 0, columns, finest.data() + std::size_t{r} * columns);
+        });
         return;
     }
     parallel_for(std::uint32_t{0}, rows, [&](std::uint32_t r) {
         std::vector<float> line(steps);
         std::vector<double> sums(columns, 0.0);
         for (std::uint32_t step = axes_[0].low(kept_[0], r); step < axes_[0].high(kept_[0], r); ++step) {
-            fill(row, step, line.data());
+            read_(value_, step, 0, steps, line.data());
             for (std::uint32_t c = 0; c < columns; ++c)
                 for (std::uint32_t k = axes_[1].low(kept_[1], c); k < axes_[1].high(kept_[1], c); ++k)
                     sums[c] += double{line[k]};

@@ -5,6 +5,7 @@
 #include "compress/halvings/axis.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -24,13 +25,13 @@ public:
     /// `value(row, column)` is the integral over a step; it is kept, and called from several threads.
     template <class Value>
     HalvedTables(const std::vector<HalvedAxis>& axes, std::size_t most_values, const Value& value)
-        : axes_(axes), value_(&value), call_([](const void* of, std::uint32_t row, std::uint32_t column) {
-              return (*static_cast<const Value*>(of))(row, column);
+        : axes_(axes), value_(&value),
+          read_([](const void* of, std::uint32_t row, std::uint32_t begin, std::uint32_t end, float* out) {
+              for (std::uint32_t c = begin; c < end; ++c) *out++ = (*static_cast<const Value*>(of))(row, c);
           }) {
         choose_kept(most_values);
-        fill([&](std::uint32_t row, float* out) {
-            for (std::uint32_t c = 0; c < axes_[1].count(axes_[1].levels()); ++c) out[c] = value(row, c);
-        });
+        fill_finest();
+        add_up();
     }
 
     double at(const HalvedBox& box) const {
@@ -40,14 +41,6 @@ public:
     }
 
 private:
-    using Row = void (*)(const void*, std::uint32_t, float*);
-
-    template <class FillRow>
-    void fill(const FillRow& row) {
-        fill_finest(
-            &row, [](const void* of, std::uint32_t r, float* out) { (*static_cast<const FillRow*>(of))(r, out); });
-        add_up();
-    }
     const std::vector<float>& of(std::uint32_t level0, std::uint32_t level1) const {
         return tables_[level0 * (kept_[1] + 1) + level1];
     }
@@ -56,14 +49,15 @@ private:
     }
     void choose_kept(std::size_t most_values);
     double added(const HalvedBox& box) const;
-    void fill_finest(const void* row, Row fill);
+    void fill_finest();
     void add_up();
     void add_rows(std::uint32_t level0);
     void add_columns(std::uint32_t level0, std::uint32_t level1);
 
     const std::vector<HalvedAxis>& axes_;
     const void* value_;
-    float (*call_)(const void*, std::uint32_t, std::uint32_t);
+    /// Values [begin, end) of a row; not each by itself, so that they are inlined.
+    void (*read_)(const void* value, std::uint32_t row, std::uint32_t begin, std::uint32_t end, float* out);
     std::array<std::uint32_t, 2> kept_{}; ///< the finest level of each axis that tables are kept of
     std::vector<std::vector<float>> tables_;
 };

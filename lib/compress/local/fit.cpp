@@ -146,9 +146,11 @@ LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const Bin
     worth_of_tiles_ = worth_of_tiles(target, tiles_.tiles, light.worth);
     if (whole_tree() == WholeTree::of_tiles) // of all normals the light times its worth adds up to 1
         for (double& worth : worth_of_tiles_) worth += size.whole_worth / total_;
-    if (whole_tree() == WholeTree::own) whole_ = fit_whole(target, size_.whole_bytes);
+    if (whole_tree() == WholeTree::own) refit_whole(size_.whole_bytes);
     if (fast()) grids_.emplace(target, tiles_.tiles, worth_of_tiles_);
 }
+
+void LocalFitter::refit_whole(std::uint64_t bytes) { whole_ = fit_whole(target_, bytes); }
 
 /// The curves at the lowest price at which they take at most `bytes`.
 LocalFitter::Curves LocalFitter::fit_curves(std::uint64_t bytes) {

@@ -61,6 +61,8 @@ public:
     LocalFitter(const Target& target, const NormalBins& bins, const BinLight& light, const LocalSize& size,
                 const Progress& progress, const Company& company);
 
+    /// Where the environment has curves of its own: at most `bytes` of them, not size.whole_bytes.
+    void refit_whole(std::uint64_t bytes);
     /// A fit whose curves or grids take at most `inside_bytes` (but for the least there must be): all of it, but
     /// shares are 0, and so is what rows and records hold. It is stored in as many bytes as it will be.
     LocalFit outlined(std::uint64_t inside_bytes);
