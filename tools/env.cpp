@@ -53,7 +53,6 @@ private:
     builder::EnvironmentOptions with_source() const;
     void use_renderers_partner();
     void check_company() const;
-    void set_goal();
     void set_knots();
     void add_fit_options(CLI::App& command);
     std::uint64_t memory_of_tree(std::uint64_t pixels) const;
@@ -101,8 +100,6 @@ bool allows(const OnlyFor& rule, AcdfFit fit) {
     }
 }
 
-void EnvConversion::set_goal() { read_goal(*command_, budget_, environment_.goal); }
-
 void EnvConversion::set_knots() {
     builder::FitOptions& fit = environment_.fit;
     if (given("--knots")) {
@@ -138,7 +135,7 @@ void EnvConversion::check() {
     const AcdfFit fit = environment_.fit.fit;
     for (const OnlyFor& rule : only_for)
         if (given(rule.option) && !allows(rule, fit)) throw CLI::ValidationError(rule.option, rule.message);
-    if (fit == ACDF_FIT_VARIANCE) set_goal();
+    if (fit == ACDF_FIT_VARIANCE) read_goal(*command_, budget_, environment_.goal);
     else set_knots();
     use_renderers_partner();
     check_company();

@@ -2,7 +2,6 @@
 #include "tools/cli/json.h"
 #include "tools/cli/messages.h"
 
-#include "input/probe/source.h"
 #include "tools/cli/file_input.h"
 #include "tools/cli/options.h"
 #include "tools/cli/output.h"
@@ -114,9 +113,8 @@ void add_conversion(CLI::App& command, std::shared_ptr<Conversion> conversion, c
     add_json(command, options->json);
     add_quiet(command, options->quiet);
     command.footer(help.footer);
-    command.callback([conversion, options, suffix = std::string(help.suffix), &command, &exit_code] {
-        const CLI::Option* faces = command.get_option_no_throw("--faces");
-        if (faces && faces->count() > 0) join_faces(*options);
+    command.callback([conversion, options, suffix = std::string(help.suffix), &exit_code] {
+        if (const auto* reading = conversion->reading(); reading && reading->faces) join_faces(*options);
         exit_code = run(*conversion, *options, suffix);
     });
 }

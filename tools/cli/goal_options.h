@@ -63,21 +63,20 @@ inline void add_max_weight(CLI::App& command, double& max_weight, const char* be
         ->group("Size and accuracy");
 }
 
-/// Takes over what was given; else `goal` stays as it is. Returns how many were. Throws CLI::ValidationError where
+/// Takes over what was given; else `goal` stays as it is. Throws CLI::ValidationError where
 /// there are two, or a budget is no size.
-inline int read_goal(const CLI::App& command, const std::string& budget, builder::Goal& goal) {
+inline void read_goal(const CLI::App& command, const std::string& budget, builder::Goal& goal) {
     using Kind = builder::Goal::Kind;
     const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
-    const int goals = given("--cells") + given("--budget") + given("--target-variance");
-    if (goals > 1) throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
+    if (given("--cells") + given("--budget") + given("--target-variance") > 1)
+        throw CLI::ValidationError("one of --cells, --budget and --target-variance is enough");
     if (given("--cells")) goal.kind = Kind::cells;
     if (given("--target-variance")) goal.kind = Kind::variance;
-    if (!given("--budget")) return goals;
+    if (!given("--budget")) return;
     const auto bytes = parse_size(budget);
     if (!bytes) throw CLI::ValidationError("--budget", "needs a size such as 64KiB, 2MB or 20000");
     goal.kind = Kind::budget;
     goal.budget = *bytes;
-    return goals;
 }
 
 } // namespace acdf::tools
