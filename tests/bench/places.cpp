@@ -17,6 +17,7 @@
 
 #include <acdf/builder.h>
 #include <acdf/reader.h>
+#include <acdf/views.h>
 
 #include <tbb/parallel_for.h>
 

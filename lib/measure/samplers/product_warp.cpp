@@ -3,7 +3,7 @@
 #include "measure/samplers/ggx_lobe.h"
 #include "measure/samplers/point_samplers.h"
 
-#include <acdf/product.h>
+#include <acdf/product/product.h>
 
 #include <algorithm>
 #include <cmath>
@@ -196,7 +196,7 @@ std::unique_ptr<LightSampler> warp_of(const File& light, const AnyLobe& lobe, st
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, const File& brdf) {
     if (brdf.kind() != ACDF_KIND_BRDF) throw std::invalid_argument("numbers are bent towards a BRDF, or ggx");
-    return warp_of(light, BrdfLobe(brdf.brdf().data()), brdf.size());
+    return warp_of(light, BrdfLobe(brdf.brdf().data(), acdf_product_vectors()), brdf.size());
 }
 
 std::unique_ptr<LightSampler> product_warp_sampler(const File& light, double alpha) {

@@ -17,13 +17,15 @@
 #define ACDF_ACDF_H
 
 #include <acdf/allocator.h>
-#include <acdf/brdf.h>
 #include <acdf/layout.h>
 #include <acdf/linked.h>
-#include <acdf/local.h>
 #include <acdf/moved.h>
 #include <acdf/sample.h>
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include <acdf/brdf.h>
+#include <acdf/local.h>
 #include <acdf/table.h>
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -41,12 +43,12 @@ typedef enum AcdfErrorCode {
 } AcdfErrorCode;
 
 /* Why a file was not loaded, or not served. */
-struct AcdfError {
+typedef struct AcdfError {
     AcdfErrorCode code;
     int rule;          /* number of the broken rule of SPEC.md, 0 if none */
     uint64_t offset;   /* byte in the file where it shows */
     char message[240]; /* one line, UTF-8, terminated: what is wrong and where */
-};
+} AcdfError;
 
 /* Reads and checks the file at `path`. Null on failure. `error` may be null; it is written on success too. */
 AcdfFile* acdf_open(const char* path, AcdfError* error);
@@ -77,12 +79,14 @@ void acdf_close(AcdfFile* file);
 /* The view of an environment file. Returns 1, or 0 (and `out` unset) where the file is of another kind or null.
  * `out` may be null: whether it is of that kind. */
 int acdf_environment(const AcdfFile* file, AcdfEnvironment* out);
+#ifndef ACDF_ENVIRONMENT_ONLY
 /* The same for a local environment file, to be used with acdf/local.h. */
 int acdf_local(const AcdfFile* file, AcdfLocal* out);
 /* The same for a BRDF file, to be used with acdf/brdf.h. */
 int acdf_brdf(const AcdfFile* file, AcdfBrdf* out);
 /* The same for a table file, to be used with acdf/table.h. */
 int acdf_table(const AcdfFile* file, AcdfTable* out);
+#endif
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
  * there are (acdf/moved.h). */

@@ -20,7 +20,6 @@ typedef struct AcdfBrdf {
     uint32_t rows;                         /* axis 1, cos_theta_h */
     double total;                          /* sum of the bins' albedos */
     const AcdfBrdfTables* tables;          /* runtime tables; null: walk */
-    const struct AcdfBrdfVectors* vectors; /* acdf/brdf.h; null: several calls are made by scalar code */
 } AcdfBrdf;
 
 /* What serves a view: which rows or which tree, and the turn that brings wo into the plane of x and z. */

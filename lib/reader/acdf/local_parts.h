@@ -27,7 +27,6 @@ typedef struct AcdfLocal {
     const AcdfCompany* company;             /* null: to be used alone */
     AcdfPlaceTable places;                  /* its header is null where places are not told apart */
     AcdfPortalTable portals;                /* its header is null where there are none */
-    const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
     AcdfFast fast;                          /* the fast shape: the blend has no rows then, and roots are of grids */
 } AcdfLocal;
 

@@ -11,9 +11,12 @@
 #ifndef ACDF_MOVED_H
 #define ACDF_MOVED_H
 
+#include <acdf/sample.h>
+#ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/brdf.h>
 #include <acdf/local.h>
 #include <acdf/table.h>
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -47,6 +50,7 @@ static inline void acdf_move_environment(AcdfEnvironment* environment, const Acd
     ACDF_MOVE(AcdfCompany, environment->company);
 }
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 /* The same of what bins share: a part of the following. */
 static inline void acdf_move_blend(AcdfBlend* blend, const AcdfMove* moves, int count) {
     ACDF_MOVE(AcdfTiles, blend->tiles);
@@ -78,7 +82,6 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(uint16_t, local->fast.groups);
     ACDF_MOVE(uint8_t, local->fast.tiles);
     ACDF_MOVE(uint16_t, local->fast.upper);
-    local->vectors = 0; /* of this process */
 }
 
 /* The same of a BRDF. */
@@ -89,7 +92,6 @@ static inline void acdf_move_brdf(AcdfBrdf* brdf, const AcdfMove* moves, int cou
     ACDF_MOVE(AcdfViews, brdf->views);
     ACDF_MOVE(float, brdf->nodes);
     ACDF_MOVE(AcdfBrdfTables, brdf->tables);
-    brdf->vectors = 0;
 }
 
 /* The same of a table. */
@@ -100,6 +102,7 @@ static inline void acdf_move_table(AcdfTable* table, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfCompany, table->company);
     ACDF_MOVE(AcdfEntries, table->entries);
 }
+#endif
 #undef ACDF_MOVE
 
 #ifdef __cplusplus

@@ -1,8 +1,10 @@
 // The file as a container: header, chunk table, payloads.
 #include "check/chunk_table.h"
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include "check/kinds.h"
+#endif
+#include "inflate.h"
 #include "memory.h"
-
-#include <zlib.h>
 
 #include <cstdarg>
 #include <cstdio>
@@ -34,8 +36,9 @@ using u64 = std::uint64_t;
 using ull = unsigned long long; // for printf
 
 constexpr u8 magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
-
-u32 crc(u32 seed, const u8* bytes, u64 size) { return static_cast<u32>(crc32_z(seed, bytes, size)); }
+#ifdef ACDF_ENVIRONMENT_ONLY
+constexpr char only_environments[] = "this reader was compiled for environments of fit `variance` alone";
+#endif
 
 // ---- header ---------------------------------------------------------------------------------------------
 
@@ -123,8 +126,8 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
     const bool count_ok = header.chunk_count >= 1 && header.chunk_count <= ACDF_MAX_CHUNKS;
     const bool table_ok = count_ok && table_end <= size;
     if (table_ok) {
-        const u32 expected = crc(crc(0, bytes, offsetof(AcdfHeader, header_crc)), bytes + sizeof(AcdfHeader),
-                                 table_end - sizeof(AcdfHeader));
+        const u32 expected = crc32_of(crc32_of(0, bytes, offsetof(AcdfHeader, header_crc)),
+                                      bytes + sizeof(AcdfHeader), table_end - sizeof(AcdfHeader));
         if (expected != header.header_crc)
             report.add(2004, offsetof(AcdfHeader, header_crc),
                        "%08x is stored, %08x is right: header or chunk table are damaged", header.header_crc,
@@ -133,6 +136,10 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
     check_file_length(header, size, report);
     if (header.kind < ACDF_KIND_ENVIRONMENT || header.kind > ACDF_KIND_TABLE)
         report.add(2006, offsetof(AcdfHeader, kind), "kind %u is unknown", header.kind);
+#ifdef ACDF_ENVIRONMENT_ONLY
+    else if (header.kind != ACDF_KIND_ENVIRONMENT)
+        report.add(2006, offsetof(AcdfHeader, kind), "kind %u: %s", header.kind, only_environments);
+#endif
     for (u32 bit = 0; bit < 32; ++bit)
         if (header.required_features >> bit & 1)
             report.add(2007, offsetof(AcdfHeader, required_features),
@@ -283,11 +290,23 @@ void check_crcs(const ChunkTable& table, const u8* bytes, Report& report) {
     for (u32 i = 0; i < table.count && !report.stopped(); ++i) {
         const AcdfChunk& chunk = table.chunks[i];
         if (!table.inside[i]) continue;
-        const u32 right = crc(0, bytes + chunk.offset, chunk.stored_length);
+        const u32 right = crc32_of(0, bytes + chunk.offset, chunk.stored_length);
         if (right != chunk.crc)
             report.add(4001, chunk.offset, "'%s' is damaged: %08x is stored, %08x is right",
                        ChunkName(chunk.type).text, chunk.crc, right);
     }
+}
+
+// An environment by halvings.
+void check_halved_environment(const Payloads& payloads, Report& report, Parts& parts) {
+    const Payload& halvings = payloads.of[chunk_halvings];
+    if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
+        report.add(6035, halvings.at(0), "%s is there, too", payloads.of[chunk_tree].data ? "TREE" : "BINS");
+    if (parts.description->fit != ACDF_FIT_VARIANCE)
+        report.add(6035, halvings.at(0), "with fit %u", parts.description->fit);
+    if (!report.stopped()) check_halvings(halvings, report, parts);
+    if (!report.stopped())
+        check_environment(payloads.of[chunk_description], payloads.of[chunk_bins], report, parts);
 }
 
 } // namespace
@@ -310,34 +329,14 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     if (payloads.of[chunk_metadata].data && !report.stopped())
         check_metadata(payloads.of[chunk_metadata], report, parts);
     if (!parts.description || report.stopped()) return report.verdict();
-    TileBoxes boxes;
-    const bool fast =
-        header.kind == ACDF_KIND_LOCAL && (payloads.of[chunk_sums].data || payloads.of[chunk_grid].data);
-    if (belongs(chunk_tiles, header.kind)) // else rule 3013
-        check_tiles(payloads.of[chunk_tiles], payloads.of[chunk_rows], fast, report, parts, boxes);
-    if (fast && !report.stopped()) check_fast(payloads, boxes, report, parts);
-    const bool tiles_ok = parts.tiles || !boxes.given; // else bins could mean anything
-    if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind)) {
-        if (payloads.of[chunk_bins].data || payloads.of[chunk_tree].data)
-            report.add(6035, payloads.of[chunk_halvings].at(0), "%s is there, too",
-                       payloads.of[chunk_tree].data ? "TREE" : "BINS");
-        if (parts.description->fit != ACDF_FIT_VARIANCE)
-            report.add(6035, payloads.of[chunk_halvings].at(0), "with fit %u", parts.description->fit);
-        if (!report.stopped()) check_halvings(payloads.of[chunk_halvings], report, parts);
-    } else if (tiles_ok && !report.stopped())
-        check_tree(payloads.of[chunk_bins], payloads.of[chunk_tree], header.kind, boxes, report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && !report.stopped())
-        check_local_kind(description, payloads.of[chunk_local], boxes, report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_places].data && !fast && !report.stopped())
-        check_places(payloads.of[chunk_places], report, parts);
-    if (header.kind == ACDF_KIND_LOCAL && payloads.of[chunk_portals].data && !fast && !report.stopped())
-        check_portals(payloads.of[chunk_portals], report, parts);
-    if (header.kind == ACDF_KIND_BRDF && !report.stopped())
-        check_brdf_kind(description, payloads.of[chunk_views], report, parts);
-    if (header.kind == ACDF_KIND_ENVIRONMENT && !report.stopped())
-        check_environment(description, payloads.of[chunk_bins], report, parts);
-    if (header.kind == ACDF_KIND_TABLE && !report.stopped())
-        check_table_kind(description, payloads.of[chunk_bins], report, parts);
+    if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind))
+        check_halved_environment(payloads, report, parts);
+#ifdef ACDF_ENVIRONMENT_ONLY
+    else report.add(5002, description.at(offsetof(AcdfDescription, fit)), "fit %u has curves: %s",
+                    parts.description->fit, only_environments);
+#else
+    else check_kind(payloads, header.kind, report, parts);
+#endif
     if (payloads.of[chunk_company].data && belongs(chunk_company, header.kind) && !report.stopped())
         check_company(payloads.of[chunk_company], header.kind, report, parts);
     return report.verdict();

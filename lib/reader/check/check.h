@@ -3,6 +3,12 @@
 
 #include "check/rules.h"
 
+#include <acdf/halvings.h>
+#ifndef ACDF_ENVIRONMENT_ONLY
+#include <acdf/fast.h>
+#include <acdf/portals.h>
+#endif
+
 #include <cstdlib>
 #include <cstring>
 #include <type_traits>
@@ -62,6 +68,14 @@ struct Parts {
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
     std::uint32_t tree_units = 0;              ///< bins and tree: of curves alone
+    const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
+    const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
+    std::uint32_t metadata_count = 0;
+    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library
+    std::uint32_t halving_count = 0;
+    AcdfBlock inflated = {}; ///< of the inflated chunks, from take_block; the caller gives it back
+
+#ifndef ACDF_ENVIRONMENT_ONLY
     const AcdfViews* views = nullptr;          ///< of a BRDF
     const float* nodes = nullptr;              ///< views->theta_count
     const AcdfTiles* tiles = nullptr;          ///< null where bins share nothing
@@ -71,15 +85,10 @@ struct Parts {
     AcdfFast fast = {};                        ///< of the fast shape, which has no rows; else null
     const AcdfLocalHeader* local = nullptr;    ///< of local environments
     const AcdfLight* lights = nullptr;         ///< local->light_count
-    const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
     AcdfPlaceTable places = {};                ///< of local environments; its header is null where absent
     AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
-    const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
-    std::uint32_t metadata_count = 0;
-    AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library
-    std::uint32_t halving_count = 0;
-    class TreeSurvey* survey = nullptr; ///< given by the caller: made where it costs nothing
-    AcdfBlock inflated = {};            ///< of the inflated chunks, from take_block; the caller gives it back
+    class TreeSurvey* survey = nullptr;        ///< given by the caller: made where it costs nothing
+#endif
 };
 
 /// The checks themselves, on bytes aligned to 8. `parts` is complete where the verdict has no errors.

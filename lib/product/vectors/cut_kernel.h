@@ -1,0 +1,142 @@
+// Draws from cuts (acdf/product/cut_sample.h) over vectors, operation by operation: the way to a part and its lights here,
+// tiles and directions as LocalBatch draws them. Internal linkage: see local_kernel.h.
+#pragma once
+
+#include "batch/local_kernel.h"
+#include "product/vectors/alone.h"
+
+#include <acdf/product/cut_batch.h>
+
+#include <cstddef>
+
+namespace {
+
+/// What lanes have drawn of parts.
+struct DrawnParts {
+    alignas(64) double u[2][kRoom];
+    alignas(64) long long part[kRoom];
+};
+
+/// A mixture that is walked is a part's.
+struct CutWalks : Walks {
+    alignas(64) double probability[kRoom];
+};
+
+// ---- parts -----------------------------------------------------------------------------------------------------
+
+/* Two doubles of each lane's element of an array, from a place in it on. */
+template <class T>
+ACDF_LANE void pairs_of(const T* array, Integer number, std::size_t place, Vector out[2]) {
+    const double* from[ACDF_WIDTH];
+    pointers_of(number * (long long)sizeof(T) + (long long)((std::uintptr_t)array + place), from);
+    gather_pairs(from, out);
+}
+
+/* acdf_cut_draw of some lanes. */
+ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::size_t count, DrawnParts* drawn) {
+    double u[ACDF_CUT_BATCH][2];
+    int guess[ACDF_CUT_BATCH];
+    for (std::size_t i = 0; i < count; ++i) {
+        for (int axis = 0; axis < 2; ++axis) u[i][axis] = acdf_cut_number(given[i][axis]);
+        guess[i] = acdf_cut_guess(&cut, u[i], 0);
+        acdf_cut_part_ahead(&cut, guess[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        drawn->part[i] = acdf_cut_draw_guessed(&cut, guess[i], u[i]) - cut.part;
+        for (int axis = 0; axis < 2; ++axis) drawn->u[axis][i] = u[i][axis];
+    }
+    for (std::size_t i = count; i % ACDF_WIDTH != 0; ++i) {
+        drawn->part[i] = 0;
+        for (auto& axis : drawn->u) axis[i] = 0.0;
+    }
+}
+
+// ---- lights and mixtures ---------------------------------------------------------------------------------------
+
+/* acdf_cut_draw_light of the lanes of a mask, into cells. */
+ACDF_LANE void draw_cut_lights(const AcdfLocal& local, const AcdfCut& cut, const DrawnParts& drawn, std::size_t at,
+                               unsigned mask, Cells* cells) {
+    for (; mask; mask &= mask - 1) {
+        const std::size_t lane = at + acdf_lowest_bit(mask), to = cells->count++;
+        double u[2] = {drawn.u[0][lane], drawn.u[1][lane]};
+        AcdfRange range[2];
+        cells->tile[to] =
+            acdf_cut_draw_light(&local, &cut, &cut.part[drawn.part[lane]], u, range, &cells->probability[to]);
+        for (int axis = 0; axis < 2; ++axis) cells->u[axis][to] = u[axis];
+        cells->lane[to] = (long long)lane;
+    }
+}
+
+/* acdf_cut_draws_light, and what draws from a part's mixture begins its walk. Returns the lanes that neither does:
+ * those of mixtures without weight. */
+ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
+                               const DrawnParts& drawn, std::size_t at, unsigned there, CutWalks* walks,
+                               Cells* cells) {
+    const Integer part = loaded(&drawn.part[at]);
+    Vector rows[2], last[2], sums[2], rest[2]; /* pairs of fields; some are of no interest */
+    pairs_of(cut.part, part, offsetof(AcdfCutPart, weight), rows);
+    pairs_of(cut.part, part, offsetof(AcdfCutPart, weight) + 16, last);
+    pairs_of(cut.part, part, offsetof(AcdfCutPart, lights), sums);
+    pairs_of(cut.part, part, offsetof(AcdfCutPart, probability), rest);
+    static_assert(offsetof(AcdfCutPart, sum) == offsetof(AcdfCutPart, lights) + 8 &&
+                  offsetof(AcdfCutPart, node) == offsetof(AcdfCutPart, probability) + 8 &&
+                  offsetof(AcdfCutPart, entry) == offsetof(AcdfCutPart, node) + 2);
+    const Vector u[2] = {loaded(&drawn.u[0][at]), loaded(&drawn.u[1][at])}, lights = sums[0], sum = sums[1];
+    const Vector of_lights = u[0] * sum, mixture = (rows[0] + rows[1]) + last[0];
+    const Mask lit =
+        both(less(all(0.0), lights), either(less(of_lights, lights), without(all_lanes(), less(lights, sum))));
+    const unsigned light = lanes(lit) & there, mixed = lanes(less(all(0.0), mixture)) & (there ^ light);
+    const Vector own = unit_interval((of_lights - lights) / (sum - lights));
+    const std::size_t to = walks->count;
+    for (int i = 0; i < kRows; ++i)
+        store_packed(&walks->weight[i][to], i == 0 ? rows[0] : i == 1 ? rows[1] : last[0], mixed);
+    store_packed(&walks->x[0][to], own * mixture, mixed);
+    store_packed(&walks->x[1][to], u[1] * mixture, mixed);
+    store_packed(&walks->mixture[to], mixture, mixed);
+    store_packed(&walks->sum[to], sum, mixed);
+    store_packed(&walks->probability[to], rest[0], mixed);
+    store_packed(&walks->node[to], (Integer)((Unsigned)(Integer)rest[1] >> 16) & 0xFFFF, mixed);
+    store_packed(&walks->lane[to], numbers_from(at), mixed);
+    walks->count += (std::size_t)__builtin_popcount(mixed);
+    for (std::size_t i = to; i < walks->count; ++i)
+        for (int k = 0; k < kRows; ++k) ACDF_PREFETCH(point.codes[k] + (walks->node[i] & 0x7FFF));
+    draw_cut_lights(local, cut, drawn, at, light, cells);
+    return there ^ light ^ mixed;
+}
+
+// ---- all of an array -------------------------------------------------------------------------------------------
+
+/* acdf_cut_sample of up to ACDF_CUT_BATCH lanes. */
+ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
+                              const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
+    DrawnParts drawn;
+    CutWalks walks;
+    Cells cells;
+    Boxes done;
+    std::uint64_t lost = 0;
+    walks.count = cells.count = 0;
+    find_parts(cut, u, count, &drawn);
+    for (std::size_t at = 0; at < count; at += ACDF_WIDTH) {
+        const unsigned there = (1u << std::min<std::size_t>(count - at, ACDF_WIDTH)) - 1u;
+        lost |= (std::uint64_t)enter_parts(local, point, cut, drawn, at, there, &walks, &cells) << at;
+    }
+    walk(*local.tables, SameRows{point.codes}, &walks);
+    end_walks(
+        local, walks, [&](std::size_t at, Vector of_all) { return loaded(&walks.probability[at]) * of_all; },
+        &cells);
+    find_cells<false>(local, cells, &done);
+    lost |= place_cells(local, cells, done, out);
+    for (; lost; lost &= lost - 1) {
+        const auto lane = (std::size_t)__builtin_ctzll(lost);
+        out[lane] = acdf::alone::cut_sample(local, point, cut, u[lane]);
+    }
+}
+
+ACDF_LANE void draw_cut(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
+                        const double (*u)[2], std::size_t count, AcdfDirectionSample* out) {
+    constexpr std::size_t batch = ACDF_CUT_BATCH;
+    for (std::size_t first = 0; first < count; first += batch)
+        draw_cut_block(local, point, cut, u + first, std::min(count - first, batch), out + first);
+}
+
+} // namespace
