@@ -88,13 +88,6 @@ int acdf_brdf(const AcdfFile* file, AcdfBrdf* out) { return of_kind(file, ACDF_K
 int acdf_table(const AcdfFile* file, AcdfTable* out) {
     return of_kind(file, ACDF_KIND_TABLE, &AcdfFile::table, out);
 }
-#endif
-
-AcdfKind acdf_kind(const AcdfFile* file) { return file->kind(); }
-uint64_t acdf_table_bytes(const AcdfFile* file) { return file->table_bytes; }
-uint64_t acdf_size(const AcdfFile* file) { return file->size; }
-const AcdfHeader* acdf_header(const AcdfFile* file) { return reinterpret_cast<const AcdfHeader*>(file->bytes); }
-const AcdfDescription* acdf_description(const AcdfFile* file) { return file->description; }
 
 int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
     int count = 0;
@@ -103,6 +96,13 @@ int acdf_memory(const AcdfFile* file, AcdfMove* moves) {
         if (file->memory[i].data) moves[count++] = {file->memory[i].data, file->memory[i].bytes, nullptr};
     return count;
 }
+#endif
+
+AcdfKind acdf_kind(const AcdfFile* file) { return file->kind(); }
+uint64_t acdf_table_bytes(const AcdfFile* file) { return file->table_bytes; }
+uint64_t acdf_size(const AcdfFile* file) { return file->size; }
+const AcdfHeader* acdf_header(const AcdfFile* file) { return reinterpret_cast<const AcdfHeader*>(file->bytes); }
+const AcdfDescription* acdf_description(const AcdfFile* file) { return file->description; }
 
 const AcdfAxis* acdf_axis(const AcdfFile* file, uint32_t axis) {
     return axis < file->description->axis_count ? &file->axes[axis] : nullptr;

@@ -1,5 +1,6 @@
 // `File`: ownership and access. What is right and wrong is decided in check*.cpp.
 #include "check/check.h"
+#include "check/rule_codes.h"
 #include "halved_tree.h"
 #include "input_file.h"
 #include "memory.h"
@@ -38,13 +39,19 @@ void tidy(char* message) {
         if (static_cast<u8>(*c) < 0x20 || *c == 0x7F) *c = '?';
 }
 
-Status failure(const Finding& finding) {
+// `detail` may be empty.
+Status failure(int rule, u64 offset, const char* detail) {
     Status status;
-    status.code = finding.rule->code;
-    status.rule = finding.rule->number;
-    status.offset = finding.offset;
-    std::snprintf(status.message, sizeof status.message, "%s (rule %d at byte %llu: %s)", finding.detail,
-                  finding.rule->number, static_cast<ull>(finding.offset), finding.rule->sentence);
+    status.code = code_of(rule);
+    status.rule = rule;
+    status.offset = offset;
+#ifdef ACDF_ENVIRONMENT_ONLY
+    std::snprintf(status.message, sizeof status.message, "%s%srule %d of SPEC.md is broken at byte %llu", detail,
+                  *detail ? ": " : "", rule, static_cast<ull>(offset));
+#else
+    std::snprintf(status.message, sizeof status.message, "%s (rule %d at byte %llu: %s)", detail, rule,
+                  static_cast<ull>(offset), find_rule(rule)->sentence);
+#endif
     tidy(status.message);
     return status;
 }
@@ -54,15 +61,12 @@ __attribute__((format(printf, 2, 3)))
 #endif
 Status
 failure(int rule, const char* format, ...) {
-    Finding finding;
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
     std::vsnprintf(detail, sizeof detail, format, arguments);
     va_end(arguments);
-    finding.rule = find_rule(rule);
-    finding.detail = detail;
-    return failure(finding);
+    return failure(rule, u64{0}, detail);
 }
 
 // Puts the path in front; of a long one the end, which tells files apart.
@@ -79,8 +83,12 @@ void name_file(Status& status, const char* path) {
 }
 
 bool first_error(const Finding& finding, void* status) {
-    if (finding.rule->severity == Severity::warning) return true;
-    *static_cast<Status*>(status) = failure(finding);
+    if (code_of(finding.number) == ErrorCode::none) return true;
+#ifdef ACDF_ENVIRONMENT_ONLY
+    *static_cast<Status*>(status) = failure(finding.number, finding.offset, "");
+#else
+    *static_cast<Status*>(status) = failure(finding.number, finding.offset, finding.detail);
+#endif
     return false;
 }
 
@@ -254,6 +262,8 @@ Text File::metadata(const char* key) const noexcept {
     return {value.data, value.size};
 }
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 int File::memory(AcdfMove* moves) const noexcept { return acdf_memory(opened_, moves); }
+#endif
 
 } // namespace acdf

@@ -146,10 +146,10 @@ Sampler of_view(const std::string& name, const BrdfView& view) {
 }
 
 /// All queries, in arrays as BrdfBatch takes them.
-struct Queries {
+struct QueryArrays {
     std::vector<float> wo, wi;
     std::vector<double> u;
-    Queries() {
+    QueryArrays() {
         for (const Query& q : queries()) {
             wo.insert(wo.end(), q.wo, q.wo + 3);
             wi.insert(wi.end(), q.wi, q.wi + 3);
@@ -163,8 +163,8 @@ struct Queries {
         return reinterpret_cast<const double(*)[2]>(&u[2 * first]);
     }
 };
-const Queries& queries() {
-    static const Queries made;
+const QueryArrays& query_arrays() {
+    static const QueryArrays made;
     return made;
 }
 
@@ -173,11 +173,11 @@ Sampler of_batches(const std::string& name, const BrdfBatch& batch) {
     static std::vector<float> pdfs(kBatch);
     return {name,
             [&batch](std::size_t first, std::size_t count) {
-                batch.sample(Queries::vectors(queries().wo, first), queries().numbers(first), count, samples.data());
+                batch.sample(QueryArrays::vectors(query_arrays().wo, first), query_arrays().numbers(first), count, samples.data());
                 keep(samples[0]);
             },
             [&batch](std::size_t first, std::size_t count) {
-                batch.pdf(Queries::vectors(queries().wo, first), Queries::vectors(queries().wi, first), count, pdfs.data());
+                batch.pdf(QueryArrays::vectors(query_arrays().wo, first), QueryArrays::vectors(query_arrays().wi, first), count, pdfs.data());
                 keep(pdfs[0]);
             }};
 }

@@ -18,18 +18,20 @@
 
 #include <acdf/allocator.h>
 #include <acdf/layout.h>
-#include <acdf/linked.h>
-#include <acdf/moved.h>
 #include <acdf/sample.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/brdf.h>
+#include <acdf/linked.h>
 #include <acdf/local.h>
+#include <acdf/moved.h>
 #include <acdf/table.h>
 #endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+typedef struct AcdfFile AcdfFile;
 
 /* What kind of failure; the numbers are stable, and those of acdf::ErrorCode. */
 typedef enum AcdfErrorCode {
@@ -86,11 +88,11 @@ int acdf_local(const AcdfFile* file, AcdfLocal* out);
 int acdf_brdf(const AcdfFile* file, AcdfBrdf* out);
 /* The same for a table file, to be used with acdf/table.h. */
 int acdf_table(const AcdfFile* file, AcdfTable* out);
-#endif
 
 /* The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how many
  * there are (acdf/moved.h). */
 int acdf_memory(const AcdfFile* file, AcdfMove* moves);
+#endif
 
 /* What a file says of itself, and its parts as they lie in it: valid until it is closed. `file` is not null. */
 AcdfKind acdf_kind(const AcdfFile* file);

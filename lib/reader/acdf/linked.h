@@ -35,7 +35,6 @@ int acdf_density_environment_array(const AcdfFile* file, const float* directions
 /* The random numbers that draw each direction; NaN where the density is 0. */
 int acdf_invert_environment_array(const AcdfFile* file, const float* directions, size_t count, double* u);
 
-#ifndef ACDF_ENVIRONMENT_ONLY
 /* ---- local environments ---- */
 
 /* Density 0, and the direction unset, where the normal is zero or NaN or nothing shines on it. */
@@ -81,8 +80,6 @@ int acdf_density_table_array(const AcdfFile* file, const uint32_t* index, size_t
 /* The random numbers that draw each point; NaN where the density is 0. */
 int acdf_invert_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x, size_t count,
                             double* u);
-
-#endif
 
 #ifdef __cplusplus
 }

@@ -11,12 +11,9 @@
 #ifndef ACDF_MOVED_H
 #define ACDF_MOVED_H
 
-#include <acdf/sample.h>
-#ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/brdf.h>
 #include <acdf/local.h>
 #include <acdf/table.h>
-#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -50,7 +47,6 @@ static inline void acdf_move_environment(AcdfEnvironment* environment, const Acd
     ACDF_MOVE(AcdfCompany, environment->company);
 }
 
-#ifndef ACDF_ENVIRONMENT_ONLY
 /* The same of what bins share: a part of the following. */
 static inline void acdf_move_blend(AcdfBlend* blend, const AcdfMove* moves, int count) {
     ACDF_MOVE(AcdfTiles, blend->tiles);
@@ -102,7 +98,6 @@ static inline void acdf_move_table(AcdfTable* table, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfCompany, table->company);
     ACDF_MOVE(AcdfEntries, table->entries);
 }
-#endif
 #undef ACDF_MOVE
 
 #ifdef __cplusplus

@@ -22,8 +22,8 @@
 #include <cstdint>
 
 struct AcdfFile;
-struct AcdfMove;
 #ifndef ACDF_ENVIRONMENT_ONLY
+struct AcdfMove;
 struct AcdfBlend;
 struct AcdfFast;
 #endif
@@ -121,10 +121,6 @@ public:
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept;
 
-    /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
-    /// many there are (acdf/moved.h).
-    int memory(AcdfMove* moves) const noexcept;
-
     /// Metadata pairs; `count` is 0 where the file carries none.
     std::uint32_t metadata_count() const noexcept;
     void metadata(std::uint32_t i, Text& key, Text& value) const noexcept;
@@ -141,6 +137,9 @@ public:
     BrdfView brdf() const noexcept;
     /// The view of a table file: only where kind() == ACDF_KIND_TABLE.
     TableView table() const noexcept;
+    /// The memory that views point into, to be copied: moves[ACDF_MAX_MOVES], `to` of which are null. Returns how
+    /// many there are (acdf/moved.h).
+    int memory(AcdfMove* moves) const noexcept;
     /// What bins share; `tiles` is null where each has a tree of its own.
     const AcdfBlend& blend() const noexcept;
     /// Of the fast shape of local environments; its pointers are null where a file has another one.

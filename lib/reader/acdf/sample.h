@@ -19,6 +19,7 @@
 #include <acdf/random.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/tree.h>
+#include <acdf/widen.h>
 #endif
 
 #ifdef __cplusplus

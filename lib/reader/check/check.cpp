@@ -1,32 +1,36 @@
 // The file as a container: header, chunk table, payloads.
 #include "check/chunk_table.h"
+#include "check/rule_codes.h"
+#include "inflate.h"
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/kinds.h"
+#include "check/signatures.h"
 #endif
-#include "inflate.h"
-#include "memory.h"
 
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 namespace acdf {
 
-void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
+void Report::pass(const Finding& finding) noexcept {
     if (stopped_) return;
-    Finding finding;
+    ++(code_of(finding.number) == ErrorCode::none ? verdict_.warnings : verdict_.errors);
+    if (!sink_(finding, context_)) stopped_ = true;
+}
+
+#ifdef ACDF_ENVIRONMENT_ONLY
+void Report::add(int rule, std::uint64_t offset) noexcept { pass({rule, offset}); }
+#else
+void Report::add(int rule, std::uint64_t offset, const char* format, ...) noexcept {
     char detail[160];
     va_list arguments;
     va_start(arguments, format);
     std::vsnprintf(detail, sizeof detail, format, arguments);
     va_end(arguments);
-    finding.rule = find_rule(rule);
-    finding.offset = offset;
-    finding.detail = detail;
-    ++(finding.rule->severity == Severity::error ? verdict_.errors : verdict_.warnings);
-    if (!sink_(finding, context_)) stopped_ = true;
+    pass({rule, offset, find_rule(rule), detail});
 }
+#endif
 
 namespace {
 
@@ -36,62 +40,17 @@ using u64 = std::uint64_t;
 using ull = unsigned long long; // for printf
 
 constexpr u8 magic[ACDF_MAGIC_SIZE] = ACDF_MAGIC_BYTES;
-#ifdef ACDF_ENVIRONMENT_ONLY
-constexpr char only_environments[] = "this reader was compiled for environments of fit `variance` alone";
-#endif
 
 // ---- header ---------------------------------------------------------------------------------------------
-
-struct Signature {
-    const char* bytes;
-    std::size_t size;
-    const char* text;
-};
-
-// What people pass by mistake, and what transfers do to the magic.
-constexpr Signature signatures[] = {
-    {"\x76\x2f\x31\x01", 4, "this is an OpenEXR image; `acdf env` makes an .acdf file of it"},
-    {"#?RADIANCE", 10, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
-    {"#?RGBE", 6, "this is a Radiance HDR image; `acdf env` makes an .acdf file of it"},
-    {"\x89PNG", 4, "this is a PNG image, which holds no radiance"},
-    {"\x93NUMPY", 6, "this is a NumPy array; `acdf table` makes an .acdf file of it"},
-    {"II*\0", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
-    {"MM\0*", 4, "this is a TIFF image; `acdf env` makes an .acdf file of it"},
-    {"tensor_file", 11, "this is an RGL .bsdf file; `acdf brdf` makes an .acdf file of it"},
-    {"version https://git-lfs", 23, "this is a Git LFS pointer, not the file itself; fetch that (git lfs pull)"},
-    {"/annex/objects/", 15, "this is a git-annex pointer, not the file itself; fetch that (git annex get)"},
-    {"<!", 2, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"<html", 5, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"<HTML", 5, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"<?xml", 5, "this is a web page, as servers send in place of a file; download the file itself"},
-    {"\x1f\x8b", 2, "this is a gzip file; inflate it first"},
-    {"\xab\x41\x43\x44\x46  \xbb\x0a\x1a\x0a", 11,
-     "a transfer in text mode turned CR LF into LF; transfer it as binary"},
-    {"\xab\x41\x43\x44\x46  \xbb\x0d\x0d\x0a", 11,
-     "a transfer in text mode turned LF into CR LF; transfer it as binary"},
-    {"\xab\x41\x43\x44\x46  \xbb\x0d\x0a\x1a\x0d\x0a", 13,
-     "Git turned LF into CR LF; mark it as binary (in .gitattributes: -text)"},
-    {"\x2b\x41\x43\x44\x46  \x3b", 8, "a transfer cut the highest bit of each byte; transfer it as binary"},
-    {"\xab\x41\x43\x44\x46", 5, "it starts like an .acdf file, but its magic is damaged"},
-};
-
-const char* what_is_it(const u8* bytes, u64 size) {
-    for (const Signature& s : signatures)
-        if (size >= s.size && std::memcmp(bytes, s.bytes, s.size) == 0) return s.text;
-    u32 dims[3];
-    constexpr u64 merl_size = 12 + u64{3} * 8 * 90 * 90 * 180;
-    if (size == merl_size) {
-        std::memcpy(dims, bytes, sizeof dims);
-        if (dims[0] == 90 && dims[1] == 90 && dims[2] == 180)
-            return "this is a MERL BRDF; `acdf brdf` makes an .acdf file of it";
-    }
-    return "this is not an .acdf file";
-}
 
 // False where the rest cannot be read with any meaning.
 bool check_start(const u8* bytes, u64 size, Report& report) {
     if (size != 0 && std::memcmp(bytes, magic, size < sizeof magic ? size : sizeof magic) != 0) {
+#ifdef ACDF_ENVIRONMENT_ONLY
+        report.add(2002, 0);
+#else
         report.add(2002, 0, "%s", what_is_it(bytes, size));
+#endif
         return false;
     }
     if (size < sizeof(AcdfHeader)) {
@@ -138,7 +97,7 @@ bool check_header(const u8* bytes, u64 size, Report& report) {
         report.add(2006, offsetof(AcdfHeader, kind), "kind %u is unknown", header.kind);
 #ifdef ACDF_ENVIRONMENT_ONLY
     else if (header.kind != ACDF_KIND_ENVIRONMENT)
-        report.add(2006, offsetof(AcdfHeader, kind), "kind %u: %s", header.kind, only_environments);
+        report.add(2006, offsetof(AcdfHeader, kind));
 #endif
     for (u32 bit = 0; bit < 32; ++bit)
         if (header.required_features >> bit & 1)
@@ -194,7 +153,12 @@ void check_type_and_flags(const ChunkTable& table, u32 i, u32 kind, Report& repo
             report.add(3003, at, "chunks %u and %u are both '%s'", j, i, name.text);
             break;
         }
-    if (chunk.codec > (chunk.type == ACDF_CHUNK_TREE ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB))
+#ifdef ACDF_ENVIRONMENT_ONLY
+    const u32 last_codec = ACDF_CODEC_ZLIB;
+#else
+    const u32 last_codec = chunk.type == ACDF_CHUNK_TREE ? ACDF_CODEC_PLANES : ACDF_CODEC_ZLIB;
+#endif
+    if (chunk.codec > last_codec)
         report.add(3005, at + offsetof(AcdfChunk, codec), "codec %u of '%s' is unknown", chunk.codec, name.text);
     if ((chunk.flags & ~ACDF_CHUNK_FLAG_CRITICAL) != 0)
         report.add(3009, at + offsetof(AcdfChunk, flags), "flags %08x of '%s'", chunk.flags, name.text);
@@ -332,41 +296,13 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
     if (payloads.of[chunk_halvings].data && belongs(chunk_halvings, header.kind))
         check_halved_environment(payloads, report, parts);
 #ifdef ACDF_ENVIRONMENT_ONLY
-    else report.add(5002, description.at(offsetof(AcdfDescription, fit)), "fit %u has curves: %s",
-                    parts.description->fit, only_environments);
+    else report.add(5002, description.at(offsetof(AcdfDescription, fit)));
 #else
     else check_kind(payloads, header.kind, report, parts);
 #endif
     if (payloads.of[chunk_company].data && belongs(chunk_company, header.kind) && !report.stopped())
         check_company(payloads.of[chunk_company], header.kind, report, parts);
     return report.verdict();
-}
-
-Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
-                 const Limits& limits) noexcept {
-    const u8* data = static_cast<const u8*>(bytes);
-    void* copy = nullptr;
-    Parts parts;
-    Verdict verdict;
-    if (size > limits.max_file_bytes) {
-        Report report(sink, context);
-        report.add(1004, 0, "%llu bytes, the limit is %llu", static_cast<ull>(size),
-                   static_cast<ull>(limits.max_file_bytes));
-        return report.verdict();
-    }
-    if (reinterpret_cast<std::uintptr_t>(data) % alignof(AcdfHeader) != 0) {
-        copy = std::malloc(size ? size : 1);
-        if (!copy) {
-            Report report(sink, context);
-            report.add(1003, 0, "%llu bytes for a copy", static_cast<ull>(size));
-            return report.verdict();
-        }
-        data = static_cast<const u8*>(std::memcpy(copy, bytes, size));
-    }
-    verdict = check(data, size, limits, sink, context, parts);
-    give_block({}, parts.inflated);
-    std::free(copy);
-    return verdict;
 }
 
 } // namespace acdf

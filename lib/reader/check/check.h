@@ -1,9 +1,12 @@
 // Every check of a file, once: `File` stops at the first error, `acdf validate` reports all.
 #pragma once
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 #include "check/rules.h"
+#endif
 
 #include <acdf/halvings.h>
+#include <acdf/reader.h>
 #ifndef ACDF_ENVIRONMENT_ONLY
 #include <acdf/fast.h>
 #include <acdf/portals.h>
@@ -17,9 +20,12 @@ namespace acdf {
 
 /// A broken rule.
 struct Finding {
-    const Rule* rule = nullptr;
+    int number = 0;           ///< of the rule
     std::uint64_t offset = 0; ///< byte in the file; for a compressed chunk that of its first stored byte
-    const char* detail = "";  ///< what was found and, if it helps, what to do; valid during the call
+#ifndef ACDF_ENVIRONMENT_ONLY
+    const Rule* rule = nullptr;
+    const char* detail = ""; ///< what was found and, if it helps, what to do; valid during the call
+#endif
 };
 
 /// Called for each finding; returns false to stop.
@@ -30,6 +36,7 @@ struct Verdict {
     bool valid() const noexcept { return errors == 0; }
 };
 
+#ifndef ACDF_ENVIRONMENT_ONLY
 /// Reports every finding that the checks can go on to, in the order of the rules' ranges. Any bytes, at any
 /// alignment; reads nothing outside them; linear in the size and in what the compressed chunks inflate to.
 Verdict validate(const void* bytes, std::size_t size, FindingSink sink, void* context,
@@ -48,6 +55,7 @@ Verdict validate(const void* bytes, std::size_t size, Sink&& sink, const Limits&
         },
         const_cast<void*>(static_cast<const void*>(&sink)), limits);
 }
+#endif
 
 /// A length in META, at any alignment.
 inline std::uint32_t load_u32(const std::uint8_t* bytes) noexcept {

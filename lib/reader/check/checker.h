@@ -10,11 +10,20 @@ class Report {
 public:
     Report(FindingSink sink, void* context) noexcept : sink_(sink), context_(context) {}
 
+#ifdef ACDF_ENVIRONMENT_ONLY
+    /// Details are left out.
+    void add(int rule, std::uint64_t offset) noexcept;
+    template <class... Details>
+    void add(int rule, std::uint64_t offset, const Details&...) noexcept {
+        add(rule, offset);
+    }
+#else
 #if defined(__GNUC__)
     __attribute__((format(printf, 4, 5)))
 #endif
     void
     add(int rule, std::uint64_t offset, const char* format, ...) noexcept;
+#endif
 
     bool stopped() const noexcept { return stopped_; }
     const Verdict& verdict() const noexcept { return verdict_; }
@@ -24,6 +33,8 @@ private:
     void* context_;
     Verdict verdict_;
     bool stopped_ = false;
+
+    void pass(const Finding& finding) noexcept;
 };
 
 /// The bytes of one chunk, inflated if they were compressed. `data` is null where they cannot be read.

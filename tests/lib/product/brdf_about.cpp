@@ -76,14 +76,14 @@ TEST(BrdfAbout, DensitiesAreThoseOfCellsNearby) {
         const TablesPair pair(spec.encode());
         const AcdfBrdf brdf = pair.fast.brdf().data();
         if (!brdf.tables || !brdf.tables->grid) continue;
-        const Batch batch(pair.plain.brdf(), 4000);
+        const Queries asked(pair.plain.brdf(), 4000);
         for (std::size_t first = 0; first < 4000; first += 100) {
             AcdfBrdfView view;
-            if (!acdf_brdf_view(&brdf, batch.wo()[first], &view) || !(view.pair[0] + view.pair[1] > 0.0)) continue;
-            const std::vector<float> pdf = about(brdf, view, batch.wi() + first, 100);
+            if (!acdf_brdf_view(&brdf, asked.wo()[first], &view) || !(view.pair[0] + view.pair[1] > 0.0)) continue;
+            const std::vector<float> pdf = about(brdf, view, asked.wi() + first, 100);
             for (std::size_t i = 0; i < 100; ++i) {
-                ASSERT_TRUE(is_near(brdf, view, batch.wi()[first + i], pdf[i])) << first + i;
-                ASSERT_EQ(about(brdf, view, batch.wi() + first + i, 1)[0], pdf[i]) << "alone";
+                ASSERT_TRUE(is_near(brdf, view, asked.wi()[first + i], pdf[i])) << first + i;
+                ASSERT_EQ(about(brdf, view, asked.wi() + first + i, 1)[0], pdf[i]) << "alone";
             }
         }
     }
@@ -107,12 +107,12 @@ TEST(BrdfAbout, WhateverIsGivenDensitiesAreNumbers) {
 TEST(BrdfAbout, WithoutATableOfCellsTheyAreExact) {
     const TablesPair pair(many_borders().encode());
     const AcdfBrdf brdf = pair.plain.brdf().data();
-    const Batch batch(pair.plain.brdf(), 100);
+    const Queries asked(pair.plain.brdf(), 100);
     AcdfBrdfView view;
     const float wo[3] = {0.6f, 0.0f, 0.8f};
     ASSERT_TRUE(acdf_brdf_view(&brdf, wo, &view));
-    const std::vector<float> pdf = about(brdf, view, batch.wi(), 100);
-    for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(pdf[i], acdf_brdf_view_pdf(&brdf, &view, batch.wi()[i]));
+    const std::vector<float> pdf = about(brdf, view, asked.wi(), 100);
+    for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(pdf[i], acdf_brdf_view_pdf(&brdf, &view, asked.wi()[i]));
 }
 
 } // namespace

@@ -7,7 +7,6 @@
 #include "tests/lib/reader/local_loaded.h"
 #include "tests/lib/reader/local_random.h"
 
-
 #include <acdf/product/product.h>
 
 #include <algorithm>

@@ -97,20 +97,20 @@ void compare_brdf_draw(const BrdfPoint& point, std::uint32_t n0, std::uint32_t n
 }
 
 BrdfCounted compare_brdf(const WalkedFile& file, std::size_t count) {
-    const Batch batch(file.file.brdf(), count);
+    const Queries asked(file.file.brdf(), count);
     BrdfCounted counted, ends;
     for (std::size_t i = 0; i < count && !testing::Test::HasFatalFailure(); ++i) {
-        const BrdfPoint point(file, batch.wo()[i]);
+        const BrdfPoint point(file, asked.wo()[i]);
         std::uint32_t n[2];
         bool inside = true; // else they, and what they draw, lie on the borders of cells
         for (int k = 0; k < 2; ++k) {
-            const double u = batch.u()[i][k];
+            const double u = asked.u()[i][k];
             inside = inside && u > 1e-6 && u < 1.0 - 1e-6 && u != 0.5;
             n[k] = u > 0.0 ? static_cast<std::uint32_t>(std::min(u * 0x1p32, 0x1p32 - 1.0)) : 0;
         }
         SCOPED_TRACE(i);
         compare_brdf_draw(point, n[0], n[1], inside ? counted : ends);
-        compare_brdf_density(point, batch.wi()[i], inside ? counted : ends); // half of them are draws
+        compare_brdf_density(point, asked.wi()[i], inside ? counted : ends); // half of them are draws
     }
     return counted;
 }
