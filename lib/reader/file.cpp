@@ -138,7 +138,7 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
     file.bins = parts.bins;
     file.tree = parts.tree;
     file.tree_units = parts.tree_units;
-    file.company = parts.company;
+    file.partner = parts.partner;
     file.metadata = parts.metadata;
     file.metadata_count = parts.metadata_count;
     if (file.kind() != ACDF_KIND_ENVIRONMENT) return;
@@ -148,7 +148,7 @@ void take_parts(const Parts& parts, AcdfFile& file) noexcept {
     file.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
     file.environment.total = parts.description->total;
     file.environment.parameterization = parts.description->parameterization;
-    file.environment.company = parts.company;
+    file.environment.partner = parts.partner;
     file.environment.tree_units = parts.tree_units;
 }
 
@@ -245,7 +245,7 @@ bool File::has_bins() const noexcept { return opened_->bins != nullptr; }
 const std::uint8_t* File::tree() const noexcept { return opened_->tree; }
 std::uint32_t File::tree_units() const noexcept { return opened_->tree_units; }
 std::uint64_t File::size() const noexcept { return opened_->size; }
-const AcdfCompany* File::company() const noexcept { return opened_->company; }
+const AcdfPartner* File::partner() const noexcept { return opened_->partner; }
 std::uint64_t File::table_bytes() const noexcept { return opened_->table_bytes; }
 std::uint32_t File::metadata_count() const noexcept { return opened_->metadata_count; }
 EnvironmentView File::environment() const noexcept { return EnvironmentView(opened_->environment); }

@@ -33,14 +33,14 @@ void make_local(const Parts& parts, bool tables, AcdfFile& file) {
     local.environment.rows = parts.axes[ACDF_AXIS_THETA].resolution;
     local.environment.total = description.total;
     local.environment.parameterization = description.parameterization;
-    local.environment.company = parts.company;
+    local.environment.partner = parts.partner;
     local.environment.tree_units = parts.tree_units;
-    local.company = parts.company;
+    local.partner = parts.partner;
     local.bins = parts.bins;
-    local.lights = parts.lights;
-    local.light_count = parts.local->light_count;
+    local.bright_tiles = parts.bright_tiles;
+    local.bright_tile_count = parts.local->bright_tile_count;
     local.cosine_share = static_cast<double>(parts.local->cosine_share);
-    local.places = parts.places;
+    local.visibility = parts.visibility;
     local.portals = parts.portals;
     local.fast = parts.fast;
     if (description.axis_count == 3) { // an octahedron's 4 n^2 + 2 corners
@@ -75,7 +75,7 @@ void make_table(const Parts& parts, const TreeSurvey* survey, AcdfFile& file) {
     u32 indexed = 0;
     while (parts.axes[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
     file.table = {parts.tree,    parts.bins,       parts.axes, axes, indexed, parts.description->total,
-                  parts.company, parts.tree_units, nullptr};
+                  parts.partner, parts.tree_units, nullptr};
     if (survey)
         file.table.entries =
             keep(make_table_entries(file.table, parts.description->bin_count, *survey, most_table_bytes(file),

@@ -13,7 +13,7 @@ struct AcdfFile {
     const AcdfBin* bins; ///< null: none
     const std::uint8_t* tree;
     std::uint32_t tree_units;
-    const AcdfCompany* company;
+    const AcdfPartner* partner;
     const std::uint8_t* metadata;
     std::uint32_t metadata_count;
     std::uint64_t table_bytes; ///< of the runtime tables

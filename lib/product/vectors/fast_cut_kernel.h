@@ -1,4 +1,4 @@
-// Draws from cuts of the fast shape over vectors, and their densities: acdf/product/fast_cut.h, operation by operation; see
+// Samples from cuts of the fast shape over vectors, and their densities: acdf/product/fast_cut.h, operation by operation; see
 // local_kernel.h. Parts and tiles are found lane by lane, cells and directions by vectors, as fast_kernel.h has
 // them.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace {
 
-/* Any draw or density, for lanes behind the last one. */
+/* Any sample or density, for lanes behind the last one. */
 ACDF_LANE void pad_lanes(std::size_t count, FastCells* c) {
     for (std::size_t i = count; i % kLanes != 0; ++i) {
         c->u[0][i] = c->u[1][i] = 0.0;
@@ -27,7 +27,7 @@ ACDF_LANE void draw_cut_block(const AcdfLocal& local, const AcdfLocalPoint& poin
     for (std::size_t i = 0; i < count; ++i) {
         AcdfFastShare share;
         double left[2];
-        d.tile[i] = (std::int32_t)acdf_fast_cut_draw(&local, &point, &cut, u[i], left, &share);
+        d.tile[i] = (std::int32_t)acdf_fast_cut_choose_part(&local, &point, &cut, u[i], left, &share);
         ACDF_PREFETCH(acdf_local_tile(local.tables, (std::uint32_t)d.tile[i]));
         for (int axis = 0; axis < 2; ++axis) c.u[axis][i] = left[axis];
         c.of[i] = share.of;

@@ -32,9 +32,9 @@ public:
     /// Integral of the sampled function over the sphere (luminance times sr): for light selection.
     ACDF_METHOD double total() const noexcept { return data_.total; }
     /// Whether the density is 0 where another sampler is to cover the light: used alone it is biased.
-    ACDF_METHOD bool needs_company() const noexcept { return data_.company != nullptr; }
+    ACDF_METHOD bool requires_mis() const noexcept { return data_.partner != nullptr; }
     /// Of the samples of both, in (0, 1]: how many to draw from this view; 1 where it is to be used alone.
-    ACDF_METHOD float recommended_share() const noexcept { return acdf_company_share(data_.company); }
+    ACDF_METHOD float recommended_light_share() const noexcept { return acdf_partner_share(data_.partner); }
     /// The plain data, for acdf/sample.h in another language or on a GPU.
     ACDF_METHOD const AcdfEnvironment& data() const noexcept { return data_; }
 

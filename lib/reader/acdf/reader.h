@@ -71,7 +71,7 @@ struct LoadOptions {
     LoadOptions(const Limits& limits) noexcept : limits(limits) {}
 
     Limits limits;
-    /// Whether runtime tables are made: draws and densities take a fraction of the time. Without them nothing more
+    /// Whether runtime tables are made: samples and densities take a fraction of the time. Without them nothing more
     /// is allocated, and the file's own trees are walked.
     bool tables = true;
     /// Where the memory comes from that an open file keeps; by default the C library. It must stay usable until the
@@ -117,7 +117,7 @@ public:
     std::uint32_t tree_units() const noexcept;
     std::uint64_t size() const noexcept;
     /// What the file is to be combined with; null: it is to be used alone.
-    const AcdfCompany* company() const noexcept;
+    const AcdfPartner* partner() const noexcept;
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept;
 

@@ -76,7 +76,7 @@ struct Parts {
     const AcdfBin* bins = nullptr;  ///< description->bin_count
     const std::uint8_t* tree = nullptr;
     std::uint32_t tree_units = 0;              ///< bins and tree: of curves alone
-    const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
+    const AcdfPartner* partner = nullptr;      ///< null where the file is to be used alone
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
     AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library
@@ -92,9 +92,9 @@ struct Parts {
     const std::uint8_t* rows = nullptr;        ///< tiles->row_count rows of tiles->tile_count - 1 codes
     AcdfFast fast = {};                        ///< of the fast shape, which has no rows; else null
     const AcdfLocalHeader* local = nullptr;    ///< of local environments
-    const AcdfLight* lights = nullptr;         ///< local->light_count
-    AcdfPlaceTable places = {};                ///< of local environments; its header is null where absent
-    AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
+    const AcdfBrightTile* bright_tiles = nullptr;         ///< local->bright_tile_count
+    AcdfVisibilityTable visibility = {};                ///< of local environments; its header is null where absent
+    AcdfPortalTable portals = {};              ///< beside visibility cells; its header is null where absent
     class TreeSurvey* survey = nullptr;        ///< given by the caller: made where it costs nothing
 #endif
 };

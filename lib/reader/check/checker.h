@@ -59,8 +59,8 @@ enum KnownChunk {
     chunk_rows,
     chunk_local,
     chunk_views,
-    chunk_company,
-    chunk_places,
+    chunk_partner,
+    chunk_visibility,
     chunk_portals,
     chunk_sums,
     chunk_grid,
@@ -84,7 +84,7 @@ void check_halvings(const Payload& payload, Report& report, Parts& parts) noexce
 void check_environment_axes(const Payload& payload, Report& report, const Parts& parts) noexcept;
 void check_environment(const Payload& description, const Payload& bins, Report& report,
                        const Parts& parts) noexcept;
-/// COMP, where there is one; needs parts.description. Sets parts.company.
-void check_company(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+/// COMP, where there is one; needs parts.description. Sets parts.partner.
+void check_partner(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 
 } // namespace acdf

@@ -14,7 +14,7 @@ READER = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = (READER, READER.parent.parent / "format")
 PUBLIC = ("acdf/acdf.h", "acdf/reader.h", "acdf/environment_view.h", "acdf/views.h")
 PUBLIC_SMALL = PUBLIC[:3]
-SMALL = ("c_api.cpp", "file.cpp", "check/check.cpp", "check/company.cpp", "check/description.cpp",
+SMALL = ("c_api.cpp", "file.cpp", "check/check.cpp", "check/partner.cpp", "check/description.cpp",
          "check/halvings.cpp", "check/rule_codes.cpp", "halved_tree.cpp", "inflate.cpp", "payloads.cpp", "memory.cpp",
          "aligned_memory_posix.cpp", "aligned_memory_windows.cpp", "input_file_posix.cpp", "input_file_windows.cpp")
 BANNER = """// The reader of .acdf files, made by lib/reader/single/make_single.py from lib/reader: change that, not this. The licence
@@ -23,7 +23,7 @@ BANNER = """// The reader of .acdf files, made by lib/reader/single/make_single.
 HEADER = BANNER.format(what="""
 //
 // Copy acdf.h and acdf.cpp into a renderer, compile acdf.cpp as C++17 and link zlib. Neither needs exceptions or RTTI. C
-// programs include acdf.h, too. Compile both with -ffp-contract=off, so that all processors draw the same directions.
+// programs include acdf.h, too. Compile both with -ffp-contract=off, so that all processors sample the same directions.
 //   ACDF_ENVIRONMENT_ONLY  defined wherever either is compiled: environments of fit `variance` alone, a small part of it
 //   ACDF_ZLIB=0            for acdf.cpp: no zlib; only files that were made with `--compress none` are read""")
 SOURCE = BANNER.format(what="It goes with acdf.h.")

@@ -60,10 +60,10 @@ TEST(BatchArrays, OfLocalEnvironmentsAreThoseOfSingleCalls) {
     for (const std::size_t each : {std::size_t{1}, std::size_t{7}, std::size_t{300}, kCount}) {
         for (const std::size_t count : {kCount, std::size_t{1}, std::size_t{0}}) {
             Results single, batch;
-            ASSERT_EQ(acdf_draw_local_array(file.get(), normals.data(), each, u.data(), count, single.w.data(),
+            ASSERT_EQ(acdf_sample_local_array(file.get(), normals.data(), each, u.data(), count, single.w.data(),
                                             single.p.data()),
                       1);
-            ASSERT_EQ(acdf_density_local_array(file.get(), normals.data(), each, single.w.data(), count,
+            ASSERT_EQ(acdf_pdf_local_array(file.get(), normals.data(), each, single.w.data(), count,
                                                single.again.data()),
                       1);
             ASSERT_EQ(acdf_local_batch_sample(file.get(), normals.data(), each, u.data(), count, batch.w.data(),
@@ -88,8 +88,8 @@ TEST(BatchArrays, OfBrdfsAreThoseOfSingleCalls) {
         const std::vector<float> views = directions(0.0);
         for (const std::size_t each : {std::size_t{1}, std::size_t{7}, kCount}) {
             Results single, many;
-            acdf_draw_brdf_array(file.get(), views.data(), each, u.data(), kCount, single.w.data(), single.p.data());
-            acdf_density_brdf_array(file.get(), views.data(), each, single.w.data(), kCount, single.again.data());
+            acdf_sample_brdf_array(file.get(), views.data(), each, u.data(), kCount, single.w.data(), single.p.data());
+            acdf_pdf_brdf_array(file.get(), views.data(), each, single.w.data(), kCount, single.again.data());
             EXPECT_EQ(acdf_brdf_batch_sample(batch.get(), views.data(), each, u.data(), kCount, many.w.data(),
                                              many.p.data()),
                       1);

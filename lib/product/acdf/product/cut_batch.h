@@ -1,4 +1,4 @@
-/* Several draws from a cut side by side (acdf/product/cut_sample.h): what one of them waits for, memory and the splits and
+/* Several samples from a cut side by side (acdf/product/cut_sample.h): what one of them waits for, memory and the splits and
  * curves on its way, the others use. Each is acdf_cut_sample's to the bit. `vectors` may be null. One freestanding header, valid C99,
  * C++17 and CUDA/HIP/SYCL; in kernels it makes single calls. */
 #ifndef ACDF_CUT_BATCH_H
@@ -19,7 +19,7 @@ ACDF_INLINE int acdf_cut_by_vectors(const AcdfLocal* local, const AcdfLocalPoint
            local->blend.tiles->tile_count > 1;
 }
 
-/* A draw on its way. */
+/* A sample on its way. */
 typedef struct AcdfCutLane {
     double u[2];
     AcdfRange range[2];
@@ -36,7 +36,7 @@ typedef struct AcdfCutLanes {
     uint32_t lane[ACDF_CUT_BATCH];
 } AcdfCutLanes;
 
-/* Draws parts. */
+/* Samples parts. */
 ACDF_INLINE void acdf_cut_batch_parts(const AcdfCut* cut, const double (*u)[2], uint32_t count, AcdfCutLane* lane) {
     int guess[ACDF_CUT_BATCH];
     uint32_t i;
@@ -46,21 +46,21 @@ ACDF_INLINE void acdf_cut_batch_parts(const AcdfCut* cut, const double (*u)[2], 
         guess[i] = acdf_cut_guess(cut, lane[i].u, 0);
         acdf_cut_part_ahead(cut, guess[i]);
     }
-    for (i = 0; i < count; ++i) lane[i].part = acdf_cut_draw_guessed(cut, guess[i], lane[i].u);
+    for (i = 0; i < count; ++i) lane[i].part = acdf_cut_sample_guessed(cut, guess[i], lane[i].u);
 }
 
-/* Draws lights, and tells which lanes draw from the mixture of their part. */
+/* Samples bright tiles, and tells which lanes sample from the mixture of their part. */
 ACDF_INLINE void acdf_cut_batch_lights(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                       uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
     uint32_t i, k;
     mixed->count = 0;
     for (i = 0; i < count; ++i) {
         AcdfCutLane* one = &lane[i];
-        const int lit = acdf_cut_draws_light(one->part, one->u[0]);
+        const int lit = acdf_cut_samples_bright_tile(one->part, one->u[0]);
         acdf_cut_range(one->part, one->range);
         for (k = 0; k < ACDF_CUT_BATCH_ROWS; ++k)
             ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
-        if (lit) one->tile = acdf_cut_draw_light(local, cut, one->part, one->u, one->range, &one->probability);
+        if (lit) one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
         mixed->lane[mixed->count] = i;
         mixed->count += (uint32_t)!lit;
     }
@@ -78,7 +78,7 @@ ACDF_INLINE AcdfMixture acdf_cut_batch_mixture(const AcdfCutPart* part) {
     return mix;
 }
 
-/* Draws tiles of mixtures. */
+/* Samples tiles of mixtures. */
 ACDF_INLINE void acdf_cut_batch_tiles(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCutLanes* mixed,
                                      AcdfCutLane* lane) {
     const uint32_t* words = acdf_local_words(local->tables);
@@ -131,7 +131,7 @@ ACDF_INLINE void acdf_cut_batch_tiles(const AcdfLocal* local, const AcdfLocalPoi
     }
 }
 
-/* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes draw.
+/* Follows curves of tiles: to the cells that hold squares, or where there are none, to those that the lanes sample.
  */
 ACDF_INLINE void acdf_cut_batch_curves(const AcdfLocal* local, uint32_t count, const uint32_t (*square)[2],
                                       AcdfCutLane* lane) {
@@ -157,7 +157,7 @@ ACDF_INLINE void acdf_cut_batch_curves(const AcdfLocal* local, uint32_t count, c
             AcdfCutLane* one = &lane[number];
             const uint32_t link =
                 square ? acdf_curve_locate(tree, units, one->curve, square[number], one->range, &inside[number])
-                       : acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
+                       : acdf_short_curve_sample(tree, units, one->curve, one->u, one->range, &inside[number]);
             one->curve += link;
             ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
             on_way.lane[on_way.count] = number;
@@ -200,7 +200,7 @@ ACDF_FN void acdf_cut_sample_batch(const AcdfProductVectors* vectors, const Acdf
         acdf_cut_batch_curves(local, some, 0, lane);
         for (i = 0; i < some; ++i)
             out[first + i] =
-                acdf_cut_place(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
+                acdf_cut_direction_sample(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
     }
 }
 

@@ -89,7 +89,7 @@ def check(work, single, cc, dump, profile, cxx, files):
         "-lz", "-lm", "-o", work / "consumer")
     of_profile = next(path for path in files if is_of_the_profile(path))
     if not run(work / "consumer", of_profile).startswith("total "):
-        raise SystemExit("the C program draws nothing")
+        raise SystemExit("the C program samples nothing")
     # Without zlib what is deflated is refused by its name, and the rest is read.
     run(cxx, *STRICT, "-O0", *flags, "-DACDF_ZLIB=0", "-c", single / "acdf.cpp", "-o", work / "without.o")
     run(cc, "-std=c99", "-O0", *flags, f"-I{work}", consumer, work / "without.o", "-lm", "-o", work / "without")
