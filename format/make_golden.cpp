@@ -107,14 +107,14 @@ Golden deep() {
     return golden("deep", cascade, environment_description(64, 32));
 }
 
-/// Not to be used alone: half of the sphere is left to its company.
-Golden company() {
+/// Not to be used alone: half of the sphere is left to its partner.
+Golden partner() {
     const Cascade cascade = {
         {{kTheta, {3, 5}, {0.75, 0.25, 0.0}, {1, -1, -1}, {}}, {kPhi, {2, 9}, {0.5, 0.0, 0.5}, {}, {}}}, {0}};
     Description description = environment_description(12, 10);
     description.chunks = {
-        company_chunk({ACDF_COMPANY_COSINE, ACDF_HEURISTIC_POWER, 3.0, 1.0}, 0.625f, {{0.625f, 0.0f}})};
-    return golden("company", cascade, description);
+        partner_chunk({ACDF_PARTNER_COSINE, ACDF_HEURISTIC_POWER, 3.0, 1.0}, 0.625f, {{0.625f, 0.0f}})};
+    return golden("partner", cascade, description);
 }
 
 /// One curve that three segments share.
@@ -438,7 +438,7 @@ int main(int argc, char** argv) try {
           fitted(),
           tilted(),
           deep(),
-          company(),
+          partner(),
           shared_child(),
           wide(),
           many_segments("many_segments", ACDF_CODEC_NONE),

@@ -21,7 +21,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/brdf_view.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cells.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/company.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/partner.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_sample.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/cut_wave.h

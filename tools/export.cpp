@@ -63,8 +63,8 @@ std::string description(const ExportArguments& options, const LoadedFile& loaded
     json["resolution"] = {loaded.file.axis(0).resolution, loaded.file.axis(1).resolution};
     json["total"] = loaded.file.description().total;
     if (loaded.file.kind() == ACDF_KIND_ENVIRONMENT)
-        json["recommended_share"] = loaded.file.environment().recommended_share();
-    json["needs_company"] = loaded.file.company() != nullptr;
+        json["recommended_light_share"] = loaded.file.environment().recommended_light_share();
+    json["requires_mis"] = loaded.file.partner() != nullptr;
     const std::string head = json.dump(2);
     if (!options.tables.empty()) return head + "\n";
     return head.substr(0, head.size() - 2) + ",\n  \"tables\": [\n" + rows_of_words(tables, "%u", "    ") +

@@ -5,7 +5,7 @@
 #include "input/probe/image_header.h"
 #include "tools/cli/built.h"
 #include "tools/cli/choice.h"
-#include "tools/cli/company_options.h"
+#include "tools/cli/mis_options.h"
 #include "tools/cli/conversion.h"
 #include "tools/cli/goal_options.h"
 #include "tools/cli/help.h"
@@ -127,16 +127,16 @@ void LocalConversion::check() {
     set_normals();
     read_goal(*command_, budget_, local_.goal);
     set_separate();
-    if (renderer_ && !places_) for_partner_ = use_partner(*command_, renderer_->company(local_), local_.company);
-    const bool alone = local_.company.kind == ACDF_COMPANY_NONE;
+    if (renderer_ && !places_) for_partner_ = use_partner(*command_, renderer_->partner(local_), local_.mis);
+    const bool alone = local_.mis.kind == ACDF_PARTNER_NONE;
     for (const char* option : {"--shares", "--heuristic"})
-        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with a company (--with)");
+        if (alone && given(option)) throw CLI::ValidationError(option, "is for files with an MIS partner (--mis)");
     for (const char* option : {"--no-sharing", "--cosine-share", "--places", "--max-weight"})
-        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without a company (--with)");
+        if (!alone && given(option)) throw CLI::ValidationError(option, "is for files without an MIS partner (--mis)");
     if (portals_.given() && !places_) throw CLI::ValidationError("--portal", "is for --places");
     if (volume_ && !places_) throw CLI::ValidationError("--volume", "is for --places");
     if (local_.shape == builder::LocalShape::fast)
-        for (const char* option : {"--no-sharing", "--places", "--max-weight", "--with"})
+        for (const char* option : {"--no-sharing", "--places", "--max-weight", "--mis"})
             if (given(option)) throw CLI::ValidationError("--shape", std::string("fast goes without ") + option);
     if (!places_) return;
     if (!scene_.given()) throw CLI::ValidationError("--places", "needs --scene MESH");
@@ -208,7 +208,7 @@ nlohmann::ordered_json LocalConversion::report(const ProbeTarget& loaded, const 
         {"share_above_horizon", a.share_above_horizon},
         {"least_share_above_horizon", a.least_share_above_horizon},
         {"support_violations", a.support_violations}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     return out;
 }
 
@@ -217,7 +217,7 @@ std::string summary_of(const builder::Local& result) {
     char text[320];
     if (a.combined) {
         std::snprintf(text, sizeof text,
-                      "with its company, relative variance %.4g a sample over %u normals: %.3g times less than the "
+                      "with its MIS partner, relative variance %.4g a sample over %u normals: %.3g times less than the "
                       "probe's own CDF with it (%.4g); not to be used alone",
                       a.relative_variance, a.lit_normals, gain(result), a.relative_variance_full_cdf);
         return text;
@@ -245,7 +245,7 @@ Converted LocalConversion::convert(const Listener& listener) {
     builder::LocalOptions local = read_scene(listener.note);
     const ProbeTarget loaded = load_target(source, input_, local.target, listener.note);
     if (renderer_) scene_.note_axes(*command_, *renderer_, loaded.probe.source_map.layout, listener.note);
-    if (for_partner_) listener.note(partner_text(*renderer_, local_.company));
+    if (for_partner_) listener.note(partner_text(*renderer_, local_.mis));
     local.source = source_of(loaded.probe, input_);
     builder::Local result;
     require_built(source, builder::local(loaded.target, local, result, told(listener.progress)));
@@ -368,7 +368,7 @@ void LocalConversion::add_options(CLI::App& command) {
     add_bins(command);
     add_size(command);
     add_shape(command);
-    add_company(command, local_.company, false);
+    add_partner(command, local_.mis, false);
     add_separate(command);
     add_target_options(command, local_.target);
     add_codec(command, local_.codec);

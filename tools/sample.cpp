@@ -130,9 +130,9 @@ void run(const SampleArguments& options) {
     Output output(options.output, options.force, {options.file});
     const LoadedFile loaded = load_file(options.file);
     const AcdfKind kind = loaded.file.kind();
-    if (loaded.file.company() && !options.quiet)
+    if (loaded.file.partner() && !options.quiet)
         say(options.file +
-            ": is made for a company (--with) and not to be used alone: its samples leave out light");
+            ": is made for an MIS partner (--mis) and not to be used alone: its samples leave out light");
     if (kind != ACDF_KIND_LOCAL) refuse_normal(options.file, options.normal);
     if (kind != ACDF_KIND_BRDF) refuse_view(options.file, options.view);
     if (kind == ACDF_KIND_ENVIRONMENT) sample_environment(loaded.file, options, output);

@@ -121,7 +121,7 @@ equal_time() {
 places() {
     "$acdf" plot "$results/room-places.acdf" --scene "$results/room.obj" --from=-2.6,-3.4,1.9 --to 1.2,2,0.6 --force --quiet \
         -o "$figures/places-cells.png"
-    equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility:32x16=visibility \
+    equal_time room "file:$results/room-local.acdf=local:1MB" portals=portals visibility-cache:32x16=visibility-cache \
         "file:$results/room-places.acdf=places:4MB"
 }
 

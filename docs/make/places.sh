@@ -26,7 +26,7 @@ for scene in $scenes; do
         [ -e "$file" ] || "$bench" make "$results/$scene.json" "$data" "$name" "$bytes" "$file"
     done
     local=file:$results/$scene-local.acdf places=file:$results/$scene-places.acdf
-    samplers=("$local" "$places" "mis($local,cosine)" tiles:32x16 visibility:32x16)
+    samplers=("$local" "$places" "mis($local,cosine)" tiles:32x16 visibility-cache:32x16)
     if grep -q '"portals"' "$results/$scene.json"; then
         for bytes in 1 4; do
             file=$results/$scene-portals$bytes.acdf
@@ -46,7 +46,7 @@ acdf=${ACDF:-$root/build/release/tools/acdf}
     echo "|---|---|---|---|---|"
     for scene in $scenes; do
         local=file:$results/$scene-local.acdf places=file:$results/$scene-places.acdf
-        samplers=("$local" "$places" tiles:32x16 visibility:32x16 ris:32 "mis($places,cosine)")
+        samplers=("$local" "$places" tiles:32x16 visibility-cache:32x16 ris:32 "mis($places,cosine)")
         grep -q '"portals"' "$results/$scene.json" &&
             samplers+=("file:$results/$scene-portals4.acdf" portals portals:uniform "mis(portals,cosine)")
         options=()

@@ -64,13 +64,13 @@ typedef enum AcdfAxisMeasure {
 } AcdfAxisMeasure;
 
 /* What a file was made to be combined with, by multiple importance sampling (SPEC.md §5.8). */
-typedef enum AcdfCompanyKind {
-    ACDF_COMPANY_NONE = 0,
-    ACDF_COMPANY_COSINE = 1, /* cos / pi around the normal */
-    ACDF_COMPANY_BRDF = 2,   /* lobes as BRDFs have them: cosine, and GGX of several widths */
-    ACDF_COMPANY_MEAN = 3,   /* as if it were the same everywhere: Karlik et al. 2019 */
-    ACDF_COMPANY_TABLE = 4   /* of a table: another table over the same axes */
-} AcdfCompanyKind;
+typedef enum AcdfPartnerKind {
+    ACDF_PARTNER_NONE = 0,
+    ACDF_PARTNER_COSINE = 1, /* cos / pi around the normal */
+    ACDF_PARTNER_BRDF = 2,   /* lobes as BRDFs have them: cosine, and GGX of several widths */
+    ACDF_PARTNER_MEAN = 3,   /* as if it were the same everywhere: Karlik et al. 2019 */
+    ACDF_PARTNER_TABLE = 4   /* of a table: another table over the same axes */
+} AcdfPartnerKind;
 
 typedef enum AcdfHeuristic {
     ACDF_HEURISTIC_BALANCE = 0, /* n_i p_i over their sum */
@@ -87,7 +87,7 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_SUMS ACDF_FOURCC('S', 'U', 'M', 'S')
 #define ACDF_CHUNK_GRID ACDF_FOURCC('G', 'R', 'I', 'D')
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
-#define ACDF_CHUNK_COMPANY ACDF_FOURCC('C', 'O', 'M', 'P')
+#define ACDF_CHUNK_PARTNER ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
 #define ACDF_CHUNK_PLACES ACDF_FOURCC('P', 'L', 'A', 'C')
 #define ACDF_CHUNK_PORTALS ACDF_FOURCC('P', 'O', 'R', 'T')
@@ -238,19 +238,19 @@ typedef struct AcdfLight {
 } AcdfLight;
 
 /* Chunk COMP of a file that is not to be used alone: this, then `record_count` records (0, or one a bin). */
-typedef struct AcdfCompany {
-    uint32_t kind;           /* AcdfCompanyKind, not 0 */
+typedef struct AcdfPartner {
+    uint32_t kind;           /* AcdfPartnerKind, not 0 */
     uint32_t heuristic;      /* AcdfHeuristic */
     float share;             /* of the samples, in (0, 1): what the fit was told that this file draws */
-    float recommended_share; /* in (0, 1]: of the samples that this file should draw, in the mean */
+    float recommended_light_share; /* in (0, 1]: of the samples that this file should draw, in the mean */
     uint32_t record_count;
     uint32_t reserved; /* 0 */
-} AcdfCompany;
+} AcdfPartner;
 
-typedef struct AcdfCompanyRecord {
-    float recommended_share; /* of the bin, in (0, 1] */
+typedef struct AcdfPartnerRecord {
+    float recommended_light_share; /* of the bin, in (0, 1] */
     float flux;              /* of local environments: irradiance of the bin over `total`; else 0 */
-} AcdfCompanyRecord;
+} AcdfPartnerRecord;
 
 /* Chunk PLAC, of local environments: what of the light reaches a place (SPEC.md §5.9). This, then `split_count`
  * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
@@ -347,8 +347,8 @@ ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLight) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
-ACDF_STATIC_ASSERT(sizeof(AcdfCompany) == 24);
-ACDF_STATIC_ASSERT(sizeof(AcdfCompanyRecord) == 8);
+ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
+ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfPlaces) == 88);
 ACDF_STATIC_ASSERT(sizeof(AcdfPlaceSplit) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortals) == 16);

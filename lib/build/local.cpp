@@ -5,7 +5,7 @@
 #include "build/lit_bins.h"
 #include "build/local_size.h"
 #include "build/local_whole.h"
-#include "build/text/company.h"
+#include "build/text/partner.h"
 #include "build/text/options.h"
 #include "build/weight_bound.h"
 #include "compress/local/fit.h"
@@ -82,10 +82,10 @@ Local finish(LocalDraft draft, const compress::Target& target, const Source& sou
     return out;
 }
 
-float mean_share(const std::vector<AcdfCompanyRecord>& records, const NormalBins& bins) {
+float mean_share(const std::vector<AcdfPartnerRecord>& records, const NormalBins& bins) {
     double sum = 0.0;
     for (std::size_t b = 0; b < records.size(); ++b)
-        sum += bins.weight[b] * static_cast<double>(records[b].recommended_share);
+        sum += bins.weight[b] * static_cast<double>(records[b].recommended_light_share);
     return static_cast<float>(std::clamp(sum, 1e-3, 1.0)); // weights add up to 1
 }
 
@@ -102,9 +102,9 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
     draft.description.shares = fit.shares;
     draft.description.chunks = compress::shared_chunks(fit.shared);
     draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
-    if (options.company)
+    if (options.mis)
         draft.description.chunks.push_back(
-            compress::company_chunk(options.company, mean_share(fit.records, bins), fit.records));
+            compress::partner_chunk(options.mis, mean_share(fit.records, bins), fit.records));
     return draft;
 }
 
@@ -146,7 +146,7 @@ std::uint64_t bytes_of_bins(const compress::Target& target, const Source& source
     compress::LocalFit nothing;
     nothing.shares.assign(bins.normals.size(), 0.0f);
     nothing.tree.roots.assign(bins.normals.size(), ACDF_NO_ROOT);
-    if (options.company) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
+    if (options.mis) nothing.records.resize(bins.normals.size(), {1.0f, 0.0f});
     return bytes_of(shared_draft(nothing, target, source, options, bins));
 }
 
@@ -155,7 +155,7 @@ std::uint64_t least_bytes(const compress::Target& target, const Source& source, 
                           LitBins& bins, compress::LocalSize size) {
     size.tiles = 2;
     size.whole_bytes = 0;
-    compress::LocalFitter fitter(target, bins.bins(), bins.light(), size, {}, options.company);
+    compress::LocalFitter fitter(target, bins.bins(), bins.light(), size, {}, options.mis);
     return bytes_of(shared_draft(fitter.outlined(64), target, source, options, bins.bins())) + kSlack;
 }
 
@@ -254,7 +254,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
     std::optional<compress::LocalFitter> fitter; // of so many tiles
     std::optional<Local> grown;                  // the best of those that left bytes
     for (int tries = 0, growths = 0;; ++tries) {
-        if (!fitter) fitter.emplace(target, bins, lit.light(), size, fitting(progress), options.company);
+        if (!fitter) fitter.emplace(target, bins, lit.light(), size, fitting(progress), options.mis);
         compress::LocalFit fit = fitter->outlined(size.inside_bytes);
         LocalDraft draft = shared_draft(fit, target, source, options, bins);
         const std::uint64_t bytes = bytes_of(draft);
@@ -328,7 +328,7 @@ compress::LocalFit fit_cells(const compress::Target& target, const Source& sourc
     for (WholeChoice choice = first_choice(options);; choice = next_choice(choice)) {
         size.whole = choice.tree;
         size.whole_worth = choice.worth;
-        compress::LocalFitter fitter(target, lit.bins(), lit.light(), size, fitting(progress), options.company);
+        compress::LocalFitter fitter(target, lit.bins(), lit.light(), size, fitting(progress), options.mis);
         compress::LocalFit fit = fitter.outlined(size.inside_bytes);
         if (size.whole == compress::WholeTree::own) {
             fitter.refit_whole(whole_tree_bytes(file_of_others(bytes(fit))));
@@ -429,7 +429,7 @@ std::string option_text(const std::string& reading, const LocalOptions& o) {
     if (o.columns > 0) text += "--normals " + std::to_string(o.columns) + "x" + std::to_string(o.rows) + " ";
     if (!o.scene_text.empty()) text += o.scene_text + " ";
     else if (!o.scene.empty()) text += "--scene ";
-    text += company_text(o.company);
+    text += partner_text(o.mis);
     if (o.places.scene && o.scene_text.find("--places") == std::string::npos) text += "--places ";
     if (o.cosine_share > 0.0) text += "--cosine-share " + option_number(o.cosine_share) + " ";
     if (o.sharing) {

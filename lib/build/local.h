@@ -52,7 +52,7 @@ struct LocalOptions {
     ScenePlaces places;     ///< only with sharing and a budget
     std::string scene_text; ///< what `scene` was read from and how, as options in one spelling
     AcdfCodec codec = ACDF_CODEC_NONE;
-    compress::Company company; ///< of bins that share tiles
+    compress::Partner mis; ///< of bins that share tiles
 };
 
 /// All options that shape the file, in one spelling: what its `fit.options` tells.

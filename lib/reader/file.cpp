@@ -137,7 +137,7 @@ File& File::operator=(File&& other) noexcept {
     fast_ = std::exchange(other.fast_, AcdfFast{});
     local_ = std::exchange(other.local_, nullptr);
     lights_ = std::exchange(other.lights_, nullptr);
-    company_ = std::exchange(other.company_, nullptr);
+    partner_ = std::exchange(other.partner_, nullptr);
     places_ = std::exchange(other.places_, AcdfPlaceTable{});
     portals_ = std::exchange(other.portals_, AcdfPortalTable{});
     views_ = std::exchange(other.views_, nullptr);
@@ -196,7 +196,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.fast_ = parts.fast;
     loaded.local_ = parts.local;
     loaded.lights_ = parts.lights;
-    loaded.company_ = parts.company;
+    loaded.partner_ = parts.partner;
     loaded.places_ = parts.places;
     loaded.portals_ = parts.portals;
     loaded.views_ = parts.views;
@@ -263,7 +263,7 @@ int File::memory(AcdfMove* moves) const noexcept {
 EnvironmentView File::environment() const noexcept {
     return EnvironmentView({tree_, bins_ ? bins_[0].root : 0, axes_[ACDF_AXIS_PHI].resolution,
                             axes_[ACDF_AXIS_THETA].resolution, description_->total, description_->parameterization,
-                            halved_, company_, tree_units_});
+                            halved_, partner_, tree_units_});
 }
 
 LocalEnvironmentView File::local() const noexcept {
@@ -278,7 +278,7 @@ LocalEnvironmentView File::local() const noexcept {
                          nullptr,
                          nullptr, // complete whatever the file is made for: to be used alone
                          tree_units_};
-    local.company = company_;
+    local.partner = partner_;
     local.bins = bins_;
     local.lights = lights_;
     local.light_count = local_->light_count;
@@ -312,7 +312,7 @@ BrdfView File::brdf() const noexcept {
 TableView File::table() const noexcept {
     u32 indexed = 0;
     while (axes_[indexed].role == ACDF_AXIS_INDEXED) ++indexed; // rule 5012: one axis at least is sampled
-    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, company_,
+    return TableView({tree_, bins_, axes_, description_->axis_count, indexed, description_->total, partner_,
                       tree_units_, entries_});
 }
 

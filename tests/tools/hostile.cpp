@@ -259,7 +259,7 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     }
 }
 
-// A company of all normals is seldom that of a picture.
+// An MIS partner of all normals is seldom that of a picture.
 TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
     const std::string normals = folder / "normals.txt";
     write_text(normals, "0 0 1\n0 0 -1\n0 1 0\n0 -1 0\n1 0 0\n-1 0 0\n");
@@ -268,11 +268,11 @@ TEST_F(Hostile, FilesForAllNormalsAdviseASceneOrTheMean) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Result result = run_acdf(arguments);
         EXPECT_EQ(result.code, 0) << result.err;
-        return result.err.find("--with mean") != std::string::npos;
+        return result.err.find("--mis mean") != std::string::npos;
     };
-    EXPECT_TRUE(advised({"--with", "cosine"}));
-    EXPECT_FALSE(advised({"--with", "mean"}));
-    EXPECT_FALSE(advised({"--with", "cosine", "--scene", normals}));
+    EXPECT_TRUE(advised({"--mis", "cosine"}));
+    EXPECT_FALSE(advised({"--mis", "mean"}));
+    EXPECT_FALSE(advised({"--mis", "cosine", "--scene", normals}));
     EXPECT_FALSE(advised({}));
 }
 

@@ -227,7 +227,7 @@ TEST_F(OctahedralCommand, PresetsCoverWhatRowsThatRepeatShowAtThePoles) {
     const float zenith[3] = {0.05f, 0.03f, 0.9983f}, up[3] = {0.0f, 0.0f, 1.0f};
     for (const char* renderer : {"cycles", "pbrt-v3", "luxcore", "mitsuba3", "three"}) {
         const bool repeats = builder::find_renderer(renderer)->target.wrap == builder::Wrap::repeat;
-        made(source, {"--for", renderer, "--with", "none"});
+        made(source, {"--for", renderer, "--mis", "none"});
         File file;
         ASSERT_TRUE(File::open(output.c_str(), file).ok());
         EXPECT_EQ(file.environment().pdf(zenith) > 0.0f, repeats) << renderer;
@@ -235,16 +235,16 @@ TEST_F(OctahedralCommand, PresetsCoverWhatRowsThatRepeatShowAtThePoles) {
         EXPECT_EQ(std::string(options.data, options.size).find("--wrap repeat") != std::string::npos, repeats);
         EXPECT_EQ(measured(source)["support_violations"], 0);
         if (!repeats) continue;
-        made(source, {"--for", renderer, "--with", "none"}, "local");
+        made(source, {"--for", renderer, "--mis", "none"}, "local");
         ASSERT_TRUE(File::open(output.c_str(), file).ok());
         EXPECT_GT(file.local().pdf(up, zenith), 0.0f) << renderer;
     }
-    made(source, {"--for", "cycles", "--with", "none", "--wrap", "clamp"});
+    made(source, {"--for", "cycles", "--mis", "none", "--wrap", "clamp"});
     File file;
     ASSERT_TRUE(File::open(output.c_str(), file).ok());
     EXPECT_EQ(file.environment().pdf(zenith), 0.0f) << "what is given by itself wins";
     // On another grid than the map's own.
-    const json square_file = made(source, {"--for", "cycles", "--with", "none", "--domain", "octahedral"});
+    const json square_file = made(source, {"--for", "cycles", "--mis", "none", "--domain", "octahedral"});
     EXPECT_EQ(square_file["support_violations"], 0);
     ASSERT_TRUE(File::open(output.c_str(), file).ok());
     EXPECT_GT(file.environment().pdf(zenith), 0.0f);

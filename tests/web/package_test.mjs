@@ -132,5 +132,5 @@ test("calls that cannot be meant", () => {
     assert.throws(() => file.pdf([0, 0]), RangeError);
     assert.throws(() => file.map(0, 4), RangeError);
     assert.equal(file.sample([]).length, 0);
-    assert.equal(file.recommendedShare(), 1);
+    assert.equal(file.recommendedLightShare(), 1);
 });

@@ -63,7 +63,7 @@ nlohmann::ordered_json report(const MeasureArguments& options, const File& file,
         {"cells", a.cells},
         {"bins", file.description().bin_count},
         {"total", a.total}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     return out;
 }
 
@@ -71,7 +71,7 @@ void print_text(const MeasureArguments& options, const File& file, const Measure
     const build::Accuracy& a = measured.accuracy;
     std::printf("%s against %s\n", printable(options.file).c_str(), printable(options.source).c_str());
     if (a.combined) {
-        std::printf("  relative variance      %.6g   a sample, with its company: not to be used alone\n",
+        std::printf("  relative variance      %.6g   a sample, with its MIS partner: not to be used alone\n",
                     a.relative_variance);
         std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
                     noise_texts(a.relative_variance).c_str());
@@ -108,7 +108,7 @@ void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kin
                 throw CLI::ValidationError(option, std::string("is for files of ") + of);
     };
     if (kind != ACDF_KIND_LOCAL) refuse({"--rivals", "--normals", "--scene"}, "local environments");
-    if (kind != ACDF_KIND_TABLE) refuse({"--with"}, "tables");
+    if (kind != ACDF_KIND_TABLE) refuse({"--mis"}, "tables");
     if (kind != ACDF_KIND_BRDF) refuse({"--views"}, "BRDFs");
     if (kind == ACDF_KIND_TABLE || kind == ACDF_KIND_BRDF)
         refuse({"--projection", "--bad-pixels", "--on-black"}, "environments");
@@ -174,7 +174,7 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->type_name("SOURCE")
         ->group("Input");
     command
-        .add_option("--with", options->other,
+        .add_option("--mis", options->other,
                     "Of a table that was made to be combined with another one: the .npy of that one")
         ->type_name("")
         ->option_text("OTHER.npy")

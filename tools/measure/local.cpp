@@ -177,7 +177,7 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
           {"max_weight", whole.max_weight},
           {"support_violations", whole.support_violations},
           {"cells", whole.cells}}}};
-    if (a.combined) out["combined"] = true; // of the file and its company
+    if (a.combined) out["combined"] = true; // of the file and its partner
     for (const Rival& rival : measured.rivals)
         out["rivals"][rival.key] = {{"relative_variance", rival.relative_variance}, {"bytes", rival.bytes}};
     if (measured.places.points > 0) out["places"] = places_json(measured.places);
@@ -191,7 +191,7 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
                 a.lit_normals,
                 options.mesh.empty() || places.points > 0 ? "random normals" : "normals of the scene");
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
-                a.combined ? "a sample of the irradiance, with its company: not to be used alone"
+                a.combined ? "a sample of the irradiance, with its MIS partner: not to be used alone"
                            : "of one sample of the irradiance, mean over normals");
     std::printf("    noise                %s   at 16, 64, 256 samples where nothing hides the light\n",
                 noise_texts(a.relative_variance).c_str());
@@ -219,7 +219,7 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
     const bool mesh = !options.mesh.empty() && file.local().has_places();
-    if (mesh && file.company()) throw Failure(options.file + ": is made for a company; leave out --scene");
+    if (mesh && file.partner()) throw Failure(options.file + ": is made for an MIS partner; leave out --scene");
     const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
     const std::vector<build::Normal> normals = normals_of(options, !mesh && !options.mesh.empty());
     LocalMeasured measured;

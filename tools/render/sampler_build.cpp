@@ -53,7 +53,7 @@ Table env_table(const builder::Target& target, const SamplerSpec& spec,
                 const std::vector<builder::SceneNormal>& normals) {
     builder::EnvironmentOptions options;
     options.goal = builder::Goal::of_budget(spec.bytes);
-    options.company = spec.company;
+    options.mis = spec.mis;
     if (spec.of_scene) options.normals = normals;
     builder::Environment made;
     throw_unless_built(builder::environment(target, options, made));
@@ -65,7 +65,7 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(spec.bytes);
     options.shape = spec.fast ? builder::LocalShape::fast : builder::LocalShape::small;
-    options.company = spec.company;
+    options.mis = spec.mis;
     if (spec.of_scene) options.normals = normals;
     builder::Local made;
     throw_unless_built(builder::local(target, options, made));
@@ -168,7 +168,7 @@ struct SamplerBuilder::Store {
             return env_table(fitted, spec, normals);
         case SamplerKind::local:
             return local_table(fitted, spec, normals);
-        case SamplerKind::visibility:
+        case SamplerKind::visibility_cache:
             if (!points) fail_without_scene(spec);
             return {nullptr, measure::visibility_sampler(target, spec.columns, spec.rows, *points)};
         case SamplerKind::portals:
@@ -199,9 +199,9 @@ struct SamplerBuilder::Store {
         case SamplerKind::compensated:
             return {nullptr, measure::compensated_sampler(target)};
         case SamplerKind::ideal:
-            return {nullptr, measure::ideal_sampler(target, spec.company.kind == ACDF_COMPANY_NONE
+            return {nullptr, measure::ideal_sampler(target, spec.mis.kind == ACDF_PARTNER_NONE
                                                                 ? 0.0
-                                                                : spec.company.light / spec.company.other)};
+                                                                : spec.mis.light / spec.mis.other)};
         case SamplerKind::strata:
         case SamplerKind::mis:
         case SamplerKind::product:
@@ -240,8 +240,8 @@ struct SamplerBuilder::Store {
         const int parts = spec.divisions ? static_cast<int>(spec.divisions) : measure::product_parts(samples);
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
-        if (light->company())
-            throw SpecError("sampler '" + spec.text + "': its light has no support where its company is enough");
+        if (light->partner())
+            throw SpecError("sampler '" + spec.text + "': its light has no support where its partner is enough");
         const Table& made = kept(spec.text + "/" + std::to_string(parts), material, [&] {
             return brdf ? measure::product_sampler(*light, *brdf, parts)
                         : measure::product_sampler(*light, spec.parts[1].alpha, parts);
@@ -251,8 +251,8 @@ struct SamplerBuilder::Store {
     const measure::LightSampler& warp(const SamplerSpec& spec, std::size_t material) {
         const File* light = table(spec.parts[0], material).file;
         const File* brdf = table(spec.parts[1], material).file;
-        if (light->company())
-            throw SpecError("sampler '" + spec.text + "': its light has no support where its company is enough");
+        if (light->partner())
+            throw SpecError("sampler '" + spec.text + "': its light has no support where its partner is enough");
         return *kept(spec.text, material, [&] {
                     return brdf ? measure::product_warp_sampler(*light, *brdf)
                                 : measure::product_warp_sampler(*light, spec.parts[1].alpha);
@@ -282,8 +282,8 @@ struct SamplerBuilder::Store {
                                                                   samples);
         if (spec.kind == SamplerKind::strata)
             return std::make_unique<measure::StratifiedEstimator>(stratified(spec, samples));
-        if (spec.kind == SamplerKind::file && table(spec, material).file->company())
-            throw SpecError("sampler '" + spec.text + "': has no support where its company is enough: mis(" +
+        if (spec.kind == SamplerKind::file && table(spec, material).file->partner())
+            throw SpecError("sampler '" + spec.text + "': has no support where its partner is enough: mis(" +
                             spec.text + ", cosine)");
         if (spec.kind != SamplerKind::mis)
             return std::make_unique<measure::SingleEstimator>(single(spec, material, samples), samples);

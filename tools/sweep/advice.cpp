@@ -22,7 +22,7 @@ std::string interval_text(const Interval& i) {
     return short_number(i.value) + " (" + short_number(i.low) + " to " + short_number(i.high) + ")";
 }
 
-std::string spp_text(const Visibility& v) {
+std::string spp_text(const VisibleNoise& v) {
     return std::to_string(v.spp) + (v.spp == 1 ? " sample per pixel" : " samples per pixel");
 }
 
@@ -36,7 +36,7 @@ bool tried_larger(const Sweep& sweep, const SweepRow& best) {
 
 std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
     const SweepRow& best = sweep.rows[recommended.row];
-    const Visibility& v = sweep.visibility;
+    const VisibleNoise& v = sweep.visible;
     const std::string size = to_readable_size(best.bytes);
     const double variance = variance_in(best, open_alone, sweep.numbers);
     std::string has = "a relative variance of " + short_number(variance) + ", " + noise_text(variance, v.spp) +
@@ -52,7 +52,7 @@ std::string sentence_of(const Sweep& sweep, const Recommended& recommended) {
 /// Of files that know no surface: what pictures have of them.
 std::string picture_sentence(const Sweep& sweep, const Recommended& recommended) {
     const SweepRow &best = sweep.rows[recommended.row], &full = sweep.rows[sweep.baseline];
-    const Visibility& v = sweep.visibility;
+    const VisibleNoise& v = sweep.visible;
     const auto noise = [&](const SweepRow& row) {
         return noise_text(variance_in(row, open_alone, sweep.numbers), v.spp);
     };
@@ -63,7 +63,7 @@ std::string picture_sentence(const Sweep& sweep, const Recommended& recommended)
 }
 
 std::string picture_rule(const Sweep& sweep) {
-    const Visibility& v = sweep.visibility;
+    const VisibleNoise& v = sweep.visible;
     std::string text =
         "Rule: the smallest file tried, or one of up to a quarter more bytes with less noise, whose noise on a "
         "diffuse surface is at most 5 % above the least of "
@@ -79,7 +79,7 @@ std::string picture_rule(const Sweep& sweep) {
 }
 
 std::string rule_of(const Sweep& sweep) {
-    const Visibility& v = sweep.visibility;
+    const VisibleNoise& v = sweep.visible;
     std::string text =
         "Rule: the smallest file tried whose noise, the standard deviation sqrt(relative variance / " +
         std::to_string(v.spp) + ") of a pixel, is at most " + percent(v.threshold) + " of its value";
@@ -162,7 +162,7 @@ void add_own_finding(const Sweep& sweep, Advice& advice) {
     RivalComparison fastest;
     for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
         const SweepRow& row = sweep.rows[i];
-        if (!row.ours() || !(row.relative_variance <= sweep.visibility.largest_variance())) continue;
+        if (!row.ours() || !(row.relative_variance <= sweep.visible.largest_variance())) continue;
         const RivalComparison c = compare(sweep, i, best);
         const bool better = !fastest.equal_time.known() || c.equal_time.value < fastest.equal_time.value;
         if (c.verdict == Verdict::rival && better) fastest = c;
@@ -225,7 +225,7 @@ std::string shell_word(const std::string& word) {
 
 Advice advise(const Sweep& sweep) {
     Advice out;
-    out.recommended = recommended_row(sweep.rows, sweep.visibility, sweep.costs, sweep.numbers);
+    out.recommended = recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers);
     const SweepRow& best = sweep.rows[out.recommended.row];
     out.situations = situations_of(sweep, best);
     const bool pictures = !out.situations.empty();

@@ -181,7 +181,7 @@ void add_sobol(const compress::Reflected& reflected, const std::vector<DrawnPoin
     for (Candidate& each : candidates)
         if (std::isfinite(each.row.relative_variance))
             each.row.sobol =
-                sobol_variance(*each.sampler, points, integrand, options.visibility.spp, options.seeds);
+                sobol_variance(*each.sampler, points, integrand, options.visible.spp, options.seeds);
 }
 
 } // namespace

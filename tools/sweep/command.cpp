@@ -92,7 +92,7 @@ void check_options(SweepArguments& options, SweepKind kind) {
         throw CLI::ValidationError("--channel",
                                    "is one channel in a sweep of probes: the rivals are defined for one");
     options.sweep.timing = !options.no_timing;
-    options.sweep.visibility.threshold /= 100.0; // it is given in per cent
+    options.sweep.visible.threshold /= 100.0; // it is given in per cent
 }
 
 /// What has to be said again to the subcommand that makes a file; `on_latlong_grid`: that grid, which the probe has
@@ -254,15 +254,15 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
         ->option_text("NAMES [all of the kind; local: variance,fast,cdf]")
         ->group("Sweep");
     command
-        .add_option("--spp", options.sweep.visibility.spp,
+        .add_option("--spp", options.sweep.visible.spp,
                     "Samples per pixel of your renderings: the more, the smaller a file is enough")
         ->check(CLI::Range(1u, 1u << 24))
         ->option_text("N [64]")
         ->group("Sweep");
-    options.sweep.visibility.threshold = 1.0;
+    options.sweep.visible.threshold = 1.0;
     command
         .add_option(
-            "--visible", options.sweep.visibility.threshold,
+            "--visible", options.sweep.visible.threshold,
             "Noise in per cent of a pixel's value that is still too small to see: 1 is about half a step of "
             "8-bit sRGB at middle grey")
         ->check(number_range(0.001, 100.0))

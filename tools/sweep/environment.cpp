@@ -73,18 +73,18 @@ void add_pictures(Sweep& sweep, const compress::Target& target, const std::vecto
     }
 }
 
-/// `out`: alone, and in company.
+/// `out`: alone, and with an MIS partner.
 void add_situations(const compress::Target& target, const measure::LightSampler& sampler,
                     const std::vector<float>& density, const std::vector<SurfacePoint>& points, Scale scale,
                     const SweepOptions& options, Lit* out) {
     const std::vector<PointVariance> exact = point_variances(target, density, points);
     const SurfaceVariances variances = summary(exact, scale);
     const DrawnVariances drawn =
-        sobol_variances(target, sampler, points, exact, scale, options.visibility.spp, options.seeds);
+        sobol_variances(target, sampler, points, exact, scale, options.visible.spp, options.seeds);
     out[0] = variances.alone;
-    out[1] = variances.company;
+    out[1] = variances.partner;
     out[0].sobol = std::isinf(out[0].mean) ? HUGE_VAL : drawn.alone;
-    out[1].sobol = drawn.company;
+    out[1].sobol = drawn.partner;
 }
 
 } // namespace

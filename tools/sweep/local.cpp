@@ -116,7 +116,7 @@ void add_sobol(const compress::Target& target, const std::vector<build::Normal>&
     for (Candidate& each : candidates)
         if (each.has_pdf && std::isfinite(each.row.relative_variance))
             each.row.sobol =
-                sobol_variance(target, *each.sampler, points, irradiances, options.visibility.spp, options.seeds);
+                sobol_variance(target, *each.sampler, points, irradiances, options.visible.spp, options.seeds);
 }
 
 } // namespace

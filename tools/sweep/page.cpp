@@ -58,16 +58,16 @@ std::string facts_html(const Sweep& sweep, const Advice& advice) {
                     ", which takes " + to_readable_size(base.bytes));
     const bool pictures = sweep.kind == SweepKind::environment;
     const std::string where = pictures ? " on a diffuse surface, nothing hidden" : "";
-    out += fact("Noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel",
-                noise_text(best.shaded(), sweep.visibility.spp),
+    out += fact("Noise at " + std::to_string(sweep.visible.spp) + " samples per pixel",
+                noise_text(best.shaded(), sweep.visible.spp),
                 "relative variance of a sample " + short_number(best.shaded()) + where);
     out += fact("Noise at 16, 64, 256 samples", noise_texts(best.shaded()),
                 "median over " + std::string(conditions_text(sweep.kind)) + " " +
                     noise_texts(pictures ? best.lit[open_alone].median : best.median));
     const double sobol = pictures ? best.lit[open_alone].sobol : best.sobol;
     if (sobol == sobol)
-        out += fact("With a scrambled Sobol' sequence", noise_text(sobol, sweep.visibility.spp),
-                    "noise at " + std::to_string(sweep.visibility.spp) + " samples per pixel" + where);
+        out += fact("With a scrambled Sobol' sequence", noise_text(sobol, sweep.visible.spp),
+                    "noise at " + std::to_string(sweep.visible.spp) + " samples per pixel" + where);
     if (std::isfinite(base.shaded() / best.shaded()))
         out += fact("Sample for sample", noise_ratio_text(base.shaded() / best.shaded()), "the " + base.label);
     if (const Interval time = ratio_interval(best.times.sample, base.times.sample); time.known())
@@ -106,9 +106,9 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     out.push_back({"variance", pictures ? "Noise of the light itself" : "Noise",
                    std::string("Relative variance of one sample ") + what + ": lower is better.",
                    "relative variance", [](const Sweep&, const SweepRow& r) { return only(r.relative_variance); },
-                   pictures ? kUnknown : sweep.visibility.largest_variance(),
-                   short_number(100.0 * sweep.visibility.threshold) + " % noise at " +
-                       std::to_string(sweep.visibility.spp) + " spp"});
+                   pictures ? kUnknown : sweep.visible.largest_variance(),
+                   short_number(100.0 * sweep.visible.threshold) + " % noise at " +
+                       std::to_string(sweep.visible.spp) + " spp"});
     out.push_back(
         {"weight", "Fireflies",
          "The largest weight f/p that a sample can have, over the mean: what a single pixel may flash by.",
@@ -264,18 +264,18 @@ std::string method_html(const Sweep& sweep) {
         lines.push_back(
             "On a diffuse surface: the same of the irradiance, light times cosine above the horizon, mean over " +
             conditions +
-            " random normals. In company: half of the samples are cosine distributed, all weighed by the balance "
+            " random normals. With an MIS partner: half of the samples are cosine distributed, all weighed by the balance "
             "heuristic. Behind occluders: points of the demo scene, a sphere on a plane beside a wall; there "
             "variances "
             "are divided by E^2 + (0.1 mean E)^2, E of the point, so that a few nearly black ones do not decide. "
             "Columns "
             "named sobol (in sweep.csv) are variance times samples with scrambled Sobol' points, at " +
-            std::to_string(sweep.visibility.spp) + " samples, by drawing them.");
+            std::to_string(sweep.visible.spp) + " samples, by drawing them.");
     else
         lines.push_back(std::string("Means are over ") + conditions + " random " + conditions_text(sweep.kind) +
                         ", none chosen for what a file stores. With Sobol' points: variance times samples with a "
                         "scrambled Sobol' sequence, at " +
-                        std::to_string(sweep.visibility.spp) + " samples, by drawing them.");
+                        std::to_string(sweep.visible.spp) + " samples, by drawing them.");
     if (sweep.timed)
         lines.push_back(
             "Times: one thread, all samplers in turn within each of many rounds, so that what slows the "

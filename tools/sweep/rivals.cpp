@@ -111,7 +111,7 @@ std::vector<Candidate> environment_rivals(const Target& target, const SweepOptio
     out.push_back(rival_candidate("full_cdf", "full-resolution CDF", measure::full_cdf_sampler(target)));
     out.push_back(rival_candidate("alias_table", "alias table", measure::alias_sampler(target)));
     out.push_back(rival_candidate("hierarchical_warp", "hierarchical warp", measure::hierarchical_sampler(target)));
-    out.push_back(rival_candidate("mis_compensation", "compensated CDF, for company only",
+    out.push_back(rival_candidate("mis_compensation", "compensated CDF, for MIS only",
                                   measure::compensated_sampler(target)));
     for (std::uint64_t budget : budgets_of(SweepKind::environment, options)) {
         const double side = std::sqrt(static_cast<double>(budget) / 8.0 / 2.0); // eight bytes a cell, 2:1
@@ -144,16 +144,16 @@ std::vector<Candidate> local_rivals(const Target& target, const std::vector<buil
     const auto each = [&](const auto& sampler) {
         return over_normals(normals, [&sampler](const float n[3]) { return sampler.relative_variance(n); });
     };
-    const auto in_company = [&](const LightSampler& sampler) {
+    const auto in_partner = [&](const LightSampler& sampler) {
         return summary(point_variances(target, texel_densities(target, sampler), in_the_open(normals)), Scale::own)
-            .company;
+            .partner;
     };
     const Lit of_full = each(full);
     const std::shared_ptr<const LightSampler> cdf = measure::full_cdf_sampler(target);
     add("full_cdf", "full-resolution CDF", cdf, of_full);
-    add("cdf_cosine", "CDF and cosine, balance heuristic", half_cosine(cdf), in_company(*cdf));
+    add("cdf_cosine", "CDF and cosine, balance heuristic", half_cosine(cdf), in_partner(*cdf));
     const std::shared_ptr<const LightSampler> compensated = measure::compensated_sampler(target);
-    add("mis_compensation", "CDF and cosine, MIS compensation", half_cosine(compensated), in_company(*compensated));
+    add("mis_compensation", "CDF and cosine, MIS compensation", half_cosine(compensated), in_partner(*compensated));
     for (std::uint32_t columns : {32u, 64u}) {
         if (columns > target.columns || columns / 2 > target.rows) continue;
         const std::string tiles = std::to_string(columns * columns / 2);

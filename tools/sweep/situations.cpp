@@ -23,7 +23,7 @@ const char* where_text(Situation situation) {
     switch (situation) {
     case open_alone:
         return "Nothing hidden, samples of the light alone";
-    case open_company:
+    case open_partner:
         return "Nothing hidden, half of the samples the surface's own (balance heuristic)";
     case hidden_alone:
         return "Behind the demo scene's sphere and wall, samples of the light alone";
@@ -39,8 +39,8 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
                        "independent samples (median point: " +
                        noise_texts(s.lit.median) + ")";
     if (s.lit.sobol == s.lit.sobol)
-        text += ", " + noise_text(s.lit.sobol, sweep.visibility.spp) + " at " +
-                std::to_string(sweep.visibility.spp) + " of a scrambled Sobol' sequence";
+        text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " +
+                std::to_string(sweep.visible.spp) + " of a scrambled Sobol' sequence";
     const char* after = sweep.timed ? "After the same time: " : "After the same samples: ";
     text += std::string(". ") + after + noise_ratio_text(s.over_baseline.value) + " the " + base.label;
     if (!s.has_rival) return text + ".";
@@ -52,7 +52,7 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
 } // namespace
 
 const char* to_string(Situation situation) {
-    constexpr const char* names[kSituations] = {"open", "open_company", "hidden", "hidden_company"};
+    constexpr const char* names[kSituations] = {"open", "open_partner", "hidden", "hidden_partner"};
     return names[situation];
 }
 

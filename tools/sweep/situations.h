@@ -9,7 +9,7 @@
 
 namespace acdf::tools {
 
-/// "open", "open_company", "hidden", "hidden_company".
+/// "open", "open_partner", "hidden", "hidden_partner".
 const char* to_string(Situation situation);
 
 /// "1.2 times less noise than", "1.2 times more noise than", "the same noise as" of how many times more variance

@@ -42,7 +42,7 @@ public:
     double alone(measure::Random& random, std::uint32_t samples) const {
         return drawn_mean(sampler_, random, samples, [this](const float wi[3]) { return integrand(wi); });
     }
-    double company(measure::Random& random, std::uint32_t samples) {
+    double partner(measure::Random& random, std::uint32_t samples) {
         double sum = 0.0;
         random.begin_set();
         for (std::uint32_t i = 0; i < samples / 2; ++i) {
@@ -85,15 +85,15 @@ DrawnVariances sobol_variances(const compress::Target& target, const measure::Li
         const std::unique_ptr<measure::PointSampler> own = sampler.point_sampler();
         Draws draws(target, grid, *own, points[i]);
         measure::Random random(i, measure::Numbers::sobol);
-        std::vector<double> alone, company;
+        std::vector<double> alone, partner;
         for (std::uint32_t seed = 0; seed < seeds; ++seed) {
             alone.push_back(draws.alone(random, samples));
-            company.push_back(draws.company(random, samples));
+            partner.push_back(draws.partner(random, samples));
         }
-        drawn[i] = {exact[i].irradiance, unbiased_variance(alone) * samples, unbiased_variance(company) * samples};
+        drawn[i] = {exact[i].irradiance, unbiased_variance(alone) * samples, unbiased_variance(partner) * samples};
     });
     const SurfaceVariances out = summary(drawn, scale);
-    return {out.alone.mean, out.company.mean};
+    return {out.alone.mean, out.partner.mean};
 }
 
 double sobol_variance(const compress::Target& target, const measure::LightSampler& sampler,

@@ -9,12 +9,12 @@
 namespace acdf::tools {
 
 struct DrawnVariances {
-    double alone = 0.0, company = 0.0;
+    double alone = 0.0, partner = 0.0;
 };
 
 /// The variance of an estimate of `samples` (rounded up to an even number) times their number, over E^2 as
 /// `summary` scales it, mean over points: with independent numbers those of `exact`, which is of the same points;
-/// here of scrambled Sobol' points. Over `seeds` (at least 2) estimates. In company half of the samples are the
+/// here of scrambled Sobol' points. Over `seeds` (at least 2) estimates. With an MIS partner half of the samples are the
 /// cosine's. The same for any number of threads.
 DrawnVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
                                const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,

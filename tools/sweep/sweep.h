@@ -40,8 +40,8 @@ struct SweepTimes {
 };
 
 /// How a renderer uses the light's samples: on a diffuse surface, with nothing in the way or behind what hides
-/// light in the demo scene, alone or in company of as many samples of the surface (balance heuristic).
-enum Situation : std::size_t { open_alone, open_company, hidden_alone, hidden_company, kSituations };
+/// light in the demo scene, alone or with an MIS partner of as many samples of the surface (balance heuristic).
+enum Situation : std::size_t { open_alone, open_partner, hidden_alone, hidden_partner, kSituations };
 
 /// Relative variance of one sample over points of a surface, exact. Infinite: biased.
 struct Lit {
@@ -86,7 +86,7 @@ struct SweepPicture {
 };
 
 /// When noise is too small to see: its standard deviation in a pixel, of `spp` samples, over the pixel's value.
-struct Visibility {
+struct VisibleNoise {
     std::uint32_t spp = 64;
     double threshold = 0.01;
 
@@ -105,7 +105,7 @@ struct Sweep {
     std::string description; ///< for people: "1024 x 512, lat-long"
     std::string command;     ///< "acdf env 'my probe.exr' --channel rgb", to which a row's options and -o are added
     std::string output;      ///< a name for the recommended file
-    Visibility visibility;
+    VisibleNoise visible;
     std::vector<SweepRow> rows;
     std::size_t baseline = 0;       ///< row with which times are compared
     std::uint32_t conditions = 0;   ///< normals or views that means are over
@@ -121,7 +121,7 @@ struct Sweep {
 struct SweepOptions {
     std::vector<std::uint64_t> budgets; ///< empty: default_budgets
     std::vector<std::string> fits;      ///< empty: default_fits
-    Visibility visibility;
+    VisibleNoise visible;
     builder::TargetOptions target;
     bool timing = true;
     bool pictures = true;

@@ -60,13 +60,13 @@ private:
     // A file made for MIS has pdf 0 where BSDF samples suffice. Light samples alone use the whole environment of a
     // local file, which is complete.
     bool UsesNormal(Normal3f ns, bool allowIncompletePDF) const {
-        return isLocal && ns != Normal3f(0, 0, 0) && (allowIncompletePDF || !local.needs_company());
+        return isLocal && ns != Normal3f(0, 0, 0) && (allowIncompletePDF || !local.requires_mis());
     }
     const acdf::EnvironmentView& Sky(bool allowIncompletePDF) const {
-        if (!allowIncompletePDF && sky.needs_company())
+        if (!allowIncompletePDF && sky.requires_mis())
             ErrorExit(
                 "the light's .acdf file was made for MIS, and this integrator takes light samples alone; make it "
-                "with --with none");
+                "with --mis none");
         return sky;
     }
     AcdfLocalPoint At(const Transform& renderFromLight, Point3f p, Normal3f ns) const {

@@ -17,7 +17,7 @@ using Accuracy = builder::EnvironmentAccuracy;
 Accuracy measure_environment(const File& file, const compress::Target& target);
 
 /// The same of what points without a normal draw from in a local environment file: its environment(), used alone
-/// whatever the company of the file.
+/// whatever the partner of the file.
 Accuracy measure_whole(const File& file, const compress::Target& target);
 
 } // namespace acdf::build

@@ -148,14 +148,14 @@ private:
         /// Probabilities without the share around the normal; empty: nothing is drawn.
         const std::vector<double>& tile;
         double share;            ///< that is drawn around the normal
-        Combination both, rival; ///< with the company
+        Combination both, rival; ///< with the partner
         double largest = 0.0;
         std::uint64_t violations = 0;
     };
 
     /// Of files that are drawn from alone, of the integrand g, without slopes and shares: most are.
     bool is_plain(const Row& state) const {
-        return !local_.company && target_.means.empty() && target_.peaks.empty() && state.picture.slope.empty() &&
+        return !local_.partner && target_.means.empty() && target_.peaks.empty() && state.picture.slope.empty() &&
                state.share == 0.0 && !state.tile.empty();
     }
 
@@ -223,7 +223,7 @@ private:
         const double* const measures = target_.column_measure.data();
         const float* const values = target_.row(r);
         const double height = target_.row_measure[r], share = state.share;
-        const bool drawn = !state.tile.empty(), alone = !local_.company, means_differ = !target_.means.empty();
+        const bool drawn = !state.tile.empty(), alone = !local_.partner, means_differ = !target_.means.empty();
         const Slope* const slopes = state.picture.slope.empty() ? nullptr : state.picture.slope.data() + row;
         const float* const peaks = target_.peaks.empty() ? nullptr : target_.peaks.data() + row;
         // Copies, which compilers keep in registers.
@@ -269,7 +269,7 @@ private:
 
     NormalAccuracy sum(const float n[3], const TilePicture& picture, std::vector<double> tile) const {
         NormalAccuracy out;
-        const bool drawn = !tile.empty(), alone = !local_.company;
+        const bool drawn = !tile.empty(), alone = !local_.partner;
         const double share = drawn ? double{local_.cosine_share} : 0.0;
         for (double& probability : tile) probability *= 1.0 - share;
         Row state{n, picture, tile, share, no_combination(), no_combination()};
@@ -307,8 +307,8 @@ private:
     }
 
     Combination no_combination() const {
-        if (!local_.company) return {0.5, ACDF_HEURISTIC_BALANCE};
-        return {double{local_.company->share}, static_cast<AcdfHeuristic>(local_.company->heuristic)};
+        if (!local_.partner) return {0.5, ACDF_HEURISTIC_BALANCE};
+        return {double{local_.partner->share}, static_cast<AcdfHeuristic>(local_.partner->heuristic)};
     }
 
     const File& file_;

@@ -161,14 +161,14 @@ private:
 };
 
 /// What a file is to be combined with, by multiple importance sampling. Such a file has no density where the
-/// company is enough: it is not to be used alone, and says so (needs_company of its view).
-struct Company {
-    /// ACDF_COMPANY_COSINE: cos / pi around the normal; _BRDF: lobes as BRDFs have them; _MEAN: as if the company
+/// partner is enough: it is not to be used alone, and says so (requires_mis of its view).
+struct Partner {
+    /// ACDF_PARTNER_COSINE: cos / pi around the normal; _BRDF: lobes as BRDFs have them; _MEAN: as if the partner
     /// were the same everywhere (Karlik et al. 2019), of environments alone; _TABLE: another table, of tables
     /// alone.
-    AcdfCompanyKind kind = ACDF_COMPANY_NONE;
+    AcdfPartnerKind kind = ACDF_PARTNER_NONE;
     AcdfHeuristic heuristic = ACDF_HEURISTIC_BALANCE;
-    double light = 1.0, other = 1.0; ///< samples of the file and of the company, in proportion; in [1e-3, 1e3]
+    double light = 1.0, other = 1.0; ///< samples of the file and of the partner, in proportion; in [1e-3, 1e3]
 };
 
 /// A normal of a scene, of any length > 0, and how often it occurs, > 0.
@@ -182,8 +182,8 @@ struct EnvironmentOptions {
     TargetOptions target; ///< of pixels and rows; a Target has its own
     Goal goal;            ///< cells: in all, about 4.2 bytes each; variance: up to 16 MiB. Of the variance fit only
     FitOptions fit;
-    Company company;                  ///< of the variance fit as a tree, without max_weight or a goal of variance
-    std::vector<SceneNormal> normals; ///< that the company lights; empty: all normals
+    Partner mis;                  ///< of the variance fit as a tree, without max_weight or a goal of variance
+    std::vector<SceneNormal> normals; ///< that the partner lights; empty: all normals
     std::string normals_text;         ///< as in LocalOptions
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
@@ -261,10 +261,10 @@ struct LocalOptions {
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
-    LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, a company and places
+    LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and places
     BinTarget bin_target = BinTarget::mean;   ///< without sharing
     FitOptions fit;                           ///< of a bin's tree, without sharing
-    Company company;                          ///< of bins that share tiles, without a cosine_share
+    Partner mis;                          ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
@@ -364,7 +364,7 @@ struct TableOptions {
     Goal goal = Goal::of_cells(0);                 ///< cells: a bin, on average; 0: 4096 in all, at least 64 a bin
     double max_weight = 0.0;                       ///< the largest f/p over its mean, at least 1; 0: no bound
     bool bad_as_zero = false;                      ///< bad numbers count as 0, else ErrorCode::bad_source
-    Company company;                               ///< ACDF_COMPANY_TABLE, without max_weight or a goal of variance
+    Partner mis;                               ///< ACDF_PARTNER_TABLE, without max_weight or a goal of variance
     Array other;                                   ///< that table, of the same shape; each bin has its own density
     Source other_source;                           ///< name and sha256
     AcdfCodec codec = ACDF_CODEC_NONE;

@@ -39,8 +39,8 @@ compress::FitOptions internal(const FitOptions& options) {
     return out;
 }
 
-compress::Company internal(const Company& company) {
-    return {company.kind, company.heuristic, company.light, company.other};
+compress::Partner internal(const Partner& partner) {
+    return {partner.kind, partner.heuristic, partner.light, partner.other};
 }
 
 std::vector<compress::SceneNormal> internal(const std::vector<SceneNormal>& normals) {
@@ -76,7 +76,7 @@ build::EnvironmentOptions internal(const EnvironmentOptions& options) {
     out.fit = internal(options.fit);
     out.fit.goal = internal(options.goal);
     out.codec = options.codec;
-    out.company = internal(options.company);
+    out.mis = internal(options.mis);
     out.scene = internal(options.normals);
     out.scene_text = options.normals_text;
     return out;
@@ -158,7 +158,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     out.tiles = options.tiles;
     out.max_weight = options.max_weight;
     out.scene = internal(options.normals);
-    out.company = internal(options.company);
+    out.mis = internal(options.mis);
     out.sharing = options.sharing;
     out.shape = options.shape == LocalShape::fast ? compress::LocalShape::fast : compress::LocalShape::small;
     out.shape_from = !may_be_fast(options)                    ? build::ShapeFrom::necessity
@@ -202,7 +202,7 @@ build::TableOptions internal(const TableOptions& options) {
     out.cells = options.goal.cells;
     out.fit.goal = internal(options.goal);
     out.fit.max_weight = options.max_weight;
-    out.company = internal(options.company);
+    out.mis = internal(options.mis);
     out.other_name = options.other_source.name;
     out.other_sha256 = options.other_source.sha256;
     out.codec = options.codec;

@@ -2,7 +2,7 @@
 #include "compress/local/fit.h"
 
 #include "compress/fit/shared.h"
-#include "compress/local/company.h"
+#include "compress/local/partner.h"
 #include "compress/local/light.h"
 #include "compress/local/mixed_rows.h"
 #include "compress/local/sums.h"
@@ -131,13 +131,13 @@ Sums sums_of(const LocalFit& fit) { return {fit.shared.row_count, fit.tiles.tile
 } // namespace
 
 LocalFitter::LocalFitter(const Target& target, const NormalBins& bins, const BinLight& light, const LocalSize& size,
-                         const Progress& progress, const Company& company)
+                         const Progress& progress, const Partner& partner)
     : target_(target), bins_(bins), light_(light), size_(size), total_(integral(target)), progress_(progress) {
     if (!has_energy(target)) throw std::invalid_argument("a target without energy");
     if (bins.subdivisions == 0) throw std::invalid_argument("cells of normals cannot share tiles");
-    if (fast() && (company || std::isfinite(size.max_weight)))
-        throw std::invalid_argument("the fast shape has no company, and no bound on weights");
-    if (company) beside_.emplace(target, light.points, bins, light.irradiance, company);
+    if (fast() && (partner || std::isfinite(size.max_weight)))
+        throw std::invalid_argument("the fast shape has no partner, and no bound on weights");
+    if (partner) beside_.emplace(target, light.points, bins, light.irradiance, partner);
     report(0.1);
     rule_ = divide(beside_ ? beside_->excess(target) : target, light.worth, std::min(size.tiles, ACDF_MAX_TILES),
                    tiles_);
@@ -224,7 +224,7 @@ void LocalFitter::fill_beside(LocalFit& out) const {
     const auto shares_of = [&](std::size_t b) {
         std::vector<double> shares = light.shares(b);
         for (double& share : shares) share /= total;
-        out.records[b] = {light.recommended_share(b, shares), static_cast<float>(light_.irradiance[b] / total)};
+        out.records[b] = {light.recommended_light_share(b, shares), static_cast<float>(light_.irradiance[b] / total)};
         return shares;
     };
     const auto put = [&](std::size_t b, const std::vector<double>& shares) {
@@ -254,9 +254,9 @@ void LocalFitter::fill(LocalFit& out) const {
 }
 
 LocalFit fit_local(const Target& target, const NormalBins& bins, const LocalSize& size, const Progress& progress,
-                   const Company& company) {
+                   const Partner& partner) {
     const BinLight light(target, bins);
-    LocalFitter fitter(target, bins, light, size, progress, company);
+    LocalFitter fitter(target, bins, light, size, progress, partner);
     LocalFit out = fitter.outlined(size.inside_bytes);
     fitter.fill(out);
     return out;

@@ -197,14 +197,14 @@ Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights) {
     return chunk;
 }
 
-Chunk company_chunk(const Company& company, float recommended_share,
-                    const std::vector<AcdfCompanyRecord>& records) {
-    Chunk chunk{ACDF_CHUNK_COMPANY, {}};
+Chunk partner_chunk(const Partner& partner, float recommended_light_share,
+                    const std::vector<AcdfPartnerRecord>& records) {
+    Chunk chunk{ACDF_CHUNK_PARTNER, {}};
     append(chunk.bytes,
-           AcdfCompany{static_cast<std::uint32_t>(company.kind), static_cast<std::uint32_t>(company.heuristic),
-                       static_cast<float>(company.share()), recommended_share,
+           AcdfPartner{static_cast<std::uint32_t>(partner.kind), static_cast<std::uint32_t>(partner.heuristic),
+                       static_cast<float>(partner.share()), recommended_light_share,
                        static_cast<std::uint32_t>(records.size()), 0});
-    for (const AcdfCompanyRecord& record : records) append(chunk.bytes, record);
+    for (const AcdfPartnerRecord& record : records) append(chunk.bytes, record);
     return chunk;
 }
 

@@ -100,7 +100,7 @@ private:
         for (const std::uint32_t n : given_) all += n;
         const std::uint32_t others = all - given_[automatic_];
         const auto least = static_cast<double>(parts_.size() - 1);
-        const double own = std::round(static_cast<double>(parts_[automatic_].sampler->recommended_share()) * all);
+        const double own = std::round(static_cast<double>(parts_[automatic_].sampler->recommended_light_share()) * all);
         parts_[automatic_].n = std::clamp(own, 1.0, std::max(1.0, all - least));
         const double left = all - parts_[automatic_].n;
         std::uint32_t before = 0; // sums are rounded, not what each gets: together it is all that is left

@@ -34,7 +34,7 @@ public:
     /// sr^-1, of `sample` at this point; 0 for directions that it never draws.
     virtual float pdf(const float wi[3]) const = 0;
     /// Which share of the samples to draw from it beside others, in (0, 1]; 1 where it does not know.
-    virtual float recommended_share() const { return 1.0f; }
+    virtual float recommended_light_share() const { return 1.0f; }
 };
 
 /// What a sampler has to make anew for each picture, beside what it does at its points.

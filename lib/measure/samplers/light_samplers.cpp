@@ -62,7 +62,7 @@ public:
         return view_.sample(below_one(u0), below_one(u1));
     }
     float pdf(const float wi[3]) const override { return view_.pdf(wi); }
-    float recommended_share() const override { return view_.recommended_share(); }
+    float recommended_light_share() const override { return view_.recommended_light_share(); }
 
 private:
     EnvironmentView view_;
@@ -85,7 +85,7 @@ public:
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return view_.sample(point_, u0, u1); }
     float pdf(const float wi[3]) const override { return view_.pdf(point_, wi); }
-    float recommended_share() const override { return view_.recommended_share(normal_); }
+    float recommended_light_share() const override { return view_.recommended_light_share(normal_); }
 
 private:
     LocalEnvironmentView view_;

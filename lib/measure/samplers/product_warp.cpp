@@ -67,8 +67,8 @@ public:
         if (is_local_) local_ = file.local().data();
         else if (file.kind() == ACDF_KIND_ENVIRONMENT) local_.environment = file.environment().data();
         else throw std::invalid_argument("the light of a product is an environment or a local environment");
-        if (local_.cosine_share > 0.0 || file.company())
-            throw std::invalid_argument("a file for a company has no support alone");
+        if (local_.cosine_share > 0.0 || file.partner())
+            throw std::invalid_argument("a file for an MIS partner has no support alone");
         if (local_.fast.grid)
             throw std::invalid_argument("a file of the fast shape tells no random numbers of a direction");
     }

@@ -60,9 +60,9 @@ class File:
         >>> acdf.build_environment(np.ones((8, 16)), cells=64).info()["axes"][0]["name"]
         'phi'
         """
-        out = {key: value for key, value in self._description.items() if key not in ("metadata", "company")}
-        if self._description["company"] is not None:
-            out["company"] = self._description["company"]
+        out = {key: value for key, value in self._description.items() if key not in ("metadata", "partner")}
+        if self._description["partner"] is not None:
+            out["partner"] = self._description["partner"]
         groups: Dict[str, Dict[str, Any]] = {"source": {}, "accuracy": {}, "metadata": {}}
         for key, value in self._description["metadata"].items():
             group, _, name = key.partition(".")
@@ -78,9 +78,9 @@ class File:
         return out
 
     @property
-    def needs_company(self) -> bool:
+    def requires_mis(self) -> bool:
         """Whether it is to be combined with another sampler, by multiple importance sampling: used alone it is biased."""
-        return self._description["company"] is not None
+        return self._description["partner"] is not None
 
     def to_bytes(self) -> bytes:
         """The whole file."""

@@ -206,9 +206,9 @@ ACDF_FN double acdf_local_irradiance(const AcdfLocal* local, const float normal[
     AcdfNormalBins bins;
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
-    if (point.what >= ACDF_LOCAL_BLEND && acdf_company_records(local->company) &&
+    if (point.what >= ACDF_LOCAL_BLEND && acdf_partner_records(local->partner) &&
         acdf_local_bins(local, normal, &bins)) { /* shares tell what is left to the file */
-        const AcdfCompanyRecord* records = acdf_company_records(local->company);
+        const AcdfPartnerRecord* records = acdf_partner_records(local->partner);
         double sum = 0.0;
         int i;
         for (i = 0; i < bins.count; ++i) sum += bins.weight[i] * (double)records[bins.bin[i]].flux;
@@ -227,9 +227,9 @@ ACDF_FN float acdf_local_recommended_share(const AcdfLocal* local, const float n
     AcdfNormalBins bins;
     double sum = 0.0, weight = 0.0;
     int i;
-    if (!local->company || !acdf_local_bins(local, normal, &bins)) return acdf_company_share(local->company);
+    if (!local->partner || !acdf_local_bins(local, normal, &bins)) return acdf_partner_share(local->partner);
     for (i = 0; i < bins.count; ++i) {
-        sum += bins.weight[i] * (double)acdf_company_bin_share(local->company, bins.bin[i]);
+        sum += bins.weight[i] * (double)acdf_partner_bin_share(local->partner, bins.bin[i]);
         weight += bins.weight[i];
     }
     return (float)(sum / weight);

@@ -24,7 +24,7 @@ typedef struct AcdfLocal {
     uint32_t rows;
     double cosine_share;
     const AcdfLocalTables* tables;          /* runtime tables; null: splits are walked */
-    const AcdfCompany* company;             /* null: to be used alone */
+    const AcdfPartner* partner;             /* null: to be used alone */
     AcdfPlaceTable places;                  /* its header is null where places are not told apart */
     AcdfPortalTable portals;                /* its header is null where there are none */
     const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */

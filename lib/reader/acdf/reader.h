@@ -110,7 +110,7 @@ public:
     std::uint32_t tree_units() const noexcept { return tree_units_; }
     std::uint64_t size() const noexcept { return size_; }
     /// What the file is to be combined with; null: it is to be used alone.
-    const AcdfCompany* company() const noexcept { return company_; }
+    const AcdfPartner* partner() const noexcept { return partner_; }
     /// Bytes of the runtime tables; 0 where there are none: left out, of no use, or no memory for them.
     std::uint64_t table_bytes() const noexcept {
         return 4 * std::uint64_t{halved_         ? halved_->words
@@ -151,7 +151,7 @@ private:
     AcdfFast fast_ = {};
     const AcdfLocalHeader* local_ = nullptr;
     const AcdfLight* lights_ = nullptr;
-    const AcdfCompany* company_ = nullptr;
+    const AcdfPartner* partner_ = nullptr;
     AcdfPlaceTable places_ = {};
     AcdfPortalTable portals_ = {};
     const AcdfViews* views_ = nullptr;

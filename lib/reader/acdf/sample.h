@@ -13,7 +13,7 @@
 #ifndef ACDF_SAMPLE_H
 #define ACDF_SAMPLE_H
 
-#include <acdf/company.h>
+#include <acdf/partner.h>
 #include <acdf/grid.h>
 #include <acdf/halvings.h>
 #include <acdf/random.h>
@@ -32,7 +32,7 @@ typedef struct AcdfEnvironment {
     double total;                 /* integral of the target over the sphere */
     uint32_t parameterization;    /* ACDF_PARAM_OCTAHEDRAL: u and v of the square; all else: phi and theta */
     const AcdfHalvedTree* halved; /* null: curves */
-    const AcdfCompany* company;   /* null: to be used alone */
+    const AcdfPartner* partner;   /* null: to be used alone */
     uint32_t tree_units;          /* of two bytes, that `tree` has; 0: not known */
 } AcdfEnvironment;
 

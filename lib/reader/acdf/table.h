@@ -25,7 +25,7 @@ typedef struct AcdfTable {
     uint32_t axis_count;        /* of both roles, at most ACDF_MAX_AXES */
     uint32_t indexed_count;     /* less than axis_count */
     double total;               /* sum over the bins of the integral over the sampled axes */
-    const AcdfCompany* company; /* null: to be used alone */
+    const AcdfPartner* partner; /* null: to be used alone */
     uint32_t tree_units;        /* of two bytes, that the tree has; 0: not known */
     const AcdfEntries* entries; /* runtime tables; null: trees are walked from their roots */
 } AcdfTable;

@@ -157,7 +157,7 @@ bool belongs(int known, u32 kind) {
         known == chunk_grid)
         return kind == ACDF_KIND_LOCAL;
     if (known == chunk_views) return kind == ACDF_KIND_BRDF;
-    if (known == chunk_company) return kind != ACDF_KIND_BRDF;
+    if (known == chunk_partner) return kind != ACDF_KIND_BRDF;
     if (known == chunk_halvings) return kind == ACDF_KIND_ENVIRONMENT;
     if (known == chunk_tiles || known == chunk_rows) return kind == ACDF_KIND_LOCAL || kind == ACDF_KIND_BRDF;
     return true;
@@ -338,8 +338,8 @@ Verdict check(const u8* bytes, u64 size, const Limits& limits, FindingSink sink,
         check_environment(description, payloads.of[chunk_bins], report, parts);
     if (header.kind == ACDF_KIND_TABLE && !report.stopped())
         check_table_kind(description, payloads.of[chunk_bins], report, parts);
-    if (payloads.of[chunk_company].data && belongs(chunk_company, header.kind) && !report.stopped())
-        check_company(payloads.of[chunk_company], header.kind, report, parts);
+    if (payloads.of[chunk_partner].data && belongs(chunk_partner, header.kind) && !report.stopped())
+        check_partner(payloads.of[chunk_partner], header.kind, report, parts);
     return report.verdict();
 }
 

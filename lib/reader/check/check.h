@@ -71,7 +71,7 @@ struct Parts {
     AcdfFast fast = {};                        ///< of the fast shape, which has no rows; else null
     const AcdfLocalHeader* local = nullptr;    ///< of local environments
     const AcdfLight* lights = nullptr;         ///< local->light_count
-    const AcdfCompany* company = nullptr;      ///< null where the file is to be used alone
+    const AcdfPartner* partner = nullptr;      ///< null where the file is to be used alone
     AcdfPlaceTable places = {};                ///< of local environments; its header is null where absent
     AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent

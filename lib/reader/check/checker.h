@@ -48,7 +48,7 @@ enum KnownChunk {
     chunk_rows,
     chunk_local,
     chunk_views,
-    chunk_company,
+    chunk_partner,
     chunk_places,
     chunk_portals,
     chunk_sums,
@@ -110,8 +110,8 @@ void check_places(const Payload& payload, Report& report, Parts& parts) noexcept
 void check_portals(const Payload& payload, Report& report, Parts& parts) noexcept;
 /// The same of BRDFs, and VIEW. Sets parts.views and parts.nodes.
 void check_brdf_kind(const Payload& description, const Payload& views, Report& report, Parts& parts) noexcept;
-/// COMP, where there is one; needs parts.description. Sets parts.company.
-void check_company(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
+/// COMP, where there is one; needs parts.description. Sets parts.partner.
+void check_partner(const Payload& payload, std::uint32_t kind, Report& report, Parts& parts) noexcept;
 void check_table_kind(const Payload& description, const Payload& bins, Report& report, const Parts& parts) noexcept;
 
 } // namespace acdf

@@ -82,13 +82,13 @@ const Rule rules[] = {
      "keys of 1 to 255 bytes, all UTF-8."},
     {5018, error, malformed, "duplicate-key", "No two metadata keys are equal."},
     {5019, error, unsupported, "channels", "`channels` is one of those of §5.1."},
-    {5020, error, malformed, "company",
+    {5020, error, malformed, "partner",
      "COMP is as long as its count tells, with a record for each bin or, but for local environments, none; "
      "`reserved` is zero, `share` in (0, 1), recommended shares in (0, 1], fluxes finite, not negative, and 0 but "
      "in "
      "local environments."},
-    {5021, error, unsupported, "company-kind",
-     "Kind and heuristic of a company are those of §5.8; that of a table is 4, and no other's."},
+    {5021, error, unsupported, "partner-kind",
+     "Kind and heuristic of an MIS partner are those of §5.8; that of a table is 4, and no other's."},
 
     {6001, error, malformed, "tree-length", "TREE is 1 to 4294967294 units of two bytes long."},
     {6002, error, malformed, "curve-end", "A curve ends inside TREE."},

@@ -51,8 +51,8 @@ export interface AcdfFile {
     map(width: number, height: number, at?: At): Float32Array;
     /** Of an environment: first and last position on axis 0, then on axis 1, 4 numbers a cell. Empty of other kinds. */
     cells(): Uint32Array;
-    /** Of the samples of both, how many to draw from this file where it has a company, in (0, 1]. */
-    recommendedShare(at?: At): number;
+    /** Of the samples of both, how many to draw from this file where it has an MIS partner, in (0, 1]. */
+    recommendedLightShare(at?: At): number;
     /** Words for the functions of "acdf/shaders", of an environment, a local environment or a BRDF. Throws AcdfError. */
     shaderTables(): Uint32Array;
     /** Gives the memory back. What is called then throws. */

@@ -98,7 +98,7 @@ class AcdfFile {
         return this.#call([[Uint32Array, 4 * count]], ([to]) => this.#exports.acdf_web_cells(this.#handle(), to, count));
     }
 
-    recommendedShare(options = {}) {
+    recommendedLightShare(options = {}) {
         let share = 1;
         this.#call([[this.#at(options)], [Float32Array, 1]], ([at]) => {
             share = this.#exports.acdf_web_share(this.#handle(), at);

@@ -30,7 +30,7 @@ std::vector<char> bytes_of(const fs::path& path) {
 
 const char* const kNames[] = {
     "smallest", "one_texel",           "untilted",      "zlib",          "planes",       "tilted",
-    "deep",     "shared_child",        "wide",          "many_segments", "octahedral",   "company",
+    "deep",     "shared_child",        "wide",          "many_segments", "octahedral",   "partner",
     "halvings", "halvings_octahedral", "halvings_dark", "halvings_zlib", "halvings_leaf"};
 /// Whose maker is gone: curves of the variance fit, which now makes halvings. Readers go on reading them.
 const std::set<std::string> kNotMade = {"untilted.acdf", "untilted.txt"};

@@ -266,8 +266,8 @@ TEST(MeshRivals, OfRoomsAreUnbiased) {
         const Result result =
             folder.render(scene, "out-" + scene,
                           {"--sampler", "full-cdf", "--sampler", "portals", "--sampler", "portals:uniform",
-                           "--sampler", "mis(portals,cosine)", "--sampler", "visibility:8x4", "--sampler",
-                           "mis(visibility:8x4,cosine)", "--sequence", "independent"});
+                           "--sampler", "mis(portals,cosine)", "--sampler", "visibility-cache:8x4", "--sampler",
+                           "mis(visibility-cache:8x4,cosine)", "--sequence", "independent"});
         ASSERT_EQ(result.code, 0) << result.err;
         const Json report = Json::parse(result.out);
         for (const Json& one : report.at("samplers")) {

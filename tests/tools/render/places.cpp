@@ -92,12 +92,12 @@ void expect_as_summed(Viewed& scene, const std::vector<std::vector<std::string>>
 TEST(RenderPlaces, AreAsSummedBehindAWall) {
     ACDF_NOT_SANITIZED();
     Viewed scene(test::small_scene("\"full-cdf\""));
-    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"visibility:8x4"}, {"places:24KiB", "cosine"}});
+    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"visibility-cache:8x4"}, {"places:24KiB", "cosine"}});
 }
 
 TEST(RenderPlaces, AreAsSummedInARoom) {
     Viewed scene(test::mesh_scene("room.obj"));
-    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"tiles:8x4"}, {"visibility:8x4"}});
+    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"tiles:8x4"}, {"visibility-cache:8x4"}});
 }
 
 /// Wherever light is, from any place and for any normal, it may be drawn.

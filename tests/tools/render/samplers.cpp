@@ -57,12 +57,12 @@ TEST(RenderSamplers, OfLightAreUnbiased) {
                                   kSeeds));
 }
 
-TEST(RenderSamplers, OfCompaniesAreUnbiased) {
+TEST(RenderSamplers, OfPartnersAreUnbiased) {
     SmallScene scene;
-    expect_unbiased(scene.compare({"mis(env:4KiB --with cosine,cosine)", "mis(auto:env:4KiB --with cosine,cosine)",
-                                   "mis-power(local:48KiB --with cosine --heuristic power,cosine)",
-                                   "mis(auto:local:48KiB --with cosine --shares 3:1, cosine, full-cdf)",
-                                   "mis(env:4KiB --with brdf,cosine)", "ideal", "mis(ideal --with cosine,cosine)"},
+    expect_unbiased(scene.compare({"mis(env:4KiB --mis cosine,cosine)", "mis(auto:env:4KiB --mis cosine,cosine)",
+                                   "mis-power(local:48KiB --mis cosine --heuristic power,cosine)",
+                                   "mis(auto:local:48KiB --mis cosine --shares 3:1, cosine, full-cdf)",
+                                   "mis(env:4KiB --mis brdf,cosine)", "ideal", "mis(ideal --mis cosine,cosine)"},
                                   kSeeds));
 }
 

@@ -58,7 +58,7 @@ Sweep made_up() {
 
 TEST(SweepAdvice, TheSmallestFileWhoseNoiseCannotBeSeen) {
     const Sweep sweep = made_up();
-    const Visibility v; // 1 % at 64 samples: at most 0.0064
+    const VisibleNoise v; // 1 % at 64 samples: at most 0.0064
     EXPECT_DOUBLE_EQ(v.largest_variance(), 0.0064);
     EXPECT_EQ(recommended_row(sweep.rows, v).row, 1u);
     EXPECT_TRUE(recommended_row(sweep.rows, v).reached);
@@ -91,7 +91,7 @@ TEST(SweepAdvice, SaysSoInWords) {
                                "beyond it you gain nothing visible.");
     EXPECT_EQ(advice.command, "acdf local probe.exr --budget 65536 -o probe.local.acdf");
     EXPECT_NE(advice.rule.find("0.0064"), std::string::npos) << advice.rule;
-    sweep.visibility.spp = 1;
+    sweep.visible.spp = 1;
     advice = advise(sweep);
     EXPECT_EQ(advice.sentence.rfind("No size tried gets below 1 % noise at 1 sample per pixel", 0), 0u)
         << advice.sentence;
@@ -129,13 +129,13 @@ Sweep made_up_pictures() {
 TEST(SweepAdvice, PicturesDecideNotTheLightItself) {
     Sweep sweep = made_up_pictures();
     const auto recommended = [&] {
-        return recommended_row(sweep.rows, sweep.visibility, sweep.costs, sweep.numbers);
+        return recommended_row(sweep.rows, sweep.visible, sweep.costs, sweep.numbers);
     };
     EXPECT_EQ(recommended().row, 0u); // sqrt(4 / 3.75) is 1.03
     EXPECT_FALSE(recommended().reached);
-    sweep.rows[0].lit[hidden_company].mean = 3.3; // sqrt(3.3 / 2.9) is 1.07, in one situation
+    sweep.rows[0].lit[hidden_partner].mean = 3.3; // sqrt(3.3 / 2.9) is 1.07, in one situation
     EXPECT_EQ(recommended().row, 1u);
-    sweep.rows[1].lit[open_company].mean = 2.2;
+    sweep.rows[1].lit[open_partner].mean = 2.2;
     EXPECT_EQ(recommended().row, 2u);
     sweep.numbers = measure::Numbers::sobol; // where they are told, those
     EXPECT_EQ(recommended().row, 0u);
@@ -159,10 +159,10 @@ TEST(SweepAdvice, SaysWhatPicturesHave) {
         "full_cdf; no other size or fit tried lowers it by more than 5 %.");
     ASSERT_EQ(advice.situations.size(), std::size_t{kSituations});
     EXPECT_EQ(advice.situations[open_alone].rival, 3u);
-    EXPECT_EQ(advice.situations[open_company].rival, 4u);
+    EXPECT_EQ(advice.situations[open_partner].rival, 4u);
     const double cost = (0.5 * (200 + 200 + 20) + 500) / (0.5 * (100 + 100 + 20) + 500);
-    EXPECT_NEAR(advice.situations[open_company].over_rival.value, 0.5 / 2.0 * cost, 1e-9);
-    const std::string all = advice.situations[open_alone].sentence + advice.situations[open_company].sentence;
+    EXPECT_NEAR(advice.situations[open_partner].over_rival.value, 0.5 / 2.0 * cost, 1e-9);
+    const std::string all = advice.situations[open_alone].sentence + advice.situations[open_partner].sentence;
     for (const char* part :
          {"50 %, 25 %, 12 % noise at 16, 64, 256 independent samples (median point: 35 %, 18 %, 8.8 %)",
           "12 % at 64 of a scrambled Sobol' sequence", "times less noise than the full_cdf",

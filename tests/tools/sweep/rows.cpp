@@ -48,7 +48,7 @@ TEST(SweepRows, LocalFilesBesideTheirRivals) {
 // A set of a single point is uniform: then drawn variances are those that sums tell.
 TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
     SweepOptions options = small_sweep();
-    options.visibility.spp = 1;
+    options.visible.spp = 1;
     options.seeds = 2000;
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     for (const SweepRow& r : sweep_local(builder::target_of(target, {}), {}, options).rows)
@@ -60,7 +60,7 @@ TEST(SweepRows, SobolOfOneSampleIsWhatTheSumsTell) {
 TEST(SweepRows, OfABrdf) {
     const auto brdf = input::open_brdf("ggx:alpha=0.3");
     SweepOptions options = small_sweep();
-    options.visibility.spp = 1; // uniform numbers, as above; samples that are lost below the surface count
+    options.visible.spp = 1; // uniform numbers, as above; samples that are lost below the surface count
     options.seeds = 3000;
     const Sweep sweep = sweep_brdf(*brdf, options);
     std::map<std::string, const SweepRow*> by;

@@ -124,9 +124,9 @@ TEST(BuilderLocal, Misuse) {
     refused("a wild shape", [](LocalOptions& o) { o.shape = static_cast<LocalShape>(9); });
     refused("fast without sharing", [](LocalOptions& o) { o.shape = LocalShape::fast, o.sharing = false; });
     refused("fast and a bound", [](LocalOptions& o) { o.shape = LocalShape::fast, o.max_weight = 9.0; });
-    refused("fast and a company", [](LocalOptions& o) {
+    refused("fast and an MIS partner", [](LocalOptions& o) {
         o.shape = LocalShape::fast;
-        o.company.kind = ACDF_COMPANY_COSINE;
+        o.mis.kind = ACDF_PARTNER_COSINE;
     });
     refused("fast and places", [](LocalOptions& o) {
         o.shape = LocalShape::fast;

@@ -19,7 +19,7 @@ struct Case {
 
 std::vector<Case> container_cases();
 std::vector<Case> plane_cases();
-std::vector<Case> company_cases();
+std::vector<Case> partner_cases();
 std::vector<Case> description_cases();
 std::vector<Case> tree_cases();
 std::vector<Case> table_cases();
