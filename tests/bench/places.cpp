@@ -257,7 +257,7 @@ void print_row(const tools::LoadedScene& scene, const std::vector<Sums>& sums, c
         far += std::fabs(point.deviation[k]) > 4.0 * std::sqrt(own);
     }
     if (k == 0) baseline = noise;
-    // Rivals may have to do with what the camera sees alone.
+    // Baselines may have to do with what the camera sees alone.
     if (one.built.ours) lost += support_violations(scene, one);
     std::printf("| `%s` | %s | %.3g | %.3g |", one.spec.text.c_str(), bytes_text(one).c_str(), noise,
                 baseline / noise);

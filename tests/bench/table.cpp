@@ -149,20 +149,20 @@ struct Asked {
     }
 };
 
-template <class Rival>
-Candidate draws(const Rival& rival, const Asked& u) {
+template <class Baseline>
+Candidate draws(const Baseline& baseline, const Asked& u) {
     return {"", [&](std::size_t first, std::size_t count) {
                 float x[3];
                 for (std::size_t i = first; i < first + count; ++i) {
-                    keep(rival.sample(u.narrow[i].data(), x));
+                    keep(baseline.sample(u.narrow[i].data(), x));
                     keep(x);
                 }
             }};
 }
-template <class Rival>
-Candidate densities(const Rival& rival, const Asked& x) {
+template <class Baseline>
+Candidate densities(const Baseline& baseline, const Asked& x) {
     return {"", [&](std::size_t first, std::size_t count) {
-                for (std::size_t i = first; i < first + count; ++i) keep(rival.pdf(x.narrow[i].data()));
+                for (std::size_t i = first; i < first + count; ++i) keep(baseline.pdf(x.narrow[i].data()));
             }};
 }
 

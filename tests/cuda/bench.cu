@@ -8,7 +8,7 @@
 // Tables in Markdown: ns a call, several million calls a launch, the least of 20. Skips (77) where there is no
 // device.
 #include "exported.h"
-#include "rivals.h"
+#include "baselines.h"
 #include "views_timed.h"
 
 #include "../bench/directions.h"
@@ -108,7 +108,7 @@ Timed time_density_of(const View& view, const Asked& asked) {
     return time(DensityOf<View>{view, asked});
 }
 template <class View>
-Row of_rival(const char* name, const View& view, const Questions& q, const Asked& drawn) {
+Row of_baseline(const char* name, const View& view, const Questions& q, const Asked& drawn) {
     return {name,
             {time(DrawOf<View>{view, q.any()}), time(DrawOf<View>{view, q.coherent()}),
              time_density_of(view, q.any()), time_density_of(view, drawn)}};
@@ -155,17 +155,17 @@ struct Exported {
 void environments(std::uint32_t columns, int count, char** paths, const Questions& q) {
     const DeviceArray<float4> place(kCalls);
     std::vector<Row> rows;
-    std::optional<Rivals> rivals;
+    std::optional<Baselines> baselines;
     Asked drawn = q.any();
     if (columns > 0) {
-        rivals.emplace(acdf_bench::sky(columns));
-        drawn = at_drawn(rivals->alias(), q.any(), place);
-        rows.push_back(of_rival("nothing but what is asked", Nothing{}, q, drawn));
-        rows.push_back(of_rival("full table", rivals->full(), q, drawn));
-        rows.push_back(of_rival("alias table", rivals->alias(), q, drawn));
+        baselines.emplace(acdf_bench::sky(columns));
+        drawn = at_drawn(baselines->alias(), q.any(), place);
+        rows.push_back(of_baseline("nothing but what is asked", Nothing{}, q, drawn));
+        rows.push_back(of_baseline("full table", baselines->full(), q, drawn));
+        rows.push_back(of_baseline("alias table", baselines->alias(), q, drawn));
         Row warp{"hierarchical warp",
-                 {time(DrawOf<WarpTable>{rivals->warp(), q.any()}),
-                  time(DrawOf<WarpTable>{rivals->warp(), q.coherent()})}};
+                 {time(DrawOf<WarpTable>{baselines->warp(), q.any()}),
+                  time(DrawOf<WarpTable>{baselines->warp(), q.coherent()})}};
         warp.times.resize(4);
         rows.push_back(warp);
     }

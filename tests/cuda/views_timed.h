@@ -20,7 +20,7 @@ Timed time_draw(const acdf::BrdfView& view, const Asked& asked);
 Timed time_density(const acdf::BrdfView& view, const Asked& asked);
 
 #ifdef __CUDACC__
-/// Of all views and rivals that draw without a normal.
+/// Of all views and baselines that draw without a normal.
 template <class View>
 struct DrawOf {
     View view;

@@ -233,7 +233,7 @@ TEST_F(Hostile, ListsAreToldHowTheyAreWritten) {
 
 TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     ASSERT_EQ(run_acdf({"env", probe, "-o", file, "-q"}).code, 0);
-    expect_failure({"measure", file, "--against", probe, "--rivals"}, 2, "--rivals");
+    expect_failure({"measure", file, "--against", probe, "--baselines"}, 2, "--baselines");
     expect_failure({"measure", file, "--against", probe, "--normals", "7"}, 2, "--normals");
     expect_failure({"measure", file, "--against", probe, "--views", "7"}, 2, "--views");
     const std::string brdf = folder / "b.acdf";

@@ -90,16 +90,16 @@ TEST_F(LocalCommand, TellsWhatMeasureTells) {
     EXPECT_LE(report["bytes"], 40000);
     EXPECT_EQ(report["bytes"], std::filesystem::file_size(output));
     EXPECT_EQ(report["support_violations"], 0);
-    const Result measured = run_acdf({"measure", output, "--against", probe, "--json", "--rivals"});
+    const Result measured = run_acdf({"measure", output, "--against", probe, "--json", "--baselines"});
     ASSERT_EQ(measured.code, 0) << measured.err;
     const json accuracy = json::parse(measured.out);
     for (const char* key :
          {"file", "source", "bytes", "bins", "normals", "relative_variance", "relative_variance_full_cdf", "gain",
           "max_weight", "share_above_horizon", "least_share_above_horizon", "support_violations"})
         EXPECT_EQ(report.at(key), accuracy.at(key)) << key;
-    for (const char* rival : {"full_cdf", "resampling_32", "tiling_512", "cosine"})
-        EXPECT_GT(accuracy["rivals"][rival]["relative_variance"], accuracy["relative_variance"]) << rival;
-    EXPECT_NEAR(accuracy["rivals"]["full_cdf"]["relative_variance"].get<double>(),
+    for (const char* baseline : {"full_cdf", "resampling_32", "tiling_512", "cosine"})
+        EXPECT_GT(accuracy["baselines"][baseline]["relative_variance"], accuracy["relative_variance"]) << baseline;
+    EXPECT_NEAR(accuracy["baselines"]["full_cdf"]["relative_variance"].get<double>(),
                 accuracy["relative_variance_full_cdf"].get<double>(), 1e-6);
 }
 

@@ -25,17 +25,17 @@ namespace acdf::tools {
 namespace {
 
 /// What the file is compared with, on the same views.
-struct Rivals {
+struct Baselines {
     double table_mean = 0.0, table_centre = 0.0; ///< infinite where it has no support for some of the light
     std::size_t table_bytes = 0;
     double ggx_alpha = 0.0, ggx = 0.0, cosine = 0.0;
 };
 
-Rivals rivals(const compress::Reflected& reflected, const input::Brdf& brdf,
+Baselines baselines(const compress::Reflected& reflected, const input::Brdf& brdf,
               const std::vector<compress::View>& views) {
     const measure::TabulatedBrdf mean(reflected, brdf.isotropic, measure::BrdfTableKind::mean),
         centre(reflected, brdf.isotropic, measure::BrdfTableKind::centre);
-    Rivals out;
+    Baselines out;
     out.table_bytes = mean.bytes();
     out.ggx_alpha = measure::best_ggx(reflected, views).alpha;
     const measure::GgxSampler ggx(out.ggx_alpha);
@@ -54,7 +54,7 @@ Rivals rivals(const compress::Reflected& reflected, const input::Brdf& brdf,
 double degrees(const compress::View& view) { return std::acos(view.cosine()) * (180.0 / ACDF_PI); }
 
 nlohmann::ordered_json report(const std::string& path, const File& file, const std::string& source,
-                              const build::BrdfAccuracy& a, const Rivals& r) {
+                              const build::BrdfAccuracy& a, const Baselines& r) {
     return {{"file", path},
             {"source", source},
             {"relative_variance", a.relative_variance}, // JSON has no infinity: null with a support violation
@@ -81,7 +81,7 @@ nlohmann::ordered_json report(const std::string& path, const File& file, const s
 }
 
 void print_text(const std::string& path, const File& file, const std::string& source, const build::BrdfAccuracy& a,
-                const Rivals& r) {
+                const Baselines& r) {
     std::printf("%s against %s, %u random views\n", printable(path).c_str(), printable(source).c_str(), a.views);
     std::printf("  relative variance      %.6g   of one sample, mean over views; n samples have this over n\n",
                 a.relative_variance);
@@ -120,7 +120,7 @@ void measure_brdf(const std::string& path, const File& file, const std::string& 
         build::BrdfAccuracy accuracy =
             build::summary(build::measure_views(file, reflected, views, build::sides(*brdf)));
         accuracy.cells = build::brdf_cells(file);
-        const Rivals r = rivals(reflected, *brdf, views);
+        const Baselines r = baselines(reflected, *brdf, views);
         if (json) std::fputs(json_text(report(path, file, source, accuracy, r)).c_str(), stdout);
         else print_text(path, file, source, accuracy, r);
         require_support(path, file, source, brdf->sha256, accuracy.support_violations);

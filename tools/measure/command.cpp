@@ -36,7 +36,7 @@ struct MeasureArguments {
     std::string mesh;
     input::UpAxis up = input::UpAxis::z;
     const CLI::App* command = nullptr;
-    bool rivals = false, json = false, quiet = false;
+    bool baselines = false, json = false, quiet = false;
 };
 
 struct Measured {
@@ -107,7 +107,7 @@ void refuse_options_of_other_kinds(const MeasureArguments& options, AcdfKind kin
             if (options.command->get_option(option)->count() > 0)
                 throw CLI::ValidationError(option, std::string("is for files of ") + of);
     };
-    if (kind != ACDF_KIND_LOCAL) refuse({"--rivals", "--normals", "--scene"}, "local environments");
+    if (kind != ACDF_KIND_LOCAL) refuse({"--baselines", "--normals", "--scene"}, "local environments");
     if (kind != ACDF_KIND_TABLE) refuse({"--mis"}, "tables");
     if (kind != ACDF_KIND_BRDF) refuse({"--views"}, "BRDFs");
     if (kind == ACDF_KIND_TABLE || kind == ACDF_KIND_BRDF)
@@ -130,7 +130,7 @@ void run(const MeasureArguments& options) {
             throw CLI::ValidationError("--points", "is for files that tell places apart");
         return measure_local(loaded.file,
                              {options.file, options.source, options.input, options.normals, options.mesh,
-                              options.up, options.points, options.rivals, options.json, options.quiet});
+                              options.up, options.points, options.baselines, options.json, options.quiet});
     default:
         break;
     }
@@ -205,7 +205,7 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->group("Input");
     command
         .add_flag(
-            "--rivals", options->rivals,
+            "--baselines", options->baselines,
             "Of a local environment: beside it what a renderer can do without one: resampling 32 candidates, tiles "
             "weighted on the fly, cosine sampling")
         ->group("Output");

@@ -11,7 +11,7 @@
 #include "build/local.h"
 #include "compress/parallel.h"
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/tiling.h"
 #include "measure/scenes/mesh_stage.h"
 #include "tools/cli/noise.h"
@@ -31,7 +31,7 @@ namespace acdf::tools {
 namespace {
 
 /// Another way to estimate irradiance: mean relative variance of a sample, and what it keeps in memory.
-struct Rival {
+struct Baseline {
     const char* key;
     const char* text;
     double relative_variance = 0.0;
@@ -41,24 +41,24 @@ struct Rival {
 constexpr std::uint32_t kCandidates = 32;
 
 /// Of a map; `columns` and `rows` tiles.
-struct LocalRivals {
+struct LocalBaselines {
     measure::LocalFullCdf full;
     measure::Resampling resampling;
     measure::TilingOnTheFly tiling;
     measure::CosineHemisphere cosine;
 
-    LocalRivals(const compress::Target& target, std::uint32_t columns, std::uint32_t rows)
+    LocalBaselines(const compress::Target& target, std::uint32_t columns, std::uint32_t rows)
         : full(target), resampling(target, kCandidates), tiling(target, columns, rows), cosine(target) {}
 };
 
 /// Their noise is summed as that of the file is.
-std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<build::Normal>& normals) {
+std::vector<Baseline> baselines_of(const compress::Target& target, const std::vector<build::Normal>& normals) {
     const std::uint32_t columns = std::min(32u, target.columns), rows = std::min(16u, target.rows);
     const build::FineTexels texels(target);
-    const LocalRivals made(target, columns, rows);
-    std::optional<LocalRivals> divided;
+    const LocalBaselines made(target, columns, rows);
+    std::optional<LocalBaselines> divided;
     if (&texels.target() != &target) divided.emplace(texels.target(), columns, rows);
-    const LocalRivals& summed = divided ? *divided : made;
+    const LocalBaselines& summed = divided ? *divided : made;
     const auto mean = [&](const std::function<double(const float*)>& variance) {
         std::vector<double> each(normals.size());
         compress::parallel_for(std::size_t{0}, normals.size(),
@@ -67,8 +67,8 @@ std::vector<Rival> rivals_of(const compress::Target& target, const std::vector<b
         for (double v : each) sum += v;
         return sum / double(normals.size());
     };
-    const auto of = [&](const auto& rival) {
-        return mean([&rival](const float* n) { return rival.relative_variance(n); });
+    const auto of = [&](const auto& baseline) {
+        return mean([&baseline](const float* n) { return baseline.relative_variance(n); });
     };
     return {{"full_cdf", "full-resolution CDF", of(summed.full), made.full.bytes()},
             {"resampling_32", "resampling 32 candidates", of(summed.resampling), made.resampling.bytes()},
@@ -121,8 +121,8 @@ PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& optio
     return out;
 }
 
-/// How many times as much a rival has; 1 where neither has any.
-double times(double rival, double own) { return rival <= own && own <= rival ? 1.0 : rival / own; }
+/// How many times as much a baseline has; 1 where neither has any.
+double times(double baseline, double own) { return baseline <= own && own <= baseline ? 1.0 : baseline / own; }
 
 nlohmann::ordered_json places_json(const PlacesAccuracy& p) {
     return {{"points", p.points},
@@ -145,7 +145,7 @@ void print_places(const PlacesAccuracy& p) {
 struct LocalMeasured {
     build::LocalAccuracy normals;
     build::Accuracy whole; ///< for points without a normal
-    std::vector<Rival> rivals;
+    std::vector<Baseline> baselines;
     PlacesAccuracy places;
 };
 
@@ -178,8 +178,8 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
           {"support_violations", whole.support_violations},
           {"cells", whole.cells}}}};
     if (a.combined) out["combined"] = true; // of the file and its partner
-    for (const Rival& rival : measured.rivals)
-        out["rivals"][rival.key] = {{"relative_variance", rival.relative_variance}, {"bytes", rival.bytes}};
+    for (const Baseline& baseline : measured.baselines)
+        out["baselines"][baseline.key] = {{"relative_variance", baseline.relative_variance}, {"bytes", baseline.bytes}};
     if (measured.places.points > 0) out["places"] = places_json(measured.places);
     return out;
 }
@@ -209,9 +209,9 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
                 measured.whole.relative_variance);
     std::printf("    largest weight       %.6g\n", measured.whole.max_weight);
     std::printf("  bytes                  %" PRIu64 "\n", file.size());
-    for (const Rival& rival : measured.rivals)
-        std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", rival.text, rival.relative_variance,
-                    rival.bytes);
+    for (const Baseline& baseline : measured.baselines)
+        std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", baseline.text, baseline.relative_variance,
+                    baseline.bytes);
     if (places.points > 0) print_places(places);
 }
 
@@ -226,8 +226,8 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
     measured.normals = build::summary(build::measure_normals(file, builder::grid_of(source.target), normals));
     measured.whole = build::measure_whole(file, builder::grid_of(source.target));
     compress::Target map;
-    if (options.rivals)
-        measured.rivals = rivals_of(compress::looked_up(builder::grid_of(source.target), map), normals);
+    if (options.baselines)
+        measured.baselines = baselines_of(compress::looked_up(builder::grid_of(source.target), map), normals);
     if (mesh) { // whose points see lat-long texels
         const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
         const builder::Target light =

@@ -336,7 +336,7 @@ void add_render(CLI::App& program, int& exit_code) {
         "variance of an estimate, mean over pixels with its 95 % confidence interval and median, the noise of that "
         "at 16, 64 and 256 samples, and the gain over the first sampler by equal samples and by equal time; it "
         "says "
-        "where a rival wins. Where a scene has objects that the camera does not "
+        "where a baseline wins. Where a scene has objects that the camera does not "
         "see, all is done again without anything in the way of light.",
         "acdf render --scene tools/render/scenes/demo.json -o out\n"
         "acdf render --scene tools/render/scenes/e4-grace.json --data ~/probes -o out --size 160x120\n"

@@ -3,7 +3,7 @@
 #include "build/brdf.h"
 #include "measure/samplers/estimators.h"
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/product_rivals.h"
+#include "measure/samplers/product_baselines.h"
 #include "measure/samplers/product_samplers.h"
 #include "measure/samplers/product_warp.h"
 #include "measure/samplers/stratified_map.h"

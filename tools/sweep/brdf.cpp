@@ -102,14 +102,14 @@ measure::ShadingPoint point_of(const compress::View& view) {
         {0.0f, 0.0f, 1.0f}, {static_cast<float>(wo[0]), static_cast<float>(wo[1]), static_cast<float>(wo[2])}, {}};
 }
 
-/// `points`: the views over which rivals are measured.
-std::vector<Candidate> rivals(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count,
+/// `points`: the views over which baselines are measured.
+std::vector<Candidate> baselines(const input::Brdf& brdf, const compress::Reflected& reflected, std::uint32_t count,
                               std::vector<DrawnPoint>& points) {
     const std::vector<compress::View> views = build::random_views(count, brdf.isotropic);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label,
                          std::shared_ptr<const measure::LightSampler> sampler, const build::ViewDensity& density) {
-        out.push_back(rival_candidate(system, label, std::move(sampler)));
+        out.push_back(baseline_candidate(system, label, std::move(sampler)));
         // The same sums as of files.
         auto measured = build::measure_views(density, reflected, views);
         if (points.empty())
@@ -170,7 +170,7 @@ void add_pictures(Sweep& sweep, const compress::Reflected& reflected, const std:
     }
 }
 
-/// Files and rivals with a renderer's points.
+/// Files and baselines with a renderer's points.
 void add_sobol(const compress::Reflected& reflected, const std::vector<DrawnPoint>& points,
                const SweepOptions& options, std::vector<Candidate>& candidates) {
     const DrawnIntegrand integrand = [&](std::size_t i, const float wi[3]) {
@@ -199,10 +199,10 @@ Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const bui
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
         [&](const Step& step) { return make_file(brdf, options, step); }, part(0.0, 0.7));
-    part(0.7, 0.0)(0.0, "measuring rivals");
-    sweep.baseline = candidates.size();
+    part(0.7, 0.0)(0.0, "measuring baselines");
+    sweep.reference = candidates.size();
     std::vector<DrawnPoint> drawn;
-    for (Candidate& rival : rivals(brdf, reflected, options.views, drawn)) candidates.push_back(std::move(rival));
+    for (Candidate& baseline : baselines(brdf, reflected, options.views, drawn)) candidates.push_back(std::move(baseline));
     part(0.8, 0.0)(0.0, "drawing");
     add_sobol(reflected, drawn, options, candidates);
     if (options.pictures) add_pictures(sweep, reflected, candidates);

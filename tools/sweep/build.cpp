@@ -58,7 +58,7 @@ Candidate file_candidate(std::vector<std::uint8_t> bytes) {
     return out;
 }
 
-Candidate rival_candidate(std::string system, std::string label,
+Candidate baseline_candidate(std::string system, std::string label,
                           std::shared_ptr<const measure::LightSampler> sampler) {
     Candidate out;
     out.row.system = std::move(system);

@@ -36,7 +36,7 @@ struct Candidate {
 /// With the file's sampler and size.
 Candidate file_candidate(std::vector<std::uint8_t> bytes);
 /// With the sampler's size.
-Candidate rival_candidate(std::string system, std::string label,
+Candidate baseline_candidate(std::string system, std::string label,
                           std::shared_ptr<const measure::LightSampler> sampler);
 
 /// One file to be made: a fit at a size.

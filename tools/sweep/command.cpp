@@ -87,10 +87,10 @@ void check_options(SweepArguments& options, SweepKind kind) {
     options.scene.check(*options.command);
     const builder::TargetOptions& target = options.sweep.target;
     if (kind != SweepKind::brdf && target.filter != ACDF_FILTER_NEAREST)
-        throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the rivals are defined for");
+        throw CLI::ValidationError("--filter", "is nearest in a sweep: that is what the baselines are defined for");
     if (kind != SweepKind::brdf && target.channels.mode == ACDF_CHANNELS_SEPARATE)
         throw CLI::ValidationError("--channel",
-                                   "is one channel in a sweep of probes: the rivals are defined for one");
+                                   "is one channel in a sweep of probes: the baselines are defined for one");
     options.sweep.timing = !options.no_timing;
     options.sweep.visible.threshold /= 100.0; // it is given in per cent
 }
@@ -171,7 +171,7 @@ Sweep sweep_probe(SweepArguments& options, SweepKind kind, const build::Progress
     std::snprintf(
         least, sizeof least,
         "the probe was resampled: no density that is constant on %d x %d texels has less than %.3g, of the light "
-        "itself; points and rivals take these texels for what is looked up",
+        "itself; points and baselines take these texels for what is looked up",
         probe.width, probe.height, compress::least_second_moment(builder::grid_of(target)) - 1.0);
     sweep.notes.push_back(least);
     return sweep;
@@ -297,7 +297,7 @@ void add_sweep_options(CLI::App& command, SweepArguments& options) {
 void add_sweep(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<SweepArguments>();
     CLI::App& command = *program.add_subcommand(
-        "sweep", "Which size and fit: noise, time and rivals on your probe or BRDF, as a table and a page");
+        "sweep", "Which size and fit: noise, time and baselines on your probe or BRDF, as a table and a page");
     options->command = &command;
     command
         .add_option(
@@ -313,10 +313,10 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_sweep_options(command, *options);
     add_target_options(command, options->sweep.target);
     command.get_option("--filter")
-        ->description("How your renderer looks the map up: nearest, which rivals are defined "
+        ->description("How your renderer looks the map up: nearest, which baselines are defined "
                       "for; a file for bilinear is measured by acdf env and acdf local");
     CLI::Option& channel = *command.get_option("--channel");
-    channel.description(channel.get_description() + ". Rivals of probes are defined for one channel: not rgb");
+    channel.description(channel.get_description() + ". Baselines of probes are defined for one channel: not rgb");
     command.add_option("-o,--output", options->folder, "The folder to write to; made where it does not exist")
         ->required()
         ->type_name("DIR")
@@ -330,7 +330,7 @@ void add_sweep(CLI::App& program, int& exit_code) {
     add_quiet(command, options->quiet);
     command.footer(help_footer(
         "Writes report.html, one page without network or scripts: plots, pictures, what to choose and the command "
-        "that makes it, and where a rival is better. sweep.csv and sweep.json have the same numbers. All files "
+        "that makes it, and where a baseline is better. sweep.csv and sweep.json have the same numbers. All files "
         "that "
         "are compared are made in memory.",
         "acdf sweep probe.exr -o out\n"

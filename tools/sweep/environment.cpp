@@ -7,7 +7,7 @@
 #include "tools/plot/knots.h"
 #include "tools/sweep/build.h"
 #include "tools/sweep/occluders.h"
-#include "tools/sweep/rivals.h"
+#include "tools/sweep/baselines.h"
 #include "tools/sweep/surface.h"
 #include "tools/sweep/surface_draws.h"
 
@@ -102,8 +102,8 @@ Sweep sweep_environment(const builder::Target& fitted, const builder::Source& so
         sweep, candidates, steps_of(sweep.kind, options),
         [&](const Step& step) { return make_file(fitted, source, step); }, part(0.0, 0.7));
 
-    sweep.baseline = candidates.size();
-    for (Candidate& rival : environment_rivals(target, options)) candidates.push_back(std::move(rival));
+    sweep.reference = candidates.size();
+    for (Candidate& baseline : environment_baselines(target, options)) candidates.push_back(std::move(baseline));
     const std::vector<SurfacePoint> open = in_the_open(build::random_normals(options.normals)),
                                     hidden = behind_occluders(target, options.points);
     sweep.conditions = static_cast<std::uint32_t>(open.size());

@@ -6,7 +6,7 @@
 #include "tools/cli/built.h"
 #include "tools/plot/density.h"
 #include "tools/sweep/build.h"
-#include "tools/sweep/rivals.h"
+#include "tools/sweep/baselines.h"
 #include "tools/sweep/surface.h"
 #include "tools/sweep/surface_draws.h"
 
@@ -105,7 +105,7 @@ void add_local_pictures(Sweep& sweep, const compress::Target& target, const std:
     }
 }
 
-/// Files and rivals with a renderer's points; not where those draw numbers of their own.
+/// Files and baselines with a renderer's points; not where those draw numbers of their own.
 void add_sobol(const compress::Target& target, const std::vector<build::Normal>& normals,
                const SweepOptions& options, std::vector<Candidate>& candidates) {
     const std::vector<SurfacePoint> points = in_the_open(normals);
@@ -135,9 +135,9 @@ Sweep sweep_local(const builder::Target& fitted, const builder::Source& source, 
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
         [&](const Step& step) { return make_file(fitted, source, normals, step); }, part(0.0, 0.8));
-    part(0.8, 0.0)(0.0, "measuring rivals");
-    sweep.baseline = candidates.size();
-    for (Candidate& rival : local_rivals(target, normals)) candidates.push_back(std::move(rival));
+    part(0.8, 0.0)(0.0, "measuring baselines");
+    sweep.reference = candidates.size();
+    for (Candidate& baseline : local_baselines(target, normals)) candidates.push_back(std::move(baseline));
     part(0.85, 0.0)(0.0, "drawing");
     add_sobol(target, normals, options, candidates);
     if (options.pictures) add_local_pictures(sweep, target, candidates);

@@ -51,7 +51,7 @@ std::string fact(const std::string& name, const std::string& value, const std::s
 }
 
 std::string facts_html(const Sweep& sweep, const Advice& advice) {
-    const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.baseline];
+    const SweepRow &best = sweep.rows[advice.recommended.row], &base = sweep.rows[sweep.reference];
     std::string out = "<dl class=\"facts\">\n";
     out += fact("Size", to_readable_size(best.bytes),
                 short_number(double(base.bytes) / double(best.bytes)) + " times smaller than the " + base.label +
@@ -88,7 +88,7 @@ Interval only(double value) { return {value, kUnknown, kUnknown}; }
 
 /// In the order of the page. Times come last, so that a page without them just ends earlier.
 std::vector<Chart> charts_of(const Sweep& sweep) {
-    const std::string base = sweep.rows[sweep.baseline].label;
+    const std::string base = sweep.rows[sweep.reference].label;
     const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
                        : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
                        : sweep.kind == SweepKind::places
@@ -123,7 +123,7 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
                        "A sample takes " + short_number(sweep.costs.shadow_ray_ns) +
                        " ns beside its drawing: a shadow ray, a BRDF (--shadow-ray-ns).",
                    "variance at equal time", [](const Sweep& s, const SweepRow& r) {
-                       const Interval t = cost_ratio(r, s.rows[s.baseline], open_alone, s.costs);
+                       const Interval t = cost_ratio(r, s.rows[s.reference], open_alone, s.costs);
                        return Interval{t.value * r.shaded(), t.low * r.shaded(), t.high * r.shaded()};
                    }});
     out.push_back({"pdf", "Time of a density",
@@ -175,8 +175,8 @@ std::string verdict_html(Verdict verdict) {
     switch (verdict) {
     case Verdict::ours:
         return "<span class=\"won\">the file</span>";
-    case Verdict::rival:
-        return "<span class=\"lost\">the rival</span>";
+    case Verdict::baseline:
+        return "<span class=\"lost\">the baseline</span>";
     case Verdict::even:
         return "too close to call";
     default:
@@ -188,13 +188,13 @@ std::string comparisons_html(const Sweep& sweep, const Advice& advice) {
     std::string out = "<section>\n<h2>Beside what renderers use today</h2>\n<ul class=\"say\">\n";
     for (const std::string& finding : advice.findings) out += "<li>" + prose(finding) + "</li>\n";
     out +=
-        "</ul>\n<p class=\"soft\">Each rival over the recommended file: more than 1 speaks for the file. Ratios of "
+        "</ul>\n<p class=\"soft\">Each baseline over the recommended file: more than 1 speaks for the file. Ratios of "
         "times have the interval that holds the median with 95 % confidence; variances are exact.</p>\n"
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Rivals\"><table id=\"rivals\">\n"
-        "<thead><tr><th>rival</th><th>memory</th><th>variance</th>";
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Baselines\"><table id=\"baselines\">\n"
+        "<thead><tr><th>baseline</th><th>memory</th><th>variance</th>";
     if (sweep.timed) out += "<th>time a sample</th><th>variance at equal time</th><th class=\"text\">better</th>";
     out += "</tr></thead>\n<tbody>\n";
-    for (const RivalComparison& c : advice.comparisons) {
+    for (const BaselineComparison& c : advice.comparisons) {
         const SweepRow& row = sweep.rows[c.row];
         out += "<tr>" + element("td class=\"left\"", row.label) + element("td", short_number(c.bytes)) +
                element("td", short_number(c.variance));

@@ -4,7 +4,7 @@
 #include "tools/cli/built.h"
 #include "tools/commands.h"
 #include "tools/sweep/build.h"
-#include "tools/sweep/rivals.h"
+#include "tools/sweep/baselines.h"
 #include "tools/sweep/surface.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Candidate make_file(const builder::Target& target, const builder::Source& source
     return out;
 }
 
-/// What is the same at all points is said of each file and rival: its variances there.
+/// What is the same at all points is said of each file and baseline: its variances there.
 void measure_on(const measure::MeshStage& stage, std::vector<Candidate>& candidates, Sweep& sweep,
                 const build::Progress& progress) {
     std::vector<const measure::LightSampler*> samplers;
@@ -63,9 +63,9 @@ Sweep sweep_places(const builder::Target& fitted, const builder::Source& source,
     build_all(
         sweep, candidates, steps_of(sweep.kind, options),
         [&](const Step& step) { return make_file(fitted, source, mesh, step); }, part(0.0, 0.7));
-    sweep.baseline = candidates.size();
-    for (Candidate& rival : local_rivals(target, {}))
-        if (rival.has_pdf) candidates.push_back(std::move(rival)); // else there is nothing to sum
+    sweep.reference = candidates.size();
+    for (Candidate& baseline : local_baselines(target, {}))
+        if (baseline.has_pdf) candidates.push_back(std::move(baseline)); // else there is nothing to sum
     const measure::MeshStage stage(mesh.surface, mesh.turned, target, options.normals);
     measure_on(stage, candidates, sweep, part(0.7, 0.2));
     std::vector<measure::ShadingPoint> points;

@@ -33,7 +33,7 @@ const char* where_text(Situation situation) {
 }
 
 std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
-    const SweepRow& base = sweep.rows[sweep.baseline];
+    const SweepRow& base = sweep.rows[sweep.reference];
     std::string text = std::string(where_text(s.situation)) + ": " + noise_texts(s.lit.mean) +
                        " noise at 16, 64, 256 "
                        "independent samples (median point: " +
@@ -42,11 +42,11 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
         text += ", " + noise_text(s.lit.sobol, sweep.visible.spp) + " at " +
                 std::to_string(sweep.visible.spp) + " of a scrambled Sobol' sequence";
     const char* after = sweep.timed ? "After the same time: " : "After the same samples: ";
-    text += std::string(". ") + after + noise_ratio_text(s.over_baseline.value) + " the " + base.label;
-    if (!s.has_rival) return text + ".";
-    const bool even = s.over_rival.low < 1.0 && s.over_rival.high > 1.0;
-    return text + ", " + noise_ratio_text(s.over_rival.value) + " the best rival, the " +
-           sweep.rows[s.rival].label + (even ? " (too close to call)." : ".");
+    text += std::string(". ") + after + noise_ratio_text(s.over_reference.value) + " the " + base.label;
+    if (!s.has_baseline) return text + ".";
+    const bool even = s.over_best_baseline.low < 1.0 && s.over_best_baseline.high > 1.0;
+    return text + ", " + noise_ratio_text(s.over_best_baseline.value) + " the best baseline, the " +
+           sweep.rows[s.baseline].label + (even ? " (too close to call)." : ".");
 }
 
 } // namespace
@@ -72,15 +72,15 @@ std::vector<SituationAdvice> situations_of(const Sweep& sweep, const SweepRow& b
         SituationAdvice one;
         one.situation = static_cast<Situation>(i);
         one.lit = best.lit[i];
-        one.over_baseline = variance_ratio(sweep, sweep.rows[sweep.baseline], best, one.situation);
+        one.over_reference = variance_ratio(sweep, sweep.rows[sweep.reference], best, one.situation);
         for (std::size_t r = 0; r < sweep.rows.size(); ++r) {
             if (sweep.rows[r].ours()) continue;
             const Interval ratio = variance_ratio(sweep, sweep.rows[r], best, one.situation);
             if (!ratio.known() || std::isinf(ratio.value)) continue;
-            if (one.has_rival && ratio.value >= one.over_rival.value) continue;
-            one.rival = r;
-            one.has_rival = true;
-            one.over_rival = ratio;
+            if (one.has_baseline && ratio.value >= one.over_best_baseline.value) continue;
+            one.baseline = r;
+            one.has_baseline = true;
+            one.over_best_baseline = ratio;
         }
         one.sentence = sentence_of(sweep, one);
         out.push_back(std::move(one));

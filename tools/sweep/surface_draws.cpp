@@ -2,7 +2,7 @@
 
 #include "compress/parallel.h"
 #include "measure/random.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/probe_grid.h"
 #include "tools/sweep/pixel_draws.h"
 

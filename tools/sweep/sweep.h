@@ -50,13 +50,13 @@ struct Lit {
     double sobol = kUnknown;
 };
 
-/// One file, or one rival. kUnknown where something does not apply.
+/// One file, or one baseline. kUnknown where something does not apply.
 struct SweepRow {
-    std::string system;      ///< "acdf", or a rival's name for programs: "full_cdf"
+    std::string system;      ///< "acdf", or a baseline's name for programs: "full_cdf"
     std::string fit;         ///< of acdf
     std::string label;       ///< for people
     std::string options;     ///< of acdf: what makes the file, in the words of the command line
-    std::uint64_t bytes = 0; ///< of the file; of a rival what sampling reads
+    std::uint64_t bytes = 0; ///< of the file; of a baseline what sampling reads
     std::uint64_t cells = 0; ///< of acdf
     /// Of one sample over the squared mean, exact. Infinite: biased, light without density. Environment: of the
     /// light itself; local and BRDF: of what a surface reflects, mean over normals or views.
@@ -107,7 +107,7 @@ struct Sweep {
     std::string output;      ///< a name for the recommended file
     VisibleNoise visible;
     std::vector<SweepRow> rows;
-    std::size_t baseline = 0;       ///< row with which times are compared
+    std::size_t reference = 0;       ///< row with which times are compared
     std::uint32_t conditions = 0;   ///< normals or views that means are over
     std::vector<std::string> notes; ///< what a reader of the figures should know
     std::vector<SweepPicture> pictures;
@@ -126,7 +126,7 @@ struct SweepOptions {
     bool timing = true;
     bool pictures = true;
     std::uint32_t normals = 64; ///< environment and local; places: points
-    std::uint32_t views = 64;   ///< BRDF: of rivals; files are measured over the builder's own
+    std::uint32_t views = 64;   ///< BRDF: of baselines; files are measured over the builder's own
     std::uint32_t points = 48;  ///< environment: of the demo scene, where light is hidden; about
     std::uint32_t seeds = 16;   ///< estimates with Sobol' points at each normal, view or point
     std::uint32_t rounds = 31;  ///< of timing
@@ -134,7 +134,7 @@ struct SweepOptions {
     measure::Numbers numbers = measure::Numbers::independent;
 };
 
-/// A probe's rows, rivals included, and pictures. Source, command and output are the caller's to fill in. Goals
+/// A probe's rows, baselines included, and pictures. Source, command and output are the caller's to fill in. Goals
 /// that are out of reach are noted and left out. Throws Failure where none is left.
 Sweep sweep_environment(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                         const build::Progress& progress = {});

@@ -148,7 +148,7 @@ private:
         /// Probabilities without the share around the normal; empty: nothing is drawn.
         const std::vector<double>& tile;
         double share;            ///< that is drawn around the normal
-        Combination both, rival; ///< with the partner
+        Combination both, baseline; ///< with the partner
         double largest = 0.0;
         std::uint64_t violations = 0;
     };
@@ -249,7 +249,7 @@ private:
             if (!alone) {
                 for (std::size_t k = 0; k < channels; ++k) means[k] *= cosine;
                 state.both.add(f, means, channels, omega, p, cosine / ACDF_PI);
-                state.rival.add(f, means, channels, omega, g / total_, cosine / ACDF_PI);
+                state.baseline.add(f, means, channels, omega, g / total_, cosine / ACDF_PI);
                 return;
             }
             if (!(p > 0.0)) {
@@ -299,7 +299,7 @@ private:
         out.share_above_horizon_full_cdf = light.value() / total_;
         if (alone) return out;
         out.relative_variance = state.both.relative_variance();
-        out.relative_variance_full_cdf = state.rival.relative_variance();
+        out.relative_variance_full_cdf = state.baseline.relative_variance();
         out.support_violations = state.both.violations();
         out.max_weight = state.both.max_weight();
         out.combined = true;

@@ -1,4 +1,4 @@
-// What all samplers of incident light have in common, ours and their rivals: what renderings and timings compare.
+// What all samplers of incident light have in common, ours and their baselines: what renderings and timings compare.
 #pragma once
 
 #include <acdf/sample.h>

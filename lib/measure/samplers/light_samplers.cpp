@@ -4,7 +4,7 @@
 #include "measure/samplers/downsampled_cdf.h"
 #include "measure/samplers/hierarchical_warp.h"
 #include "measure/samplers/ideal_row.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/point_samplers.h"
 #include "measure/samplers/tiling.h"
 #include "measure/surface_frame.h"

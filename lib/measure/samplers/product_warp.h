@@ -1,5 +1,5 @@
 // Random numbers bent towards a BRDF in front of a sampler of light: Hart, Pharr, Müller, Lopes, McGuire, Shirley,
-// "Practical Product Sampling by Fitting and Composing Warps", EGSR 2020. A rival of product_samplers.h.
+// "Practical Product Sampling by Fitting and Composing Warps", EGSR 2020. A baseline of product_samplers.h.
 #pragma once
 
 #include "measure/samplers/light_sampler.h"

@@ -1,4 +1,4 @@
-// The strongest known rival of a local environment map: tiles of the probe, weighted anew at each shading point.
+// The strongest known baseline of a local environment map: tiles of the probe, weighted anew at each shading point.
 #pragma once
 
 #include "build/accuracy/texel_cosines.h"

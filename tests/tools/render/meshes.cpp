@@ -257,7 +257,7 @@ TEST(MeshPlaces, OfMeshesWithYUpServePictures) {
 }
 
 /// What others do in rooms, on the mesh itself and on one with y up.
-TEST(MeshRivals, OfRoomsAreUnbiased) {
+TEST(MeshBaselines, OfRoomsAreUnbiased) {
     ACDF_NOT_SANITIZED();
     MeshFolder folder;
     write_text(folder / "y.obj", room(true));

@@ -143,13 +143,13 @@ Compared made(const char* text, bool ours, double noise, double time) {
     return out;
 }
 
-TEST(RenderSamplers, VerdictSaysWhereARivalWins) {
+TEST(RenderSamplers, VerdictSaysWhereABaselineWins) {
     Comparison comparison;
     comparison.samplers = {made("full-cdf", false, 1.0, 100.0), made("ris:32", false, 0.05, 4000.0),
                            made("local:1MB", true, 0.1, 150.0)};
     std::vector<std::string> says = verdict(comparison, true);
     ASSERT_EQ(says.size(), 2u);
-    EXPECT_NE(says[0].find("a rival wins: 'ris:32', 2 ("), std::string::npos) << says[0];
+    EXPECT_NE(says[0].find("a baseline wins: 'ris:32', 2 ("), std::string::npos) << says[0];
     EXPECT_NE(says[1].find("ours, 'local:1MB', wins"), std::string::npos) << says[1];
     EXPECT_NE(says[1].find("'full-cdf'"), std::string::npos) << says[1];
     EXPECT_EQ(says[0].find("within the noise"), std::string::npos);

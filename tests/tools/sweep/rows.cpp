@@ -25,7 +25,7 @@ SweepOptions small_sweep() {
     return options;
 }
 
-TEST(SweepRows, LocalFilesBesideTheirRivals) {
+TEST(SweepRows, LocalFilesBesideTheirBaselines) {
     const compress::Target target = acdf_test::noise_target(64, 32, 7);
     SweepOptions options = small_sweep();
     const Sweep sweep = sweep_local(builder::target_of(target, {}), {}, options);
@@ -65,7 +65,7 @@ TEST(SweepRows, OfABrdf) {
     const Sweep sweep = sweep_brdf(*brdf, options);
     std::map<std::string, const SweepRow*> by;
     for (const SweepRow& r : sweep.rows) by[r.system] = &r;
-    EXPECT_EQ(sweep.rows[sweep.baseline].system, "full_table");
+    EXPECT_EQ(sweep.rows[sweep.reference].system, "full_table");
     EXPECT_LT(by["acdf"]->relative_variance, by["cosine"]->relative_variance);
     EXPECT_LT(by["full_table"]->relative_variance, by["cosine"]->relative_variance);
     EXPECT_GT(by["full_table"]->bytes, 60000000u);

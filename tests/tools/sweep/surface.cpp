@@ -2,7 +2,7 @@
 #include "tests/inputs/synthetic.h"
 
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "tools/render/scene_file.h"
 #include "tools/sweep/occluders.h"
 #include "tools/sweep/surface.h"
@@ -18,7 +18,7 @@
 namespace acdf::tools {
 namespace {
 
-TEST(SweepSurface, AgreesWithTheClosedFormsOfRivals) {
+TEST(SweepSurface, AgreesWithTheClosedFormsOfBaselines) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const std::vector<build::Normal> normals = build::random_normals(5);
     const measure::LocalFullCdf full(target);

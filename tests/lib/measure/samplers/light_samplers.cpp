@@ -1,6 +1,6 @@
 // Samplers of a probe's texels: that each draws by the density it tells, which is the one that it should have.
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
-#include "tests/lib/measure/samplers/rivals.h"
+#include "tests/lib/measure/samplers/baselines.h"
 
 #include "measure/samplers/downsampled_cdf.h"
 #include "measure/samplers/light_samplers.h"

@@ -1,7 +1,7 @@
 // What rooms are lit by elsewhere: portals, and what can be seen of tiles at cache points. That each draws by the
 // density it tells, and finds all the light that reaches a point.
 #include "tests/lib/measure/samplers/light_sampler_checks.h"
-#include "tests/lib/measure/samplers/rivals.h"
+#include "tests/lib/measure/samplers/baselines.h"
 
 #include "input/brdf/brdf.h"
 #include "measure/scenes/portals.h"

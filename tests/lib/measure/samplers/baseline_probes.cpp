@@ -1,11 +1,11 @@
-// The rivals of local environment maps on real probes: their relative variance over random normals, printed as a
+// The baselines of local environment maps on real probes: their relative variance over random normals, printed as a
 // table, and how far taking texels at their centres is from the truth.
 #include "tests/inputs/places.h"
-#include "tests/lib/measure/samplers/rivals.h"
+#include "tests/lib/measure/samplers/baselines.h"
 
 #include "compress/parallel.h"
 #include "input/probe/probe.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/tiling.h"
 
 #include <cstdio>
@@ -25,7 +25,7 @@ struct Variances {
     double full = 0.0, resampling = 0.0, cosine = 0.0, tiling = 0.0;
 };
 
-class RivalsOn : public ::testing::TestWithParam<const char*> {
+class BaselinesOn : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
         const std::string path = std::string(acdf_test::kTestData) + "/probes/" + GetParam();
@@ -47,7 +47,7 @@ private:
     const Target* target_ = nullptr;
 };
 
-TEST_P(RivalsOn, RandomNormals) {
+TEST_P(BaselinesOn, RandomNormals) {
     const LocalFullCdf full(target());
     const CosineHemisphere cosine(target());
     const TilingOnTheFly tiling(target(), 32, 16);
@@ -78,7 +78,7 @@ TEST_P(RivalsOn, RandomNormals) {
     EXPECT_GT(mean.full, 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Probes, RivalsOn,
+INSTANTIATE_TEST_SUITE_P(Probes, BaselinesOn,
                          ::testing::Values("city.exr", "sunset.exr", "studio.exr", "courtyard.exr",
                                            "noon_grass_1k.hdr", "grace_probe.hdr", "stpeters_cross.hdr",
                                            "beach_probe.hdr"),
@@ -127,7 +127,7 @@ void expect_centres_suffice(const Target& t, int normals, double tolerance) {
     std::printf("texel centres: wrong by at most %.2g of the second moment\n", worst);
 }
 
-TEST_P(RivalsOn, TexelCentresSuffice) { expect_centres_suffice(target(), 1, 5e-5); }
+TEST_P(BaselinesOn, TexelCentresSuffice) { expect_centres_suffice(target(), 1, 5e-5); }
 
 // It falls with the square of the resolution.
 TEST(TexelCentres, Suffice) {

@@ -126,9 +126,9 @@ struct WarpTable {
 };
 
 /// All three of a map of 2 n x n texels, n a power of two.
-class Rivals {
+class Baselines {
 public:
-    explicit Rivals(const acdf::compress::Target& target) : grid_{target.columns, target.rows} {
+    explicit Baselines(const acdf::compress::Target& target) : grid_{target.columns, target.rows} {
         const std::size_t texels = std::size_t{target.columns} * target.rows;
         std::vector<double> mass(texels);
         double total = 0.0;

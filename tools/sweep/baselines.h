@@ -12,9 +12,9 @@ namespace acdf::tools {
 
 /// Samplers of the probe's light: the full-resolution CDF, the same downsampled to about each budget, an alias
 /// table, a hierarchical warp.
-std::vector<Candidate> environment_rivals(const compress::Target& target, const SweepOptions& options);
+std::vector<Candidate> environment_baselines(const compress::Target& target, const SweepOptions& options);
 
 /// Samplers of what a diffuse surface reflects.
-std::vector<Candidate> local_rivals(const compress::Target& target, const std::vector<build::Normal>& normals);
+std::vector<Candidate> local_baselines(const compress::Target& target, const std::vector<build::Normal>& normals);
 
 } // namespace acdf::tools

@@ -1,4 +1,4 @@
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 
 #include "compress/sum.h"
 

@@ -1,4 +1,4 @@
-// Rivals of BRDF files, in floats: an alias table and a hierarchical warp of tabulated slices. A slice is what a
+// Baselines of BRDF files, in floats: an alias table and a hierarchical warp of tabulated slices. A slice is what a
 // view reflects, by half-vectors: 256 x 32 steps of theta_h and phi_h, one slice for each of 32 views (the size
 // that Lawrence et al. 2005 tabulate), azimuths from the view's. Isotropic BRDFs alone.
 #pragma once

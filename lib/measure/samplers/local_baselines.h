@@ -1,5 +1,5 @@
 // What one can do today to estimate the irradiance E(n), the integral of f = L max(0, n . omega), from a probe: the
-// rivals of a local environment map, each with its exact relative variance.
+// baselines of a local environment map, each with its exact relative variance.
 //
 // In all of them the target is a probe, lat-long or octahedral, with one channel and nearest lookup (g is f:
 // compress::Target); it is referred to, not copied, and must outlive the sampler. Normals are unit. Directions are

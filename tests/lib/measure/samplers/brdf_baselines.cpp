@@ -40,7 +40,7 @@ BrdfAccuracy accuracy_of(const Sampler& sampler, const Reflected& light, const s
 }
 
 /// Whether what is reflected is looked up for one density, for several, or once for a search.
-TEST(MeasureBrdfRivals, VariancesAreTheSameHoweverLightIsLookedUp) {
+TEST(MeasureBrdfBaselines, VariancesAreTheSameHoweverLightIsLookedUp) {
     const auto brdf = acdf::input::model_brdf("ggx:alpha=0.3");
     const Reflected light = light_of(*brdf);
     const std::vector<View> views = random_views(3, true);
@@ -58,7 +58,7 @@ TEST(MeasureBrdfRivals, VariancesAreTheSameHoweverLightIsLookedUp) {
     }
 }
 
-TEST(MeasureBrdfRivals, CosineSamplesAsItsDensity) {
+TEST(MeasureBrdfBaselines, CosineSamplesAsItsDensity) {
     for (const double c : cosines) expect_samples_as_its_density(CosineSampler{}, view_at(c), at("cosine", c));
     const double wo[3] = {0.0, 0.0, 1.0}, u[2] = {0.25, 0.36};
     const BrdfSample s = CosineSampler::sample(wo, u);
@@ -67,7 +67,7 @@ TEST(MeasureBrdfRivals, CosineSamplesAsItsDensity) {
     EXPECT_NEAR(s.pdf, 0.8 / acdf_test::kPi, 1e-15);
 }
 
-TEST(MeasureBrdfRivals, GgxSamplesAsItsDensity) {
+TEST(MeasureBrdfBaselines, GgxSamplesAsItsDensity) {
     for (const double c : cosines) {
         expect_samples_as_its_density(GgxSampler(0.1), view_at(c), at("0.1", c), 48);
         expect_samples_as_its_density(GgxSampler(0.8), view_at(c), at("0.8", c));
@@ -75,7 +75,7 @@ TEST(MeasureBrdfRivals, GgxSamplesAsItsDensity) {
     }
 }
 
-TEST(MeasureBrdfRivals, VisibleNormalsMakeGgxWeightsOfMasking) {
+TEST(MeasureBrdfBaselines, VisibleNormalsMakeGgxWeightsOfMasking) {
     // rho cos / pdf = F G2 / G1: at most 1 where F is 1, whatever alpha.
     const auto brdf = acdf::input::model_brdf("ggx:alpha=0.2,0.4");
     const GgxSampler sampler(0.2, 0.4);
@@ -91,7 +91,7 @@ TEST(MeasureBrdfRivals, VisibleNormalsMakeGgxWeightsOfMasking) {
     }
 }
 
-TEST(MeasureBrdfRivals, TheBestGgxOfAGgxIsNearItself) {
+TEST(MeasureBrdfBaselines, TheBestGgxOfAGgxIsNearItself) {
     for (const double alpha : {0.05, 0.3}) {
         const auto brdf = acdf::input::model_brdf("ggx:alpha=" + std::to_string(alpha));
         const std::vector<View> views = random_views(8, true);
@@ -106,7 +106,7 @@ TEST(MeasureBrdfRivals, TheBestGgxOfAGgxIsNearItself) {
     }
 }
 
-TEST(MeasureBrdfRivals, RglSamplesAsItsDensity) {
+TEST(MeasureBrdfBaselines, RglSamplesAsItsDensity) {
     for (const bool isotropic : {true, false}) {
         acdf::test::RglParts parts;
         if (!isotropic) parts.phi = {-3.1415927f, -1.0f, 1.5f, 3.1415927f};
@@ -123,7 +123,7 @@ TEST(MeasureBrdfRivals, RglSamplesAsItsDensity) {
     }
 }
 
-TEST(MeasureBrdfRivals, RglInSinglePrecisionIsRounded) {
+TEST(MeasureBrdfBaselines, RglInSinglePrecisionIsRounded) {
     acdf::test::RglParts parts;
     parts.fill(5);
     const acdf::test::Bytes file = parts.bytes();
@@ -143,7 +143,7 @@ TEST(MeasureBrdfRivals, RglInSinglePrecisionIsRounded) {
     EXPECT_LE(other_cells, 10);
 }
 
-TEST(MeasureBrdfRivals, RglOfRealMaterials) {
+TEST(MeasureBrdfBaselines, RglOfRealMaterials) {
     const std::string folder = std::string(acdf_test::kTestData) + "/brdfs/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real BRDFs: set ACDF_TEST_DATA";
     for (const char* name : {"cc_ibiza_sunset_rgb.bsdf", "paper_white_rgb.bsdf"}) {
@@ -160,7 +160,7 @@ TEST(MeasureBrdfRivals, RglOfRealMaterials) {
 
 constexpr BrdfTableSize small = {12, 8, 64, 16};
 
-TEST(MeasureBrdfRivals, TablesSampleAsTheirDensity) {
+TEST(MeasureBrdfBaselines, TablesSampleAsTheirDensity) {
     const auto iso = acdf::input::model_brdf("ggx:alpha=0.3"), aniso = acdf::input::model_brdf("ggx:alpha=0.2,0.5");
     for (const BrdfTableKind kind : {BrdfTableKind::centre, BrdfTableKind::mean}) {
         const TabulatedBrdf a(light_of(*iso), true, kind, small), b(light_of(*aniso), false, kind, small);
@@ -175,7 +175,7 @@ TEST(MeasureBrdfRivals, TablesSampleAsTheirDensity) {
     }
 }
 
-TEST(MeasureBrdfRivals, TablesOfIsotropicBrdfsAreTurned) {
+TEST(MeasureBrdfBaselines, TablesOfIsotropicBrdfsAreTurned) {
     // Made from the bins of one azimuth, or each on its own: the same.
     const auto brdf = acdf::input::model_brdf("ggx:alpha=0.3");
     for (const BrdfTableKind kind : {BrdfTableKind::centre, BrdfTableKind::mean}) {
@@ -189,7 +189,7 @@ TEST(MeasureBrdfRivals, TablesOfIsotropicBrdfsAreTurned) {
     }
 }
 
-TEST(MeasureBrdfRivals, RepairedTablesHaveSupportThatCentresLack) {
+TEST(MeasureBrdfBaselines, RepairedTablesHaveSupportThatCentresLack) {
     const auto brdf = acdf::input::model_brdf("ggx:alpha=0.2");
     const std::vector<View> views = random_views(12, false);
     const auto accuracy = [&](BrdfTableKind kind, BrdfTableSize size) {
@@ -205,7 +205,7 @@ TEST(MeasureBrdfRivals, RepairedTablesHaveSupportThatCentresLack) {
     EXPECT_LT(fine.relative_variance, 0.5 * coarse.relative_variance);
 }
 
-TEST(MeasureBrdfRivals, TablesOfThePaperHave65Megabytes) {
+TEST(MeasureBrdfBaselines, TablesOfThePaperHave65Megabytes) {
     const auto lambert = acdf::input::model_brdf("lambert");
     const TabulatedBrdf table(light_of(*lambert), true, BrdfTableKind::centre);
     EXPECT_EQ(table.bytes(), 8u * (2u * 32 * 16 * 256 * 32 + 32 * 16 * 256));
@@ -214,7 +214,7 @@ TEST(MeasureBrdfRivals, TablesOfThePaperHave65Megabytes) {
     EXPECT_THROW(TabulatedBrdf(light_of(*lambert), true, BrdfTableKind::mean, {4, 1, 0, 8}), std::invalid_argument);
 }
 
-TEST(MeasureBrdfRivals, BlackViewsGiveNoSample) {
+TEST(MeasureBrdfBaselines, BlackViewsGiveNoSample) {
     const TabulatedBrdf table([](const double*, const double*) { return 0.0; }, true, BrdfTableKind::centre, small);
     const double wo[3] = {0.0, 0.6, 0.8}, wi[3] = {0.0, 0.0, 1.0}, u[2] = {0.5, 0.5};
     EXPECT_EQ(table.sample(wo, u).pdf, 0.0);

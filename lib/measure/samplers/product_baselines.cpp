@@ -1,4 +1,4 @@
-#include "measure/samplers/product_rivals.h"
+#include "measure/samplers/product_baselines.h"
 
 #include "measure/samplers/ggx_lobe.h"
 #include "measure/samplers/point_samplers.h"

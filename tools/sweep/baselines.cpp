@@ -1,8 +1,8 @@
-#include "tools/sweep/rivals.h"
+#include "tools/sweep/baselines.h"
 
 #include "compress/sum.h"
 #include "measure/samplers/light_samplers.h"
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/point_samplers.h"
 #include "measure/samplers/tiling.h"
 #include "tools/sweep/surface.h"
@@ -106,18 +106,18 @@ private:
 
 } // namespace
 
-std::vector<Candidate> environment_rivals(const Target& target, const SweepOptions& options) {
+std::vector<Candidate> environment_baselines(const Target& target, const SweepOptions& options) {
     std::vector<Candidate> out;
-    out.push_back(rival_candidate("full_cdf", "full-resolution CDF", measure::full_cdf_sampler(target)));
-    out.push_back(rival_candidate("alias_table", "alias table", measure::alias_sampler(target)));
-    out.push_back(rival_candidate("hierarchical_warp", "hierarchical warp", measure::hierarchical_sampler(target)));
-    out.push_back(rival_candidate("mis_compensation", "compensated CDF, for MIS only",
+    out.push_back(baseline_candidate("full_cdf", "full-resolution CDF", measure::full_cdf_sampler(target)));
+    out.push_back(baseline_candidate("alias_table", "alias table", measure::alias_sampler(target)));
+    out.push_back(baseline_candidate("hierarchical_warp", "hierarchical warp", measure::hierarchical_sampler(target)));
+    out.push_back(baseline_candidate("mis_compensation", "compensated CDF, for MIS only",
                                   measure::compensated_sampler(target)));
     for (std::uint64_t budget : budgets_of(SweepKind::environment, options)) {
         const double side = std::sqrt(static_cast<double>(budget) / 8.0 / 2.0); // eight bytes a cell, 2:1
         const auto rows = static_cast<std::uint32_t>(std::lround(side));
         if (rows < 2 || rows >= target.rows || 2 * rows >= target.columns) continue;
-        out.push_back(rival_candidate(
+        out.push_back(baseline_candidate(
             "downsampled_cdf", "CDF downsampled to " + std::to_string(2 * rows) + " x " + std::to_string(rows),
             measure::downsampled_cdf_sampler(target, 2 * rows, rows)));
     }
@@ -130,13 +130,13 @@ std::vector<Candidate> environment_rivals(const Target& target, const SweepOptio
     return out;
 }
 
-std::vector<Candidate> local_rivals(const Target& target, const std::vector<build::Normal>& normals) {
+std::vector<Candidate> local_baselines(const Target& target, const std::vector<build::Normal>& normals) {
     constexpr std::uint32_t candidates = 32;
     const measure::LocalFullCdf full(target);
     std::vector<Candidate> out;
     const auto add = [&](const char* system, const std::string& label, std::shared_ptr<const LightSampler> sampler,
                          const Lit& variance) {
-        out.push_back(rival_candidate(system, label, std::move(sampler)));
+        out.push_back(baseline_candidate(system, label, std::move(sampler)));
         out.back().row.relative_variance = variance.mean;
         out.back().row.worst = variance.worst;
         out.back().row.median = variance.median;

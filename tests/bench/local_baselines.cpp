@@ -1,9 +1,9 @@
-// Time of a sample of the irradiance integrand by the rivals of a local environment map. Every shading point has
+// Time of a sample of the irradiance integrand by the baselines of a local environment map. Every shading point has
 // another normal; tiling on the fly builds its weights there and shares them among the samples of the point.
 #include "build/local.h"
 #include "tests/inputs/synthetic.h"
 
-#include "measure/samplers/local_rivals.h"
+#include "measure/samplers/local_baselines.h"
 #include "measure/samplers/tiling.h"
 
 #include <benchmark/benchmark.h>
@@ -67,9 +67,9 @@ void run(benchmark::State& state, std::size_t samples, const Begin& begin, const
 void nothing(const Point&) {}
 
 void full_cdf(benchmark::State& state) {
-    const measure::LocalFullCdf rival(sky(static_cast<std::uint32_t>(state.range(0))));
+    const measure::LocalFullCdf baseline(sky(static_cast<std::uint32_t>(state.range(0))));
     run(state, 64, nothing,
-        [&](const Point&, const std::array<double, 2>& u) { benchmark::DoNotOptimize(rival.sample(u[0], u[1])); });
+        [&](const Point&, const std::array<double, 2>& u) { benchmark::DoNotOptimize(baseline.sample(u[0], u[1])); });
 }
 
 void cosine_hemisphere(benchmark::State& state) {
@@ -79,33 +79,33 @@ void cosine_hemisphere(benchmark::State& state) {
 }
 
 void tiling(benchmark::State& state) {
-    const measure::TilingOnTheFly rival(sky(static_cast<std::uint32_t>(state.range(0))), 32, 16);
+    const measure::TilingOnTheFly baseline(sky(static_cast<std::uint32_t>(state.range(0))), 32, 16);
     measure::TilingOnTheFly::Point built;
     run(
-        state, static_cast<std::size_t>(state.range(1)), [&](const Point& p) { rival.at(p.normal.data(), built); },
+        state, static_cast<std::size_t>(state.range(1)), [&](const Point& p) { baseline.at(p.normal.data(), built); },
         [&](const Point&, const std::array<double, 2>& u) {
-            benchmark::DoNotOptimize(rival.sample(built, u[0], u[1]));
+            benchmark::DoNotOptimize(baseline.sample(built, u[0], u[1]));
         });
 }
 
 void tiling_pdf(benchmark::State& state) {
-    const measure::TilingOnTheFly rival(sky(static_cast<std::uint32_t>(state.range(0))), 32, 16);
-    const measure::TilingOnTheFly::Point built = rival.at(points()[0].normal.data());
+    const measure::TilingOnTheFly baseline(sky(static_cast<std::uint32_t>(state.range(0))), 32, 16);
+    const measure::TilingOnTheFly::Point built = baseline.at(points()[0].normal.data());
     std::size_t i = 0;
     run(state, 64, nothing, [&](const Point&, const std::array<double, 2>&) {
-        benchmark::DoNotOptimize(rival.pdf(built, points()[i].normal.data()));
+        benchmark::DoNotOptimize(baseline.pdf(built, points()[i].normal.data()));
         i = (i + 1) % kPoints;
     });
 }
 
 void resampling_32(benchmark::State& state) {
-    const measure::Resampling rival(sky(static_cast<std::uint32_t>(state.range(0))), 32);
+    const measure::Resampling baseline(sky(static_cast<std::uint32_t>(state.range(0))), 32);
     std::mt19937_64 random(3);
     std::vector<double> u(std::size_t{1} << 16);
     for (double& value : u) value = acdf_test::uniform(random);
     std::size_t next = 0;
     run(state, 1, nothing, [&](const Point& p, const std::array<double, 2>&) {
-        benchmark::DoNotOptimize(rival.sample(p.normal.data(), [&] { return u[next++ % u.size()]; }));
+        benchmark::DoNotOptimize(baseline.sample(p.normal.data(), [&] { return u[next++ % u.size()]; }));
     });
 }
 
