@@ -43,7 +43,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_lights.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_parts.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_pdf.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_place.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_position.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_point.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_tables.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/method.h

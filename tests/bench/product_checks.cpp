@@ -71,7 +71,7 @@ double cut_integral(const AcdfLocal& light, const Point& point) {
     for (std::uint32_t y = 0; y < grid.rows; ++y)
         for (std::uint32_t x = 0; x < grid.columns; ++x) {
             const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
-            const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
+            const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
             const float pdf = point.light.what == ACDF_LOCAL_FAST
                                   ? acdf_fast_cut_pdf(&light, &point.light, &point.fast, at.direction)
                                   : acdf_cut_pdf(&light, &point.light, &point.cut, at.direction);
@@ -112,7 +112,7 @@ struct Squares {
     void place(const Square& square, double u, double v, float out[3]) const {
         const AcdfRange range[2] = {{square.at[0], square.at[0] + 1, 0.0}, {square.at[1], square.at[1] + 1, 0.0}};
         const double fractions[2] = {u, v};
-        const AcdfDirectionSample at = acdf_grid_place(&grid, range, fractions, 1.0);
+        const AcdfDirectionSample at = acdf_grid_position(&grid, range, fractions, 1.0);
         std::copy_n(at.direction, 3, out);
     }
 };

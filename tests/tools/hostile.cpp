@@ -228,7 +228,7 @@ TEST_F(Hostile, ListsAreToldHowTheyAreWritten) {
     for (const char* normal : {"0 0 1", "0,1", "1"})
         expect_failure({"plot", file, "-o", folder / "n.png", "--normal", normal}, 2,
                        "--normal: needs 3 numbers with commas between them; see");
-    expect_failure({"plot", file, "-o", folder / "n.png", "--place", "1,2"}, 2, "--place: needs 3 numbers");
+    expect_failure({"plot", file, "-o", folder / "n.png", "--position", "1,2"}, 2, "--position: needs 3 numbers");
 }
 
 TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
@@ -241,7 +241,7 @@ TEST_F(Hostile, OptionsWithoutAnEffectAreRefused) {
     for (const std::string option : {"--projection=latlong", "--bad-pixels=clamp", "--on-black=uniform"})
         expect_failure({"measure", brdf, "--against", "ggx:alpha=0.5", option}, 2, option.substr(0, 5));
     const std::string png = folder / "p.png";
-    expect_failure({"plot", brdf, "-o", png, "--place", "0,0,0"}, 2, "--place");
+    expect_failure({"plot", brdf, "-o", png, "--position", "0,0,0"}, 2, "--position");
     expect_failure({"plot", brdf, "-o", png, "--normal", "0,0,1"}, 1, "--normal");
     expect_failure({"plot", probe, "-o", png, "--normal", "0,0,1"}, 1, "--normal");
     expect_failure({"plot", probe, "-o", png, "--view", "30"}, 2, "--view");

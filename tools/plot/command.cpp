@@ -118,7 +118,7 @@ std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& sourc
     }
     for (const NamedNormal& named : panel_normals) {
         Plotted panel;
-        panel.local.emplace(PlottedNormal{source.local->local, named.normal, source.local->place});
+        panel.local.emplace(PlottedNormal{source.local->local, named.normal, source.local->position});
         panel.density = density_of(*panel.local);
         panel.columns = source.columns;
         panel.rows = source.rows;
@@ -170,7 +170,7 @@ void check_mesh(const CLI::App& command, const PlotArguments& options) {
         for (const char* option : {"--scene-up", "--from", "--to"})
             if (given(option)) throw CLI::ValidationError(option, "is of the mesh given by --scene");
     if (!options.mesh.empty())
-        for (const char* option : {"--place", "--normal", "--view", "--projection", "--range", "--no-knots",
+        for (const char* option : {"--position", "--normal", "--view", "--projection", "--range", "--no-knots",
                                    "--no-legend", "--probe-projection"})
             if (given(option)) throw CLI::ValidationError(option, "is for a density, not for cells over a mesh");
 }
@@ -245,7 +245,7 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
     command
         .add_flag_callback(
             "--no-legend", [&options] { options.legend = false; },
-            "Leave out title and colour bar (drawn by default): exactly the density's pixels, to place in a figure")
+            "Leave out title and colour bar (drawn by default): exactly the density's pixels, for a figure")
         ->group("Picture");
 }
 
@@ -293,7 +293,7 @@ void add_plot(CLI::App& program, int& exit_code) {
                "; the white line is its horizon. Without it the six axes are shown");
     comma_separated(
         command.add_option(
-            "--place", options->place,
+            "--position", options->position,
             "For a file that tells places apart (acdf local --places), the position in its scene; without it "
             "what is drawn where a position is not known"),
         3)
@@ -314,7 +314,7 @@ void add_plot(CLI::App& program, int& exit_code) {
                     "acdf plot sky.exr -o full.png --projection angular --range 1e-3:100\n"
                     "acdf plot local.acdf -o six.png\n"
                     "acdf plot local.acdf -o up.png --normal 0,0,1 --range 1e-3:100\n"
-                    "acdf plot room.acdf -o floor.png --place 0.5,1,0 --normal 0,0,1\n"
+                    "acdf plot room.acdf -o floor.png --position 0.5,1,0 --normal 0,0,1\n"
                     "acdf plot room.acdf -o cells.png --scene room.obj --from 4,-6,3 --to 0,0,1\n"
                     "acdf plot nickel.acdf -o lobe.png --view 60\n"
                     "acdf plot sky.acdf -o density.exr --width 4096"));

@@ -11,7 +11,7 @@ namespace acdf::tools {
 namespace {
 
 AcdfLocalPoint point_of(const PlottedNormal& plotted) {
-    if (plotted.place) return plotted.local.at(plotted.place->data(), plotted.normal.data());
+    if (plotted.position) return plotted.local.at(plotted.position->data(), plotted.normal.data());
     return plotted.local.at(plotted.normal.data());
 }
 

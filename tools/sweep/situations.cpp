@@ -46,7 +46,7 @@ std::string sentence_of(const Sweep& sweep, const SituationAdvice& s) {
     if (!s.has_baseline) return text + ".";
     const bool even = s.over_best_baseline.low < 1.0 && s.over_best_baseline.high > 1.0;
     return text + ", " + noise_ratio_text(s.over_best_baseline.value) + " the best baseline, the " +
-           sweep.rows[s.baseline].label + (even ? " (too close to call)." : ".");
+           sweep.rows[s.reference].label + (even ? " (too close to call)." : ".");
 }
 
 } // namespace

@@ -32,8 +32,8 @@ double hashed(std::uint32_t x) {
 /// What the relative variance of a view is made from.
 class VarianceSums {
 public:
-    /// `places`: how many there are of this kind, `measure` of them all.
-    void add(double f, double p, double measure, double cosine, std::uint32_t places = 1) {
+    /// `number`: how many there are of this kind, `measure` of them all.
+    void add(double f, double p, double measure, double cosine, std::uint32_t number = 1) {
         if (cosine <= 0.0) {
             below_.add(p * measure);
             return;
@@ -42,7 +42,7 @@ public:
         albedo_.add(f * measure);
         if (!(f > 0.0)) return;
         if (p > 0.0) second_.add(f * f / p * measure);
-        else violations_ += places;
+        else violations_ += number;
     }
     ViewAccuracy result() const {
         ViewAccuracy out;
@@ -66,8 +66,8 @@ private:
 /// All sums of one view.
 class ViewSums {
 public:
-    void add(double f, double p, double measure, double cosine, std::uint32_t places = 1) {
-        variance_.add(f, p, measure, cosine, places);
+    void add(double f, double p, double measure, double cosine, std::uint32_t number = 1) {
+        variance_.add(f, p, measure, cosine, number);
         if (cosine <= 0.0) return;
         square_p_.add(p * p * measure);
         cross_.add(p * f * measure);

@@ -152,7 +152,7 @@ std::array<float, 3> PlaceParts::place(std::uint32_t tile, double u0, double u1)
     const AcdfBlend& blend = local_.blend;
     if (blend.roots && blend.roots[tile] != ACDF_NO_ROOT) acdf_tree_sample(blend.tree, blend.roots[tile], u, range);
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
-    const AcdfDirectionSample s = acdf_grid_place(&grid, range, u, 1.0);
+    const AcdfDirectionSample s = acdf_grid_position(&grid, range, u, 1.0);
     return {s.direction[0], s.direction[1], s.direction[2]};
 }
 

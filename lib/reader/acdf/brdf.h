@@ -26,7 +26,7 @@ ACDF_FN void acdf_brdf_whole(const AcdfBrdf* brdf, AcdfRange range[2]) {
 }
 
 /* Finds the cell of a place; `strata` may be null. Returns its probability, 0 where no sample can fall. */
-ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfBrdfPlace* place,
+ACDF_FN double acdf_brdf_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfBrdfPosition* place,
                               AcdfRange range[2], AcdfStratum* strata) {
     uint32_t square[2];
     square[0] = acdf_brdf_step(place->position[0], brdf->columns);
@@ -44,7 +44,7 @@ ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
 
 /* Density of wi: that of its place in a cell of probability p (0: none), and the cosine's share. */
 ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
-                                const AcdfBrdfPlace* place, const float wi[3]) {
+                                const AcdfBrdfPosition* place, const float wi[3]) {
     const double floor = (double)brdf->views->diffuse_share;
     double pdf = 0.0;
     int axis;
@@ -62,11 +62,11 @@ ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange 
 
 /* acdf_brdf_pdf for a view that serves several directions. */
 ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3]) {
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     AcdfRange range[2];
     double sign, p;
     if (brdf->tables && brdf->tables->grid) return acdf_brdf_pair_pdf(brdf, view, wi);
-    if (!acdf_brdf_place(brdf, view, wi, &place, &sign)) return 0.0f;
+    if (!acdf_brdf_half_position(brdf, view, wi, &place, &sign)) return 0.0f;
     p = acdf_brdf_find(brdf, view, &place, range, 0);
     return acdf_brdf_density(brdf, p, range, &place, wi);
 }
@@ -86,7 +86,7 @@ enum { ACDF_BRDF_FEWEST = 2 }; /* fewer are not worth vectors */
 ACDF_FN void acdf_brdf_view_pdfs(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float (*wi)[3], size_t count,
                                  float* out) {
     enum { TOGETHER = 16 };
-    AcdfBrdfPlace place[TOGETHER];
+    AcdfBrdfPosition place[TOGETHER];
     uint32_t cell[TOGETHER];
     int found[TOGETHER];
     size_t first, i;
@@ -158,7 +158,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
                                           const double u[2], double sign, double p) {
     const double nothing[2] = {0.0, 0.0};
     AcdfDirectionSample out;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     double t[2], position[2], reach[2], half[3];
     int axis, attempt;
     for (axis = 0; axis < 2; ++axis) {
@@ -184,7 +184,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
             t[axis] = 0.5 + 0.75 * (t[axis] - 0.5);
         }
         acdf_brdf_reflect(brdf, view, position, sign, out.direction, reach);
-        if (acdf_brdf_place(brdf, view, out.direction, &place, &side) &&
+        if (acdf_brdf_half_position(brdf, view, out.direction, &place, &side) &&
             acdf_brdf_inside(range, place.position, nothing)) {
             out.pdf = acdf_brdf_density(brdf, p, range, &place, out.direction);
             return out;
@@ -294,7 +294,7 @@ ACDF_FN void acdf_brdf_refine(const AcdfBrdf* brdf, const AcdfBrdfView* view, co
 ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
                             const double position[2], double sign, double margin[2], double t[2]) {
     const double nothing[2] = {0.0, 0.0};
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     double at[2], side;
     float wi[3];
     int axis;
@@ -305,7 +305,7 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
         at[axis] = (double)range[axis].low + t[axis] * wide;
     }
     acdf_brdf_reflect(brdf, view, at, sign, wi, margin);
-    return acdf_brdf_place(brdf, view, wi, &place, &side) && acdf_brdf_inside(range, place.position, nothing);
+    return acdf_brdf_half_position(brdf, view, wi, &place, &side) && acdf_brdf_inside(range, place.position, nothing);
 }
 
 /* The random numbers u[2] for which acdf_brdf_sample returns wi for wo, through the half-vector. Returns 1, or 0
@@ -317,14 +317,14 @@ ACDF_FN int acdf_brdf_stays(const AcdfBrdf* brdf, const AcdfBrdfView* view, cons
 ACDF_FN int acdf_brdf_invert(const AcdfBrdf* brdf, const float wo[3], const float wi[3], double u[2]) {
     const double floor = (double)brdf->views->diffuse_share;
     AcdfBrdfView view;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     AcdfRange range[2];
     AcdfStratum strata[2];
     double sign, margin[2] = {0.0, 0.0}, t[2];
     int axis;
     strata[0].low = strata[1].low = 0.0;
     strata[0].width = strata[1].width = 1.0;
-    if (!acdf_brdf_view(brdf, wo, &view) || !acdf_brdf_place(brdf, &view, wi, &place, &sign)) return 0;
+    if (!acdf_brdf_view(brdf, wo, &view) || !acdf_brdf_half_position(brdf, &view, wi, &place, &sign)) return 0;
     if (!(acdf_brdf_find(brdf, &view, &place, range, strata) > 0.0)) return 0;
     acdf_brdf_refine(brdf, &view, range, wi, place.position, &sign);
     if (!acdf_brdf_stays(brdf, &view, range, place.position, sign, margin, t))

@@ -20,9 +20,9 @@ ACDF_INLINE double acdf_brdf_pair_share(const AcdfBrdf* brdf, const AcdfBrdfView
 
 /* Finds where wi lies, and its cell, of tables that have a grid. Returns 0 where none falls. */
 ACDF_INLINE int acdf_brdf_pair_find(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3],
-                                    AcdfBrdfPlace* place, uint32_t* cell) {
+                                    AcdfBrdfPosition* place, uint32_t* cell) {
     double position[2], sign;
-    if (!acdf_brdf_place(brdf, view, wi, place, &sign)) return 0;
+    if (!acdf_brdf_half_position(brdf, view, wi, place, &sign)) return 0;
     position[0] = acdf_brdf_bounded(place->position[0], brdf->columns);
     position[1] = acdf_brdf_bounded(place->position[1], brdf->rows);
     *cell = acdf_brdf_find_cell(brdf->tables, position);
@@ -31,7 +31,7 @@ ACDF_INLINE int acdf_brdf_pair_find(const AcdfBrdf* brdf, const AcdfBrdfView* vi
 
 /* The density there. */
 ACDF_INLINE float acdf_brdf_pair_found(const AcdfBrdf* brdf, const AcdfBrdfView* view, uint32_t cell,
-                                       const AcdfBrdfPlace* place) {
+                                       const AcdfBrdfPosition* place) {
     double p = acdf_brdf_pair_share(brdf, view, cell); /* NaN where no view weighs anything */
     if (!(p > 0.0)) return 0.0f;
     p = acdf_brdf_mean_density(brdf, acdf_positive(p), acdf_brdf_area(brdf->tables, cell), place);
@@ -40,7 +40,7 @@ ACDF_INLINE float acdf_brdf_pair_found(const AcdfBrdf* brdf, const AcdfBrdfView*
 
 /* acdf_brdf_view_pdf, of tables that have a grid. */
 ACDF_INLINE float acdf_brdf_pair_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view, const float wi[3]) {
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     uint32_t cell;
     return acdf_brdf_pair_find(brdf, view, wi, &place, &cell) ? acdf_brdf_pair_found(brdf, view, cell, &place)
                                                               : 0.0f;
@@ -208,7 +208,7 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
                                       AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;
     const AcdfBrdfPath* path;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     __m128d left, low, high, wide, position, reach, inside;
     double u[2], part[2], half[3], sign = 1.0, p, dot, radius;
     u[0] = acdf_unit_interval(u0);
@@ -240,7 +240,7 @@ ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* v
                                      AcdfDirectionSample* out) {
     const AcdfBrdfTables* tables = brdf->tables;
     const AcdfBrdfPath* path;
-    AcdfBrdfPlace place;
+    AcdfBrdfPosition place;
     uint32_t cell;
     double u[2], part[2], half[3], sign = 1.0, radius, p;
     int axis;

@@ -312,10 +312,10 @@ ACDF_CALLED float acdf_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint* poi
 }
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_INLINE AcdfDirectionSample acdf_cut_place(const AcdfLocal* local, const AcdfLocalPoint* point,
+ACDF_INLINE AcdfDirectionSample acdf_cut_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                const AcdfCut* cut, const AcdfGrid* grid, const AcdfRange range[2],
                                                const double u[2], double p) {
-    AcdfDirectionSample out = acdf_local_place(local, point, grid, range, u, p);
+    AcdfDirectionSample out = acdf_local_direction_sample(local, point, grid, range, u, p);
     /* A slope makes the density depend on where the rounded direction lies. */
     if (range[0].tilt != 0.0 || range[1].tilt != 0.0) out.pdf = acdf_cut_pdf(local, point, cut, out.direction);
     return out;
@@ -336,7 +336,7 @@ ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const Ac
     part = acdf_cut_draw(cut, u);
     acdf_cut_range(part, range);
     p = acdf_cut_sample_part(local, point, cut, part, u, range);
-    return acdf_cut_place(local, point, cut, &grid, range, u, p);
+    return acdf_cut_direction_sample(local, point, cut, &grid, range, u, p);
 }
 
 #ifdef __cplusplus

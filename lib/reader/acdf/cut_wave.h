@@ -214,7 +214,7 @@ ACDF_FN void acdf_cut_sample_wave(const AcdfLocal* local, const AcdfLocalPoint* 
         acdf_cut_wave_curves(local, some, 0, lane);
         for (i = 0; i < some; ++i)
             out[first + i] =
-                acdf_cut_place(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
+                acdf_cut_direction_sample(local, point, cut, &grid, lane[i].range, lane[i].u, lane[i].probability);
     }
 }
 

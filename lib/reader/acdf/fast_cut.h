@@ -269,7 +269,7 @@ ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, con
     cells = acdf_local_fast_record(local, tile, range);
     share.of *= acdf_fast_draw_cell(&cells, left, range);
     share.all *= ACDF_FAST_STEPS;
-    return acdf_local_fast_place(local, &grid, range, left, &share);
+    return acdf_local_fast_direction_sample(local, &grid, range, left, &share);
 }
 
 #ifdef __cplusplus

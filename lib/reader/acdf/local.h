@@ -79,12 +79,12 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
 }
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
-ACDF_INLINE AcdfDirectionSample acdf_local_place(const AcdfLocal* local, const AcdfLocalPoint* point,
+ACDF_INLINE AcdfDirectionSample acdf_local_direction_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                  const AcdfGrid* grid, const AcdfRange range[2], const double u[2],
                                                  double p) {
     AcdfDirectionSample out;
-    if (point->what != ACDF_LOCAL_BLEND || !acdf_local_place_by_tables(local, grid, range, u, out.direction))
-        return acdf_grid_place(grid, range, u, p);
+    if (point->what != ACDF_LOCAL_BLEND || !acdf_local_direction_by_tables(local, grid, range, u, out.direction))
+        return acdf_grid_position(grid, range, u, p);
     out.pdf = local->tables->octahedral ? acdf_fold_pdf(grid, range, p)
                                         : acdf_row_pdf(acdf_local_heights(local->tables), grid->columns, range, p);
     return out;
@@ -117,7 +117,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
             : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
-    return acdf_local_place(local, point, &grid, range, u, p);
+    return acdf_local_direction_sample(local, point, &grid, range, u, p);
 }
 
 /* Draws by the row of a place or through its windows, of which there are some. The density is that of the direction

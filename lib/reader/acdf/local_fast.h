@@ -2,7 +2,7 @@
 #ifndef ACDF_LOCAL_FAST_H
 #define ACDF_LOCAL_FAST_H
 
-#include <acdf/local_place.h>
+#include <acdf/local_position.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -226,12 +226,12 @@ ACDF_INLINE float acdf_local_fast_density(const AcdfLocal* local, const AcdfGrid
 }
 
 /* The direction that what is left of the random numbers picks in a cell of such a probability. */
-ACDF_INLINE AcdfDirectionSample acdf_local_fast_place(const AcdfLocal* local, const AcdfGrid* grid,
+ACDF_INLINE AcdfDirectionSample acdf_local_fast_direction_sample(const AcdfLocal* local, const AcdfGrid* grid,
                                                       const AcdfRange range[2], const double u[2],
                                                       const AcdfFastShare* share) {
     AcdfDirectionSample out;
-    if (!acdf_local_place_by_tables(local, grid, range, u, out.direction))
-        out = acdf_grid_place(grid, range, u, 1.0);
+    if (!acdf_local_direction_by_tables(local, grid, range, u, out.direction))
+        out = acdf_grid_position(grid, range, u, 1.0);
     out.pdf = acdf_local_fast_at_least(local, grid, range, share, 1.17549435e-38);
     return out;
 }
@@ -244,7 +244,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, c
     AcdfFastShare share;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     share = acdf_local_fast_draw(local, point, weighed, u, range);
-    return acdf_local_fast_place(local, &grid, range, u, &share);
+    return acdf_local_fast_direction_sample(local, &grid, range, u, &share);
 }
 
 #ifdef __cplusplus

@@ -137,7 +137,7 @@ ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3]
 
 /* Finds what serves a normal at a position of the scene. Outside of all cells, and where places are not told apart,
  * that is what serves the normal. */
-ACDF_FN void acdf_local_at_place(const AcdfLocal* local, const float position[3], const float normal[3],
+ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
     acdf_local_at_cells(local, position, normal, out);
     if (local->portals.header && out->place.count > 0)

@@ -48,7 +48,7 @@ typedef struct AcdfLocalTables {
     uint32_t words; /* of all */
     uint32_t count; /* of pieces */
     AcdfTileTables tiles;
-    AcdfSquares directions; /* keys: acdf_direction_place */
+    AcdfSquares directions; /* keys: acdf_keys_of_direction */
     uint32_t pieces;        /* AcdfTilePiece, `count` of them; 0: the file is too large for such */
     uint32_t parts;         /* f64 a tile of each row: what part of the row it has; 0: as pieces */
     uint32_t heights;       /* f64, one more than there are rows: z between them; 0: not on a lat-long grid */
@@ -106,9 +106,9 @@ ACDF_INLINE const AcdfTileRecord* acdf_local_tile(const AcdfLocalTables* tables,
 ACDF_INLINE const AcdfTilePiece* acdf_local_find_piece(const AcdfLocalTables* tables, const float direction[3]) {
     const uint32_t* words = acdf_local_words(tables);
     const uint16_t* found;
-    AcdfPlace place;
+    AcdfDirectionKeys place;
     uint32_t mask;
-    if (!acdf_direction_place(tables->octahedral, direction, &place)) return 0;
+    if (!acdf_keys_of_direction(tables->octahedral, direction, &place)) return 0;
     mask = acdf_squares_find(words, &tables->directions, place.key0, place.key1, &found);
     for (; mask; mask &= mask - 1) {
         const AcdfTilePiece* piece =

@@ -134,7 +134,7 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
     } else {
         point.light.what = ACDF_LOCAL_TREE;
         point.light.root = light_.environment.root;
-        point.light.place.count = 0;
+        point.light.visibility.count = 0;
         point.light.windows.count = 0;
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;

@@ -111,7 +111,7 @@ ACDF_FN2(AcdfTileSpot, acdf_tiles_spot, ACDF_TABLES, tables, AcdfUnit, d) {
     ACDF_LET(ACDF_U32, rows) = ACDF_WORD(tables, ACDF_TILES_ROWS);
     ACDF_VAR(AcdfTileSpot, spot);
     if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
-        ACDF_LET(AcdfPlace, place) = acdf_square_place(d.x, d.y, d.z, d.sin2, d.length2);
+        ACDF_LET(AcdfDirectionKeys, place) = acdf_square_keys(d.x, d.y, d.z, d.sin2, d.length2);
         spot.column = acdf_tiles_step(place.key0 << 8u, columns);
         spot.row = acdf_tiles_step(place.key1 << 8u, rows);
     } else {

@@ -25,7 +25,7 @@ extern "C" {
  * (radians) and 1 - |z|, in the south from the pole up, or those of the square. */
 
 /* Keys of a direction: upper parts of splits begin at theirs. */
-#define ACDF_WALK_SEAM 20971520u /* key0 of acdf_place_of at phi = pi, where columns begin */
+#define ACDF_WALK_SEAM 20971520u /* key0 of acdf_direction_keys at phi = pi, where columns begin */
 #define ACDF_WALK_SOUTH 0x7F000000u
 
 /* ---- densities -------------------------------------------------------------------------------------- */
@@ -56,7 +56,7 @@ ACDF_FN5(ACDF_F32, acdf_walk_density, AcdfShaderPoint, here, ACDF_F32, light, AC
 ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
          z) {
     ACDF_LET(AcdfUnit, d) = acdf_unit_of(x, y, z);
-    ACDF_VAR(AcdfPlace, place);
+    ACDF_VAR(AcdfDirectionKeys, place);
     if (here.mix.root == ACDF_WALK_NONE || d.length2 == 0.0f) {
         return 0.0f;
     }
@@ -64,9 +64,9 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
         return acdf_walk_density(here, acdf_tiles_pdf(tables, here, d), x, y, z);
     }
     if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
-        place = acdf_square_place(d.x, d.y, d.z, d.sin2, d.length2);
+        place = acdf_square_keys(d.x, d.y, d.z, d.sin2, d.length2);
     } else {
-        place = acdf_place_of(d.x, d.y, d.z, d.sin2, d.length2);
+        place = acdf_direction_keys(d.x, d.y, d.z, d.sin2, d.length2);
         ACDF_LET(ACDF_U32, cap) = ACDF_BITS(place.cap);
         place.key0 = (ACDF_WALK_SEAM - place.key0) & ACDF_DIRECTION_MASK;
         place.key1 = ACDF_SELECT((ACDF_BITS(z) >> 31u) != 0u, ACDF_WALK_SOUTH - cap, cap);

@@ -64,7 +64,7 @@ ACDF_FN void acdf_sphere_ranges(uint32_t columns, uint32_t rows, AcdfRange range
 
 /* The direction that what is left of the random numbers picks in a cell of probability p, between the heights z0 of
  * its upper and z1 of its lower border. */
-ACDF_FN AcdfDirectionSample acdf_sphere_place_between(uint32_t columns, const AcdfRange range[2], const double u[2],
+ACDF_FN AcdfDirectionSample acdf_sphere_position_between(uint32_t columns, const AcdfRange range[2], const double u[2],
                                                       double p, double z0, double z1) {
     AcdfDirectionSample out;
     double tx, tz, x, z, sin_theta, sine, cosine, border, kept;
@@ -94,9 +94,9 @@ ACDF_FN AcdfDirectionSample acdf_sphere_place_between(uint32_t columns, const Ac
 }
 
 /* The same of a cell of `rows` rows of the sphere. */
-ACDF_FN AcdfDirectionSample acdf_sphere_place(uint32_t columns, uint32_t rows, const AcdfRange range[2],
+ACDF_FN AcdfDirectionSample acdf_sphere_position(uint32_t columns, uint32_t rows, const AcdfRange range[2],
                                               const double u[2], double p) {
-    return acdf_sphere_place_between(columns, range, u, p, acdf_row_z(range[1].low, rows),
+    return acdf_sphere_position_between(columns, range, u, p, acdf_row_z(range[1].low, rows),
                                      acdf_row_z(range[1].high, rows));
 }
 

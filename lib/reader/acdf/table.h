@@ -31,10 +31,10 @@ typedef struct AcdfTable {
 } AcdfTable;
 
 /* Where a point falls. */
-typedef struct AcdfTablePlace {
+typedef struct AcdfTablePosition {
     AcdfRange range[ACDF_MAX_AXES]; /* the cell, on each axis */
     double position[ACDF_MAX_AXES]; /* the point, in [0, resolution] on each sampled axis */
-} AcdfTablePlace;
+} AcdfTablePosition;
 
 #define ACDF_DOUBLE_MIN 2.2250738585072014e-308
 #define ACDF_DOUBLE_MAX 1.7976931348623157e308
@@ -102,7 +102,7 @@ ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfRange* range) {
 
 /* Density of a place in a cell of probability p: the same for acdf_table_sample and acdf_table_pdf, bit for bit,
  * because both come here with the same cell and the same position. */
-ACDF_FN double acdf_table_density(const AcdfTable* table, double p, const AcdfTablePlace* place) {
+ACDF_FN double acdf_table_density(const AcdfTable* table, double p, const AcdfTablePosition* place) {
     uint32_t axis;
     for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
         const AcdfAxis* a = &table->axes[axis];
@@ -119,7 +119,7 @@ ACDF_INLINE const AcdfEntryBin* acdf_table_entries(const AcdfTable* table, const
     const AcdfEntryBin* entries;
     if (!table->entries) return 0;
     entries = acdf_entry_bin(table->entries, (size_t)(bin - table->bins));
-    return entries->places ? entries : 0;
+    return entries->positions ? entries : 0;
 }
 
 /* acdf_table_sample by the grids of a bin, which has no tilts: where in the cell a point lies is not asked again.
@@ -129,7 +129,7 @@ ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEnt
     const uint32_t first = table->indexed_count, count = table->axis_count - first;
     const AcdfEntryCurve* curve;
     double left[ACDF_MAX_AXES], p;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     uint32_t axis;
     for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
     curve = acdf_entry_of_numbers(table->entries, grids, count, left + first);
@@ -151,7 +151,7 @@ ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, 
     const AcdfBin* bin = acdf_table_bin(table, index);
     const uint32_t first = table->indexed_count;
     const AcdfEntryBin* grids;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     double left[ACDF_MAX_AXES];
     double p;
     uint32_t axis;
@@ -193,7 +193,7 @@ ACDF_INLINE int acdf_table_step(const AcdfTable* table, const double* x, double*
  * sample can fall, for NaN and outside the axes' ranges. A border belongs to the cell of the higher position, the
  * end of an axis to its last cell. */
 ACDF_FN double acdf_table_find(const AcdfTable* table, const uint32_t* index, const double* x,
-                               AcdfTablePlace* place, AcdfStratum* strata) {
+                               AcdfTablePosition* place, AcdfStratum* strata) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     uint32_t step[ACDF_MAX_AXES];
     if (!bin || !acdf_table_step(table, x, place->position, step)) return 0.0;
@@ -206,10 +206,10 @@ ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryB
     const uint32_t first = table->indexed_count, count = table->axis_count - first;
     const AcdfEntryCurve* curve;
     uint32_t step[ACDF_MAX_AXES], entry;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     double p;
     if (!acdf_table_step(table, x, place.position, step)) return 0.0;
-    entry = acdf_entry_of_place(table->entries, grids, count, step + first);
+    entry = acdf_entry_of_position(table->entries, grids, count, step + first);
     if (entry & ACDF_ENTRY_CELL)
         return ((const double*)(const void*)acdf_entry_words(table->entries,
                                                              table->entries->densities))[entry & ~ACDF_ENTRY_CELL];
@@ -223,7 +223,7 @@ ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryB
 ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, const double* x) {
     const AcdfBin* bin = acdf_table_bin(table, index);
     const AcdfEntryBin* grids = bin ? acdf_table_entries(table, bin) : 0;
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     double p;
     if (grids) return acdf_table_entry_pdf(table, grids, x);
     p = acdf_table_find(table, index, x, &place, 0);
@@ -233,7 +233,7 @@ ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, con
 /* The random numbers u[sampled count] for which acdf_table_sample returns x. Returns 1, or 0 (and u unset) where
  * the density is 0. */
 ACDF_FN int acdf_table_invert(const AcdfTable* table, const uint32_t* index, const double* x, double* u) {
-    AcdfTablePlace place;
+    AcdfTablePosition place;
     AcdfStratum strata[ACDF_MAX_AXES];
     uint32_t axis;
     for (axis = 0; axis < table->axis_count; ++axis) {

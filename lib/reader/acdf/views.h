@@ -83,7 +83,7 @@ public:
     /// stays unbiased, and is noisier.
     ACDF_METHOD AcdfLocalPoint at(const float position[3], const float normal[3]) const noexcept {
         AcdfLocalPoint point;
-        acdf_local_at_place(&data_, position, normal, &point);
+        acdf_local_at_position(&data_, position, normal, &point);
         return point;
     }
     /// Whether places are told apart.

@@ -115,7 +115,7 @@ struct Side {
     double low, high;    ///< random numbers
     double local[2];     ///< at low and high: local azimuth, 1 - |z|, or 1 - 2 u, 2 v - 1
     double margin[2];    ///< of `local`, in which nothing is sure
-    double key[2];       ///< of acdf_direction_place: the lesser, and the greater
+    double key[2];       ///< of acdf_keys_of_direction: the lesser, and the greater
     double beyond;       ///< the first key behind its piece; that of a quarter is the next one's
     double ends[2];      ///< tangents of azimuth or 1 - |z|: the lesser, and the greater; not on the square
 

@@ -55,7 +55,7 @@ DirectionSample end_draw(const AcdfLocal& local, const AcdfGrid& grid, const Lan
     const double of_mixture = acdf_local_drawn_tile(&local, &lane.point, lane.tile, given, range);
     const double probability = acdf_local_tile_probability(&local, &lane.point, lane.tile, of_mixture);
     const double p = acdf_local_draw_inside(&local, lane.tile, probability, u, range);
-    return acdf_local_place(&local, &lane.point, &grid, range, u, p);
+    return acdf_local_direction_sample(&local, &lane.point, &grid, range, u, p);
 }
 
 void ask_for_curves(const AcdfLocal& local, const Lane* lane, std::size_t count) {
@@ -68,7 +68,7 @@ bool serves_waves(const AcdfLocal& local) {
 }
 bool serves_waves(const AcdfLocalPoint& point) {
     return (point.what == ACDF_LOCAL_BLEND || point.what == ACDF_LOCAL_FAST) && point.mix.count == kRows &&
-           point.place.count == 0 && point.windows.count == 0;
+           point.visibility.count == 0 && point.windows.count == 0;
 }
 
 #if ACDF_WAVEFRONT_X86

@@ -132,7 +132,7 @@ __attribute__((noinline)) double light_probability(const AcdfLocal& local, const
     AcdfLocalPoint point;
     for (int k = 0; k < 3; ++k) point.normal[k] = seen.normal[k][i];
     point.length = seen.length[i];
-    point.place.count = 0;
+    point.visibility.count = 0;
     const double probability = acdf_local_light_weight(&local, &point, light - 1) / seen.sum[i];
     return probability > 0.0 ? acdf_positive(probability) : 0.0;
 }

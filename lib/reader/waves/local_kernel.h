@@ -213,7 +213,7 @@ ACDF_LANE Vector fold_place(const AcdfLocal& local, const Cells& cells, const Bo
     return area_pdf(probabilities(cells, done, at), columns, fold_area(width[0], width[1], rows));
 }
 
-/* acdf_local_place of all cells. Returns the lanes that are not answered. */
+/* acdf_local_direction_sample of all cells. Returns the lanes that are not answered. */
 ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, const Boxes& done,
                                     AcdfDirectionSample* out) {
     std::uint64_t lost = 0;

@@ -1,6 +1,6 @@
 // Local environment maps of real probes, at the sizes that users ask for, beside everything that a renderer could
 // use instead. All by exact summation, over random normals that are no bin's own.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 
 #include "build/accuracy/local.h"
 #include "build/local.h"

@@ -1,6 +1,6 @@
 // Estimates of a file and its partner together are unbiased: Monte Carlo against summation, for every fit and
 // partner and each of 200 normals. Of real probes where they are at hand (ACDF_TEST_DATA).
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/inputs/sanitized.h"
 #include "tests/lib/build/partner.h"
 

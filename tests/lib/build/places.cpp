@@ -175,7 +175,7 @@ void expect_unbiased(const Built& built, const Wall& wall, int count) {
         PlacePoint point;
         point_of(1000003 + std::uint64_t(i), point);
         const AcdfLocalPoint at = built.view().at(point.position, point.normal);
-        EXPECT_GT(at.place.count, 0);
+        EXPECT_GT(at.visibility.count, 0);
         const Exact truth = exact(built.view(), at, point, wall);
         EXPECT_EQ(truth.lost, 0);
         double mean = 0.0;
@@ -235,7 +235,7 @@ TEST(PlaceFiles, OfAFloorFarFromTheOrigin) {
     const Built built(far);
     EXPECT_TRUE(built.view().has_places());
     const float at[3] = {1.0f, 2.0f, 1e7f}, up[3] = {0.0f, 0.0f, 1.0f};
-    EXPECT_GT(built.view().at(at, up).place.count, 0);
+    EXPECT_GT(built.view().at(at, up).visibility.count, 0);
 }
 
 TEST(PlaceFiles, DrawWhatAPlaceSees) {

@@ -1,6 +1,6 @@
 // The frozen files of every version: format/make_golden.cpp makes those of the present one.
 #include "tests/inputs/directions.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/reader/golden_numbers.h"
 #include <acdf/reader.h>
 

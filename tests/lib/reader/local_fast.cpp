@@ -129,7 +129,7 @@ TEST(FastShape, IntegratesToOne) {
                     for (std::uint32_t column = 0; column < options.columns; ++column) {
                         AcdfRange range[2] = {{column, column + 1, 0.0}, {row, row + 1, 0.0}};
                         const double middle[2] = {0.5, 0.5};
-                        const acdf::DirectionSample s = acdf_grid_place(&grid, range, middle, 1.0);
+                        const acdf::DirectionSample s = acdf_grid_position(&grid, range, middle, 1.0);
                         sum += acdf_grid_solid_angle(&grid, range) * double{view.pdf(point, s.direction)};
                     }
                 EXPECT_NEAR(sum, 1.0, 1e-6) << seed;

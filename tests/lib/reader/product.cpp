@@ -202,7 +202,7 @@ TEST(Product, DensityIntegratesToOne) {
             for (std::uint32_t x = 0; x < grid.columns; ++x) {
                 const AcdfRange square[2] = {{x, x + 1, 0.0}, {y, y + 1, 0.0}};
                 const double middle[2] = {0.5, 0.5};
-                const AcdfDirectionSample at = acdf_grid_place(&grid, square, middle, 1.0);
+                const AcdfDirectionSample at = acdf_grid_position(&grid, square, middle, 1.0);
                 const float p = has_cut(point) ? acdf_cut_pdf(&light, &point.light, &point.cut, at.direction)
                                                : acdf_fast_cut_pdf(&light, &point.light, &point.fast, at.direction);
                 sum += double{p} * acdf_grid_solid_angle(&grid, square);

@@ -1,7 +1,7 @@
 // Disks that are full, folders that refuse, links, other devices, several writers: the old file stays or the new
 // one is there, whole, and nothing else.
 #include "tests/tools/disk/files.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 
 #include "tests/inputs/float_map.h"
 

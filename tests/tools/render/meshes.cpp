@@ -149,7 +149,7 @@ TEST(MeshPlaces, OfMeshesWithYUpAreThoseOfTheirOwnCoordinates) {
         const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
                     turned[3] = {p[1], p[2], p[0]};
         const AcdfLocalPoint a = z.local().at(p, n), b = y.local().at(turned, n);
-        ASSERT_GT(a.place.count, 0);
+        ASSERT_GT(a.visibility.count, 0);
         const DirectionSample s = z.local().sample(a, i / 200.0, 0.3), t = y.local().sample(b, i / 200.0, 0.3);
         // Sums over what is seen are rounded in another order: a share of a row may be a step off.
         EXPECT_NEAR(s.pdf, t.pdf, 1e-5f * s.pdf);
@@ -197,7 +197,7 @@ TEST(MeshPlaces, OfAMirroredFrameAreThoseOfTheirOwnCoordinates) {
         const float p[3] = {float(i % 7) * 0.6f - 1.8f, float(i % 11) * 0.35f - 1.8f, float(i % 3) * 0.9f},
                     there[3] = {-p[0], p[1], p[2]};
         const AcdfLocalPoint a = z.local().at(p, n), b = x.local().at(there, n);
-        ASSERT_GT(b.place.count, 0);
+        ASSERT_GT(b.visibility.count, 0);
         const DirectionSample s = z.local().sample(a, i / 200.0, 0.3);
         EXPECT_NEAR(x.local().pdf(b, s.direction), s.pdf, 0.01 * s.pdf); // normals are summed in another order
     }
@@ -213,9 +213,9 @@ TEST(MeshPlaces, ArePlotted) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_acdf(arguments);
     };
-    ASSERT_EQ(plot("room.acdf", "here.exr", {"--normal", "0,0,1", "--place", "0,-1,0"}).code, 0);
+    ASSERT_EQ(plot("room.acdf", "here.exr", {"--normal", "0,0,1", "--position", "0,-1,0"}).code, 0);
     ASSERT_EQ(plot("room.acdf", "anywhere.exr", {"--normal", "0,0,1"}).code, 0);
-    ASSERT_EQ(plot("room.acdf", "six.png", {"--place", "0,-1,0.1"}).code, 0);
+    ASSERT_EQ(plot("room.acdf", "six.png", {"--position", "0,-1,0.1"}).code, 0);
     EXPECT_NE(read_text(folder / "here.exr"), read_text(folder / "anywhere.exr"));
     ASSERT_EQ(plot("room.acdf", "cells.png", {"--scene", folder / "room.obj"}).code, 0);
     ASSERT_EQ(
@@ -226,10 +226,10 @@ TEST(MeshPlaces, ArePlotted) {
     EXPECT_EQ(plot("plain.acdf", "no.png", {"--scene", folder / "room.obj"}).code, 1);
     EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "none.obj"}).code, 1);
     EXPECT_EQ(plot("room.acdf", "no.exr", {"--scene", folder / "room.obj"}).code, 2);
-    EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "room.obj", "--place", "0,0,0"}).code, 2);
+    EXPECT_EQ(plot("room.acdf", "no.png", {"--scene", folder / "room.obj", "--position", "0,0,0"}).code, 2);
     EXPECT_EQ(plot("room.acdf", "no.png", {"--from", "0,0,0"}).code, 2);
     for (const auto& [file, place] : {std::pair{"plain.acdf", "0,0,0"}, {"room.acdf", "0,0,9"}}) {
-        const Result refused = plot(file, "no.png", {"--place", place});
+        const Result refused = plot(file, "no.png", {"--position", place});
         EXPECT_EQ(refused.code, 1);
         EXPECT_EQ(lines_in(refused.err), 1u) << refused.err;
     }

@@ -61,7 +61,7 @@ TEST(MeshPortals, AreToldByCornersAndByAScene) {
     const Result text = run_acdf({"info", folder / "one.acdf"});
     EXPECT_NE(text.out.find("1 portals, 1 maps"), std::string::npos) << text.out;
     EXPECT_EQ(run_acdf({"validate", folder / "one.acdf"}).code, 0);
-    EXPECT_EQ(run_acdf({"plot", folder / "one.acdf", "-o", folder / "plot.png", "--place", "0,-1,0.1", "--normal",
+    EXPECT_EQ(run_acdf({"plot", folder / "one.acdf", "-o", folder / "plot.png", "--position", "0,-1,0.1", "--normal",
                         "0,0,1"})
                   .code,
               0);

@@ -253,7 +253,7 @@ Normal within(const Target& target, std::uint32_t column, std::uint32_t row, std
         return random() % 4 == 0 ? (t < 0.5 ? 1e-5 : 1.0 - 1e-5) : 1e-5 + (1.0 - 2e-5) * t;
     };
     const double down = row + place();
-    return place_direction(target, column + place(), down);
+    return direction_at_position(target, column + place(), down);
 }
 
 /// Wherever light is above the horizon, however little, it can be drawn.

@@ -1,6 +1,6 @@
 // The baselines of local environment maps on real probes: their relative variance over random normals, printed as a
 // table, and how far taking texels at their centres is from the truth.
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/measure/samplers/baselines.h"
 
 #include "compress/parallel.h"

@@ -2,7 +2,7 @@
 #include "input/brdf/models.h"
 #include "measure/samplers/brdf_table.h"
 #include "measure/samplers/rgl_sampler.h"
-#include "tests/inputs/places.h"
+#include "tests/inputs/paths.h"
 #include "tests/lib/input/brdf/brdf.h"
 #include "tests/lib/measure/samplers/brdf_checks.h"
 

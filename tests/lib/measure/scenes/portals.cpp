@@ -46,7 +46,7 @@ bool reaches(const std::vector<Portal>& all, const Vec3& from, const float w[3])
     return false;
 }
 
-const Vec3 kPlaces[] = {{-1, 0, 0.8}, {1.5, -1, 1}, {0.3, 2.5, -2}, {1.9, 0.5, 1.2}};
+const Vec3 kPositions[] = {{-1, 0, 0.8}, {1.5, -1, 1}, {0.3, 2.5, -2}, {1.9, 0.5, 1.2}};
 
 // Borders of what is seen cut bins of directions: they are summed finely.
 constexpr SphereBins kBins{16, 8, 96};
@@ -56,9 +56,9 @@ TEST(Portals, AreDrawnFromByTheirDensity) {
     const Target target = probe();
     const LightSamplerPtr uniform = uniform_portal_sampler(portals(), false),
                           windowed = windowed_portal_sampler(target, portals(), false, 96);
-    for (const Vec3& place : kPlaces) {
-        expect_samples_as_its_density(*uniform, point_at(place), kBins, "uniform", kCheck);
-        expect_samples_as_its_density(*windowed, point_at(place), kBins, "windowed", kCheck);
+    for (const Vec3& position : kPositions) {
+        expect_samples_as_its_density(*uniform, point_at(position), kBins, "uniform", kCheck);
+        expect_samples_as_its_density(*windowed, point_at(position), kBins, "windowed", kCheck);
     }
 }
 
@@ -68,12 +68,12 @@ TEST(Portals, FindAllLightThatComesThroughThem) {
     for (const bool is_uniform : {true, false}) {
         const LightSamplerPtr sampler =
             is_uniform ? uniform_portal_sampler(all, false) : windowed_portal_sampler(target, all, false, 128);
-        for (const Vec3& place : kPlaces) {
+        for (const Vec3& position : kPositions) {
             const auto point = sampler->point_sampler();
-            point->move_to(point_at(place));
+            point->move_to(point_at(position));
             double expected = 0.0, square = 0.0;
             kBins.for_each([&](std::size_t, const float* w, double omega) {
-                if (!reaches(all, place, w)) return;
+                if (!reaches(all, position, w)) return;
                 const double f = target.values[texel_of(target, w)], p = point->pdf(w);
                 expected += f * omega;
                 square += p > 0.0 ? f * f / p * omega : 0.0;

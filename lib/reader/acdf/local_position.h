@@ -1,7 +1,7 @@
 /* Between directions and squares of a local environment map, by runtime tables where there are some. Part of
  * acdf/local.h. */
-#ifndef ACDF_LOCAL_PLACE_H
-#define ACDF_LOCAL_PLACE_H
+#ifndef ACDF_LOCAL_POSITION_H
+#define ACDF_LOCAL_POSITION_H
 
 #include <acdf/local_point.h>
 #include <acdf/row_heights.h>
@@ -20,7 +20,7 @@ ACDF_INLINE int acdf_local_square(const AcdfGrid* grid, const float direction[3]
 
 /* The direction that what is left of the random numbers picks in a cell. Returns 0, and leaves `out`, where tables
  * do not tell. */
-ACDF_INLINE int acdf_local_place_by_tables(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
+ACDF_INLINE int acdf_local_direction_by_tables(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
                                            const double u[2], float out[3]) {
     if (!local->tables) return 0;
     if (local->tables->octahedral) return acdf_fold_direction(grid, range, u, out);

@@ -1,5 +1,5 @@
-// Where this build has what tests run and read (tests/inputs/places.h).
-#include "tests/inputs/places.h"
+// Where this build has what tests run and read (tests/inputs/paths.h).
+#include "tests/inputs/paths.h"
 
 namespace acdf_test {
 const char kTestData[] = ACDF_TEST_DATA;
