@@ -125,15 +125,15 @@ const std::vector<std::vector<float>> kNormals = {{0, 0, 1},
                                                   {0, 0, 0},
                                                   {kNanF, 0, 1},
                                                   {1e-30f, 2e-30f, -1e-30f}};
-/// Of a file with places: in its cells, on their borders, at the bounds of all, outside, and not a number.
+/// Of a file with visibility cells: in its cells, on their borders, at the bounds of all, outside, and not a number.
 const std::vector<std::vector<float>> kPositions = {{0, 1, 0},    {-1, 1, 1.5f}, {0.2f, 1, 0.6f}, {0.6f, 2, 0.375f},
                                                     {2, 4, 2.5f}, {5, 1, 0},     {kNanF, 0, 1}};
 const std::vector<std::vector<float>> kViews = {{0, 0, 1},        {0.6f, 0, 0.8f},         {-0.48f, 0.64f, 0.6f},
                                                 {0, -0.8f, 0.6f}, {-0.96f, -0.28f, 1e-3f}, {0.28f, -0.96f, 0.01f},
                                                 {0, 0, -1},       {0.6f, 0, 0.6f}};
 
-/// As conditional_rows, of a local environment with places: a position comes before each normal.
-std::string place_rows(const acdf::LocalEnvironmentView& view) {
+/// As conditional_rows, of a local environment with visibility cells: a position comes before each normal.
+std::string visibility_rows(const acdf::LocalEnvironmentView& view) {
     std::string text = "call,px,py,pz,nx,ny,nz,u0,u1,x,y,z,pdf\n";
     std::size_t offset = 0;
     const auto numbers = random_numbers(40);
@@ -254,7 +254,7 @@ std::string table_rows(const acdf::TableView& view) {
 std::string rows_of(const acdf::File& file) {
     switch (file.kind()) {
     case ACDF_KIND_LOCAL:
-        if (file.local().has_places()) return place_rows(file.local());
+        if (file.local().has_visibility()) return visibility_rows(file.local());
         return conditional_rows(file.local(), kNormals, "nx,ny,nz");
     case ACDF_KIND_BRDF:
         return conditional_rows(file.brdf(), kViews, "ox,oy,oz");

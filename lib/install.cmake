@@ -53,7 +53,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_queue.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/part_rating.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/pieces.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/places.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/visibility.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/portals.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/product_c.h

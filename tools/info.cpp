@@ -151,12 +151,12 @@ Json local_json(const File& file) {
     report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
     report["lights"] = local.light_count;
     report["cosine_share"] = local.cosine_share;
-    if (const AcdfPlaces* places = local.places.header)
-        report["places"] = {{"cells", places->split_count + 1},
-                            {"rows", places->row_count},
-                            {"columns", places->column_count},
-                            {"low", places->low},
-                            {"high", places->high}};
+    if (const AcdfVisibility* visibility = local.visibility.header)
+        report["visibility"] = {{"cells", visibility->split_count + 1},
+                            {"rows", visibility->row_count},
+                            {"columns", visibility->column_count},
+                            {"low", visibility->low},
+                            {"high", visibility->high}};
     if (const AcdfPortals* portals = local.portals.header)
         report["portals"] = {{"count", portals->portal_count},
                              {"maps", portals->map_count},
@@ -248,16 +248,16 @@ std::string local_text(const Json& local) {
                                    : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
                                          " rows, " + text_of(local["lights"]) + " lights" +
                                          (local.contains("shape") ? "; shape " + text_of(local["shape"]) : "");
-    const std::string places = local.contains("places")
-                                   ? "; " + text_of(local["places"]["cells"]) + " places from " +
-                                         text_of(local["places"]["low"]) + " to " + text_of(local["places"]["high"])
+    const std::string visibility = local.contains("visibility")
+                                   ? "; " + text_of(local["visibility"]["cells"]) + " visibility cells from " +
+                                         text_of(local["visibility"]["low"]) + " to " + text_of(local["visibility"]["high"])
                                    : "";
     const std::string portals =
         local.contains("portals")
             ? "; " + text_of(local["portals"]["count"]) + " portals, " + text_of(local["portals"]["maps"]) +
                   " maps of " + text_of(local["portals"]["cells"]) + " x " + text_of(local["portals"]["cells"])
             : "";
-    return bins + shared + "; cosine share " + number(local["cosine_share"]) + places + portals;
+    return bins + shared + "; cosine share " + number(local["cosine_share"]) + visibility + portals;
 }
 
 std::string partner_line(const Json& partner) {

@@ -89,7 +89,7 @@ typedef enum AcdfHeuristic {
 #define ACDF_CHUNK_LOCAL ACDF_FOURCC('L', 'O', 'C', 'L')
 #define ACDF_CHUNK_PARTNER ACDF_FOURCC('C', 'O', 'M', 'P')
 #define ACDF_CHUNK_VIEWS ACDF_FOURCC('V', 'I', 'E', 'W')
-#define ACDF_CHUNK_PLACES ACDF_FOURCC('P', 'L', 'A', 'C')
+#define ACDF_CHUNK_VISIBILITY ACDF_FOURCC('P', 'L', 'A', 'C')
 #define ACDF_CHUNK_PORTALS ACDF_FOURCC('P', 'O', 'R', 'T')
 #define ACDF_CHUNK_HALVINGS ACDF_FOURCC('H', 'A', 'L', 'V')
 
@@ -252,11 +252,11 @@ typedef struct AcdfPartnerRecord {
     float flux;              /* of local environments: irradiance of the bin over `total`; else 0 */
 } AcdfPartnerRecord;
 
-/* Chunk PLAC, of local environments: what of the light reaches a place (SPEC.md §5.9). This, then `split_count`
+/* Chunk PLAC, of local environments: what of the light reaches a position (SPEC.md §5.9). This, then `split_count`
  * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
  * ACDF_NO_COLUMN, then, where there are further sets, a uint16 for each row, its set, then `row_count` rows of
  * 1 + lights + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
-typedef struct AcdfPlaces {
+typedef struct AcdfVisibility {
     uint32_t split_count;
     uint32_t row_count;
     uint32_t column_count; /* of each set */
@@ -264,20 +264,20 @@ typedef struct AcdfPlaces {
     float low[3];          /* the box of all cells */
     float high[3];         /* above `low` */
     float transform[3][4]; /* from positions in the scene to those of cells: x' = t[0] x + t[1] y + t[2] z + t[3] */
-} AcdfPlaces;
+} AcdfVisibility;
 
 /* A split of a cell in two. Splits stand in preorder: the lower part, if it is a split, follows at once. */
-typedef struct AcdfPlaceSplit {
+typedef struct AcdfVisibilitySplit {
     float position;
     float blend; /* on both sides of it the two parts are mixed, linearly, as far as this */
     uint32_t
         lower; /* bits 0-2: axis, of the position or (3 to 5) the normal; bits 3-31: the lower part, as `upper` */
-    uint32_t upper; /* a later split, or ACDF_PLACE_ROW | a row */
-} AcdfPlaceSplit;
+    uint32_t upper; /* a later split, or ACDF_VISIBILITY_ROW | a row */
+} AcdfVisibilitySplit;
 
 #define ACDF_NO_COLUMN 0xFFFFu
-#define ACDF_PLACE_ROW 0x10000000u
-#define ACDF_MAX_PLACE_SPLITS_DEEP 64u /* on a path */
+#define ACDF_VISIBILITY_ROW 0x10000000u
+#define ACDF_MAX_VISIBILITY_DEPTH 64u /* on a path */
 
 /* Chunk PORT, of local environments with PLAC: rectangles that light comes through (SPEC.md §5.10). This, then
  * `portal_count` portals, then `map_count` maps, then for each map (`size` + 1)^2 uint32, its light below and left
@@ -290,7 +290,7 @@ typedef struct AcdfPortals {
     uint32_t pieces;       /* that a portal is divided into along each side, 1 to ACDF_MAX_PORTAL_PIECES */
 } AcdfPortals;
 
-/* A rectangle among the cells of places. */
+/* A rectangle among the cells of visibility. */
 typedef struct AcdfPortal {
     float corner[3];
     float sides[2]; /* lengths, along axes 0 and 1 of the map */
@@ -349,8 +349,8 @@ ACDF_STATIC_ASSERT(sizeof(AcdfLight) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);
-ACDF_STATIC_ASSERT(sizeof(AcdfPlaces) == 88);
-ACDF_STATIC_ASSERT(sizeof(AcdfPlaceSplit) == 16);
+ACDF_STATIC_ASSERT(sizeof(AcdfVisibility) == 88);
+ACDF_STATIC_ASSERT(sizeof(AcdfVisibilitySplit) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortals) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortal) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPortalMap) == 40);

@@ -6,7 +6,7 @@ from .description import NOT_STORED, PI, check_sphere_axes, is_axis
 from .refused import require
 from .sphere import (NOTHING, Environment, Sphere, clamp, direction_of, f32, of_unit_length, random_number,
                      sin_cos)
-from .places import Places
+from .visibility import Visibility
 from .portals import Portals
 from .square import grid_of
 from .tiles import sum_of
@@ -99,15 +99,15 @@ class Point:
 
 
 class Local:
-    def __init__(self, tree, d, tiles, chunk, places=None, portals=None):
+    def __init__(self, tree, d, tiles, chunk, visibility=None, portals=None):
         check_sphere_axes(d)
         self.N, self.grid = read_normals(d.axes, d.bin_count)
         self.sigma, self.lights = read_local_chunk(chunk, tiles, d.bins)
         self.tree, self.tiles, self.bins = tree, tiles, d.bins
         self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
-        self.places = None if places is None else Places(places, tiles, len(self.lights))
-        self.portals = None if portals is None else Portals(portals, self.places)
+        self.visibility = None if visibility is None else Visibility(visibility, tiles, len(self.lights))
+        self.portals = None if portals is None else Portals(portals, self.visibility)
 
     def point(self, normal, position=None):
         out, n = Point(), direction_of(normal)
@@ -125,20 +125,20 @@ class Local:
             return out
         mixture = [(self.bins[b][0], m * self.bins[b][1]) for b, m in served]
         self.weigh(out, [(row, w) for row, w in mixture if w > 0])
-        if position is not None and self.places is not None and out.mixture is not None:
-            self.look_from(out, self.places.cells(position, n))
+        if position is not None and self.visibility is not None and out.mixture is not None:
+            self.look_from(out, self.visibility.cells(position, n))
             if self.portals is not None and out.cells:
-                out.windows = self.portals.windows(out.cells, self.places.coordinates(position, n))
+                out.windows = self.portals.windows(out.cells, self.visibility.coordinates(position, n))
         return out
 
     def look_from(self, out, cells):
-        """§6.11: the weights as the place sees them."""
+        """§6.11: the weights as the position sees them."""
         if not cells:
             return
         out.cells = cells
-        visible = Places.visibility(cells, 0)
+        visible = Visibility.visibility(cells, 0)
         out.mixture = [(row, w * visible) for row, w in out.mixture]
-        out.weights = [w * Places.visibility(cells, 1 + k) for k, w in enumerate(out.weights)]
+        out.weights = [w * Visibility.visibility(cells, 1 + k) for k, w in enumerate(out.weights)]
         out.light_sum, out.row_sum = sum_of(out.weights), sum_of([w for _, w in out.mixture])
         out.S = out.light_sum + out.row_sum
 
@@ -174,14 +174,14 @@ class Local:
             p = max(point.weights[k] / point.S, LEAST)
             return self.tiles.draw_within(self.tree, self.lights[k].tile, p, u, box, s)
         u[0] = clamp((x - point.light_sum) / (point.S - point.light_sum), 0, 1)
-        tile, q = (self.places.draw(point.mixture, point.cells, u) if point.cells else
+        tile, q = (self.visibility.draw(point.mixture, point.cells, u) if point.cells else
                    self.tiles.draw(point.mixture, u))
         p = max(point.row_sum / point.S * q, LEAST)
         return self.tiles.draw_within(self.tree, tile, p, u, box, s)
 
     def find(self, point, square, box, s):
         """The cell of a direction."""
-        tile, q = (self.places.find(point.mixture, point.cells, square) if point.cells else
+        tile, q = (self.visibility.find(point.mixture, point.cells, square) if point.cells else
                    self.tiles.find(point.mixture, square))
         if q > 0:
             p = max(point.row_sum / point.S * q, LEAST)

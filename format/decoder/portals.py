@@ -30,14 +30,14 @@ class Map:
 
 
 class Portals:
-    def __init__(self, data, places):
-        require(places is not None and len(data) >= 16, 7016)
+    def __init__(self, data, visibility):
+        require(visibility is not None and len(data) >= 16, 7016)
         count, map_count, self.N, self.K = struct.unpack_from("<4I", data)
         require(1 <= count <= 8 and 1 <= map_count <= count and 1 <= self.N <= 4096 and 1 <= self.K <= 4, 7016)
         maps_at = 16 + 24 * count
         sums_at, corners = maps_at + 40 * map_count, (self.N + 1)**2
         rows_at, width = sums_at + 4 * map_count * corners, 1 + count * self.K**2
-        require(len(data) == rows_at + width * len(places.rows), 7016)
+        require(len(data) == rows_at + width * len(visibility.rows), 7016)
         self.portals = [Portal(data[16 + 24 * i:40 + 24 * i]) for i in range(count)]
         for portal in self.portals:
             require(all(math.isfinite(x) for x in portal.corner) and portal.map < map_count, 7017)
@@ -52,7 +52,7 @@ class Portals:
                 require(all(a <= b for a, b in zip(now, now[1:])), 7019)
                 steps = [a - b for a, b in zip(now, before)]
                 require(all(a <= b for a, b in zip(steps, steps[1:])), 7019)
-        for r, row in enumerate(places.rows):
+        for r, row in enumerate(visibility.rows):
             row.portals = data[rows_at + width * r:rows_at + width * (r + 1)]
 
     def bend(self, t):
@@ -73,7 +73,7 @@ class Portals:
         return lower + (v - j) * (upper - lower)
 
     def windows(self, cells, x):
-        """What a place, x[0] to x[5], sees; None where it draws by its row alone."""
+        """What a position, x[0] to x[5], sees; None where it draws by its row alone."""
         share = sum_of([a * ((row.portals[0] + 1) / 256) for row, a in cells])
         if not share < 1:
             return None

@@ -7,7 +7,7 @@
 #include "compress/local/fit.h"
 #include "compress/local/fit_separate.h"
 #include "compress/local/normals.h"
-#include "compress/places/fit.h"
+#include "compress/visibility/fit.h"
 
 #include <cstdint>
 #include <optional>
@@ -17,11 +17,11 @@
 namespace acdf::build {
 
 /// Where a scene gathers light, and what hides it there.
-struct ScenePlaces {
-    compress::PlaceScene scene;    ///< empty: places are not told apart
-    std::uint64_t local_bytes = 0; ///< of the budget, for what is there without places and the tree of the
+struct SceneVisibility {
+    compress::VisibilityScene scene;    ///< empty: there are no visibility cells
+    std::uint64_t local_bytes = 0; ///< of the budget, for what is there without visibility cells and the tree of the
                                    ///< environment; 0: a quarter of the rest
-    compress::PlacesFrame frame;
+    compress::VisibilityFrame frame;
     std::vector<compress::PortalRectangle> portals; ///< among the cells
 };
 
@@ -49,7 +49,7 @@ struct LocalOptions {
     compress::BinTarget bin_target = compress::BinTarget::mean; ///< without sharing
     compress::FitOptions fit;                                   ///< of a bin's tree, without sharing
     double cosine_share = 0.0;
-    ScenePlaces places;     ///< only with sharing and a budget
+    SceneVisibility visibility;     ///< only with sharing and a budget
     std::string scene_text; ///< what `scene` was read from and how, as options in one spelling
     AcdfCodec codec = ACDF_CODEC_NONE;
     compress::Partner mis; ///< of bins that share tiles

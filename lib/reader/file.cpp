@@ -138,7 +138,7 @@ File& File::operator=(File&& other) noexcept {
     local_ = std::exchange(other.local_, nullptr);
     lights_ = std::exchange(other.lights_, nullptr);
     partner_ = std::exchange(other.partner_, nullptr);
-    places_ = std::exchange(other.places_, AcdfPlaceTable{});
+    visibility_ = std::exchange(other.visibility_, AcdfVisibilityTable{});
     portals_ = std::exchange(other.portals_, AcdfPortalTable{});
     views_ = std::exchange(other.views_, nullptr);
     nodes_ = std::exchange(other.nodes_, nullptr);
@@ -197,7 +197,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.local_ = parts.local;
     loaded.lights_ = parts.lights;
     loaded.partner_ = parts.partner;
-    loaded.places_ = parts.places;
+    loaded.visibility_ = parts.visibility;
     loaded.portals_ = parts.portals;
     loaded.views_ = parts.views;
     loaded.nodes_ = parts.nodes;
@@ -284,7 +284,7 @@ LocalEnvironmentView File::local() const noexcept {
     local.light_count = local_->light_count;
     local.cosine_share = static_cast<double>(local_->cosine_share);
     local.tables = local_tables_;
-    local.places = places_;
+    local.visibility = visibility_;
     local.portals = portals_;
     local.fast = fast_;
     if (fast_.grid && local_tables_) acdf_local_use_upper(&local);

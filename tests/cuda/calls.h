@@ -40,7 +40,7 @@ struct OfEnvironment {
 struct OfLocal {
     acdf::LocalEnvironmentView view;
     ACDF_METHOD Answer operator()(const Question& q) const {
-        const AcdfLocalPoint point = view.has_places() ? view.at(q.position, q.normal) : view.at(q.normal);
+        const AcdfLocalPoint point = view.has_visibility() ? view.at(q.position, q.normal) : view.at(q.normal);
         const acdf::DirectionSample s = view.sample(point, q.u[0], q.u[1]);
         return answer(s, view.pdf(point, s.direction), view.pdf(point, q.direction));
     }

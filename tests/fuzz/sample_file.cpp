@@ -73,9 +73,9 @@ void sample_everything(const acdf::LocalEnvironmentView& view, FuzzRandom& rando
         (void)view.stored(normal);
         float position[3];
         random.any_vector(position);
-        if (n % 2 == 1 && view.has_places()) // else hardly any lies in the cells
+        if (n % 2 == 1 && view.has_visibility()) // else hardly any lies in the cells
             for (int k = 0; k < 3; ++k) {
-                const AcdfPlaces& cells = *view.data().places.header;
+                const AcdfVisibility& cells = *view.data().visibility.header;
                 position[k] = static_cast<float>(double{cells.low[k]} +
                                                  (double{cells.high[k]} - double{cells.low[k]}) * random.uniform());
             }

@@ -190,7 +190,7 @@ TEST_F(LocalCommand, WrongUsageIsOneLine) {
     expect_usage({"--no-sharing", "--target-variance", "0.1"}, "--target-variance");
     expect_usage({"--cosine-share", "1"}, "--cosine-share");
     expect_usage({"--shape", "round"}, "--shape");
-    for (const char* other : {"--no-sharing", "--places"}) expect_usage({"--shape", "fast", other}, other);
+    for (const char* other : {"--no-sharing", "--visibility"}) expect_usage({"--shape", "fast", other}, other);
     expect_usage({"--shape", "fast", "--max-weight", "20"}, "--max-weight");
     expect_usage({"--shape", "fast", "--mis", "cosine"}, "--mis");
     expect_usage({"--shape", "fast", "--normals", "8x4"}, "--no-sharing");

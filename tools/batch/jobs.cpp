@@ -238,14 +238,14 @@ void check_duplicates(const std::string& folder, BatchJobs& jobs) {
     }
 }
 
-/// More for a file that tells places apart, whatever the source: on one core, of 4 MiB.
-constexpr double places_seconds = 100.0;
+/// More for a file that stores visibility cells, whatever the source: on one core, of 4 MiB.
+constexpr double visibility_seconds = 100.0;
 
 } // namespace
 
 double BatchJob::seconds() const {
-    const bool places = std::find(options.begin(), options.end(), "--places") != options.end();
-    return kind->seconds + kind->seconds_each * double(bytes) + (places ? places_seconds : 0.0);
+    const bool visibility = std::find(options.begin(), options.end(), "--visibility") != options.end();
+    return kind->seconds + kind->seconds_each * double(bytes) + (visibility ? visibility_seconds : 0.0);
 }
 
 BatchSetting parse_setting(const std::string& text) {

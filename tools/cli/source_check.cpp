@@ -21,7 +21,7 @@ void require_support(const std::string& path, const File& file, const std::strin
     if (violations == 0 || !made_from_another(file, sha256)) return;
     throw Failure(path + ": does not stand for " + source +
                   ": it was made from another file, and its density is 0 in " + std::to_string(violations) +
-                  " places where that has light; measure against its own source");
+                  " points where that has light; measure against its own source");
 }
 
 } // namespace acdf::tools

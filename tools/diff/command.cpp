@@ -164,7 +164,7 @@ void add_diff(CLI::App& program, int& exit_code) {
     command.footer(help_footer("The share of samples that fall elsewhere is the total variation distance of both "
                                "densities, from 0 to 1. Local files "
                                "are compared for 64 normals, BRDFs for 32 views, tables for up to 64 bins; files "
-                               "that tell places apart by their "
+                               "that store visibility cells by their "
                                "bytes alone.",
                                "acdf diff before.acdf after.acdf\n"
                                "acdf diff sky.acdf sky.zlib.acdf --tolerance 0\n"

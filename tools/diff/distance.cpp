@@ -180,8 +180,8 @@ Distance of_tables(const TableView (&view)[2], std::uint32_t samples) {
 std::string why_not_compared(const File& a, const File& b) {
     if (a.kind() != b.kind())
         return "one is of kind " + build::kind_name(a.kind()) + ", the other of kind " + build::kind_name(b.kind());
-    if (a.kind() == ACDF_KIND_LOCAL && (a.local().has_places() || b.local().has_places()))
-        return "files that tell places apart are compared by their bytes alone";
+    if (a.kind() == ACDF_KIND_LOCAL && (a.local().has_visibility() || b.local().has_visibility()))
+        return "files that store visibility cells are compared by their bytes alone";
     if (a.kind() != ACDF_KIND_TABLE) return "";
     const TableView view[2] = {a.table(), b.table()};
     bool same =

@@ -126,8 +126,8 @@ void run(const MeasureArguments& options) {
     case ACDF_KIND_BRDF:
         return measure_brdf(options.file, loaded.file, options.source, options.views, options.json, options.quiet);
     case ACDF_KIND_LOCAL:
-        if (!loaded.file.local().has_places() && options.command->get_option("--points")->count() > 0)
-            throw CLI::ValidationError("--points", "is for files that tell places apart");
+        if (!loaded.file.local().has_visibility() && options.command->get_option("--points")->count() > 0)
+            throw CLI::ValidationError("--points", "is for files that store visibility cells");
         return measure_local(loaded.file,
                              {options.file, options.source, options.input, options.normals, options.mesh,
                               options.up, options.points, options.baselines, options.json, options.quiet});
@@ -189,7 +189,7 @@ void add_measure(CLI::App& program, int& exit_code) {
         ->group("Input");
     command
         .add_option("--scene", options->mesh,
-                    "Of a file that tells places apart: the mesh (.obj, .ply, .instances) to look from, usually "
+                    "Of a file that stores visibility cells: the mesh (.obj, .ply, .instances) to look from, usually "
                     "the one it was made for; its variance there is told, beside that of its normals alone. Of "
                     "other local files: what acdf local takes, to measure by the normals of a scene alone")
         ->type_name("FILE")

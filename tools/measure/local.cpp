@@ -96,20 +96,20 @@ std::vector<build::Normal> normals_of(const LocalMeasureOptions& options, bool o
 }
 
 /// Over points of a mesh that see any light.
-struct PlacesAccuracy {
+struct VisibilityAccuracy {
     std::size_t points = 0; ///< 0: not measured
     double relative_variance = 0.0, worst = 0.0;
-    double normals_alone = 0.0; ///< of the same file, its places not told apart
+    double normals_alone = 0.0; ///< of the same file, without its visibility cells
     std::uint64_t support_violations = 0;
 };
 
-PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& options,
+VisibilityAccuracy measure_visibility(const File& file, const LocalMeasureOptions& options,
                               const compress::Target& target) {
     auto surface = std::make_shared<const input::MeshSurface>(input::read_triangles(options.mesh, options.up));
     const measure::MeshStage stage(std::move(surface), options.up == input::UpAxis::y, target, options.points);
     const auto with = measure::file_sampler(file), without = measure::normals_alone_sampler(file);
     const measure::StageVariances found = measure::variances_on(stage, {with.get(), without.get()});
-    PlacesAccuracy out;
+    VisibilityAccuracy out;
     out.points = found.of_points[0].size();
     out.support_violations = found.lost[0];
     if (out.points == 0) throw Failure(options.mesh + ": no point of it sees any light");
@@ -124,7 +124,7 @@ PlacesAccuracy measure_places(const File& file, const LocalMeasureOptions& optio
 /// How many times as much a baseline has; 1 where neither has any.
 double times(double baseline, double own) { return baseline <= own && own <= baseline ? 1.0 : baseline / own; }
 
-nlohmann::ordered_json places_json(const PlacesAccuracy& p) {
+nlohmann::ordered_json visibility_json(const VisibilityAccuracy& p) {
     return {{"points", p.points},
             {"relative_variance", p.relative_variance},
             {"relative_variance_worst", p.worst},
@@ -133,8 +133,8 @@ nlohmann::ordered_json places_json(const PlacesAccuracy& p) {
             {"support_violations", p.support_violations}};
 }
 
-void print_places(const PlacesAccuracy& p) {
-    std::printf("  at %zu places of the scene, with what it hides\n", p.points);
+void print_visibility(const VisibilityAccuracy& p) {
+    std::printf("  at %zu positions of the scene, with what it hides\n", p.points);
     std::printf("    relative variance    %.6g; %.6g at worst\n", p.relative_variance, p.worst);
     std::printf("    by normals alone     %.6g   %.4g times as much\n", p.normals_alone,
                 times(p.normals_alone, p.relative_variance));
@@ -146,7 +146,7 @@ struct LocalMeasured {
     build::LocalAccuracy normals;
     build::Accuracy whole; ///< for points without a normal
     std::vector<Baseline> baselines;
-    PlacesAccuracy places;
+    VisibilityAccuracy visibility;
 };
 
 nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& options, const LocalMeasured& measured) {
@@ -180,16 +180,16 @@ nlohmann::ordered_json report(const File& file, const LocalMeasureOptions& optio
     if (a.combined) out["combined"] = true; // of the file and its partner
     for (const Baseline& baseline : measured.baselines)
         out["baselines"][baseline.key] = {{"relative_variance", baseline.relative_variance}, {"bytes", baseline.bytes}};
-    if (measured.places.points > 0) out["places"] = places_json(measured.places);
+    if (measured.visibility.points > 0) out["visibility"] = visibility_json(measured.visibility);
     return out;
 }
 
 void print_text(const File& file, const LocalMeasureOptions& options, const LocalMeasured& measured) {
     const build::LocalAccuracy& a = measured.normals;
-    const PlacesAccuracy& places = measured.places;
+    const VisibilityAccuracy& visibility = measured.visibility;
     std::printf("%s against %s, %u %s\n", printable(options.file).c_str(), printable(options.source).c_str(),
                 a.lit_normals,
-                options.mesh.empty() || places.points > 0 ? "random normals" : "normals of the scene");
+                options.mesh.empty() || visibility.points > 0 ? "random normals" : "normals of the scene");
     std::printf("  relative variance      %.6g   %s\n", a.relative_variance,
                 a.combined ? "a sample of the irradiance, with its MIS partner: not to be used alone"
                            : "of one sample of the irradiance, mean over normals");
@@ -212,13 +212,13 @@ void print_text(const File& file, const LocalMeasureOptions& options, const Loca
     for (const Baseline& baseline : measured.baselines)
         std::printf("  %-30s relative variance %.6g, %" PRIu64 " bytes\n", baseline.text, baseline.relative_variance,
                     baseline.bytes);
-    if (places.points > 0) print_places(places);
+    if (visibility.points > 0) print_visibility(visibility);
 }
 
 } // namespace
 
 void measure_local(const File& file, const LocalMeasureOptions& options) {
-    const bool mesh = !options.mesh.empty() && file.local().has_places();
+    const bool mesh = !options.mesh.empty() && file.local().has_visibility();
     if (mesh && file.partner()) throw Failure(options.file + ": is made for an MIS partner; leave out --scene");
     const ProbeTarget source = source_target(options.file, file, options.source, options.input, options.quiet);
     const std::vector<build::Normal> normals = normals_of(options, !mesh && !options.mesh.empty());
@@ -232,13 +232,13 @@ void measure_local(const File& file, const LocalMeasureOptions& options) {
         const bool square = builder::grid_of(source.target).parameterization == ACDF_PARAM_OCTAHEDRAL;
         const builder::Target light =
             square ? latlong_target(file, options.source, options.input).target : source.target;
-        measured.places = measure_places(file, options, compress::looked_up(builder::grid_of(light), map));
+        measured.visibility = measure_visibility(file, options, compress::looked_up(builder::grid_of(light), map));
     }
     if (options.json) std::fputs(json_text(report(file, options, measured)).c_str(), stdout);
     else print_text(file, options, measured);
     require_support(options.file, file, options.source, source.probe.source_sha256,
                     measured.normals.support_violations + measured.whole.support_violations +
-                        measured.places.support_violations);
+                        measured.visibility.support_violations);
 }
 
 } // namespace acdf::tools

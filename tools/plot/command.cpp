@@ -177,8 +177,8 @@ void check_mesh(const CLI::App& command, const PlotArguments& options) {
 
 std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
     const LoadedFile stored = load_file(options.file);
-    if (stored.file.kind() != ACDF_KIND_LOCAL || !stored.file.local().has_places())
-        throw Failure(options.file + ": tells no places apart; leave out --scene");
+    if (stored.file.kind() != ACDF_KIND_LOCAL || !stored.file.local().has_visibility())
+        throw Failure(options.file + ": stores no visibility cells; leave out --scene");
     CellsOptions cells;
     cells.mesh = options.mesh;
     cells.up = options.up;
@@ -187,7 +187,7 @@ std::vector<std::uint8_t> make_cells(const PlotArguments& options) {
     if (options.width > 0) cells.width = options.width;
     cells.height = cells.width * 3 / 4;
     return encode_png(cells_picture(stored.file.local(), cells),
-                      {"acdf " ACDF_VERSION, "Cells of places, a colour each"});
+                      {"acdf " ACDF_VERSION, "Visibility cells, a colour each"});
 }
 
 void run(const PlotArguments& options) {
@@ -252,7 +252,7 @@ void add_picture_options(CLI::App& command, PlotArguments& options) {
 void add_mesh_options(CLI::App& command, PlotArguments& options) {
     command
         .add_option("--scene", options.mesh,
-                    "For a file that tells places apart, the mesh (.obj, .ply, .instances) that it was made for: "
+                    "For a file that stores visibility cells, the mesh (.obj, .ply, .instances) that it was made for: "
                     "its cells are "
                     "shown over it, not a density")
         ->type_name("FILE")
@@ -294,7 +294,7 @@ void add_plot(CLI::App& program, int& exit_code) {
     comma_separated(
         command.add_option(
             "--position", options->position,
-            "For a file that tells places apart (acdf local --places), the position in its scene; without it "
+            "For a file that stores visibility cells (acdf local --visibility), the position in its scene; without it "
             "what is drawn where a position is not known"),
         3)
         ->option_text("X,Y,Z")

@@ -80,7 +80,7 @@ void add_variance(const File& file, std::vector<std::string>& title) {
 std::optional<std::array<float, 3>> chosen_position(const PlotArguments& options, const LocalEnvironmentView& view) {
     const std::vector<float>& x = options.position;
     if (x.empty()) return std::nullopt;
-    if (!view.has_places()) throw Failure(options.file + ": tells no places apart; leave out --position");
+    if (!view.has_visibility()) throw Failure(options.file + ": stores no visibility cells; leave out --position");
     const float up[3] = {0.0f, 0.0f, 1.0f};
     if (view.at(x.data(), up).visibility.count == 0)
         throw Failure(options.file + ": the position of --position lies outside of its scene; see acdf info");
@@ -114,7 +114,7 @@ void load_local(const PlotArguments& options, Plotted& source) {
 void refuse_options_of_other_kinds(const PlotArguments& options, AcdfKind kind) {
     if (kind != ACDF_KIND_BRDF && !options.view.empty()) throw CLI::ValidationError("--view", "is for BRDF files");
     if (kind == ACDF_KIND_LOCAL) return;
-    if (!options.position.empty()) throw CLI::ValidationError("--position", "is for local environments with places");
+    if (!options.position.empty()) throw CLI::ValidationError("--position", "is for local environments with visibility cells");
     refuse_normal(options.file, options.normal);
 }
 

@@ -295,8 +295,8 @@ void add_scene_options(CLI::App& command, RenderArguments& options) {
     command
         .add_option("--sampler", options.samplers,
                     "Instead of the scene's; repeat for several, the first is the baseline: full-cdf, cosine, "
-                    "tiles:32x16, visibility-cache:32x16, portals, portals:uniform, env:64KiB, local:1MB, places:4MB, "
-                    "places-portals:4MB, "
+                    "tiles:32x16, visibility-cache:32x16, portals, portals:uniform, env:64KiB, local:1MB, visibility:4MB, "
+                    "visibility-portals:4MB, "
                     "brdf:64KiB, brdf-table, brdf-table:centre, ggx:0.1, alias, "
                     "hierarchical, downsampled:64x32, mis-compensated, strata, ris:32, file:my.acdf, "
                     "mis(local:1MB,cosine), mis(4*local,cosine), mis-power(...), product(local:1MB,brdf:64KiB) and "

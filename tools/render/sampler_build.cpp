@@ -11,7 +11,7 @@
 #include "measure/scenes/surface_points.h"
 #include "tools/cli/built.h"
 #include "tools/cli/file_input.h"
-#include "tools/cli/mesh_places.h"
+#include "tools/cli/mesh_visibility.h"
 #include "tools/commands.h"
 #include "tools/render/portals.h"
 
@@ -73,23 +73,23 @@ Table local_table(const builder::Target& target, const SamplerSpec& spec,
 }
 
 /// `portals`: those of the scene, too.
-Table places_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes,
+Table visibility_table(const builder::Target& target, const measure::Geometry& geometry, std::uint64_t bytes,
                    bool portals) {
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(bytes);
-    const compress::PlaceScene scene = measure::place_scene(geometry);
-    if (geometry.turned) turn_from_y_up(options.places);
+    const compress::VisibilityScene scene = measure::visibility_scene(geometry);
+    if (geometry.turned) turn_from_y_up(options.visibility);
     for (std::size_t i = 0; portals && i < geometry.portals.size(); ++i)
-        options.places.portals.push_back(told_portal(options.places, geometry.portals[i]));
-    options.places.point = [&](std::uint64_t index, builder::PlacePoint& out) {
-        compress::PlacePoint point;
+        options.visibility.portals.push_back(told_portal(options.visibility, geometry.portals[i]));
+    options.visibility.point = [&](std::uint64_t index, builder::VisibilityPoint& out) {
+        compress::VisibilityPoint point;
         if (!scene.points(index, point)) return false;
         std::copy_n(point.position.begin(), 3, out.position);
         std::copy_n(point.normal.begin(), 3, out.normal);
         return true;
     };
-    options.places.occluded = [&](const builder::PlacePoint& from, const float direction[3]) {
-        compress::PlacePoint point;
+    options.visibility.occluded = [&](const builder::VisibilityPoint& from, const float direction[3]) {
+        compress::VisibilityPoint point;
         std::copy_n(from.position, 3, point.position.begin());
         std::copy_n(from.normal, 3, point.normal.begin());
         return scene.occluded(point, {direction[0], direction[1], direction[2]});
@@ -135,7 +135,7 @@ bool knows_brdf(const SamplerSpec& spec) {
 bool is_ours(const SamplerSpec& spec) {
     if (!spec.parts.empty()) return std::any_of(spec.parts.begin(), spec.parts.end(), is_ours);
     return spec.kind == SamplerKind::env || spec.kind == SamplerKind::local || spec.kind == SamplerKind::brdf ||
-           spec.kind == SamplerKind::places || spec.kind == SamplerKind::places_portals ||
+           spec.kind == SamplerKind::visibility || spec.kind == SamplerKind::visibility_portals ||
            spec.kind == SamplerKind::file || spec.kind == SamplerKind::product;
 }
 
@@ -176,14 +176,14 @@ struct SamplerBuilder::Store {
             return {nullptr, spec.uniform ? measure::uniform_portal_sampler(geometry->portals, geometry->turned)
                                           : measure::windowed_portal_sampler(target, geometry->portals,
                                                                              geometry->turned, kPortalCells)};
-        case SamplerKind::places:
+        case SamplerKind::visibility:
             if (!geometry) fail_without_scene(spec);
-            return places_table(fitted, *geometry, spec.bytes, false);
-        case SamplerKind::places_portals:
+            return visibility_table(fitted, *geometry, spec.bytes, false);
+        case SamplerKind::visibility_portals:
             if (!geometry) fail_without_scene(spec);
             if (geometry->portals.empty())
                 throw SpecError("sampler '" + spec.text + "': the scene tells no portals");
-            return places_table(fitted, *geometry, spec.bytes, true);
+            return visibility_table(fitted, *geometry, spec.bytes, true);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);
         case SamplerKind::brdf_table:

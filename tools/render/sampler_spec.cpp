@@ -36,8 +36,8 @@ constexpr Name names[] = {
     {"portals", SamplerKind::portals, "light"},
     {"env", SamplerKind::env, "64KiB"},
     {"local", SamplerKind::local, "1MB"},
-    {"places", SamplerKind::places, "4MB"},
-    {"places-portals", SamplerKind::places_portals, "4MB"},
+    {"visibility", SamplerKind::visibility, "4MB"},
+    {"visibility-portals", SamplerKind::visibility_portals, "4MB"},
     {"brdf", SamplerKind::brdf, "64KiB"},
     {"brdf-table", SamplerKind::brdf_table, "mean"},
     {"ggx", SamplerKind::ggx, "0.1"},
@@ -77,8 +77,8 @@ void read_argument(const std::string& argument, SamplerSpec& spec) {
     switch (spec.kind) {
     case SamplerKind::env:
     case SamplerKind::local:
-    case SamplerKind::places:
-    case SamplerKind::places_portals:
+    case SamplerKind::visibility:
+    case SamplerKind::visibility_portals:
     case SamplerKind::brdf:
         return read_size(argument, spec);
     case SamplerKind::tiles:
@@ -216,9 +216,9 @@ SamplerSpec parse_made(const std::string& text, std::size_t open) {
     switch (spec.kind) {
     case SamplerKind::product:
         if (count != 2 || !is_brdf(last) ||
-            (first.kind != SamplerKind::local && first.kind != SamplerKind::places &&
+            (first.kind != SamplerKind::local && first.kind != SamplerKind::visibility &&
              first.kind != SamplerKind::env && first.kind != SamplerKind::file))
-            fail(text, "is product(LIGHT,BRDF): of local:SIZE, places:SIZE, env:SIZE or a file, and brdf:SIZE, "
+            fail(text, "is product(LIGHT,BRDF): of local:SIZE, visibility:SIZE, env:SIZE or a file, and brdf:SIZE, "
                        "ggx:ALPHA or "
                        "a file");
         return spec;

@@ -20,8 +20,8 @@ enum class SamplerKind {
     portals,    ///< portals: the light in the scene's portals; portals:uniform: over their solid angle
     env,        ///< env:64KiB: what `acdf env` makes
     local,      ///< local:1MB: what `acdf local` makes
-    places,     ///< places:4MB: what `acdf local --places` makes for the scene
-    places_portals, ///< places-portals:4MB: the same with the scene's portals
+    visibility,     ///< visibility:4MB: what `acdf local --visibility` makes for the scene
+    visibility_portals, ///< visibility-portals:4MB: the same with the scene's portals
     brdf,           ///< brdf:64KiB: what `acdf brdf` makes, one for each BRDF of the scene
     brdf_table,     ///< brdf-table[:centre]: the full table of the paper, repaired or as described
     ggx,            ///< ggx:0.1: normals of a lobe visible to the viewer
@@ -42,7 +42,7 @@ enum class SamplerKind {
 struct SamplerSpec {
     SamplerKind kind = SamplerKind::full_cdf;
     std::string text;                    ///< as given: its name in tables
-    std::uint64_t bytes = 0;             ///< env, local, places, brdf: the budget
+    std::uint64_t bytes = 0;             ///< env, local, visibility, brdf: the budget
     std::uint32_t columns = 0, rows = 0; ///< tiles, visibility_cache, downsampled
     std::uint32_t candidates = 0;        ///< ris
     double alpha = 0.0;                  ///< ggx

@@ -189,7 +189,7 @@ void add_findings(const Sweep& sweep, Advice& advice) {
             "All of this is under light that is the same from everywhere. Under other light mix with samples of "
             "the "
             "light, by the exact densities that each file tells; `acdf render` shows it on scenes.");
-    else if (sweep.kind == SweepKind::places)
+    else if (sweep.kind == SweepKind::visibility)
         advice.findings.push_back(
             "All of this is on the scene as the file knows it, matte, with points all over it: `acdf render` shows "
             "what a camera sees, with portals and caches of visibility, too. Where the scene moves, the file stays "

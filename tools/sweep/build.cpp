@@ -17,15 +17,15 @@
 namespace acdf::tools {
 
 const char* to_string(SweepKind kind) {
-    constexpr const char* names[] = {"env", "local", "places", "brdf"};
+    constexpr const char* names[] = {"env", "local", "visibility", "brdf"};
     return names[static_cast<std::size_t>(kind)];
 }
 
 const std::vector<std::string>& fits_of(SweepKind kind) {
     static const std::vector<std::string> environment{"variance", "cdf", "pdf", "uniform"},
-        local{"variance", "fast", "separate", "cdf"}, places{"places", "variance"},
+        local{"variance", "fast", "separate", "cdf"}, visibility{"visibility", "variance"},
         brdf{"variance", "separate", "cdf", "uniform"};
-    const std::vector<std::string>* const fits[] = {&environment, &local, &places, &brdf};
+    const std::vector<std::string>* const fits[] = {&environment, &local, &visibility, &brdf};
     return *fits[static_cast<std::size_t>(kind)];
 }
 
@@ -39,7 +39,7 @@ std::vector<std::uint64_t> default_budgets(SweepKind kind) {
         return {4096, 16384, 65536, 262144, 1000000};
     case SweepKind::local:
         return {16384, 65536, 262144, 1000000, 4000000};
-    case SweepKind::places:
+    case SweepKind::visibility:
         return {1000000, 4000000};
     default:
         return {4096, 16384, 65536, 262144};

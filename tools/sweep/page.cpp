@@ -37,12 +37,12 @@ std::string prose(const std::string& text) {
 const char* kind_text(SweepKind kind) {
     return kind == SweepKind::environment ? "environment map"
            : kind == SweepKind::local     ? "environment map for every normal"
-           : kind == SweepKind::places    ? "environment map for the places of a scene"
+           : kind == SweepKind::visibility    ? "environment map for the positions of a scene"
                                           : "BRDF";
 }
 
 const char* conditions_text(SweepKind kind) {
-    return kind == SweepKind::brdf ? "views" : kind == SweepKind::places ? "places" : "normals";
+    return kind == SweepKind::brdf ? "views" : kind == SweepKind::visibility ? "visibility" : "normals";
 }
 
 std::string fact(const std::string& name, const std::string& value, const std::string& small) {
@@ -91,8 +91,8 @@ std::vector<Chart> charts_of(const Sweep& sweep) {
     const std::string base = sweep.rows[sweep.reference].label;
     const char* what = sweep.kind == SweepKind::environment ? "of the light itself"
                        : sweep.kind == SweepKind::local ? "of what a diffuse surface reflects, mean over normals"
-                       : sweep.kind == SweepKind::places
-                           ? "of what the scene reflects, with what it hides, mean over places"
+                       : sweep.kind == SweepKind::visibility
+                           ? "of what the scene reflects, with what it hides, mean over positions"
                            : "of what is reflected to a view, mean over views";
     const bool pictures = sweep.kind == SweepKind::environment;
     std::vector<Chart> out;

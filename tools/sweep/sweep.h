@@ -19,9 +19,9 @@
 
 namespace acdf::tools {
 
-enum class SweepKind { environment, local, places, brdf };
+enum class SweepKind { environment, local, visibility, brdf };
 
-/// As users say it: "env", "local", "places", "brdf".
+/// As users say it: "env", "local", "visibility", "brdf".
 const char* to_string(SweepKind kind);
 /// All fits of a kind, in the order of the report; the first is the default of its subcommand.
 const std::vector<std::string>& fits_of(SweepKind kind);
@@ -30,7 +30,7 @@ std::vector<std::string> default_fits(SweepKind kind);
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// 4 KiB to 1 MB; local files from 16 KiB to 4 MB, places 1 and 4 MB, files of BRDFs up to 256 KiB.
+/// 4 KiB to 1 MB; local files from 16 KiB to 4 MB, visibility 1 and 4 MB, files of BRDFs up to 256 KiB.
 std::vector<std::uint64_t> default_budgets(SweepKind kind);
 
 /// Times of one sampler in rounds that it shared with all others, so that ratios within a round mean something.
@@ -125,7 +125,7 @@ struct SweepOptions {
     builder::TargetOptions target;
     bool timing = true;
     bool pictures = true;
-    std::uint32_t normals = 64; ///< environment and local; places: points
+    std::uint32_t normals = 64; ///< environment and local; visibility: points
     std::uint32_t views = 64;   ///< BRDF: of baselines; files are measured over the builder's own
     std::uint32_t points = 48;  ///< environment: of the demo scene, where light is hidden; about
     std::uint32_t seeds = 16;   ///< estimates with Sobol' points at each normal, view or point
@@ -141,18 +141,18 @@ Sweep sweep_environment(const builder::Target& target, const builder::Source& so
 /// The same for files that know the normal.
 Sweep sweep_local(const builder::Target& target, const builder::Source& source, const SweepOptions& options,
                   const build::Progress& progress = {});
-/// What a file of places is made for and measured on.
+/// What a file with visibility cells is made for and measured on.
 struct SweptMesh {
     std::shared_ptr<const input::MeshSurface> surface;
     bool turned = false; ///< from y up
-    builder::Places places;
+    builder::Visibility visibility;
     std::vector<builder::SceneNormal> normals; ///< of both sides
     std::string text;                          ///< that files tell
     std::string options;                       ///< in the words of the command line
 };
-/// Files of places beside those of normals alone, on a mesh with what it hides: at options.normals points all over
+/// Files with visibility cells beside those of normals alone, on a mesh with what it hides: at options.normals points all over
 /// it. There are no pictures.
-Sweep sweep_places(const builder::Target& target, const builder::Source& source, const SweptMesh& mesh,
+Sweep sweep_visibility(const builder::Target& target, const builder::Source& source, const SweptMesh& mesh,
                    const SweepOptions& options, const build::Progress& progress = {});
 /// The same of a BRDF.
 Sweep sweep_brdf(const input::Brdf& brdf, const SweepOptions& options, const build::Progress& progress = {});

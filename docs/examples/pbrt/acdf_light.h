@@ -72,7 +72,7 @@ private:
     AcdfLocalPoint At(const Transform& renderFromLight, Point3f p, Normal3f ns) const {
         Normal3f n = renderFromLight.ApplyInverse(ns);
         float normal[3] = {-n.x, n.y, n.z};
-        if (!local.has_places()) return local.at(normal);
+        if (!local.has_visibility()) return local.at(normal);
         p = renderFromLight.ApplyInverse(p); // render space is relative to the camera
         float position[3] = {p.x, p.y, p.z}; // as the mesh has them: the file stores the mesh's axes
         return local.at(position, normal);

@@ -22,7 +22,7 @@ struct ViewAccuracy {
     double max_weight = 0.0;              ///< largest f/p over its mean
     double share_above_horizon = 0.0;     ///< of samples
     double integral = 0.0;                ///< of p over all directions, as summed: 1, but for what the grid misses
-    std::uint64_t support_violations = 0; ///< places with f > 0 and p = 0
+    std::uint64_t support_violations = 0; ///< points with f > 0 and p = 0
 };
 
 /// With the view that is worst.

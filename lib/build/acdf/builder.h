@@ -222,7 +222,7 @@ enum class LocalShape {
 };
 
 /// A point of a scene where light is gathered: on a surface, or in the air.
-struct PlacePoint {
+struct VisibilityPoint {
     float position[3] = {}, normal[3] = {0.0f, 0.0f, 1.0f};
 };
 
@@ -235,17 +235,17 @@ struct Portal {
 /// What of the light reaches which place of a scene. Both callbacks are called by several threads at once, and tell
 /// the same for the same arguments: the file is then the same for any number of threads. A point must not lie on
 /// what hides light from it, but a little above.
-struct Places {
+struct Visibility {
     /// Point `index` of an endless sequence all over the scene, any of which is about as even; false where that
     /// number has none.
-    std::function<bool(std::uint64_t index, PlacePoint& point)> point;
+    std::function<bool(std::uint64_t index, VisibilityPoint& point)> point;
     /// Whether anything lies on the ray from a point towards a direction, in the frame of directions.
-    std::function<bool(const PlacePoint& point, const float direction[3])> occluded;
+    std::function<bool(const VisibilityPoint& point, const float direction[3])> occluded;
     /// From the scene's coordinates, in which a renderer tells positions, to those of points here, a row a
     /// coordinate: x' = t[0] x + t[1] y + t[2] z + t[3].
     float transform[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     /// Windows and doors that light comes through, at most 8: samples are drawn through them, exactly, and by the
-    /// rows of places for all that comes in another way. With them `transform` turns, mirrors, moves and scales as
+    /// rows of visibility cells for all that comes in another way. With them `transform` turns, mirrors, moves and scales as
     /// a whole, to the frame of directions.
     std::vector<Portal> portals;
 };
@@ -261,14 +261,14 @@ struct LocalOptions {
     std::vector<SceneNormal> normals;     ///< only what a scene has; empty: all normals
     double cosine_share = 0.0;            ///< of samples that are drawn around the normal instead, in [0, 0.99]
     bool sharing = true;                  ///< bins share tiles; else each has a tree of its own, larger and noisier
-    LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and places
+    LocalShape shape = LocalShape::automatic; ///< fast: with sharing, without max_weight, an MIS partner and visibility
     BinTarget bin_target = BinTarget::mean;   ///< without sharing
     FitOptions fit;                           ///< of a bin's tree, without sharing
     Partner mis;                          ///< of bins that share tiles, without a cosine_share
     AcdfCodec codec = ACDF_CODEC_NONE;
     Source source;
     std::string normals_text; ///< what fit.options tells of `normals`; empty: that there are some
-    Places places; ///< both callbacks: bins share tiles, the goal is a budget, and places take more than half of it
+    Visibility visibility; ///< both callbacks: bins share tiles, the goal is a budget, and visibility cells take more than half of it
 };
 
 /// The file of a local environment, and what is known of it.

@@ -103,19 +103,19 @@ void check_bins(const LocalOptions& options) {
     require(options.tiles == 0 || options.sharing, "tiles is for bins that share them");
     check_max_weight(options.max_weight);
     require(options.max_weight == 0.0 ||
-                (options.sharing && !options.places.point && options.mis.kind == ACDF_PARTNER_NONE),
-            "max_weight is for bins that share tiles, without places or an MIS partner");
+                (options.sharing && !options.visibility.point && options.mis.kind == ACDF_PARTNER_NONE),
+            "max_weight is for bins that share tiles, without visibility cells or an MIS partner");
     require(options.shape == LocalShape::small || options.shape == LocalShape::fast ||
                 options.shape == LocalShape::automatic,
             "shape is no LocalShape");
     require(options.shape != LocalShape::fast || may_be_fast(options),
-            "the fast shape is for bins that share tiles, without max_weight, places or an MIS partner");
+            "the fast shape is for bins that share tiles, without max_weight, visibility cells or an MIS partner");
 }
 
 } // namespace
 
 bool may_be_fast(const LocalOptions& options) {
-    return options.sharing && options.max_weight == 0.0 && !options.places.point &&
+    return options.sharing && options.max_weight == 0.0 && !options.visibility.point &&
            options.mis.kind == ACDF_PARTNER_NONE;
 }
 
@@ -160,22 +160,22 @@ static bool keeps_angles(const float t[3][4]) {
            std::fabs(dot(0, 1)) <= most && std::fabs(dot(0, 2)) <= most && std::fabs(dot(1, 2)) <= most;
 }
 
-static void check_places(const LocalOptions& options) {
-    require(!options.places.point == !options.places.occluded, "places need both callbacks, or none");
-    require(options.places.point || options.places.portals.empty(), "portals are for files with places");
-    if (!options.places.point) return;
-    require(options.sharing, "places are for bins that share tiles");
-    require(options.goal.kind == Goal::Kind::budget, "the goal of places is a budget");
-    for (const auto& row : options.places.transform)
-        for (const float t : row) require(std::isfinite(t), "the transform of places is not finite");
-    require(options.places.portals.empty() || keeps_angles(options.places.transform),
-            "with portals, the transform of places must keep angles");
-    require(options.places.portals.size() <= ACDF_MAX_PORTALS, "there are more than 8 portals");
+static void check_visibility(const LocalOptions& options) {
+    require(!options.visibility.point == !options.visibility.occluded, "visibility cells need both callbacks, or none");
+    require(options.visibility.point || options.visibility.portals.empty(), "portals are for files with visibility cells");
+    if (!options.visibility.point) return;
+    require(options.sharing, "visibility cells are for bins that share tiles");
+    require(options.goal.kind == Goal::Kind::budget, "the goal of visibility cells is a budget");
+    for (const auto& row : options.visibility.transform)
+        for (const float t : row) require(std::isfinite(t), "the transform of visibility cells is not finite");
+    require(options.visibility.portals.empty() || keeps_angles(options.visibility.transform),
+            "with portals, the transform of visibility cells must keep angles");
+    require(options.visibility.portals.size() <= ACDF_MAX_PORTALS, "there are more than 8 portals");
 }
 
 void check(const LocalOptions& options) {
     check_bins(options);
-    check_places(options);
+    check_visibility(options);
     for (const SceneNormal& n : options.normals) check(n);
     require(is_share(options.cosine_share, 0.99), "cosine_share is not in [0, 0.99]");
     require(options.bin_target == BinTarget::mean || options.bin_target == BinTarget::centre,

@@ -103,14 +103,14 @@ bool called(const Call& call) {
     }
 }
 
-PlacePoint external(const compress::PlacePoint& point) {
-    PlacePoint out;
+VisibilityPoint external(const compress::VisibilityPoint& point) {
+    VisibilityPoint out;
     std::copy_n(point.position.begin(), 3, out.position);
     std::copy_n(point.normal.begin(), 3, out.normal);
     return out;
 }
 
-/// Among the cells. Where the transform mirrors, the sides change places, so that light comes from where it did.
+/// Among the cells. Where the transform mirrors, the sides change visibility, so that light comes from where it did.
 compress::PortalRectangle internal(const Portal& portal, const float transform[3][4]) {
     compress::PortalRectangle out;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -126,23 +126,23 @@ compress::PortalRectangle internal(const Portal& portal, const float transform[3
     return out;
 }
 
-build::ScenePlaces internal(const Places& places) {
-    build::ScenePlaces out;
-    if (!places.point) return out;
-    out.scene.points = [point = places.point](std::uint64_t index, compress::PlacePoint& result) {
-        PlacePoint told;
+build::SceneVisibility internal(const Visibility& visibility) {
+    build::SceneVisibility out;
+    if (!visibility.point) return out;
+    out.scene.points = [point = visibility.point](std::uint64_t index, compress::VisibilityPoint& result) {
+        VisibilityPoint told;
         if (!called([&] { return point(index, told); })) return false;
         std::copy_n(told.position, 3, result.position.begin());
         std::copy_n(told.normal, 3, result.normal.begin());
         return true;
     };
-    out.scene.occluded = [occluded = places.occluded](const compress::PlacePoint& point,
+    out.scene.occluded = [occluded = visibility.occluded](const compress::VisibilityPoint& point,
                                                       const std::array<float, 3>& direction) {
-        const PlacePoint told = external(point);
+        const VisibilityPoint told = external(point);
         return called([&] { return occluded(told, direction.data()); });
     };
-    for (int k = 0; k < 3; ++k) std::copy_n(places.transform[k], 4, out.frame.transform[k]);
-    for (const Portal& portal : places.portals) out.portals.push_back(internal(portal, places.transform));
+    for (int k = 0; k < 3; ++k) std::copy_n(visibility.transform[k], 4, out.frame.transform[k]);
+    for (const Portal& portal : visibility.portals) out.portals.push_back(internal(portal, visibility.transform));
     return out;
 }
 
@@ -171,7 +171,7 @@ build::LocalOptions internal(const LocalOptions& options) {
     if (!out.sharing && out.fit.fit != ACDF_FIT_VARIANCE && !out.fit.order) out.fit.order = compress::Order::z;
     out.cosine_share = options.cosine_share;
     out.scene_text = options.normals_text;
-    out.places = internal(options.places);
+    out.visibility = internal(options.visibility);
     out.codec = options.codec;
     return out;
 }

@@ -159,7 +159,7 @@ private:
         return options_.file_size(tree);
     }
 
-    /// Knots of a line are moved to better places, unless that could break a bound on weights.
+    /// Knots of a line are moved to better positions, unless that could break a bound on weights.
     bool polished() const {
         return !std::isfinite(heaviest_) && !beside_partner() &&
                std::any_of(partitions_.begin(), partitions_.end(),

@@ -38,7 +38,7 @@ public:
         }
     }
 
-    /// What light from a place of the sphere, in fractions of columns and rows, wants at the price that all pay.
+    /// What light from a position of the sphere, in fractions of columns and rows, wants at the price that all pay.
     Demand::Line line(double column, double row, double radiance) const {
         const auto i = std::size_t(row * grid_.rows) * grid_.columns + std::size_t(column * grid_.columns);
         return Demand(curves_[i], radiance).line(price_);

@@ -146,7 +146,7 @@ Bytes assemble(AcdfKind kind, std::vector<Payload> payloads, AcdfCodec codec) {
 }
 
 /// What a reader that does not know it may leave out.
-bool is_ancillary(std::uint32_t type) { return type == ACDF_CHUNK_PLACES || type == ACDF_CHUNK_PORTALS; }
+bool is_ancillary(std::uint32_t type) { return type == ACDF_CHUNK_VISIBILITY || type == ACDF_CHUNK_PORTALS; }
 
 /// A file of DESC, `trees`, what the kind needs beside them, and META.
 Bytes store_chunks(std::vector<Payload> trees, const Description& description, AcdfCodec codec) {

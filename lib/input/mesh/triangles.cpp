@@ -1,6 +1,6 @@
 #include "input/mesh/triangles.h"
 
-#include "compress/places/light.h"
+#include "compress/visibility/light.h"
 #include "input/error.h"
 #include "input/mesh/file.h"
 

@@ -6,7 +6,7 @@
 
 namespace acdf::measure {
 
-/// Of n places that are drawn alike, what one stands for: itself, or another.
+/// Of n positions that are drawn alike, what one stands for: itself, or another.
 struct AliasChoice {
     float keep;          ///< probability that it stands for itself
     std::uint32_t alias; ///< what it stands for else

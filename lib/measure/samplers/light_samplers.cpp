@@ -71,16 +71,16 @@ private:
 struct LocalFile {
     const File& file;
     LocalEnvironmentView view{file.local()};
-    bool places;
-    LocalFile(const File& f, bool with_places) : file(f), places(with_places && view.has_places()) {}
+    bool visibility;
+    LocalFile(const File& f, bool with_visibility) : file(f), visibility(with_visibility && view.has_visibility()) {}
     std::uint64_t bytes() const { return file.size(); }
 };
 
 class LocalPoint final : public PointSampler {
 public:
-    explicit LocalPoint(const LocalFile& file) : view_(file.view), places_(file.places), point_() {}
+    explicit LocalPoint(const LocalFile& file) : view_(file.view), visibility_(file.visibility), point_() {}
     void move_to(const ShadingPoint& point) override {
-        point_ = places_ ? view_.at(point.position, point.n) : view_.at(point.n);
+        point_ = visibility_ ? view_.at(point.position, point.n) : view_.at(point.n);
         std::copy_n(point.n, 3, normal_);
     }
     AcdfDirectionSample sample(double u0, double u1) const override { return view_.sample(point_, u0, u1); }
@@ -89,7 +89,7 @@ public:
 
 private:
     LocalEnvironmentView view_;
-    bool places_;
+    bool visibility_;
     AcdfLocalPoint point_;
     float normal_[3] = {0.0f, 0.0f, 1.0f};
 };

@@ -61,7 +61,7 @@ LightSamplerPtr tabulated_brdf_sampler(const TabulatedBrdf& table);
 /// A file of an environment, a local environment or a BRDF; std::invalid_argument for tables. `bytes` is the file's
 /// size. BRDFs are turned to the surface's frame (surface_frame); views below the surface draw nothing.
 LightSamplerPtr file_sampler(const File& file);
-/// A local environment by normals alone, also where it tells places apart.
+/// A local environment by normals alone, also where it stores visibility cells.
 LightSamplerPtr normals_alone_sampler(const File& file);
 
 } // namespace acdf::measure

@@ -153,7 +153,7 @@ ACDF_FN int acdf_brdf_begin(const AcdfBrdf* brdf, const AcdfBrdfView* view, doub
     return !brdf->blend.tiles || view->mix.count > 0;
 }
 
-/* Places wi in a cell of probability p; u is what is left of the random numbers. */
+/* Visibility wi in a cell of probability p; u is what is left of the random numbers. */
 ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfView* view, const AcdfRange range[2],
                                           const double u[2], double sign, double p) {
     const double nothing[2] = {0.0, 0.0};

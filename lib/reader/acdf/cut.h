@@ -133,11 +133,11 @@ ACDF_FN double acdf_cut_share(const AcdfLocal* local, const AcdfLocalPoint* poin
     }
 }
 
-/* What a place sees of the halves, made to add up to what the part had. Returns the sum of the lower one. */
+/* What a position sees of the halves, made to add up to what the part had. Returns the sum of the lower one. */
 ACDF_FN double acdf_cut_see(const AcdfLocal* local, const AcdfLocalPoint* point, AcdfCutPart* part,
                             AcdfCutPart* upper, double low, double* high) {
-    const double odds = acdf_place_odds(&local->places, local->blend.tiles->codebook, &point->place,
-                                        point->place.count, part->node);
+    const double odds = acdf_visibility_odds(&local->visibility, local->blend.tiles->codebook, &point->visibility,
+                                        point->visibility.count, part->node);
     double scale;
     int i;
     if (!(odds >= 0.0)) return low;
@@ -186,7 +186,7 @@ ACDF_CALLED void acdf_cut_divide(const AcdfLocal* local, const AcdfLocalPoint* p
      * one. */
     upper->tile = child & ACDF_TILE_FLAG ? child & ~ACDF_TILE_FLAG : part->tile + child - part->node;
     low = acdf_cut_share(local, point, part, upper, &high);
-    if (point->place.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
+    if (point->visibility.count > 0 && low + high > 0.0) low = acdf_cut_see(local, point, part, upper, low, &high);
     acdf_cut_share_lights(local, cut, part, upper);
     part->sum = low + part->lights;
     upper->sum = high + upper->lights;

@@ -125,8 +125,8 @@ ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoi
         *inside = acdf_positive(*inside / whole);
         return tile;
     }
-    if (point->place.count > 0)
-        return acdf_place_sample_below(&local->places, &local->blend, mix, &point->place, part->node, u, range,
+    if (point->visibility.count > 0)
+        return acdf_visibility_sample_below(&local->visibility, &local->blend, mix, &point->visibility, part->node, u, range,
                                        inside);
     return acdf_blend_sample_below(&local->blend, mix, part->node, u, range, inside);
 }
@@ -140,8 +140,8 @@ ACDF_FN uint32_t acdf_cut_find_tile(const AcdfLocal* local, const AcdfLocalPoint
         *inside = acdf_local_found_tile(local, point, mix, tile, part->depth, range);
         return tile;
     }
-    if (point->place.count > 0)
-        return acdf_place_find_below(&local->places, &local->blend, mix, &point->place, part->node, square, range,
+    if (point->visibility.count > 0)
+        return acdf_visibility_find_below(&local->visibility, &local->blend, mix, &point->visibility, part->node, square, range,
                                      inside);
     return acdf_blend_find_below(&local->blend, mix, part->node, square, range, 0, inside);
 }

@@ -17,8 +17,8 @@ extern "C" {
 /* A tile of the mixture: by the walk of the normal alone or of normal and place. */
 ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                         AcdfRange* range, double* probability) {
-    if (point->place.count > 0)
-        return acdf_place_sample_below(&local->places, &local->blend, &point->mix, &point->place,
+    if (point->visibility.count > 0)
+        return acdf_visibility_sample_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
                                        acdf_blend_root(&local->blend), u, range, probability);
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }

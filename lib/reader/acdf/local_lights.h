@@ -80,7 +80,7 @@ ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) {
 /* The same of light `k` as its place sees it. */
 ACDF_FN double acdf_local_light_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
     const double weight = acdf_light_weight(&local->lights[k], point);
-    return point->place.count > 0 ? weight * acdf_place_visibility(&point->place, 1 + k) : weight;
+    return point->visibility.count > 0 ? weight * acdf_mixture_visibility(&point->visibility, 1 + k) : weight;
 }
 
 /* Two lights, from number k on, for those who have no tables. */

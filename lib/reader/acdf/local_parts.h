@@ -25,7 +25,7 @@ typedef struct AcdfLocal {
     double cosine_share;
     const AcdfLocalTables* tables;          /* runtime tables; null: splits are walked */
     const AcdfPartner* partner;             /* null: to be used alone */
-    AcdfPlaceTable places;                  /* its header is null where places are not told apart */
+    AcdfVisibilityTable visibility;                  /* its header is null where there are no visibility cells */
     AcdfPortalTable portals;                /* its header is null where there are none */
     const struct AcdfLocalVectors* vectors; /* acdf/cut_wave.h; null: several calls are made by scalar code */
     AcdfFast fast;                          /* the fast shape: the blend has no rows then, and roots are of grids */
@@ -59,8 +59,8 @@ typedef struct AcdfLocalPoint {
     const AcdfFacet* facet;            /* that of the normal in the runtime tables; null: they do not tell */
     double lights;                     /* sum of the weights of the lights */
     double sum;                        /* of all weights */
-    AcdfPlaceMixture place;            /* empty: the position is not known, or does not matter */
-    AcdfWindows windows;               /* as the place sees them; its count is 0 where there are none */
+    AcdfVisibilityMixture visibility;            /* empty: the position is not known, or does not matter */
+    AcdfWindows windows;               /* as the position sees them; its count is 0 where there are none */
     AcdfFastMixture fast;              /* of the fast shape; `mix` has the weights, too */
     double step;                       /* of the fast shape: 32767 times the mixture's whole a weight */
     double unit;                       /* of the fast shape: that of acdf_fast_share, of `sum` */

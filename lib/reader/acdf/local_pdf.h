@@ -11,7 +11,7 @@ extern "C" {
 
 /* Whether runtime tables know the tiles as a point sees them. */
 ACDF_INLINE int acdf_local_tabled(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    return local->tables && point->place.count == 0;
+    return local->tables && point->visibility.count == 0;
 }
 
 /* Where the curves of a tile begin; ACDF_NO_ROOT: it is a cell. */
@@ -80,8 +80,8 @@ ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoin
     uint32_t tile = spot->tile;
     if (acdf_local_tabled(local, point))
         probability = acdf_local_found_tile(local, point, &point->mix, tile, 0, range);
-    else if (point->place.count > 0)
-        tile = acdf_place_find_below(&local->places, &local->blend, &point->mix, &point->place,
+    else if (point->visibility.count > 0)
+        tile = acdf_visibility_find_below(&local->visibility, &local->blend, &point->mix, &point->visibility,
                                      acdf_blend_root(&local->blend), spot->square, range, &probability);
     else tile = acdf_blend_find_tile(&local->blend, &point->mix, spot->square, range, 0, &probability);
     probability = acdf_local_tile_probability(local, point, tile, probability);
@@ -184,7 +184,7 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
     return acdf_local_spot_pdf(local, point, direction, &spot);
 }
 
-/* The part of the density that follows the light: that of rows, and of windows where a place sees any. */
+/* The part of the density that follows the light: that of rows, and of windows where a position sees any. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const float row = acdf_local_row_pdf(local, point, direction);
     return point->windows.count > 0 ? acdf_windows_pdf(&point->windows, direction, row) : row;

@@ -38,10 +38,10 @@ ACDF_INLINE int acdf_local_table_rows(const AcdfLocal* local, const float normal
     return 1;
 }
 
-/* No place. Rows are left open. */
-ACDF_INLINE void acdf_local_nowhere(AcdfPlaceMixture* place) {
-    place->count = 0;
-    place->alike = 1;
+/* No mixture. Rows are left open. */
+ACDF_INLINE void acdf_local_nowhere(AcdfVisibilityMixture* mixture) {
+    mixture->count = 0;
+    mixture->alike = 1;
 }
 
 /* Begins a point: nothing serves it. */
@@ -56,7 +56,7 @@ ACDF_INLINE void acdf_local_nothing(const float normal[3], AcdfLocalPoint* out) 
     }
 }
 
-/* Finds what serves a normal, without the weights of lights and the place. Returns 0 where lights and mixture do
+/* Finds what serves a normal, without the weights of lights and the mixture. Returns 0 where lights and mixture do
  * not. */
 ACDF_FN int acdf_local_begin(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     AcdfNormalBins bins;
@@ -97,11 +97,11 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
     out->windows.count = 0;
     if (local->fast.grid) {
-        out->place.count = 0;
+        out->visibility.count = 0;
         if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, 1, out);
         return;
     }
-    acdf_local_nowhere(&out->place);
+    acdf_local_nowhere(&out->visibility);
     if (acdf_local_begin(local, normal, out)) acdf_local_sum(local, 0, out);
 }
 
@@ -110,38 +110,38 @@ ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3]
                                  AcdfLocalPoint* out) {
     double visible, of_light[ACDF_MAX_LIGHTS];
     int i;
-    acdf_local_nowhere(&out->place);
+    acdf_local_nowhere(&out->visibility);
     out->windows.count = 0;
     acdf_as_given(normal, out->surface);
-    /* First of all: rows of places are far away, and come while the normal's are found. */
-    if (local->fast.grid) { /* which knows no places */
+    /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
+    if (local->fast.grid) { /* which knows no visibility cells */
         acdf_local_at(local, normal, out);
         return;
     }
     if (local->blend.tiles)
-        acdf_place_at(&local->places, local->blend.tiles->tile_count, position, out->surface, &out->place);
+        acdf_visibility_at(&local->visibility, local->blend.tiles->tile_count, position, out->surface, &out->visibility);
     if (!acdf_local_begin(local, normal, out)) {
-        out->place.count = 0;
+        out->visibility.count = 0;
         return;
     }
-    if (out->place.count == 0) {
+    if (out->visibility.count == 0) {
         acdf_local_sum(local, 0, out);
         return;
     }
-    visible = acdf_place_visibility(&out->place, 0);
+    visible = acdf_mixture_visibility(&out->visibility, 0);
     for (i = 0; i < out->mix.count; ++i) out->mix.weight[i] *= visible;
-    acdf_place_see_lights(&out->place, local->light_count, of_light);
+    acdf_visibility_of_tiles(&out->visibility, local->light_count, of_light);
     acdf_local_sum(local, of_light, out);
-    if (!(out->sum > 0.0)) out->place.count = 0;
+    if (!(out->sum > 0.0)) out->visibility.count = 0;
 }
 
-/* Finds what serves a normal at a position of the scene. Outside of all cells, and where places are not told apart,
+/* Finds what serves a normal at a position of the scene. Outside of all cells, and where there are no visibility cells,
  * that is what serves the normal. */
 ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position[3], const float normal[3],
                                  AcdfLocalPoint* out) {
     acdf_local_at_cells(local, position, normal, out);
-    if (local->portals.header && out->place.count > 0)
-        acdf_windows_at(&local->portals, &local->places, &out->place, position, out->surface, &out->windows);
+    if (local->portals.header && out->visibility.count > 0)
+        acdf_windows_at(&local->portals, &local->visibility, &out->visibility, position, out->surface, &out->windows);
 }
 
 /* Whether u0 in [0, 1] draws from the mixture, not a light. */
@@ -150,7 +150,7 @@ ACDF_FN int acdf_local_draws_mixture(const AcdfLocalPoint* point, double u0) {
 }
 
 /* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left
- * of u[0] takes its place. */
+ * of u[0] takes its mixture. */
 ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                                double* weight) {
     const AcdfLight* light = 0;

@@ -64,11 +64,11 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     ACDF_MOVE(AcdfLight, local->lights);
     ACDF_MOVE(AcdfLocalTables, local->tables);
     ACDF_MOVE(AcdfPartner, local->partner);
-    ACDF_MOVE(AcdfPlaces, local->places.header);
-    ACDF_MOVE(AcdfPlaceSplit, local->places.splits);
-    ACDF_MOVE(uint16_t, local->places.columns);
-    ACDF_MOVE(uint16_t, local->places.set_of_row);
-    ACDF_MOVE(uint8_t, local->places.rows);
+    ACDF_MOVE(AcdfVisibility, local->visibility.header);
+    ACDF_MOVE(AcdfVisibilitySplit, local->visibility.splits);
+    ACDF_MOVE(uint16_t, local->visibility.columns);
+    ACDF_MOVE(uint16_t, local->visibility.set_of_row);
+    ACDF_MOVE(uint8_t, local->visibility.rows);
     ACDF_MOVE(AcdfPortals, local->portals.header);
     ACDF_MOVE(AcdfPortal, local->portals.portals);
     ACDF_MOVE(AcdfPortalMap, local->portals.maps);

@@ -79,7 +79,7 @@ ACDF_FIELD(ACDF_F32, slope) /* minor over major coordinate, tangent of the local
 ACDF_FIELD(ACDF_F32, cap)   /* 1 - |z| */
 ACDF_STRUCT_END(AcdfDirectionKeys)
 
-/* A direction as places are found of it. */
+/* A direction as the lookups take it. */
 ACDF_STRUCT_BEGIN(AcdfUnit)
 ACDF_FIELD(ACDF_F32, x) /* of a pole, whose azimuth is all one, 1e-18 */
 ACDF_FIELD(ACDF_F32, y)

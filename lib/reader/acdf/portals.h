@@ -1,19 +1,19 @@
-/* Portals: rectangles that light comes through, as a place sees them. One freestanding header over acdf/places.h,
+/* Portals: rectangles that light comes through, as a mixture sees them. One freestanding header over acdf/visibility.h,
  * valid C99, C++17 and CUDA/HIP/SYCL, with the same contract (SPEC.md §5.10 and §6.12).
  *
  * All portals that face the same way share a map of the light of their hemisphere. Its axes are tangents along the
  * sides of the portals, bent into a square, so that a portal is an upright rectangle of the map from wherever it is
  * seen: a *window* (Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", EGSR 2015). A portal is
  * divided into pieces along its sides. Each is drawn as the light in it, times a cosine to the normal, times how
- * much of it the cells of the place see; then, in a piece, the map is followed. A share that the cells tell is
- * drawn by the row of the place: it covers all other light, and a scene that has changed.
+ * much of it the cells of the mixture see; then, in a piece, the map is followed. A share that the cells tell is
+ * drawn by the row of the mixture: it covers all other light, and a scene that has changed.
  *
  * The map is bent by t / (1 + |t|), not by the arc tangent of that paper: cells are about as even, and no machine
  * rounds it in another way. */
 #ifndef ACDF_PORTALS_H
 #define ACDF_PORTALS_H
 
-#include <acdf/places.h>
+#include <acdf/visibility.h>
 #include <acdf/random.h>
 
 #ifdef __cplusplus
@@ -25,10 +25,10 @@ typedef struct AcdfPortalTable {
     const AcdfPortal* portals; /* behind it */
     const AcdfPortalMap* maps;
     const uint32_t* sums; /* of all maps */
-    const uint8_t* rows;  /* one a row of places */
+    const uint8_t* rows;  /* one a row of visibility cells */
 } AcdfPortalTable;
 
-/* A portal that a place sees; none of its tangents is larger than this, and none of its sides shorter in a map. */
+/* A portal that a mixture sees; none of its tangents is larger than this, and none of its sides shorter in a map. */
 #define ACDF_STEEPEST 0x1p12
 #define ACDF_THINNEST 0x1p-12
 
@@ -48,7 +48,7 @@ typedef struct AcdfWindows {
     AcdfWindow window[ACDF_MAX_PORTALS];
 } AcdfWindows;
 
-/* The place of a tangent on an axis of a map of `size` cells, and back. */
+/* The mixture of a tangent on an axis of a map of `size` cells, and back. */
 ACDF_FN double acdf_bend(double tangent, double size) {
     return 0.5 * size * (1.0 + tangent / (1.0 + fabs(tangent)));
 }
@@ -61,13 +61,13 @@ ACDF_FN double acdf_dot3(const float a[3], const double b[3]) {
     return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
 }
 
-/* The cell of a place on an axis: the last one where it lies on the upper end. */
+/* The cell of a mixture on an axis: the last one where it lies on the upper end. */
 ACDF_FN uint32_t acdf_map_cell(double at, uint32_t size) {
     const uint32_t cell = (uint32_t)at;
     return cell < size ? cell : size - 1;
 }
 
-/* The light of a map below and left of a place, linear within cells. */
+/* The light of a map below and left of a mixture, linear within cells. */
 ACDF_FN double acdf_map_sum(const uint32_t* sums, uint32_t size, double x, double y) {
     const uint32_t column = acdf_map_cell(x, size), row = acdf_map_cell(y, size);
     const uint32_t* at = sums + (size_t)row * (size + 1) + column;
@@ -88,13 +88,13 @@ ACDF_FN const uint32_t* acdf_window_sums(const AcdfPortalTable* table, uint32_t 
     return table->sums + map * side * side;
 }
 
-/* The bytes of a cell of places. */
-ACDF_FN const uint8_t* acdf_portal_row(const AcdfPortalTable* table, const AcdfPlaceTable* places,
+/* The bytes of a cell of visibility. */
+ACDF_FN const uint8_t* acdf_portal_row(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
                                        const uint8_t* row) {
     const AcdfPortals* header = table->header;
-    const size_t of_place = (size_t)1 + places->light_count + places->header->column_count;
+    const size_t of_cell = (size_t)1 + visibility->light_count + visibility->header->column_count;
     const size_t own = (size_t)1 + (size_t)header->portal_count * header->pieces * header->pieces;
-    return table->rows + (size_t)(row - places->rows) / of_place * own;
+    return table->rows + (size_t)(row - visibility->rows) / of_cell * own;
 }
 
 /* Where a portal is seen from a point; 0 where it is not, or too thin. */
@@ -125,14 +125,14 @@ ACDF_FN double acdf_piece_side(const AcdfWindow* window, int axis, uint32_t i, u
     return window->low[axis] + (window->high[axis] - window->low[axis]) * ((double)i / (double)pieces);
 }
 
-/* What the cells of a place see of each piece of a portal, whose bytes begin at `first` of each row. */
-ACDF_FN void acdf_window_visible(const AcdfPlaceMixture* place, const uint8_t** rows, uint32_t first,
+/* What the cells of a mixture see of each piece of a portal, whose bytes begin at `first` of each row. */
+ACDF_FN void acdf_window_visible(const AcdfVisibilityMixture* mixture, const uint8_t** rows, uint32_t first,
                                  uint32_t count, double* out) {
     uint32_t c;
     int i;
     for (c = 0; c < count; ++c) out[c] = 0.0;
-    for (i = 0; i < place->count; ++i)
-        for (c = 0; c < count; ++c) out[c] += place->weight[i] * acdf_visibility(rows[i][first + c]);
+    for (i = 0; i < mixture->count; ++i)
+        for (c = 0; c < count; ++c) out[c] += mixture->weight[i] * acdf_visibility_of_code(rows[i][first + c]);
 }
 
 /* The light between interpolated sums is less than this part of the largest of them off: no more may be none. */
@@ -175,27 +175,27 @@ ACDF_FN void acdf_window_weigh(const AcdfPortalTable* table, const double normal
     }
 }
 
-/* The windows of a place, which lies in cells, and a normal. */
-ACDF_FN void acdf_windows_at(const AcdfPortalTable* table, const AcdfPlaceTable* places,
-                             const AcdfPlaceMixture* place, const float position[3], const float normal[3],
+/* The windows of a mixture, which lies in cells, and a normal. */
+ACDF_FN void acdf_windows_at(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
+                             const AcdfVisibilityMixture* mixture, const float position[3], const float normal[3],
                              AcdfWindows* out) {
     const uint32_t pieces = table->header->pieces * table->header->pieces;
-    const uint8_t* rows[ACDF_MAX_PLACES_MIXED];
+    const uint8_t* rows[ACDF_MAX_CELLS_MIXED];
     double x[6], visible[ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_PIECES];
     uint32_t k;
     int i;
     out->count = 0;
     out->of_row = out->weight = 0.0;
-    for (i = 0; i < place->count; ++i) {
-        rows[i] = acdf_portal_row(table, places, place->row[i]);
-        out->of_row += place->weight[i] * ((double)rows[i][0] + 1.0) * (1.0 / 256.0);
+    for (i = 0; i < mixture->count; ++i) {
+        rows[i] = acdf_portal_row(table, visibility, mixture->row[i]);
+        out->of_row += mixture->weight[i] * ((double)rows[i][0] + 1.0) * (1.0 / 256.0);
     }
-    if (!(out->of_row < 1.0) || !acdf_place_coordinates(places, position, normal, x)) return;
+    if (!(out->of_row < 1.0) || !acdf_visibility_coordinates(visibility, position, normal, x)) return;
     out->table = *table;
     for (k = 0; k < table->header->portal_count; ++k) {
         AcdfWindow* window = &out->window[out->count];
         if (!acdf_window_sides(table, &table->portals[k], x, window)) continue;
-        acdf_window_visible(place, rows, 1 + k * pieces, pieces, visible);
+        acdf_window_visible(mixture, rows, 1 + k * pieces, pieces, visible);
         acdf_window_weigh(table, x + 3, visible, window);
         if (!(window->weight > 0.0 && acdf_is_finite(window->weight))) continue;
         out->weight += window->weight;
@@ -248,7 +248,7 @@ ACDF_OUTLINE_ON_CPU float acdf_windows_pdf(const AcdfWindows* windows, const flo
     return acdf_windows_mixed(windows, sum / windows->weight, row);
 }
 
-/* Whether u[0] draws through a window, not by the row; what is left of it takes its place. */
+/* Whether u[0] draws through a window, not by the row; what is left of it takes its mixture. */
 ACDF_FN int acdf_windows_choose(const AcdfWindows* windows, double* u) {
     if (u[0] < windows->of_row) {
         u[0] = acdf_unit_interval(u[0] / windows->of_row);
@@ -258,7 +258,7 @@ ACDF_FN int acdf_windows_choose(const AcdfWindows* windows, double* u) {
     return 1;
 }
 
-/* The one of `count` parts of weights, some > 0, that *u of all draws; what is left of it takes its place. */
+/* The one of `count` parts of weights, some > 0, that *u of all draws; what is left of it takes its mixture. */
 ACDF_FN uint32_t acdf_draw_part(const double* weight, uint32_t count, double* u) {
     double x = 0.0;
     uint32_t i, last = 0;
@@ -274,7 +274,7 @@ ACDF_FN uint32_t acdf_draw_part(const double* weight, uint32_t count, double* u)
     return last;
 }
 
-/* Where, from `low` to `high` on axis 0 of a map, u of the light between two places on axis 1 lies before; on axis
+/* Where, from `low` to `high` on axis 0 of a map, u of the light between two visibility on axis 1 lies before; on axis
  * 1 the same of the cells of one column. *cell becomes the one it lies in or ends at, which has light. */
 ACDF_FN double acdf_map_column(const uint32_t* sums, uint32_t size, const double low[2], const double high[2],
                                double u, uint32_t* cell) {
@@ -327,7 +327,7 @@ ACDF_FN double acdf_map_row(const uint32_t* sums, uint32_t size, uint32_t column
 /* How far from a tangent a direction stays, so that rounding does not carry it across. */
 ACDF_FN double acdf_tangent_border(double t) { return 0x1p-22 * (1.0 + t * t); }
 
-/* The tangent of a place on an axis of a map that was drawn in a cell, inside of the cell where its borders lie
+/* The tangent of a mixture on an axis of a map that was drawn in a cell, inside of the cell where its borders lie
  * between `low` and `high`. */
 ACDF_FN double acdf_inside_cell(double at, double size, uint32_t cell, double low, double high) {
     const double begin = (double)cell, end = begin + 1.0;

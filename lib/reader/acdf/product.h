@@ -67,7 +67,7 @@ public:
     ACDF_METHOD Point at(const SurfaceFrame& frame, const float wo[3]) const noexcept {
         return at(nullptr, frame, wo);
     }
-    /// The same where the light's file tells places apart: at a `position` of its scene; null: anywhere.
+    /// The same where the light's file stores visibility cells: at a `position` of its scene; null: anywhere.
     ACDF_METHOD Point at(const float position[3], const SurfaceFrame& frame, const float wo[3]) const noexcept;
     /// The same with a frame of its own around the unit `normal`: for BRDFs that are the same all around it.
     ACDF_METHOD Point at(const float normal[3], const float wo[3]) const noexcept {

@@ -244,7 +244,7 @@ ACDF_METHOD void GroupRating<AnyLobe>::choose() noexcept {
     }
 }
 
-/// Looks at the tiles of the chosen groups, all at once. They take their groups' places.
+/// Looks at the tiles of the chosen groups, all at once. They take the numbers of their groups.
 template <class AnyLobe>
 ACDF_METHOD void GroupRating<AnyLobe>::open_chosen() noexcept {
     const std::uint32_t last = of_.light.blend.tiles->tile_count - 1;

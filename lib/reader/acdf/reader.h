@@ -152,7 +152,7 @@ private:
     const AcdfLocalHeader* local_ = nullptr;
     const AcdfLight* lights_ = nullptr;
     const AcdfPartner* partner_ = nullptr;
-    AcdfPlaceTable places_ = {};
+    AcdfVisibilityTable visibility_ = {};
     AcdfPortalTable portals_ = {};
     const AcdfViews* views_ = nullptr;
     const float* nodes_ = nullptr;

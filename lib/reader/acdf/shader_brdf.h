@@ -238,7 +238,7 @@ ACDF_FN2(AcdfVector, acdf_as_returned, ACDF_TABLES, tables, AcdfVector, d) {
                        ACDF_FLOAT(ACDF_BITS(d.z) | zero));
 }
 
-/* Places a direction in the cell where a walk ended. Near its border rounding may carry it over: then it moves
+/* Visibility a direction in the cell where a walk ended. Near its border rounding may carry it over: then it moves
  * towards the middle, so that its density is that of the cell. */
 ACDF_FN4(AcdfWalkSample, acdf_draw_in_cell, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
          side) {

@@ -114,7 +114,7 @@ typedef struct AcdfShortCurve {
 } AcdfShortCurve;
 
 ACDF_FN uint64_t acdf_eight_bytes(const uint8_t* at) {
-#ifdef ACDF_ON_GPU /* which has no loads at odd places: two or three words instead of eight bytes */
+#ifdef ACDF_ON_GPU /* which has no loads at odd addresses: two or three words instead of eight bytes */
     const uint32_t* words = (const uint32_t*)(const void*)((uintptr_t)at & ~(uintptr_t)3);
     const uint32_t shift = 8u * (uint32_t)((uintptr_t)at & 3u);
     const uint64_t low = words[0] | (uint64_t)words[1] << 32, high = words[shift ? 2 : 1];

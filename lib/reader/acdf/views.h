@@ -79,16 +79,16 @@ public:
     }
     /// The same for a point of the scene that the file was made for, `position` in the scene's own coordinates:
     /// only light that reaches it is drawn, but for a small share. Outside of the scene's bounds, and of files that
-    /// do not tell places apart, that of the normal alone. Where the scene is another one than it was, sampling
+    /// do not store visibility cells, that of the normal alone. Where the scene is another one than it was, sampling
     /// stays unbiased, and is noisier.
     ACDF_METHOD AcdfLocalPoint at(const float position[3], const float normal[3]) const noexcept {
         AcdfLocalPoint point;
         acdf_local_at_position(&data_, position, normal, &point);
         return point;
     }
-    /// Whether places are told apart.
-    ACDF_METHOD bool has_places() const noexcept { return data_.places.header != nullptr; }
-    /// Whether windows are known that light comes through: they are drawn where a place sees them.
+    /// Whether there are visibility cells.
+    ACDF_METHOD bool has_visibility() const noexcept { return data_.visibility.header != nullptr; }
+    /// Whether windows are known that light comes through: they are drawn where a position sees them.
     ACDF_METHOD bool has_portals() const noexcept { return data_.portals.header != nullptr; }
     ACDF_METHOD DirectionSample sample(const AcdfLocalPoint& point, double u0, double u1) const noexcept {
         return acdf_local_sample_at(&data_, &point, u0, u1);

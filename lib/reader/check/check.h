@@ -72,8 +72,8 @@ struct Parts {
     const AcdfLocalHeader* local = nullptr;    ///< of local environments
     const AcdfLight* lights = nullptr;         ///< local->light_count
     const AcdfPartner* partner = nullptr;      ///< null where the file is to be used alone
-    AcdfPlaceTable places = {};                ///< of local environments; its header is null where absent
-    AcdfPortalTable portals = {};              ///< beside places; its header is null where absent
+    AcdfVisibilityTable visibility = {};                ///< of local environments; its header is null where absent
+    AcdfPortalTable portals = {};              ///< beside visibility cells; its header is null where absent
     const std::uint8_t* metadata = nullptr;    ///< the payload of META after its count; null where absent
     std::uint32_t metadata_count = 0;
     AcdfHalving* halvings = nullptr; ///< nodes of chunk HALV, of the C library

@@ -24,7 +24,7 @@ struct CutWalks : Walks {
 
 // ---- parts -----------------------------------------------------------------------------------------------------
 
-/* Two doubles of each lane's element of an array, from a place in it on. */
+/* Two doubles of each lane's element of an array, from a position in it on. */
 template <class T>
 ACDF_LANE void pairs_of(const T* array, Integer number, std::size_t place, Vector out[2]) {
     const double* from[ACDF_WIDTH];

@@ -186,7 +186,7 @@ TEST(Portals, RoundingIsNoLight) {
 
 /// A place that draws by its row alone, one behind a wall, one outside, and a normal alone see no windows.
 TEST(Portals, WhoSeesNoWindowDrawsByItsRow) {
-    const LoadedLocal loaded(windowed_local()), rows(placed_local());
+    const LoadedLocal loaded(windowed_local()), rows(visibility_local());
     const struct {
         float x[3], n[3];
     } cases[] = {{{2, 1.5f, 1}, {0, 0, 1}}, {{0, 0, 1}, {-1, -1, 0}}, {{9, 0, 1}, {1, 0, 0}}};

@@ -43,10 +43,10 @@ TEST(Product, DensityIsExactlyThatOfTheSamples) {
     EXPECT_GT(drawn, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
 }
 
-// Where a part is a light's own tile, no row of places gives it anything.
-TEST(Product, DensityIsThatOfTheSamplesAtPlaces) {
+// Where a part is a light's own tile, no row of visibility cells gives it anything.
+TEST(Product, PdfIsThatOfTheSamplesAtPositions) {
     int drawn = 0, of_lights = 0;
-    for (const LocalSpec& spec : {placed_local(), regional_local(), windowed_local()}) {
+    for (const LocalSpec& spec : {visibility_local(), regional_local(), windowed_local()}) {
         const LoadedLocal loaded(spec);
         std::mt19937_64 rng(3);
         for (int i = 0; i < 200; ++i) {

@@ -128,10 +128,10 @@ TEST(BuilderLocal, Misuse) {
         o.shape = LocalShape::fast;
         o.mis.kind = ACDF_PARTNER_COSINE;
     });
-    refused("fast and places", [](LocalOptions& o) {
+    refused("fast and visibility cells", [](LocalOptions& o) {
         o.shape = LocalShape::fast;
-        o.places.point = [](std::uint64_t, PlacePoint&) { return true; };
-        o.places.occluded = [](const PlacePoint&, const float*) { return false; };
+        o.visibility.point = [](std::uint64_t, VisibilityPoint&) { return true; };
+        o.visibility.occluded = [](const VisibilityPoint&, const float*) { return false; };
     });
     refused("a share", [](LocalOptions& o) { o.cosine_share = 1.0; });
     refused("a NaN share", [](LocalOptions& o) { o.cosine_share = kNan; });

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(All, OneLamp,
                          });
 
 /// The cosine to the farthest and to the nearest place of a box, by trying many.
-TEST(Tiles, LargestCosineIsThatOfNoPlaceLess) {
+TEST(Tiles, LargestCosineIsThatOfNoPositionLess) {
     const Target target = sphere_target(24, 12, smooth_sky);
     std::mt19937_64 random(4);
     for (int i = 0; i < 2000; ++i) {

@@ -65,8 +65,8 @@ std::vector<Case> fast_cases() {
         {6027, "beside_rows", chunks([](std::vector<ChunkSpec>& list) {
              list.push_back({"ROWS", Bytes(4, 100), 1, false});
          })},
-        {6027, "beside_places", chunks([](std::vector<ChunkSpec>& list) {
-             list.push_back({"PLAC", placed_local().places->encode(), 0, false});
+        {6027, "beside_visibility", chunks([](std::vector<ChunkSpec>& list) {
+             list.push_back({"PLAC", visibility_local().visibility->encode(), 0, false});
          })},
         {6027, "beside_portals", chunks([](std::vector<ChunkSpec>& list) {
              list.push_back({"PORT", windowed_local().portals->encode(), 0, false});

@@ -1,4 +1,4 @@
-// Files of places held to sums over all texels, at what a camera sees and anywhere: docs/make/places.sh does the
+// Files with visibility cells held to sums over all texels, at what a camera sees and anywhere: docs/make/visibility.sh does the
 // same with real probes.
 #include "tests/inputs/sanitized.h"
 #include "tests/inputs/synthetic.h"
@@ -89,24 +89,24 @@ void expect_as_summed(Viewed& scene, const std::vector<std::vector<std::string>>
     }
 }
 
-TEST(RenderPlaces, AreAsSummedBehindAWall) {
+TEST(RenderVisibility, AreAsSummedBehindAWall) {
     ACDF_NOT_SANITIZED();
     Viewed scene(test::small_scene("\"full-cdf\""));
-    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"visibility-cache:8x4"}, {"places:24KiB", "cosine"}});
+    expect_as_summed(scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"visibility-cache:8x4"}, {"visibility:24KiB", "cosine"}});
 }
 
-TEST(RenderPlaces, AreAsSummedInARoom) {
+TEST(RenderVisibility, AreAsSummedInARoom) {
     Viewed scene(test::mesh_scene("room.obj"));
-    expect_as_summed(scene, {{"local:24KiB"}, {"places:24KiB"}, {"tiles:8x4"}, {"visibility-cache:8x4"}});
+    expect_as_summed(scene, {{"local:24KiB"}, {"visibility:24KiB"}, {"tiles:8x4"}, {"visibility-cache:8x4"}});
 }
 
 /// Wherever light is, from any place and for any normal, it may be drawn.
-TEST(RenderPlaces, LoseNoLightAnywhere) {
+TEST(RenderVisibility, LoseNoLightAnywhere) {
     ACDF_NOT_SANITIZED();
     for (const std::string& text : {test::small_scene("\"full-cdf\""), test::mesh_scene("room.obj")}) {
         Viewed scene(text);
-        const auto point = scene.parts({"places:24KiB"}).parts[0].of_material[0]->point_sampler();
-        const compress::PlaceScene places = measure::place_scene(scene.loaded->scene.geometry);
+        const auto point = scene.parts({"visibility:24KiB"}).parts[0].of_material[0]->point_sampler();
+        const compress::VisibilityScene visibility = measure::visibility_scene(scene.loaded->scene.geometry);
         std::mt19937_64 random(11);
         const auto any = [&] {
             float w[3];
@@ -117,8 +117,8 @@ TEST(RenderPlaces, LoseNoLightAnywhere) {
         const int wanted = 10000;
         int lit = 0, lost = 0;
         for (std::uint64_t i = 0; lit < wanted && i < 200000; ++i) {
-            compress::PlacePoint place;
-            if (!places.points(random() >> 40, place)) continue;
+            compress::VisibilityPoint place;
+            if (!visibility.points(random() >> 40, place)) continue;
             measure::ShadingPoint at;
             const std::array<float, 3> n = i % 2 ? place.normal : any(), w = any();
             std::copy_n(n.begin(), 3, at.n);

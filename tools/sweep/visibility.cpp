@@ -1,4 +1,4 @@
-// The sweep of files of places: on a mesh, with what it hides.
+// The sweep of files with visibility cells: on a mesh, with what it hides.
 #include "build/own_terms.h"
 #include "measure/scenes/mesh_stage.h"
 #include "tools/cli/built.h"
@@ -15,20 +15,20 @@ namespace {
 
 Candidate make_file(const builder::Target& target, const builder::Source& source, const SweptMesh& mesh,
                     const Step& step) {
-    const bool places = step.fit == "places";
+    const bool visibility = step.fit == "visibility";
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(step.budget);
     options.source = source;
-    if (places) {
-        options.places = mesh.places;
+    if (visibility) {
+        options.visibility = mesh.visibility;
         options.normals = mesh.normals;
         options.normals_text = mesh.text;
     }
     builder::Local made;
     throw_unless_built(builder::local(target, options, made));
     Candidate out = file_candidate(std::move(made.bytes));
-    out.row.label = places ? "places" : "by normals alone";
-    out.row.options = (places ? mesh.options + " --places " : "") + "--budget " + budget_text(step.budget);
+    out.row.label = visibility ? "visibility" : "by normals alone";
+    out.row.options = (visibility ? mesh.options + " --visibility " : "") + "--budget " + budget_text(step.budget);
     return out;
 }
 
@@ -51,12 +51,12 @@ void measure_on(const measure::MeshStage& stage, std::vector<Candidate>& candida
 
 } // namespace
 
-Sweep sweep_places(const builder::Target& fitted, const builder::Source& source, const SweptMesh& mesh,
+Sweep sweep_visibility(const builder::Target& fitted, const builder::Source& source, const SweptMesh& mesh,
                    const SweepOptions& options, const build::Progress& progress) {
     compress::Target map;
     const compress::Target& target = compress::looked_up(builder::grid_of(fitted), map);
     Sweep sweep;
-    sweep.kind = SweepKind::places;
+    sweep.kind = SweepKind::visibility;
     take_options(sweep, options);
     const auto part = [&](double begin, double width) { return part_of(progress, begin, width); };
     std::vector<Candidate> candidates;

@@ -1,4 +1,4 @@
-#include "compress/places/parts.h"
+#include "compress/visibility/parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,12 +38,12 @@ double reversed(std::uint32_t k) {
 
 } // namespace
 
-PlaceParts::PlaceParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns)
+VisibilityParts::VisibilityParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns)
     : local_(local), light_(mean_tiles(bins)), boxes_(boxes_of(local)) {
     cut(light_, columns);
 }
 
-PlaceParts::PlaceParts(const PlaceParts& coarse, const std::vector<double>& loss)
+VisibilityParts::VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss)
     : local_(coarse.local_), light_(coarse.light_), boxes_(coarse.boxes_) {
     constexpr double kElsewhere = 0.02; // of all: where no ray has found an edge there may be one
     double sum = 0.0;
@@ -61,7 +61,7 @@ PlaceParts::PlaceParts(const PlaceParts& coarse, const std::vector<double>& loss
     cut(worth, coarse.column_count());
 }
 
-void PlaceParts::cut(const std::vector<double>& worth, std::uint32_t columns) {
+void VisibilityParts::cut(const std::vector<double>& worth, std::uint32_t columns) {
     choose(worth, columns);
     number(split_count(local_) > 0 ? 0 : ACDF_TILE_FLAG);
     box_count_ = tiles_of_part_.size();
@@ -69,7 +69,7 @@ void PlaceParts::cut(const std::vector<double>& worth, std::uint32_t columns) {
 }
 
 /// What the bins give to each tile, in the mean.
-std::vector<double> PlaceParts::mean_tiles(std::uint32_t bins) const {
+std::vector<double> VisibilityParts::mean_tiles(std::uint32_t bins) const {
     const std::uint32_t splits = split_count(local_);
     std::vector<double> out(splits + 1, splits == 0 ? 1.0 : 0.0), below(splits);
     for (std::uint32_t b = 0; b < bins; ++b) {
@@ -90,7 +90,7 @@ std::vector<double> PlaceParts::mean_tiles(std::uint32_t bins) const {
     return out;
 }
 
-std::vector<double> PlaceParts::mass_below(const std::vector<double>& tiles) const {
+std::vector<double> VisibilityParts::mass_below(const std::vector<double>& tiles) const {
     std::vector<double> out(split_count(local_), 0.0);
     for (std::size_t s = out.size(); s-- > 0;)
         for (const std::uint32_t child : local_.blend.splits[s].child)
@@ -99,7 +99,7 @@ std::vector<double> PlaceParts::mass_below(const std::vector<double>& tiles) con
 }
 
 /// Marks the splits that are columns, in columns_ with any number but ACDF_NO_COLUMN.
-void PlaceParts::choose(const std::vector<double>& worth, std::uint32_t columns) {
+void VisibilityParts::choose(const std::vector<double>& worth, std::uint32_t columns) {
     const std::vector<double> mass = mass_below(worth);
     const AcdfGrid grid = acdf_environment_grid(&local_.environment);
     std::vector<double> angle(mass.size(), 0.0);
@@ -124,7 +124,7 @@ void PlaceParts::choose(const std::vector<double>& worth, std::uint32_t columns)
 }
 
 /// Numbers cuts and parts from a node on; returns what it is as a child.
-std::uint32_t PlaceParts::number(std::uint32_t node) {
+std::uint32_t VisibilityParts::number(std::uint32_t node) {
     if (!(node & ACDF_TILE_FLAG) && columns_[node] != ACDF_NO_COLUMN) {
         const auto cut = static_cast<std::uint32_t>(cuts_.size());
         columns_[node] = static_cast<std::uint16_t>(cut);
@@ -146,7 +146,7 @@ std::uint32_t PlaceParts::number(std::uint32_t node) {
     return part | static_cast<std::uint32_t>(tiles_of_part_.size() - 1);
 }
 
-std::array<float, 3> PlaceParts::place(std::uint32_t tile, double u0, double u1) const {
+std::array<float, 3> VisibilityParts::place(std::uint32_t tile, double u0, double u1) const {
     AcdfRange range[2] = {boxes_[2 * std::size_t{tile}], boxes_[2 * std::size_t{tile} + 1]};
     double u[2] = {u0, u1};
     const AcdfBlend& blend = local_.blend;
@@ -157,7 +157,7 @@ std::array<float, 3> PlaceParts::place(std::uint32_t tile, double u0, double u1)
 }
 
 /// Directions of each part, as its light is spread.
-void PlaceParts::aim() {
+void VisibilityParts::aim() {
     for (const std::vector<std::uint32_t>& own : tiles_of_part_) {
         double sum = 0.0;
         for (const std::uint32_t tile : own) sum += light_[tile];
@@ -179,7 +179,7 @@ void PlaceParts::aim() {
                 place(local_.lights[k].tile, (i + 0.5) / directions, reversed(i) + 0.5 / directions));
 }
 
-void PlaceParts::weigh(const AcdfLocalPoint& point, float* out) const {
+void VisibilityParts::weigh(const AcdfLocalPoint& point, float* out) const {
     std::fill_n(out, count(), 0.0f);
     if (point.what != ACDF_LOCAL_BLEND) return;
     std::vector<AcdfMixture> mixes(cuts_.size() + 1, point.mix);
@@ -198,7 +198,7 @@ void PlaceParts::weigh(const AcdfLocalPoint& point, float* out) const {
         out[box_count_ + k] = static_cast<float>(acdf_light_weight(&local_.lights[k], &point));
 }
 
-std::vector<std::array<double, 2>> PlaceParts::sides(const double* amount) const {
+std::vector<std::array<double, 2>> VisibilityParts::sides(const double* amount) const {
     std::vector<std::array<double, 2>> out(cuts_.size());
     for (std::size_t c = cuts_.size(); c-- > 0;)
         for (std::size_t k = 0; k < 2; ++k) {

@@ -1,4 +1,4 @@
-// Files of places: a floor with a wall on it, in the light of a sky with a sun. Exact sums are the judge.
+// Files with visibility cells: a floor with a wall on it, in the light of a sky with a sun. Exact sums are the judge.
 #include "tests/inputs/directions.h"
 #include "tests/inputs/sanitized.h"
 
@@ -20,7 +20,7 @@ using acdf_test::kPi;
 using acdf_test::Normal;
 using acdf_test::random_direction;
 using acdf_test::uniform;
-using builder::PlacePoint;
+using builder::VisibilityPoint;
 
 constexpr int kColumns = 96, kRows = 48;
 
@@ -68,7 +68,7 @@ struct Wall {
 };
 
 /// The floor from -4 to 4, and the wall's two sides.
-bool point_of(std::uint64_t index, PlacePoint& point) {
+bool point_of(std::uint64_t index, VisibilityPoint& point) {
     std::uint64_t state = index; // SplitMix64 (Steele et al. 2014)
     const auto u = [&] {
         std::uint64_t z = state += 0x9E3779B97F4A7C15u;
@@ -92,10 +92,10 @@ builder::LocalOptions options(std::uint64_t bytes) {
     return out;
 }
 
-builder::LocalOptions with_places(std::uint64_t bytes) {
+builder::LocalOptions with_visibility(std::uint64_t bytes) {
     builder::LocalOptions out = options(bytes);
-    out.places.point = point_of;
-    out.places.occluded = [](const PlacePoint& p, const float* d) { return Wall().hides(p.position, d); };
+    out.visibility.point = point_of;
+    out.visibility.occluded = [](const VisibilityPoint& p, const float* d) { return Wall().hides(p.position, d); };
     return out;
 }
 
@@ -112,7 +112,7 @@ struct Built {
 };
 
 const Built& placed() {
-    static const Built built(with_places(96 << 10));
+    static const Built built(with_visibility(96 << 10));
     return built;
 }
 const Built& plain() {
@@ -126,7 +126,7 @@ struct Exact {
     int lost = 0; ///< texels whose light is never drawn
 };
 
-Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const PlacePoint& point, const Wall& wall) {
+Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point, const Wall& wall) {
     Exact out;
     double square = 0.0;
     for (int r = 0; r < kRows; ++r)
@@ -148,7 +148,7 @@ Exact exact(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const Pl
 }
 
 /// The texel that a direction lies in, and its middle: what `exact` sums.
-double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const PlacePoint& point,
+double sampled(const LocalEnvironmentView& view, const AcdfLocalPoint& at, const VisibilityPoint& point,
                const Wall& wall, double u0, double u1) {
     const DirectionSample s = view.sample(at, u0, u1);
     if (!(s.pdf > 0.0f)) return 0.0;
@@ -172,7 +172,7 @@ void expect_unbiased(const Built& built, const Wall& wall, int count) {
     std::mt19937_64 random(3);
     double sum = 0.0, square = 0.0;
     for (int i = 0; i < count; ++i) {
-        PlacePoint point;
+        VisibilityPoint point;
         point_of(1000003 + std::uint64_t(i), point);
         const AcdfLocalPoint at = built.view().at(point.position, point.normal);
         EXPECT_GT(at.visibility.count, 0);
@@ -191,57 +191,57 @@ void expect_unbiased(const Built& built, const Wall& wall, int count) {
     EXPECT_NEAR(std::sqrt(square / count), 1.0, std::max(0.2, 4.8 / std::sqrt(2.0 * count)));
 }
 
-TEST(PlaceFiles, AreUnbiased) {
+TEST(VisibilityFiles, AreUnbiased) {
     ACDF_NOT_SANITIZED();
     expect_unbiased(placed(), Wall(), 1000);
 }
-TEST(PlaceFiles, AreUnbiasedWhereTheWallIsGone) {
+TEST(VisibilityFiles, AreUnbiasedWhereTheWallIsGone) {
     ACDF_NOT_SANITIZED();
     expect_unbiased(placed(), {1.0, 0.0, 0.0, 0.0}, 300);
 }
-TEST(PlaceFiles, AreUnbiasedWhereTheWallStandsElsewhere) { expect_unbiased(placed(), {-2.0, -1.0, 4.0, 3.0}, 300); }
+TEST(VisibilityFiles, AreUnbiasedWhereTheWallStandsElsewhere) { expect_unbiased(placed(), {-2.0, -1.0, 4.0, 3.0}, 300); }
 
-TEST(PlaceFiles, FillTheirBudget) {
+TEST(VisibilityFiles, FillTheirBudget) {
     EXPECT_LE(placed().local.bytes.size(), 96u << 10);
     EXPECT_GE(placed().local.bytes.size(), 90u << 10);
-    EXPECT_TRUE(placed().view().has_places());
-    EXPECT_FALSE(plain().view().has_places());
+    EXPECT_TRUE(placed().view().has_visibility());
+    EXPECT_FALSE(plain().view().has_visibility());
 }
 
 /// What cannot be had is told in bytes of the whole file.
-TEST(PlaceFiles, AreNotMadeLargerThanTheirBudget) {
+TEST(VisibilityFiles, AreNotMadeLargerThanTheirBudget) {
     builder::Local result;
-    const builder::Status status = builder::local(target(), with_places(4 << 10), result);
+    const builder::Status status = builder::local(target(), with_visibility(4 << 10), result);
     EXPECT_EQ(status.code, builder::ErrorCode::out_of_reach);
     const std::string text = status.message,
                       start = "a size of 4096 bytes is out of reach; the least that can be had is about ";
     ASSERT_EQ(text.rfind(start, 0), 0u) << text;
     const std::uint64_t least = std::stoull(text.substr(start.size())), enough = least + least / 4;
-    const Built built(with_places(enough));
+    const Built built(with_visibility(enough));
     EXPECT_LE(built.local.bytes.size(), enough);
-    EXPECT_TRUE(built.view().has_places());
+    EXPECT_TRUE(built.view().has_visibility());
 }
 
 /// Floats tell no margin around a floor that is flat and far away.
-TEST(PlaceFiles, OfAFloorFarFromTheOrigin) {
-    builder::LocalOptions far = with_places(16 << 10);
-    far.places.point = [](std::uint64_t index, PlacePoint& point) {
+TEST(VisibilityFiles, OfAFloorFarFromTheOrigin) {
+    builder::LocalOptions far = with_visibility(16 << 10);
+    far.visibility.point = [](std::uint64_t index, VisibilityPoint& point) {
         point_of(index, point);
         point = {{point.position[0], point.position[1], 1e7f}, {0.0f, 0.0f, 1.0f}};
         if (index % 5 == 0) point.position[2] = 3e38f; // no place is so far out
         return true;
     };
-    far.places.occluded = [](const PlacePoint&, const float*) { return false; };
+    far.visibility.occluded = [](const VisibilityPoint&, const float*) { return false; };
     const Built built(far);
-    EXPECT_TRUE(built.view().has_places());
+    EXPECT_TRUE(built.view().has_visibility());
     const float at[3] = {1.0f, 2.0f, 1e7f}, up[3] = {0.0f, 0.0f, 1.0f};
     EXPECT_GT(built.view().at(at, up).visibility.count, 0);
 }
 
-TEST(PlaceFiles, DrawWhatAPlaceSees) {
+TEST(VisibilityFiles, SampleWhatAPositionSees) {
     double local = 0.0, place = 0.0;
     for (int i = 0; i < 250; ++i) {
-        PlacePoint point;
+        VisibilityPoint point;
         point_of(2000003 + std::uint64_t(i), point);
         const Exact with = exact(placed().view(), placed().view().at(point.position, point.normal), point, Wall());
         const Exact without = exact(plain().view(), plain().view().at(point.normal), point, Wall());
@@ -252,7 +252,7 @@ TEST(PlaceFiles, DrawWhatAPlaceSees) {
     EXPECT_LT(place, local / 3.0) << local / place;
 }
 
-TEST(PlaceFiles, LoseNothingThatANormalMaySee) {
+TEST(VisibilityFiles, LoseNothingThatANormalMaySee) {
     std::mt19937_64 random(7);
     for (int i = 0; i < 100000; ++i) {
         const Normal normal = random_direction(random), direction = random_direction(random);
@@ -269,19 +269,19 @@ TEST(PlaceFiles, LoseNothingThatANormalMaySee) {
     }
 }
 
-TEST(PlaceFiles, AreTheSameForAnyNumberOfThreads) {
+TEST(VisibilityFiles, AreTheSameForAnyNumberOfThreads) {
     ACDF_NOT_SANITIZED();
     for (int threads : {1, 3}) {
         builder::Local again;
         builder::Control control;
         control.threads = threads;
-        ASSERT_TRUE(builder::local(target(), with_places(24 << 10), again, control).ok());
+        ASSERT_TRUE(builder::local(target(), with_visibility(24 << 10), again, control).ok());
         static const std::vector<std::uint8_t> first = again.bytes;
         EXPECT_TRUE(again.bytes == first) << threads;
     }
 }
 
-TEST(PlaceFiles, ErrorsAreValues) {
+TEST(VisibilityFiles, ErrorsAreValues) {
     using Code = builder::ErrorCode;
     builder::Local result;
     const auto code = [&](const builder::LocalOptions& o, const builder::Control& control = {}) {
@@ -289,18 +289,18 @@ TEST(PlaceFiles, ErrorsAreValues) {
         EXPECT_TRUE(result.bytes.empty());
         return found;
     };
-    builder::LocalOptions thrown = with_places(24 << 10), empty = thrown, half = thrown, cells = thrown;
-    thrown.places.occluded = [](const PlacePoint&, const float*) -> bool { throw std::runtime_error("no"); };
+    builder::LocalOptions thrown = with_visibility(24 << 10), empty = thrown, half = thrown, cells = thrown;
+    thrown.visibility.occluded = [](const VisibilityPoint&, const float*) -> bool { throw std::runtime_error("no"); };
     EXPECT_EQ(code(thrown), Code::callback_failed);
-    empty.places.point = [](std::uint64_t, PlacePoint&) { return false; };
+    empty.visibility.point = [](std::uint64_t, VisibilityPoint&) { return false; };
     EXPECT_EQ(code(empty), Code::bad_source);
-    half.places.occluded = {};
+    half.visibility.occluded = {};
     EXPECT_EQ(code(half), Code::invalid_argument);
     cells.goal = builder::Goal::of_cells(100);
     EXPECT_EQ(code(cells), Code::invalid_argument);
     builder::Control control;
     control.progress = [](double share, const char*) { return share < 0.5; };
-    EXPECT_EQ(code(with_places(24 << 10), control), Code::cancelled);
+    EXPECT_EQ(code(with_visibility(24 << 10), control), Code::cancelled);
 }
 
 } // namespace

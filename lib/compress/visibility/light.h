@@ -1,8 +1,8 @@
 // What of the light reaches points of a scene, as rays tell it.
 #pragma once
 
-#include "compress/places/parts.h"
-#include "compress/places/portal_maps.h"
+#include "compress/visibility/parts.h"
+#include "compress/visibility/portal_maps.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ inline bool is_near(const std::array<float, 3>& position) {
 }
 
 /// A point of a surface, or in the air, where light is gathered.
-struct PlacePoint {
+struct VisibilityPoint {
     std::array<float, 3> position{}, normal{}; ///< among the cells; in the frame of directions
 
     /// Axes of cells: those of the position, then those of the normal.
@@ -29,16 +29,16 @@ struct PlacePoint {
 
 /// Point `index` of an endless sequence all over the surfaces of a scene; false where that number has none. Called
 /// by several threads at once; the same for the same number.
-using PointSource = std::function<bool(std::uint64_t index, PlacePoint& point)>;
+using PointSource = std::function<bool(std::uint64_t index, VisibilityPoint& point)>;
 
 /// Whether anything lies on the ray from a point towards a direction (in the frame of directions). Called by
 /// several threads at once; the same for the same arguments.
-using Occluded = std::function<bool(const PlacePoint& point, const std::array<float, 3>& direction)>;
+using Occluded = std::function<bool(const VisibilityPoint& point, const std::array<float, 3>& direction)>;
 
 /// What each part would give to each point, and whether its ray arrives. It is divided by what all parts give to
 /// the point (and by a tenth of the mean of all points, so that the darkest do not decide alone): squares are then
 /// what relative variance is made of.
-struct PlaceLight {
+struct VisibilityLight {
     std::size_t parts = 0;
     std::vector<float> given;    ///< points x parts; negative where the ray does not arrive
     std::vector<double> arrives; ///< one a point: the light that its rays tell
@@ -58,7 +58,7 @@ struct PlaceLight {
 };
 
 /// What a scene is to the fit.
-struct PlaceScene {
+struct VisibilityScene {
     PointSource points;
     Occluded occluded;
     std::shared_ptr<const PortalSet> portals{}; ///< what light comes through, as far as it is told; null: not
@@ -69,7 +69,7 @@ struct PlaceScene {
 /// Shoots a ray for each point and part that is above its horizon, from the points on that `light` does not know
 /// yet. `dark`: of other points of the scene; below 0: as it is found of all these. The same for any number of
 /// threads.
-void trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
-                  PlaceLight& light, double dark = -1.0, const std::function<void(double)>& progress = {});
+void trace_visibility(const VisibilityParts& parts, const std::vector<VisibilityPoint>& points, const Occluded& occluded,
+                  VisibilityLight& light, double dark = -1.0, const std::function<void(double)>& progress = {});
 
 } // namespace acdf::compress

@@ -1,4 +1,4 @@
-// Places: what is drawn where, from files written by hand, and the frozen one.
+// Visibility: what is drawn where, from files written by hand, and the frozen one.
 #include "tests/lib/reader/golden_numbers.h"
 #include "tests/lib/reader/local_loaded.h"
 
@@ -31,9 +31,9 @@ void for_each_direction(const Visit& visit) {
         }
 }
 
-TEST(Places, DensitiesIntegrateToOne) {
+TEST(Visibility, DensitiesIntegrateToOne) {
     float share = 0.0f;
-    for (LocalSpec spec : {placed_local(), regional_local(), regional_local()}) {
+    for (LocalSpec spec : {visibility_local(), regional_local(), regional_local()}) {
         spec.cosine_share = share;
         share = 0.25f;
         const LoadedLocal loaded(spec);
@@ -49,8 +49,8 @@ TEST(Places, DensitiesIntegrateToOne) {
     }
 }
 
-TEST(Places, SamplesHaveTheDensityThatIsFoundForThem) {
-    for (const LocalSpec& spec : {placed_local(), regional_local()}) {
+TEST(Visibility, SamplesHaveTheDensityThatIsFoundForThem) {
+    for (const LocalSpec& spec : {visibility_local(), regional_local()}) {
         const LoadedLocal loaded(spec);
         std::mt19937_64 random(5);
         for (const auto& n : kNormals)
@@ -67,8 +67,8 @@ TEST(Places, SamplesHaveTheDensityThatIsFoundForThem) {
 }
 
 /// The frequency of directions in octants against the integral of the density there.
-TEST(Places, DirectionsFallWhereTheDensitySays) {
-    for (const LocalSpec& spec : {placed_local(), regional_local()}) {
+TEST(Visibility, DirectionsFallWhereTheDensitySays) {
+    for (const LocalSpec& spec : {visibility_local(), regional_local()}) {
         const LoadedLocal loaded(spec);
         const AcdfLocalPoint point = loaded.view().at(kPositions[3], kNormals[1]);
         const auto octant = [](const float* d) { return (d[0] > 0) + 2 * (d[1] > 0) + 4 * (d[2] > 0); };
@@ -85,8 +85,8 @@ TEST(Places, DirectionsFallWhereTheDensitySays) {
     }
 }
 
-TEST(Places, NothingThatANormalSeesIsLost) {
-    for (const LocalSpec& spec : {placed_local(), regional_local()}) {
+TEST(Visibility, NothingThatANormalSeesIsLost) {
+    for (const LocalSpec& spec : {visibility_local(), regional_local()}) {
         const LoadedLocal loaded(spec);
         for (const auto& n : kNormals)
             for (const auto& x : kPositions) {
@@ -98,8 +98,8 @@ TEST(Places, NothingThatANormalSeesIsLost) {
     }
 }
 
-TEST(Places, OutsideTheNormalAloneCounts) {
-    const LoadedLocal loaded(placed_local());
+TEST(Visibility, OutsideTheNormalAloneCounts) {
+    const LoadedLocal loaded(visibility_local());
     const float nan = std::nanf("");
     const float outside[][3] = {{-1.5f, 0, 1}, {0, 2.5f, 1}, {0, 0, -0.1f}, {nan, 0, 1}, {0, 0, INFINITY}};
     for (const auto& x : outside)
@@ -112,14 +112,14 @@ TEST(Places, OutsideTheNormalAloneCounts) {
             for (int k = 0; k < 3; ++k) EXPECT_EQ(a.direction[k], b.direction[k]);
         }
     const LoadedLocal plain(lit_local());
-    EXPECT_FALSE(plain.view().has_places());
+    EXPECT_FALSE(plain.view().has_visibility());
     EXPECT_EQ(plain.view().at(kPositions[0], kNormals[0]).visibility.count, 0);
 }
 
-TEST(Places, PositionsAreTransformed) {
-    LocalSpec spec = placed_local(), turned = placed_local();
+TEST(Visibility, PositionsAreTransformed) {
+    LocalSpec spec = visibility_local(), turned = visibility_local();
     const float to_cells[12] = {0, 0, 2, 1, 2, 0, 0, 0, 0, 2, 0, -1}; // twice (z, x, y), moved
-    std::copy_n(to_cells, 12, turned.places->transform);
+    std::copy_n(to_cells, 12, turned.visibility->transform);
     const LoadedLocal loaded(spec), other(turned);
     for (const auto& x : kPositions) {
         const float there[3] = {x[1] / 2, (x[2] + 1) / 2, (x[0] - 1) / 2};
@@ -130,8 +130,8 @@ TEST(Places, PositionsAreTransformed) {
 }
 
 /// Weights change by no more than a position does.
-TEST(Places, CellsAreMixedWithoutAJump) {
-    const LoadedLocal loaded(placed_local());
+TEST(Visibility, CellsAreMixedWithoutAJump) {
+    const LoadedLocal loaded(visibility_local());
     const float up[3] = {0, 0, 1};
     double before = -1.0;
     for (int i = 0; i <= 2000; ++i) {
@@ -145,9 +145,9 @@ TEST(Places, CellsAreMixedWithoutAJump) {
     }
 }
 
-class GoldenPlaces : public ::testing::TestWithParam<const char*> {};
+class GoldenVisibility : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(GoldenPlaces, DrawTheSameSamples) {
+TEST_P(GoldenVisibility, DrawTheSameSamples) {
     const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
     acdf::File file;
     acdf::LoadOptions walked; // what is drawn by runtime tables differs as floats round
@@ -165,7 +165,7 @@ TEST_P(GoldenPlaces, DrawTheSameSamples) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(V1_0, GoldenPlaces, ::testing::Values("places", "places_regions", "portals"),
+INSTANTIATE_TEST_SUITE_P(V1_0, GoldenVisibility, ::testing::Values("visibility", "visibility_regions", "portals"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

@@ -1,4 +1,4 @@
-"""SPEC.md §5.9 and §6.11: what of the light reaches a place."""
+"""SPEC.md §5.9 and §6.11: what of the light reaches a position."""
 import math
 import struct
 
@@ -21,7 +21,7 @@ class Row:
         self.codes, self.columns = codes, columns
 
 
-class Places:
+class Visibility:
     def __init__(self, data, tiles, light_count):
         require(tiles is not None and len(data) >= 88, 7009)
         split_count, row_count, column_count, further = struct.unpack_from("<4I", data)
@@ -108,7 +108,7 @@ class Places:
                        for column, (row, weight) in zip(columns, cells)])
 
     def parts(self, mixture, cells, node, v):
-        """What falls into the two parts of a split, of each row and, as the place sees it, together."""
+        """What falls into the two parts of a split, of each row and, as the position sees it, together."""
         tiles = self.tiles
         lower = [vk * (tiles.codebook[tiles.rows[row, node]] * (1 / 65535)) for vk, (row, _) in zip(v, mixture)]
         upper = [vk - lk for vk, lk in zip(v, lower)]

@@ -1,4 +1,4 @@
-#include "compress/places/portal_rows.h"
+#include "compress/visibility/portal_rows.h"
 #include "compress/parallel.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr std::uint32_t kMostPieces = ACDF_MAX_PORTAL_PIECES * ACDF_MAX_PORTAL_P
 constexpr std::uint32_t kRays = 16;
 /// How much is believed of what few points tell, and the least and the most of the samples that rows draw: light
 /// may come where no ray found any, and through a portal that no ray came through.
-constexpr PlaceCaution kCaution{0.02f, 1.0f};
+constexpr VisibilityCaution kCaution{0.02f, 1.0f};
 constexpr double kLeastOfRow = 0.02, kMostOfRow = 0.9;
 /// Of the mean light of points, of which so many are asked: what is added to that of each, so that the darkest do
 /// not decide alone.
@@ -29,7 +29,7 @@ double spread(std::uint64_t index, std::uint64_t stream, double step) {
                      1.0);
 }
 
-bool above(const PlacePoint& point, const float* d) {
+bool above(const VisibilityPoint& point, const float* d) {
     return d[0] * point.normal[0] + d[1] * point.normal[1] + d[2] * point.normal[2] > 0.0f;
 }
 
@@ -52,7 +52,7 @@ public:
         : local_(local), table_(set.table(nullptr)), occluded_(occluded), parts_(set.row_bytes() - 1) {}
 
     /// Of point `i` of all.
-    PortalLight trace(std::size_t i, const PlacePoint& point) const {
+    PortalLight trace(std::size_t i, const VisibilityPoint& point) const {
         PortalLight out{std::vector<float>(parts_, 0.0f)};
         AcdfWindow windows[ACDF_MAX_PORTALS];
         const double from[3] = {double{point.position[0]}, double{point.position[1]}, double{point.position[2]}};
@@ -67,9 +67,9 @@ public:
     }
 
 private:
-    bool is_met(const PlacePoint& point, const float* d) const { return occluded_(point, {d[0], d[1], d[2]}); }
+    bool is_met(const VisibilityPoint& point, const float* d) const { return occluded_(point, {d[0], d[1], d[2]}); }
 
-    void trace_window(std::size_t i, const PlacePoint& point, std::uint32_t portal, AcdfWindow& window,
+    void trace_window(std::size_t i, const VisibilityPoint& point, std::uint32_t portal, AcdfWindow& window,
                       PortalLight& out) const {
         const std::uint32_t pieces = table_.header->pieces;
         double all[kMostPieces];
@@ -89,7 +89,7 @@ private:
             }
     }
 
-    float other_ways(std::size_t i, const PlacePoint& point, const AcdfWindow* windows, std::uint32_t count) const {
+    float other_ways(std::size_t i, const VisibilityPoint& point, const AcdfWindow* windows, std::uint32_t count) const {
         AcdfLocalPoint row;
         acdf_local_at(&local_, point.normal.data(), &row);
         if (row.what != ACDF_LOCAL_BLEND) return 0.0f;
@@ -141,12 +141,12 @@ void encode_cell(const CellSums& sums, std::uint32_t portals, std::uint32_t piec
         }
         const float points = std::max(sums.points, 1e-6f), prior = all > 0.0f ? std::sqrt(seen / all) : 0.7f;
         for (std::uint32_t c = k * pieces; c < (k + 1) * pieces; ++c)
-            *out++ = visibility_code(double{place_factor(sums.all[c], sums.seen[c], points, prior, kCaution)});
+            *out++ = visibility_code(double{visible_factor(sums.all[c], sums.seen[c], points, prior, kCaution)});
     }
 }
 
 /// The mean light of some of the points. Throws where none arrives through a portal.
-double mean_light(const PortalRays& rays, const PortalSet& set, const std::vector<PlacePoint>& points) {
+double mean_light(const PortalRays& rays, const PortalSet& set, const std::vector<VisibilityPoint>& points) {
     const std::size_t step = std::max<std::size_t>(points.size() / kAsked, 1), count = points.size() / step;
     const std::size_t pieces = std::size_t{set.header.pieces} * set.header.pieces;
     std::vector<PortalLight> lights(count);
@@ -166,12 +166,12 @@ double mean_light(const PortalRays& rays, const PortalSet& set, const std::vecto
 }
 
 /// Sums over the points of cells from `begin` on, of which each is looked at once.
-std::vector<CellSums> sum_up_cells(const PortalRays& rays, const std::vector<PlaceShare>& shares,
-                                   const std::vector<PlacePoint>& points, std::uint32_t begin, std::uint32_t end,
+std::vector<CellSums> sum_up_cells(const PortalRays& rays, const std::vector<VisibleShare>& shares,
+                                   const std::vector<VisibilityPoint>& points, std::uint32_t begin, std::uint32_t end,
                                    std::size_t parts, double dark) {
     const auto first_of = [&](std::uint32_t cell) {
         return std::lower_bound(shares.begin(), shares.end(), cell,
-                                [](const PlaceShare& s, std::uint32_t c) { return s.cell < c; });
+                                [](const VisibleShare& s, std::uint32_t c) { return s.cell < c; });
     };
     const auto first = first_of(begin), last = first_of(end);
     std::vector<std::uint32_t> numbers;
@@ -206,8 +206,8 @@ void append_all(std::vector<std::uint8_t>& bytes, const std::vector<Record>& rec
 
 } // namespace
 
-Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const std::vector<PlaceShare>& shares,
-                   const std::vector<PlacePoint>& points, std::uint32_t cells, const Occluded& occluded) {
+Chunk portal_chunk(const AcdfLocal& local, const PortalSet& set, const std::vector<VisibleShare>& shares,
+                   const std::vector<VisibilityPoint>& points, std::uint32_t cells, const Occluded& occluded) {
     const std::size_t width = set.row_bytes();
     const PortalRays rays(local, set, occluded);
     const double dark = kDark * mean_light(rays, set, points);

@@ -1,9 +1,9 @@
-// What rows of places hold: how much is believed of the points of a cell.
+// What rows of visibility cells hold: how much is believed of the points of a cell.
 #pragma once
 
-#include "compress/places/cells.h"
+#include "compress/visibility/cells.h"
 
-#include <acdf/places.h>
+#include <acdf/visibility.h>
 
 #include <cstdint>
 #include <vector>
@@ -14,49 +14,49 @@ namespace acdf::compress {
 class CellNumbers {
 public:
     /// Of `header` only bounds and counts matter: points are among the cells.
-    CellNumbers(const AcdfPlaces& header, const std::vector<AcdfPlaceSplit>& splits, std::uint32_t cells);
+    CellNumbers(const AcdfVisibility& header, const std::vector<AcdfVisibilitySplit>& splits, std::uint32_t cells);
     CellNumbers(const CellNumbers&) = delete;
     CellNumbers& operator=(const CellNumbers&) = delete;
 
     template <class Visit>
-    void for_each(const PlacePoint& point, const Visit& visit) const {
-        AcdfPlaceMixture mix;
-        acdf_place_at(&table_, 1, point.position.data(), point.normal.data(), &mix);
+    void for_each(const VisibilityPoint& point, const Visit& visit) const {
+        AcdfVisibilityMixture mix;
+        acdf_visibility_at(&table_, 1, point.position.data(), point.normal.data(), &mix);
         for (int k = 0; k < mix.count; ++k)
             visit(static_cast<std::uint32_t>(mix.row[k] - rows_.data()), mix.weight[k]);
     }
     /// The first of them; the number of cells if it lies outside.
-    std::uint32_t of(const PlacePoint& point) const;
+    std::uint32_t of(const VisibilityPoint& point) const;
 
 private:
-    AcdfPlaces header_;
+    AcdfVisibility header_;
     std::vector<std::uint8_t> rows_;
-    AcdfPlaceTable table_{};
+    AcdfVisibilityTable table_{};
 };
 
 /// A point and a cell that it counts for.
-struct PlaceShare {
+struct VisibleShare {
     std::uint32_t point = 0, cell = 0;
     float weight = 0.0f;
 };
 
 /// Points near a border count for the cells on both sides of it, as readers mix them. Those of a cell come
 /// together.
-std::vector<PlaceShare> shares_of(const CellNumbers& numbers, const std::vector<PlacePoint>& points);
+std::vector<VisibleShare> shares_of(const CellNumbers& numbers, const std::vector<VisibilityPoint>& points);
 
 /// The code of the visibility nearest to a factor.
 std::uint8_t visibility_code(double factor);
 
 /// What the rows of a range of cells are made of, cells x parts each.
-struct PlaceRows {
+struct VisibilityRows {
     std::vector<float> all;     ///< what parts would give to the points of the cell
-    std::vector<float> factors; ///< place_factor
+    std::vector<float> factors; ///< visible_factor
 };
 
 /// Shoots rays to `parts` from all points that count for the cells of `range`. Factors have the caution that serves
-/// best points that rows have not seen: each by what the others tell. `dark`: as of trace_places.
-PlaceRows place_rows(const PlaceParts& parts, const PlaceCells& tree, const PlaceCells::Range& range,
-                     const std::vector<PlaceShare>& shares, const std::vector<PlacePoint>& points,
+/// best points that rows have not seen: each by what the others tell. `dark`: as of trace_visibility.
+VisibilityRows visibility_rows(const VisibilityParts& parts, const VisibilityCells& tree, const VisibilityCells::Range& range,
+                     const std::vector<VisibleShare>& shares, const std::vector<VisibilityPoint>& points,
                      const Occluded& occluded, double dark);
 
 } // namespace acdf::compress

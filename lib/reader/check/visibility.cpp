@@ -12,25 +12,25 @@ using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using ull = unsigned long long;
 
-u64 columns_at(const AcdfPlaces& header) {
-    return sizeof header + u64{header.split_count} * sizeof(AcdfPlaceSplit);
+u64 columns_at(const AcdfVisibility& header) {
+    return sizeof header + u64{header.split_count} * sizeof(AcdfVisibilitySplit);
 }
-u64 sets_at(const AcdfPlaces& header, u32 tile_splits) {
+u64 sets_at(const AcdfVisibility& header, u32 tile_splits) {
     return columns_at(header) + (1 + u64{header.further_sets}) * tile_splits * sizeof(std::uint16_t);
 }
 // Rows begin where columns and their sets end: they need no alignment.
-u64 rows_at(const AcdfPlaces& header, u32 tile_splits) {
+u64 rows_at(const AcdfVisibility& header, u32 tile_splits) {
     return sets_at(header, tile_splits) +
            (header.further_sets > 0 ? u64{header.row_count} * sizeof(std::uint16_t) : 0);
 }
 
 bool check_size(const Payload& payload, u32 lights, u32 tile_splits, Report& report) {
-    if (payload.size < sizeof(AcdfPlaces)) {
+    if (payload.size < sizeof(AcdfVisibility)) {
         report.add(7009, payload.at(0), "PLAC has %llu bytes", static_cast<ull>(payload.size));
         return false;
     }
-    const AcdfPlaces& h = *reinterpret_cast<const AcdfPlaces*>(payload.data);
-    if (h.row_count < 1 || h.row_count >= ACDF_PLACE_ROW || h.split_count >= ACDF_PLACE_ROW ||
+    const AcdfVisibility& h = *reinterpret_cast<const AcdfVisibility*>(payload.data);
+    if (h.row_count < 1 || h.row_count >= ACDF_VISIBILITY_ROW || h.split_count >= ACDF_VISIBILITY_ROW ||
         h.column_count > tile_splits || h.further_sets > 0xFFFF) {
         report.add(7009, payload.at(0), "%u splits, %u rows, %u columns, %u further sets of them", h.split_count,
                    h.row_count, h.column_count, h.further_sets);
@@ -43,35 +43,35 @@ bool check_size(const Payload& payload, u32 lights, u32 tile_splits, Report& rep
     return payload.size == size;
 }
 
-void check_bounds(const Payload& payload, const AcdfPlaces& h, Report& report) {
+void check_bounds(const Payload& payload, const AcdfVisibility& h, Report& report) {
     for (int k = 0; k < 3; ++k) {
         bool right = std::isfinite(h.low[k]) && std::isfinite(h.high[k]) && h.low[k] < h.high[k];
         for (const float t : h.transform[k]) right = right && std::isfinite(t);
-        if (!right) report.add(7010, payload.at(offsetof(AcdfPlaces, low)), "coordinate %d", k);
+        if (!right) report.add(7010, payload.at(offsetof(AcdfVisibility, low)), "coordinate %d", k);
     }
 }
 
 // Walks the splits in preorder. A path's upper parts wait on a stack as deep as paths may be.
-bool check_splits(const Payload& payload, const AcdfPlaces& h, const AcdfPlaceSplit* splits, Report& report) {
+bool check_splits(const Payload& payload, const AcdfVisibility& h, const AcdfVisibilitySplit* splits, Report& report) {
     struct Open {
         u32 node, depth;
-    } open[ACDF_MAX_PLACE_SPLITS_DEEP + 1];
+    } open[ACDF_MAX_VISIBILITY_DEPTH + 1];
     const auto at = [&](u32 split) { return payload.at(sizeof h + u64{split} * sizeof *splits); };
     u32 count = 0, next = 0;
-    open[count++] = {h.split_count > 0 ? 0 : ACDF_PLACE_ROW, 0};
+    open[count++] = {h.split_count > 0 ? 0 : ACDF_VISIBILITY_ROW, 0};
     while (count > 0) {
         const Open now = open[--count];
-        if (now.node & ACDF_PLACE_ROW) {
-            if ((now.node & ~ACDF_PLACE_ROW) < h.row_count) continue;
-            report.add(7011, at(0), "row %u of %u", now.node & ~ACDF_PLACE_ROW, h.row_count);
+        if (now.node & ACDF_VISIBILITY_ROW) {
+            if ((now.node & ~ACDF_VISIBILITY_ROW) < h.row_count) continue;
+            report.add(7011, at(0), "row %u of %u", now.node & ~ACDF_VISIBILITY_ROW, h.row_count);
             return false;
         }
-        if (now.node != next || next >= h.split_count || now.depth == ACDF_MAX_PLACE_SPLITS_DEEP) {
+        if (now.node != next || next >= h.split_count || now.depth == ACDF_MAX_VISIBILITY_DEPTH) {
             report.add(7011, at(0), "split %u, %u deep, comes where %u of %u is due", now.node, now.depth, next,
                        h.split_count);
             return false;
         }
-        const AcdfPlaceSplit& split = splits[next];
+        const AcdfVisibilitySplit& split = splits[next];
         if ((split.lower & 7u) > 5 || !std::isfinite(split.position) || !std::isfinite(split.blend) ||
             !(split.blend >= 0.0f))
             report.add(7012, at(next), "split %u: axis %u, position %g, blend %g", next, split.lower & 7u,
@@ -84,7 +84,7 @@ bool check_splits(const Payload& payload, const AcdfPlaces& h, const AcdfPlaceSp
     return next == h.split_count;
 }
 
-void check_columns(const Payload& payload, const AcdfPlaces& h, const std::uint16_t* columns, u32 tile_splits,
+void check_columns(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* columns, u32 tile_splits,
                    Report& report) {
     for (u32 set = 0; set <= h.further_sets; ++set, columns += tile_splits) {
         u32 next = 0, wrong = tile_splits;
@@ -99,7 +99,7 @@ void check_columns(const Payload& payload, const AcdfPlaces& h, const std::uint1
     }
 }
 
-bool check_sets(const Payload& payload, const AcdfPlaces& h, const std::uint16_t* set_of_row, u32 tile_splits,
+bool check_sets(const Payload& payload, const AcdfVisibility& h, const std::uint16_t* set_of_row, u32 tile_splits,
                 Report& report) {
     for (u32 row = 0; set_of_row && row < h.row_count; ++row) {
         if (set_of_row[row] <= h.further_sets) continue;
@@ -109,8 +109,8 @@ bool check_sets(const Payload& payload, const AcdfPlaces& h, const std::uint16_t
     return true;
 }
 
-void check_odds(const Payload& payload, const AcdfPlaceTable& table, u32 tile_splits, Report& report) {
-    const AcdfPlaces& h = *table.header;
+void check_odds(const Payload& payload, const AcdfVisibilityTable& table, u32 tile_splits, Report& report) {
+    const AcdfVisibility& h = *table.header;
     const u64 first = 1 + u64{table.light_count}, width = first + h.column_count;
     for (u32 row = 0; row < h.row_count; ++row)
         for (u64 i = first; i < width; ++i) {
@@ -123,19 +123,19 @@ void check_odds(const Payload& payload, const AcdfPlaceTable& table, u32 tile_sp
 
 } // namespace
 
-void check_places(const Payload& payload, Report& report, Parts& parts) noexcept {
+void check_visibility(const Payload& payload, Report& report, Parts& parts) noexcept {
     if (!parts.local) return; // told elsewhere
     if (!parts.tiles) {
-        report.add(7009, payload.at(0), "there are places, but no tiles");
+        report.add(7009, payload.at(0), "there are visibility cells, but no tiles");
         return;
     }
     const u32 tile_splits = parts.tiles->tile_count - 1;
     if (!check_size(payload, parts.local->light_count, tile_splits, report)) return;
-    const auto* header = reinterpret_cast<const AcdfPlaces*>(payload.data);
-    const auto* splits = reinterpret_cast<const AcdfPlaceSplit*>(header + 1);
+    const auto* header = reinterpret_cast<const AcdfVisibility*>(payload.data);
+    const auto* splits = reinterpret_cast<const AcdfVisibilitySplit*>(header + 1);
     const auto* columns = reinterpret_cast<const std::uint16_t*>(splits + header->split_count);
     const auto* sets = reinterpret_cast<const std::uint16_t*>(payload.data + sets_at(*header, tile_splits));
-    const AcdfPlaceTable table{header,
+    const AcdfVisibilityTable table{header,
                                splits,
                                columns,
                                header->further_sets > 0 ? sets : nullptr,
@@ -146,7 +146,7 @@ void check_places(const Payload& payload, Report& report, Parts& parts) noexcept
     const bool right = check_sets(payload, *header, table.set_of_row, tile_splits, report) && split;
     check_columns(payload, *header, columns, tile_splits, report);
     check_odds(payload, table, tile_splits, report);
-    if (right) parts.places = table;
+    if (right) parts.visibility = table;
 }
 
 } // namespace acdf

@@ -1,4 +1,4 @@
-#include "compress/places/portal_maps.h"
+#include "compress/visibility/portal_maps.h"
 
 #include "compress/local/light.h"
 #include "compress/parallel.h"
@@ -18,9 +18,9 @@ using Vector = std::array<double, 3>;
 
 /// Pieces of a portal along each side: how closely cosines and what hides it are followed.
 constexpr std::uint32_t kPieces = 4;
-/// Cells of a map along each axis: finer ones tell little more, and coarser ones much less (docs/notes/places.md).
+/// Cells of a map along each axis: finer ones tell little more, and coarser ones much less (docs/notes/visibility.md).
 constexpr std::uint32_t kFinest = 256, kCoarsest = 64;
-/// Places along each axis of a cell where light is looked up, at least and at most: as fine as the probe is.
+/// Visibility along each axis of a cell where light is looked up, at least and at most: as fine as the probe is.
 constexpr int kFewest = 4, kMost = 32;
 /// What the cells of a map add up to, about, and the least of one, of the mean.
 constexpr double kWhole = 0x1p31, kFloor = 1e-3;

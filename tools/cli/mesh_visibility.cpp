@@ -1,4 +1,4 @@
-#include "tools/cli/mesh_places.h"
+#include "tools/cli/mesh_visibility.h"
 
 #include "measure/sequences.h"
 
@@ -24,7 +24,7 @@ public:
             }
     }
 
-    builder::PlacePoint at(std::uint64_t index) const {
+    builder::VisibilityPoint at(std::uint64_t index) const {
         // Kronecker's sequence in five dimensions, of the root of x^6 = x + 1 (Roberts 2018).
         constexpr double root = 1.13472413840152;
         double step = 1.0, u[5];
@@ -32,7 +32,7 @@ public:
             step /= root;
             x = std::fmod((static_cast<double>(index & 0xFFFFFFFFu) + 0.5) * step, 1.0);
         }
-        builder::PlacePoint out{};
+        builder::VisibilityPoint out{};
         for (std::size_t k = 0; k < 3; ++k)
             out.position[k] = static_cast<float>(low_[k] + u[k] * (high_[k] - low_[k]));
         double sine, cosine;
@@ -62,19 +62,19 @@ std::shared_ptr<const input::MeshSurface> read_surface(const SceneOption& scene,
     input::Triangles triangles;
     for (const std::string& path : scene.paths) {
         const input::Triangles own = input::read_triangles(path, scene.input().up);
-        note(path + ": places on " + std::to_string(own.count()) + " triangles");
+        note(path + ": visibility on " + std::to_string(own.count()) + " triangles");
         triangles.corners.insert(triangles.corners.end(), own.corners.begin(), own.corners.end());
     }
     scene.axes().turn(triangles);
     return std::make_shared<const input::MeshSurface>(std::move(triangles));
 }
 
-builder::Places places_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up, bool volume) {
-    builder::Places out;
+builder::Visibility visibility_on(std::shared_ptr<const input::MeshSurface> surface, input::UpAxis up, bool volume) {
+    builder::Visibility out;
     const double lift = 1e-5 * surface->tree().size(); // floats are told: above what they were rounded to
     std::optional<AirPoints> air;
     if (volume) air.emplace(surface->triangles());
-    out.point = [surface, lift, air](std::uint64_t index, builder::PlacePoint& point) {
+    out.point = [surface, lift, air](std::uint64_t index, builder::VisibilityPoint& point) {
         if (air) {
             if (index % 2 == 1) {
                 point = air->at(index / 2);
@@ -90,7 +90,7 @@ builder::Places places_on(std::shared_ptr<const input::MeshSurface> surface, inp
         }
         return true;
     };
-    out.occluded = [surface](const builder::PlacePoint& point, const float direction[3]) {
+    out.occluded = [surface](const builder::VisibilityPoint& point, const float direction[3]) {
         const std::array<double, 3> from{double{point.position[0]}, double{point.position[1]},
                                          double{point.position[2]}};
         return surface->tree().any(from, {double{direction[0]}, double{direction[1]}, double{direction[2]}}, 0.0);

@@ -1,7 +1,7 @@
-// Cells of places: a k-d tree over positions and normals, fine where what arrives differs most.
+// Cells of visibility: a k-d tree over positions and normals, fine where what arrives differs most.
 #pragma once
 
-#include "compress/places/light.h"
+#include "compress/visibility/light.h"
 
 #include <acdf/layout.h>
 
@@ -12,12 +12,12 @@
 namespace acdf::compress {
 
 /// What is known of the parts in a cell: sums over its points.
-struct PlaceSums {
+struct VisibilitySums {
     std::vector<float> all, seen; ///< one a part
     float points = 0.0f;
 
-    explicit PlaceSums(std::size_t parts = 0) : all(parts, 0.0f), seen(parts, 0.0f) {}
-    /// One point's light, as PlaceLight::given has it.
+    explicit VisibilitySums(std::size_t parts = 0) : all(parts, 0.0f), seen(parts, 0.0f) {}
+    /// One point's light, as VisibilityLight::given has it.
     void add(const float* given, float weight) {
         const std::size_t count = all.size();
         float *const a = all.data(), *const s = seen.data();
@@ -28,34 +28,34 @@ struct PlaceSums {
 };
 
 /// How much is believed of what few points tell.
-struct PlaceCaution {
+struct VisibilityCaution {
     float floor = 0.02f; ///< the least factor: such a share of the samples goes where the normal alone sends them
     float prior = 1.0f;  ///< points that the factors of the cell around count as
 };
 
 /// What rows are to multiply the light of a part with: the root of the share that arrives, which is best where
 /// parts are seen by some of a cell's points and not by others. `prior`: such a factor, of the cell around it.
-inline float place_factor(float all, float seen, float points, float prior, const PlaceCaution& caution) {
+inline float visible_factor(float all, float seen, float points, float prior, const VisibilityCaution& caution) {
     constexpr float least = 1e-30f; // where nothing is known
     const float unit = caution.prior * all / points + least, share = (seen + unit * prior * prior) / (all + unit);
     return caution.floor + (1.0f - caution.floor) * std::sqrt(share < 1.0f ? share : 1.0f);
 }
 
 /// Cells, best first: each division is the one that lowers most, summed over points, the root of the second moment.
-class PlaceCells {
+class VisibilityCells {
 public:
     static constexpr std::size_t axes = 6;
     using Box = std::array<float, axes>;
 
     /// At most `cells` cells. `low`, `high`: the box of all. Points and light must outlive this. The same for any
     /// number of threads.
-    PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& points, const Box& low, const Box& high,
+    VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points, const Box& low, const Box& high,
                std::uint32_t cells);
 
     std::uint32_t cell_count() const { return cell_count_; }
     /// In preorder, cells numbered in the order of the walk. On both sides of a split as far as `blend` times the
     /// smallest cell that touches it is mixed.
-    std::vector<AcdfPlaceSplit> splits(double blend) const;
+    std::vector<AcdfVisibilitySplit> splits(double blend) const;
     /// Cells that follow each other.
     struct Range {
         std::uint32_t begin = 0, end = 0;
@@ -85,13 +85,13 @@ private:
         float position = 0.0f;
     };
     void consider(Node& node) const;
-    Division consider_axis(const Node& node, const PlaceSums& sums, std::uint32_t stride, std::uint32_t axis) const;
+    Division consider_axis(const Node& node, const VisibilitySums& sums, std::uint32_t stride, std::uint32_t axis) const;
     void divide(std::uint32_t index);
     void number(std::uint32_t node);
     double thinnest(std::uint32_t node, std::uint32_t axis, bool at_low) const;
 
-    const PlaceLight& light_;
-    const std::vector<PlacePoint>& points_;
+    const VisibilityLight& light_;
+    const std::vector<VisibilityPoint>& points_;
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> order_; ///< points, those of a node together
     std::vector<std::uint32_t> walk_;  ///< nodes in preorder

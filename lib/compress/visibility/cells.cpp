@@ -1,4 +1,4 @@
-#include "compress/places/cells.h"
+#include "compress/visibility/cells.h"
 #include "compress/parallel.h"
 
 #include <algorithm>
@@ -8,19 +8,19 @@
 namespace acdf::compress {
 namespace {
 
-constexpr std::uint32_t kBorders = 16;      ///< places on an axis where a cell may be divided
+constexpr std::uint32_t kBorders = 16;      ///< positions on an axis where a cell may be divided
 constexpr float kLeastPoints = 8.0f;        ///< of a cell
 constexpr std::uint32_t kCellPoints = 1024; ///< points of a cell that tell where it is divided, about
 
 /// The root of the second moment of the points that are summed, with the best rows for them.
-double cost_of(const PlaceSums& sums, const std::vector<float>& prior, std::vector<float>& work) {
+double cost_of(const VisibilitySums& sums, const std::vector<float>& prior, std::vector<float>& work) {
     const std::size_t count = prior.size();
     const float *const all = sums.all.data(), *const seen = sums.seen.data(), *const before = prior.data();
     work.resize(2 * count);
     float *const arrives = work.data(), *const drawn = arrives + count;
     const float points = sums.points;
     for (std::size_t p = 0; p < count; ++p) {
-        const float factor = place_factor(all[p], seen[p], points, before[p], {});
+        const float factor = visible_factor(all[p], seen[p], points, before[p], {});
         arrives[p] = seen[p] / factor;
         drawn[p] = all[p] * factor;
     }
@@ -33,11 +33,11 @@ double cost_of(const PlaceSums& sums, const std::vector<float>& prior, std::vect
 }
 
 /// Sums of all steps up to each, from below or from above.
-void accumulate(std::vector<PlaceSums>& steps, bool from_below) {
+void accumulate(std::vector<VisibilitySums>& steps, bool from_below) {
     for (std::size_t i = 1; i < steps.size(); ++i) {
         const std::size_t k = from_below ? i : steps.size() - 1 - i;
-        const PlaceSums& before = steps[from_below ? k - 1 : k + 1];
-        PlaceSums& now = steps[k];
+        const VisibilitySums& before = steps[from_below ? k - 1 : k + 1];
+        VisibilitySums& now = steps[k];
         now.points += before.points;
         for (std::size_t p = 0; p < now.all.size(); ++p) now.all[p] += before.all[p];
         for (std::size_t p = 0; p < now.seen.size(); ++p) now.seen[p] += before.seen[p];
@@ -46,7 +46,7 @@ void accumulate(std::vector<PlaceSums>& steps, bool from_below) {
 
 } // namespace
 
-PlaceCells::PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& points, const Box& low,
+VisibilityCells::VisibilityCells(const VisibilityLight& light, const std::vector<VisibilityPoint>& points, const Box& low,
                        const Box& high, std::uint32_t cells)
     : light_(light), points_(points) {
     order_.resize(light.points());
@@ -81,14 +81,14 @@ PlaceCells::PlaceCells(const PlaceLight& light, const std::vector<PlacePoint>& p
 }
 
 /// Factors of a node, and where it is divided best.
-void PlaceCells::consider(Node& node) const {
+void VisibilityCells::consider(Node& node) const {
     const std::uint32_t count = node.end - node.begin, stride = std::max(count / kCellPoints, 1u);
-    PlaceSums sums(light_.parts);
+    VisibilitySums sums(light_.parts);
     for (std::uint32_t i = node.begin; i < node.end; i += stride) sums.add(light_.of(order_[i]), 1.0f);
     for (std::size_t p = 0; p < light_.parts; ++p)
-        node.factors[p] = place_factor(sums.all[p], sums.seen[p], sums.points, node.factors[p], {});
+        node.factors[p] = visible_factor(sums.all[p], sums.seen[p], sums.points, node.factors[p], {});
     node.gain = 0.0;
-    if (node.depth + 1 >= ACDF_MAX_PLACE_SPLITS_DEEP || float(count) < 2.0f * kLeastPoints) return;
+    if (node.depth + 1 >= ACDF_MAX_VISIBILITY_DEPTH || float(count) < 2.0f * kLeastPoints) return;
     std::array<Division, axes> best;
     parallel_for(std::size_t{0}, axes, [&](std::size_t axis) {
         best[axis] = consider_axis(node, sums, stride, static_cast<std::uint32_t>(axis));
@@ -101,7 +101,7 @@ void PlaceCells::consider(Node& node) const {
         }
 }
 
-PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums& sums, std::uint32_t stride,
+VisibilityCells::Division VisibilityCells::consider_axis(const Node& node, const VisibilitySums& sums, std::uint32_t stride,
                                                std::uint32_t axis) const {
     Division best;
     float low = points_[order_[node.begin]].coordinate(axis), high = low;
@@ -111,7 +111,7 @@ PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums
     }
     const float step = (high - low) / kBorders;
     if (!(low + step > low && high - step < high)) return best;
-    std::vector<PlaceSums> lower(kBorders, PlaceSums(light_.parts));
+    std::vector<VisibilitySums> lower(kBorders, VisibilitySums(light_.parts));
     const auto border = [&](std::uint32_t k) { return low + step * static_cast<float>(k); };
     for (std::uint32_t i = node.begin; i < node.end; i += stride) {
         const float x = points_[order_[i]].coordinate(axis);
@@ -120,7 +120,7 @@ PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums
         while (k + 1 < kBorders && !(x < border(k + 1))) ++k;
         lower[k].add(light_.of(order_[i]), 1.0f);
     }
-    std::vector<PlaceSums> upper = lower;
+    std::vector<VisibilitySums> upper = lower;
     accumulate(lower, true);
     accumulate(upper, false);
     std::vector<float> work;
@@ -134,7 +134,7 @@ PlaceCells::Division PlaceCells::consider_axis(const Node& node, const PlaceSums
     return best;
 }
 
-void PlaceCells::divide(std::uint32_t index) {
+void VisibilityCells::divide(std::uint32_t index) {
     Node lower = nodes_[index], upper = lower;
     const std::uint32_t axis = lower.axis;
     const auto middle =
@@ -149,7 +149,7 @@ void PlaceCells::divide(std::uint32_t index) {
     nodes_.push_back(std::move(upper));
 }
 
-void PlaceCells::number(std::uint32_t node) {
+void VisibilityCells::number(std::uint32_t node) {
     nodes_[node].cells.begin = cell_count_;
     if (nodes_[node].first_child == 0) {
         number_[node] = cell_count_++;
@@ -162,7 +162,7 @@ void PlaceCells::number(std::uint32_t node) {
     nodes_[node].cells.end = cell_count_;
 }
 
-std::vector<PlaceCells::Range> PlaceCells::regions(std::uint32_t count) const {
+std::vector<VisibilityCells::Range> VisibilityCells::regions(std::uint32_t count) const {
     using Entry = std::pair<std::uint32_t, std::uint32_t>; // cells, and number from the back
     std::priority_queue<Entry> queue;
     const auto push = [&](std::uint32_t node) {
@@ -181,11 +181,11 @@ std::vector<PlaceCells::Range> PlaceCells::regions(std::uint32_t count) const {
     return out;
 }
 
-std::vector<double> PlaceCells::loss(const Range& range) const {
+std::vector<double> VisibilityCells::loss(const Range& range) const {
     std::vector<double> out(light_.parts, 0.0);
     for (std::uint32_t cell = range.begin; cell < range.end; ++cell) {
         const Node& node = nodes_[node_of_cell_[cell]];
-        PlaceSums sums(light_.parts);
+        VisibilitySums sums(light_.parts);
         for (std::uint32_t i = node.begin; i < node.end; ++i) sums.add(light_.of(order_[i]), 1.0f);
         for (std::size_t p = 0; p < out.size(); ++p)
             out[p] += std::sqrt(double{sums.seen[p]} * double{sums.all[p]}) - double{sums.seen[p]};
@@ -194,22 +194,22 @@ std::vector<double> PlaceCells::loss(const Range& range) const {
 }
 
 /// The smallest extent of the cells below a node that touch its low (or high) side on an axis.
-double PlaceCells::thinnest(std::uint32_t index, std::uint32_t axis, bool at_low) const {
+double VisibilityCells::thinnest(std::uint32_t index, std::uint32_t axis, bool at_low) const {
     const Node& node = nodes_[index];
     if (node.first_child == 0) return double{node.high[axis]} - double{node.low[axis]};
     if (node.axis == axis) return thinnest(node.first_child + (at_low ? 0 : 1), axis, at_low);
     return std::min(thinnest(node.first_child, axis, at_low), thinnest(node.first_child + 1, axis, at_low));
 }
 
-std::vector<AcdfPlaceSplit> PlaceCells::splits(double blend) const {
-    std::vector<AcdfPlaceSplit> out;
+std::vector<AcdfVisibilitySplit> VisibilityCells::splits(double blend) const {
+    std::vector<AcdfVisibilitySplit> out;
     for (const std::uint32_t index : walk_) {
         const Node& node = nodes_[index];
         const double width =
             std::min(thinnest(node.first_child, node.axis, false), thinnest(node.first_child + 1, node.axis, true));
         const auto child = [&](std::uint32_t k) {
             const std::uint32_t c = node.first_child + k;
-            return nodes_[c].first_child == 0 ? ACDF_PLACE_ROW | number_[c] : number_[c];
+            return nodes_[c].first_child == 0 ? ACDF_VISIBILITY_ROW | number_[c] : number_[c];
         };
         out.push_back({node.position, static_cast<float>(blend * width), node.axis | child(0) << 3, child(1)});
     }

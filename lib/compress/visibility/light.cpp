@@ -1,4 +1,4 @@
-#include "compress/places/light.h"
+#include "compress/visibility/light.h"
 #include "compress/parallel.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ constexpr std::uint32_t kTries = 8; ///< directions of a part, until one is abov
 
 enum class Ray { none, arrives, is_met }; ///< none: no direction is above the horizon
 
-Ray shoot(const PlaceParts& parts, std::size_t part, const PlacePoint& point, std::size_t index,
+Ray shoot(const VisibilityParts& parts, std::size_t part, const VisibilityPoint& point, std::size_t index,
           const Occluded& occluded) {
     const auto start =
         static_cast<std::uint32_t>(index) * 0x9E3779B1u + static_cast<std::uint32_t>(part) * 0x85EBCA6Bu;
@@ -26,7 +26,7 @@ Ray shoot(const PlaceParts& parts, std::size_t part, const PlacePoint& point, st
 }
 
 /// Writes what a point is given; returns what of it arrives.
-double trace_point(const PlaceParts& parts, const PlacePoint& point, std::size_t index, const Occluded& occluded,
+double trace_point(const VisibilityParts& parts, const VisibilityPoint& point, std::size_t index, const Occluded& occluded,
                    float* given) {
     AcdfLocalPoint local;
     acdf_local_at(&parts.local(), point.normal.data(), &local);
@@ -45,8 +45,8 @@ double trace_point(const PlaceParts& parts, const PlacePoint& point, std::size_t
 
 } // namespace
 
-void trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points, const Occluded& occluded,
-                  PlaceLight& light, double dark, const std::function<void(double)>& progress) {
+void trace_visibility(const VisibilityParts& parts, const std::vector<VisibilityPoint>& points, const Occluded& occluded,
+                  VisibilityLight& light, double dark, const std::function<void(double)>& progress) {
     const std::size_t known = light.points(), more = points.size() - known;
     light.parts = parts.count();
     light.given.resize(points.size() * light.parts);
@@ -64,7 +64,7 @@ void trace_places(const PlaceParts& parts, const std::vector<PlacePoint>& points
     parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { light.rescale(i, light.arrives[i]); });
 }
 
-void PlaceLight::rescale(std::size_t point, double light) {
+void VisibilityLight::rescale(std::size_t point, double light) {
     // A point that nothing reaches has no noise: it may as well be the inside of something.
     const double next = light > 0.0 ? 1.0 / std::sqrt(light * light + dark * dark) : 0.0;
     const double factor = scale[point] > 0.0 ? next / scale[point] : 0.0;

@@ -1,9 +1,9 @@
-#include "compress/places/fit.h"
+#include "compress/visibility/fit.h"
 
 #include "compress/fit/shared.h"
 #include "compress/parallel.h"
-#include "compress/places/portal_rows.h"
-#include "compress/places/rows.h"
+#include "compress/visibility/portal_rows.h"
+#include "compress/visibility/rows.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +15,7 @@
 namespace acdf::compress {
 namespace {
 
-/// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/places.md).
+/// Splits of tiles that cells tell apart: more of them and there are fewer cells (docs/visibility.md).
 constexpr std::uint32_t kColumns = 127;
 /// The same beside portals, through which most samples are drawn: cells that know these are worth more.
 constexpr std::uint32_t kColumnsBesidePortals = 31;
@@ -35,11 +35,11 @@ constexpr float kMargin = 1e-3f;
 
 /// The box of the first points that a source tells of, which are as even as any; a little larger, as light is
 /// gathered next to them, too. It has a volume, wherever it lies.
-AcdfPlaces header_of(const PointSource& source, const PlacesFrame& frame) {
-    AcdfPlaces out = {};
+AcdfVisibility header_of(const PointSource& source, const VisibilityFrame& frame) {
+    AcdfVisibility out = {};
     for (int k = 0; k < 3; ++k) std::copy_n(frame.transform[k], 4, out.transform[k]);
     constexpr std::size_t batch = 1 << 16;
-    std::vector<PlacePoint> points(batch);
+    std::vector<VisibilityPoint> points(batch);
     std::vector<char> there(batch, 0);
     parallel_for(std::size_t{0}, batch,
                  [&](std::size_t i) { there[i] = source(i, points[i]) && is_near(points[i].position); });
@@ -66,7 +66,7 @@ AcdfPlaces header_of(const PointSource& source, const PlacesFrame& frame) {
 }
 
 /// The bytes of a cell.
-void encode(const PlaceParts& parts, const float* given, const float* factors, std::uint8_t* out) {
+void encode(const VisibilityParts& parts, const float* given, const float* factors, std::uint8_t* out) {
     constexpr double kUnseen = 1e-6; // of what no point of the cell sees: it has the factor of the cell around it
     std::vector<double> all(parts.boxes()), seen(parts.boxes());
     double whole = 0.0, visible = 0.0;
@@ -94,17 +94,17 @@ void append(std::vector<std::uint8_t>& bytes, const Record* records, std::size_t
 /// Points of a scene, more of them where cells are small: so many that each cell has about as many.
 class PointsByCell {
 public:
-    PointsByCell(const PointSource& source, std::vector<PlacePoint>& points) : source_(source), points_(points) {}
+    PointsByCell(const PointSource& source, std::vector<VisibilityPoint>& points) : source_(source), points_(points) {}
 
     /// Adds points until there are `count`, or no more are found in `most` candidates.
-    void add(const AcdfPlaces& header, const std::vector<AcdfPlaceSplit>& splits, std::uint32_t cells,
+    void add(const AcdfVisibility& header, const std::vector<AcdfVisibilitySplit>& splits, std::uint32_t cells,
              std::size_t count, std::uint64_t most) {
         const CellNumbers numbers(header, splits, cells);
         std::vector<std::size_t> of_cell(cells, 0);
-        for (const PlacePoint& point : points_) ++of_cell[numbers.of(point)];
+        for (const VisibilityPoint& point : points_) ++of_cell[numbers.of(point)];
         const std::size_t quota = count / cells + 1;
         constexpr std::size_t batch = 1 << 16;
-        std::vector<PlacePoint> candidates(batch);
+        std::vector<VisibilityPoint> candidates(batch);
         std::vector<std::uint32_t> cell(batch);
         for (const std::uint64_t end = next_ + most; next_ < end && points_.size() < count; next_ += batch) {
             parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
@@ -121,7 +121,7 @@ public:
 
 private:
     const PointSource& source_;
-    std::vector<PlacePoint>& points_;
+    std::vector<VisibilityPoint>& points_;
     std::uint64_t next_ = 0;
 };
 
@@ -130,10 +130,10 @@ struct Counts {
     std::uint32_t cells = 1, regions = 1;
 };
 Counts counts_for(std::uint64_t bytes, std::uint64_t width, std::uint64_t tile_splits) {
-    const std::uint64_t set = tile_splits * sizeof(std::uint16_t), cell = width + sizeof(AcdfPlaceSplit);
-    const std::uint64_t room = bytes > sizeof(AcdfPlaces) + set ? bytes - sizeof(AcdfPlaces) - set : 0;
+    const std::uint64_t set = tile_splits * sizeof(std::uint16_t), cell = width + sizeof(AcdfVisibilitySplit);
+    const std::uint64_t room = bytes > sizeof(AcdfVisibility) + set ? bytes - sizeof(AcdfVisibility) - set : 0;
     const auto clamped = [](std::uint64_t cells) {
-        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(cells, 1, ACDF_PLACE_ROW - 1));
+        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(cells, 1, ACDF_VISIBILITY_ROW - 1));
     };
     const std::uint64_t regions = std::min<std::uint64_t>(
         room * kCellsOfRegion / (kCellsOfRegion * (cell + sizeof(std::uint16_t)) + set) / kCellsOfRegion, 0x10000);
@@ -143,18 +143,18 @@ Counts counts_for(std::uint64_t bytes, std::uint64_t width, std::uint64_t tile_s
 }
 
 /// Points of a scene and cells for them, found together in rounds.
-struct DividedPlaces {
-    AcdfPlaces header{};
-    std::vector<PlacePoint> points;
-    std::vector<AcdfPlaceSplit> splits;
-    PlaceLight light;                 ///< of the first points
-    std::unique_ptr<PlaceCells> tree; ///< refers to points and light
+struct DividedVisibility {
+    AcdfVisibility header{};
+    std::vector<VisibilityPoint> points;
+    std::vector<AcdfVisibilitySplit> splits;
+    VisibilityLight light;                 ///< of the first points
+    std::unique_ptr<VisibilityCells> tree; ///< refers to points and light
 };
 
-void divide(DividedPlaces& out, const PlaceParts& parts, const PlaceScene& scene, std::uint32_t cells,
+void divide(DividedVisibility& out, const VisibilityParts& parts, const VisibilityScene& scene, std::uint32_t cells,
             const std::function<void(double)>& report) {
-    const AcdfPlaces& h = out.header;
-    const PlaceCells::Box low{h.low[0], h.low[1], h.low[2], -1.0f, -1.0f, -1.0f},
+    const AcdfVisibility& h = out.header;
+    const VisibilityCells::Box low{h.low[0], h.low[1], h.low[2], -1.0f, -1.0f, -1.0f},
         high{h.high[0], h.high[1], h.high[2], 1.0f, 1.0f, 1.0f};
     PointsByCell points(scene.points, out.points);
     const auto add = [&](std::size_t wanted) {
@@ -166,9 +166,9 @@ void divide(DividedPlaces& out, const PlaceParts& parts, const PlaceScene& scene
         const std::uint32_t shift = 2 * (kRounds - 1 - round); // a quarter of points and cells before, and so on
         add(kPointsOfDivision * std::size_t{cells} >> shift);
         const double share = std::ldexp(1.0, -int(shift)); // of all
-        trace_places(parts, out.points, scene.occluded, out.light, -1.0,
+        trace_visibility(parts, out.points, scene.occluded, out.light, -1.0,
                      [&](double done) { report(before + 0.8 * (share - before) * done); });
-        out.tree = std::make_unique<PlaceCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
+        out.tree = std::make_unique<VisibilityCells>(out.light, out.points, low, high, std::max(cells >> shift, 1u));
         out.splits = out.tree->splits(round + 1 == kRounds ? kBlend : 0.0);
         report(before = share);
     }
@@ -177,38 +177,38 @@ void divide(DividedPlaces& out, const PlaceParts& parts, const PlaceScene& scene
 
 } // namespace
 
-std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const PlaceScene& scene,
-                              const PlacesFrame& frame, const PlacesSize& size,
+std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, const VisibilityScene& scene,
+                              const VisibilityFrame& frame, const VisibilitySize& size,
                               const std::function<void(double)>& progress) {
     if (!local.blend.tiles || local.fast.grid)
-        throw std::invalid_argument("bins that do not share tiles, and the fast shape, have no places");
+        throw std::invalid_argument("bins that do not share tiles, and the fast shape, have no visibility cells");
     const auto report = [&](double share) {
         if (progress) progress(share);
     };
     const std::uint32_t splits_of_tiles = local.blend.tiles->tile_count - 1;
     const PortalSet* portals = scene.portals.get();
     const std::uint32_t usual = portals ? kColumnsBesidePortals : kColumns;
-    const PlaceParts coarse(local, bins, size.columns > 0 ? size.columns : usual);
+    const VisibilityParts coarse(local, bins, size.columns > 0 ? size.columns : usual);
     const std::uint64_t width = 1 + local.light_count + coarse.column_count();
     const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
                                                width + portals->row_bytes(), splits_of_tiles)
                                   : counts_for(size.bytes, width, splits_of_tiles);
 
-    DividedPlaces division;
+    DividedVisibility division;
     division.header = header_of(scene.points, frame);
     divide(division, coarse, scene, counts.cells, [&](double share) { report(kDivisionShare * share); });
-    const PlaceCells& tree = *division.tree;
-    const std::vector<PlaceCells::Range> regions = tree.regions(counts.regions);
-    const std::vector<PlaceShare> shares =
+    const VisibilityCells& tree = *division.tree;
+    const std::vector<VisibilityCells::Range> regions = tree.regions(counts.regions);
+    const std::vector<VisibleShare> shares =
         shares_of(CellNumbers(division.header, division.splits, tree.cell_count()), division.points);
 
     std::vector<std::uint16_t> columns(regions.size() * splits_of_tiles), set_of_row(tree.cell_count());
     std::vector<std::uint8_t> rows(tree.cell_count() * width);
     std::atomic<std::size_t> done{0};
     parallel_for(std::size_t{0}, regions.size(), [&](std::size_t r) {
-        const PlaceParts parts(coarse, tree.loss(regions[r]));
-        const PlaceRows told =
-            place_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);
+        const VisibilityParts parts(coarse, tree.loss(regions[r]));
+        const VisibilityRows told =
+            visibility_rows(parts, tree, regions[r], shares, division.points, scene.occluded, division.light.dark);
         std::copy(parts.columns().begin(), parts.columns().end(),
                   columns.begin() + std::ptrdiff_t(r * splits_of_tiles));
         for (std::uint32_t cell = regions[r].begin; cell < regions[r].end; ++cell) {
@@ -219,13 +219,13 @@ std::vector<Chunk> fit_places(const AcdfLocal& local, std::uint32_t bins, const 
         report(kDivisionShare + (1.0 - kDivisionShare) * double(++done) / double(regions.size()));
     });
 
-    AcdfPlaces& header = division.header;
+    AcdfVisibility& header = division.header;
     header.split_count = static_cast<std::uint32_t>(division.splits.size());
     header.row_count = tree.cell_count();
     header.column_count = coarse.column_count();
     header.further_sets = static_cast<std::uint32_t>(regions.size() - 1);
     if (header.further_sets == 0) set_of_row.clear();
-    Chunk chunk{ACDF_CHUNK_PLACES, {}};
+    Chunk chunk{ACDF_CHUNK_VISIBILITY, {}};
     append(chunk.bytes, &header, 1);
     append(chunk.bytes, division.splits.data(), division.splits.size());
     append(chunk.bytes, columns.data(), columns.size());

@@ -1,7 +1,7 @@
 // Maps of the light that portals face: those that face the same way share one, however a wall stands.
 #include "tests/inputs/synthetic.h"
 
-#include "compress/places/portal_maps.h"
+#include "compress/visibility/portal_maps.h"
 
 #include <gtest/gtest.h>
 

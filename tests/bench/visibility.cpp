@@ -1,10 +1,10 @@
-// Files of places at the points that a camera sees, without the noise of pictures (docs/places.md):
+// Files with visibility cells at the points that a camera sees, without the noise of pictures (docs/visibility.md):
 //
-//   bench_places make SCENE DATA local|places|portals BYTES OUT    a file as `acdf render` makes it for the scene
-//   bench_places measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are compared
+//   bench_visibility make SCENE DATA local|visibility|portals BYTES OUT    a file as `acdf render` makes it for the scene
+//   bench_visibility measure SCENE DATA POINTS SAMPLER...      rows of a table, the first is what others are compared
 //                                                          with; samplers as of acdf render: file:/A/FILE, portals,
 //                                                          mis(A,B)
-//   bench_places cost SCENE DATA POINTS FILE...            nanoseconds of a draw
+//   bench_visibility cost SCENE DATA POINTS FILE...            nanoseconds of a draw
 //
 // Variances are summed over all texels, with a shadow ray to the middle of each. The same sums are what samples are
 // held to: the mean of those of all points, and each point's own, in standard errors.
@@ -52,17 +52,17 @@ std::unique_ptr<tools::LoadedScene> scene_of(const std::string& path, const std:
     return tools::load_scene(file, data);
 }
 
-builder::Places places_of(const compress::PlaceScene& scene) {
-    builder::Places out;
-    out.point = [scene](std::uint64_t index, builder::PlacePoint& told) {
-        compress::PlacePoint point;
+builder::Visibility visibility_of(const compress::VisibilityScene& scene) {
+    builder::Visibility out;
+    out.point = [scene](std::uint64_t index, builder::VisibilityPoint& told) {
+        compress::VisibilityPoint point;
         if (!scene.points(index, point)) return false;
         std::copy_n(point.position.begin(), 3, told.position);
         std::copy_n(point.normal.begin(), 3, told.normal);
         return true;
     };
-    out.occluded = [scene](const builder::PlacePoint& from, const float direction[3]) {
-        compress::PlacePoint point;
+    out.occluded = [scene](const builder::VisibilityPoint& from, const float direction[3]) {
+        compress::VisibilityPoint point;
         std::copy_n(from.position, 3, point.position.begin());
         std::copy_n(from.normal, 3, point.normal.begin());
         return scene.occluded(point, {direction[0], direction[1], direction[2]});
@@ -76,9 +76,9 @@ int make(const tools::LoadedScene& scene, const std::string& kind, const char* b
     rows.take(0, scene.probe.height, scene.probe.rgb.data());
     builder::LocalOptions options;
     options.goal = builder::Goal::of_budget(std::strtoull(bytes, nullptr, 10));
-    if (kind != "local") options.places = places_of(measure::place_scene(scene.scene.geometry));
+    if (kind != "local") options.visibility = visibility_of(measure::visibility_scene(scene.scene.geometry));
     for (std::size_t i = 0; kind == "portals" && i < scene.scene.geometry.portals.size(); ++i)
-        options.places.portals.push_back(tools::told_portal(options.places, scene.scene.geometry.portals[i]));
+        options.visibility.portals.push_back(tools::told_portal(options.visibility, scene.scene.geometry.portals[i]));
     builder::Local made;
     if (const builder::Status status = builder::local(rows.finish(), options, made); !status.ok())
         throw std::runtime_error(status.message);
@@ -89,7 +89,7 @@ int make(const tools::LoadedScene& scene, const std::string& kind, const char* b
 
 AcdfLocalPoint at(const File& file, const float position[3], const float normal[3]) {
     const LocalEnvironmentView view = file.local();
-    return view.has_places() ? view.at(position, normal) : view.at(normal);
+    return view.has_visibility() ? view.at(position, normal) : view.at(normal);
 }
 
 /// What is measured.
@@ -137,7 +137,7 @@ Sums sums_of(const ScenePoint& point, const measure::ProbeLight& light, const st
 /// Directions with light that a sampler never draws, of 10^5 of a point of the scene, a normal and a direction
 /// each.
 int support_violations(const tools::LoadedScene& scene, const Measured& sampler) {
-    const compress::PlaceScene places = measure::place_scene(scene.scene.geometry);
+    const compress::VisibilityScene visibility = measure::visibility_scene(scene.scene.geometry);
     std::mt19937_64 random(11);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
     const auto direction = [&] {
@@ -151,8 +151,8 @@ int support_violations(const tools::LoadedScene& scene, const Measured& sampler)
         parts.push_back(part.of_material[0]->point_sampler());
     int violations = 0, count = 0;
     for (std::uint64_t i = 0; count < 100000 && i < 10000000; ++i) {
-        compress::PlacePoint point;
-        if (!places.points(random() >> 40, point)) continue;
+        compress::VisibilityPoint point;
+        if (!visibility.points(random() >> 40, point)) continue;
         const std::array<float, 3> n = i % 2 ? point.normal : direction(), d = direction();
         const double cosine =
             double{n[0]} * double{d[0]} + double{n[1]} * double{d[1]} + double{n[2]} * double{d[2]};
@@ -302,8 +302,8 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;
     }
-    std::fprintf(stderr, "usage: bench_places make SCENE DATA local|places|portals BYTES OUT\n"
-                         "       bench_places measure SCENE DATA POINTS SAMPLER...\n"
-                         "       bench_places cost SCENE DATA POINTS FILE...\n");
+    std::fprintf(stderr, "usage: bench_visibility make SCENE DATA local|visibility|portals BYTES OUT\n"
+                         "       bench_visibility measure SCENE DATA POINTS SAMPLER...\n"
+                         "       bench_visibility cost SCENE DATA POINTS FILE...\n");
     return 2;
 }

@@ -1,4 +1,4 @@
-// The parts of the sphere that places tell apart: boxes of tiles, and lights.
+// The parts of the sphere that visibility cells weigh: boxes of tiles, and lights.
 #pragma once
 
 #include <acdf/local.h>
@@ -9,17 +9,17 @@
 
 namespace acdf::compress {
 
-/// A local environment with tiles, cut where places may see one side and not the other. Parts are numbered in the
+/// A local environment with tiles, cut where positions may see one side and not the other. Parts are numbered in the
 /// order of a walk; behind them come the lights.
-class PlaceParts {
+class VisibilityParts {
 public:
     static constexpr std::uint32_t directions = 64; ///< of a part: where its light comes from
 
     /// Cuts at `columns` splits at most: those above the boxes of most light, and of most room for an edge.
     /// `local` must outlive this.
-    PlaceParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns);
+    VisibilityParts(const AcdfLocal& local, std::uint32_t bins, std::uint32_t columns);
     /// Cuts as often where most of `loss` lies, of which a part of `coarse` has so much. `coarse` may go.
-    PlaceParts(const PlaceParts& coarse, const std::vector<double>& loss);
+    VisibilityParts(const VisibilityParts& coarse, const std::vector<double>& loss);
 
     const AcdfLocal& local() const { return local_; }
     std::size_t boxes() const { return box_count_; }
