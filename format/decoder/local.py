@@ -95,7 +95,7 @@ class Point:
 
     tree = mixture = None
     cells = ()  # of its position
-    windows = None
+    visible_portals = None
 
 
 class Local:
@@ -128,7 +128,7 @@ class Local:
         if position is not None and self.visibility is not None and out.mixture is not None:
             self.look_from(out, self.visibility.cells(position, n))
             if self.portals is not None and out.cells:
-                out.windows = self.portals.windows(out.cells, self.visibility.coordinates(position, n))
+                out.visible_portals = self.portals.visible_portals(out.cells, self.visibility.coordinates(position, n))
         return out
 
     def look_from(self, out, cells):
@@ -193,9 +193,9 @@ class Local:
         return self.tiles.find_within(self.tree, tile, p, square, box, s)
 
     def light_pdf(self, point, v):
-        """p_L: of rows, and of windows where the position sees any."""
+        """p_L: of rows, and of visible_portals where the position sees any."""
         row = self.row_pdf(point, v)
-        return row if point.windows is None else point.windows.density(v, row)
+        return row if point.visible_portals is None else point.visible_portals.density(v, row)
 
     def row_pdf(self, point, v):
         """Steps 1 and 2 of the density of a direction."""
@@ -232,14 +232,14 @@ class Local:
         return (*v, self.density(point, v, light))
 
     def draw_light(self, point, u):
-        """By rows or through windows: a direction and its p_L."""
-        if point.windows is None:
+        """By rows or through visible_portals: a direction and its p_L."""
+        if point.visible_portals is None:
             return self.draw_row(point, u)
-        share = point.windows.share
+        share = point.visible_portals.share
         if u[0] < share:
             v = self.draw_row(point, [clamp(u[0] / share, 0, 1), u[1]])[:3]
         else:
-            v = point.windows.draw([clamp((u[0] - share) / (1 - share), 0, 1), u[1]])
+            v = point.visible_portals.draw([clamp((u[0] - share) / (1 - share), 0, 1), u[1]])
         return (*v, self.light_pdf(point, v))
 
     def draw_row(self, point, u):

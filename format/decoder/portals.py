@@ -72,17 +72,17 @@ class Portals:
         upper = above[i] + (u - i) * (above[i + 1] - above[i])
         return lower + (v - j) * (upper - lower)
 
-    def windows(self, cells, x):
+    def visible_portals(self, cells, x):
         """What a position, x[0] to x[5], sees; None where it draws by its row alone."""
         share = sum_of([a * ((row.portals[0] + 1) / 256) for row, a in cells])
         if not share < 1:
             return None
-        seen = [Window(self, k, cells, x) for k in range(len(self.portals))]
-        seen = [window for window in seen if 0 < window.weight < math.inf]
-        return Windows(share, seen) if seen else None
+        seen = [VisiblePortal(self, k, cells, x) for k in range(len(self.portals))]
+        seen = [visible_portal for visible_portal in seen if 0 < visible_portal.weight < math.inf]
+        return VisiblePortals(share, seen) if seen else None
 
 
-class Window:
+class VisiblePortal:
     def __init__(self, portals, number, cells, x):
         self.portals, portal = portals, portals.portals[number]
         self.map, self.weight = portals.maps[portal.map], 0.0
@@ -202,25 +202,25 @@ def draw_part(weights, u):
     return parts[-1], 1.0
 
 
-class Windows:
+class VisiblePortals:
     def __init__(self, share, seen):
         self.share, self.seen = share, seen
-        self.weight = sum_of([window.weight for window in seen])
+        self.weight = sum_of([visible_portal.weight for visible_portal in seen])
 
     def density(self, direction, row):
         """With that of the row."""
         d = direction_of(direction)
         if d is None or not of_unit_length(d):
             return 0.0
-        through = sum_of([window.density(d) for window in self.seen]) / self.weight
+        through = sum_of([visible_portal.density(d) for visible_portal in self.seen]) / self.weight
         pdf = self.share * row + (1 - self.share) * through
         return pdf32(pdf) if pdf > 0 else 0.0
 
     def draw(self, u):
         u = list(u)
-        number, u[0] = draw_part([window.weight for window in self.seen], u[0])
-        window = self.seen[number]
-        K = range(window.portals.K)
-        x, u[0] = draw_part([sum_of([window.w[i, j] for j in K]) for i in K], u[0])
-        y, u[1] = draw_part([window.w[x, j] for j in K], u[1])
-        return window.draw(x, y, u)
+        number, u[0] = draw_part([visible_portal.weight for visible_portal in self.seen], u[0])
+        visible_portal = self.seen[number]
+        K = range(visible_portal.portals.K)
+        x, u[0] = draw_part([sum_of([visible_portal.w[i, j] for j in K]) for i in K], u[0])
+        y, u[1] = draw_part([visible_portal.w[x, j] for j in K], u[1])
+        return visible_portal.draw(x, y, u)

@@ -54,42 +54,42 @@ public:
     /// Of point `i` of all.
     PortalLight trace(std::size_t i, const VisibilityPoint& point) const {
         PortalLight out{std::vector<float>(parts_, 0.0f)};
-        AcdfWindow windows[ACDF_MAX_PORTALS];
+        AcdfVisiblePortal visible_portals[ACDF_MAX_PORTALS];
         const double from[3] = {double{point.position[0]}, double{point.position[1]}, double{point.position[2]}};
         std::uint32_t seen = 0;
         for (std::uint32_t k = 0; k < table_.header->portal_count; ++k) {
-            if (!acdf_window_sides(&table_, &table_.portals[k], from, &windows[seen])) continue;
-            trace_window(i, point, k, windows[seen], out);
+            if (!acdf_portal_bounds(&table_, &table_.portals[k], from, &visible_portals[seen])) continue;
+            trace_portal(i, point, k, visible_portals[seen], out);
             ++seen;
         }
-        out.other = other_ways(i, point, windows, seen);
+        out.other = other_ways(i, point, visible_portals, seen);
         return out;
     }
 
 private:
     bool is_met(const VisibilityPoint& point, const float* d) const { return occluded_(point, {d[0], d[1], d[2]}); }
 
-    void trace_window(std::size_t i, const VisibilityPoint& point, std::uint32_t portal, AcdfWindow& window,
+    void trace_portal(std::size_t i, const VisibilityPoint& point, std::uint32_t portal, AcdfVisiblePortal& visible_portal,
                       PortalLight& out) const {
         const std::uint32_t pieces = table_.header->pieces;
         double all[kMostPieces];
         std::fill_n(all, kMostPieces, 1.0);
         const double normal[3] = {double{point.normal[0]}, double{point.normal[1]}, double{point.normal[2]}};
-        acdf_window_weigh(&table_, normal, all, &window);
+        acdf_visible_portal_weigh(&table_, normal, all, &visible_portal);
         for (std::uint32_t x = 0; x < pieces; ++x)
             for (std::uint32_t y = 0; y < pieces; ++y) {
-                const float weight = window.piece[x][y];
+                const float weight = visible_portal.piece[x][y];
                 if (!(weight > 0.0f)) continue;
                 const std::size_t part = (portal * pieces + x) * pieces + y;
                 const std::uint32_t piece[2] = {x, y};
                 const double u[2] = {spread(i, part, kSteps[0]), spread(i, 3 * part, kSteps[1])};
                 float d[3];
-                acdf_piece_sample(&table_, &window, piece, u, d);
+                acdf_piece_sample(&table_, &visible_portal, piece, u, d);
                 if (above(point, d)) out.given[part] = is_met(point, d) ? -weight : weight;
             }
     }
 
-    float other_ways(std::size_t i, const VisibilityPoint& point, const AcdfWindow* windows, std::uint32_t count) const {
+    float other_ways(std::size_t i, const VisibilityPoint& point, const AcdfVisiblePortal* visible_portals, std::uint32_t count) const {
         AcdfLocalPoint row;
         acdf_local_at(&local_, point.normal.data(), &row);
         if (row.what != ACDF_LOCAL_BLEND) return 0.0f;
@@ -99,8 +99,8 @@ private:
                                                                spread(kRays * i + r, 0, kSteps[1]));
             if (!(s.pdf > 0.0f) || !above(point, s.direction)) continue;
             const double d[3] = {double{s.direction[0]}, double{s.direction[1]}, double{s.direction[2]}};
-            const bool through = std::any_of(windows, windows + count, [&](const AcdfWindow& window) {
-                return acdf_window_density(&table_, &window, d) > 0.0;
+            const bool through = std::any_of(visible_portals, visible_portals + count, [&](const AcdfVisiblePortal& visible_portal) {
+                return acdf_visible_portal_pdf(&table_, &visible_portal, d) > 0.0;
             });
             arrives += !through && !is_met(point, s.direction);
         }
@@ -122,7 +122,7 @@ struct CellSums {
     double other = 0.0;
 };
 
-/// How much of the samples rows draw best: second moments of what they and windows draw are balanced.
+/// How much of the samples rows draw best: second moments of what they and visible_portals draw are balanced.
 double share_of_row(double other, double through) {
     if (!(other + through > 0.0)) return 0.5; // nothing is known
     const double root = std::sqrt(other / (other + through));

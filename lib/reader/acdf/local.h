@@ -122,10 +122,10 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
 
 /* Draws by the row of a place or through its windows, of which there are some. The density is that of the direction
  * as it was rounded. */
-ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_window_sample(const AcdfLocal* local,
+ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_portal_sample(const AcdfLocal* local,
                                                                  const AcdfLocalPoint* point, double* u) {
     AcdfDirectionSample out;
-    if (acdf_windows_choose(&point->windows, u)) acdf_windows_sample(&point->windows, u, out.direction);
+    if (acdf_visible_portals_choose(&point->visible_portals, u)) acdf_visible_portals_sample(&point->visible_portals, u, out.direction);
     else out = acdf_local_row_sample(local, point, u);
     out.pdf = acdf_local_light_pdf(local, point, out.direction);
     return out;
@@ -145,7 +145,7 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
         out.pdf = acdf_local_light_pdf(local, point, out.direction);
     } else {
         if (local->cosine_share > 0.0) u[0] = (u[0] - local->cosine_share) / (1.0 - local->cosine_share);
-        out = point->windows.count > 0 ? acdf_local_window_sample(local, point, u)
+        out = point->visible_portals.count > 0 ? acdf_local_portal_sample(local, point, u)
                                        : acdf_local_row_sample(local, point, u);
     }
     out.pdf = acdf_local_density(local, point, out.direction, out.pdf);

@@ -60,7 +60,7 @@ typedef struct AcdfLocalPoint {
     double lights;                     /* sum of the weights of the lights */
     double sum;                        /* of all weights */
     AcdfVisibilityMixture visibility;            /* empty: the position is not known, or does not matter */
-    AcdfWindows windows;               /* as the position sees them; its count is 0 where there are none */
+    AcdfVisiblePortals visible_portals;               /* as the position sees them; its count is 0 where there are none */
     AcdfFastMixture fast;              /* of the fast shape; `mix` has the weights, too */
     double step;                       /* of the fast shape: 32767 times the mixture's whole a weight */
     double unit;                       /* of the fast shape: that of acdf_fast_share, of `sum` */

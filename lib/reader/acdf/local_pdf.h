@@ -187,7 +187,7 @@ ACDF_FN float acdf_local_row_pdf(const AcdfLocal* local, const AcdfLocalPoint* p
 /* The part of the density that follows the light: that of rows, and of windows where a position sees any. */
 ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3]) {
     const float row = acdf_local_row_pdf(local, point, direction);
-    return point->windows.count > 0 ? acdf_windows_pdf(&point->windows, direction, row) : row;
+    return point->visible_portals.count > 0 ? acdf_visible_portals_pdf(&point->visible_portals, direction, row) : row;
 }
 
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */

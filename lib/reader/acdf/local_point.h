@@ -95,7 +95,7 @@ ACDF_INLINE void acdf_local_sum(const AcdfLocal* local, const double* visible, A
 
 /* Finds what serves a normal. */
 ACDF_FN void acdf_local_at(const AcdfLocal* local, const float normal[3], AcdfLocalPoint* out) {
-    out->windows.count = 0;
+    out->visible_portals.count = 0;
     if (local->fast.grid) {
         out->visibility.count = 0;
         if (acdf_local_begin_fast(local, normal, out)) acdf_local_fast_sum(local, 1, out);
@@ -111,7 +111,7 @@ ACDF_FN void acdf_local_at_cells(const AcdfLocal* local, const float position[3]
     double visible, of_light[ACDF_MAX_LIGHTS];
     int i;
     acdf_local_nowhere(&out->visibility);
-    out->windows.count = 0;
+    out->visible_portals.count = 0;
     acdf_as_given(normal, out->surface);
     /* First of all: rows of visibility cells are far away, and come while the normal's are found. */
     if (local->fast.grid) { /* which knows no visibility cells */
@@ -141,7 +141,7 @@ ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position
                                  AcdfLocalPoint* out) {
     acdf_local_at_cells(local, position, normal, out);
     if (local->portals.header && out->visibility.count > 0)
-        acdf_windows_at(&local->portals, &local->visibility, &out->visibility, position, out->surface, &out->windows);
+        acdf_visible_portals_at(&local->portals, &local->visibility, &out->visibility, position, out->surface, &out->visible_portals);
 }
 
 /* Whether u0 in [0, 1] draws from the mixture, not a light. */

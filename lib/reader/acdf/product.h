@@ -135,7 +135,7 @@ ACDF_METHOD auto ProductSampler<AnyLobe>::at(const float position[3], const Surf
         point.light.what = ACDF_LOCAL_TREE;
         point.light.root = light_.environment.root;
         point.light.visibility.count = 0;
-        point.light.windows.count = 0;
+        point.light.visible_portals.count = 0;
     }
     point.share = point.light.what == ACDF_LOCAL_NOTHING ? 1.0 : 0.5;
     const PointOfLobe<AnyLobe> of_lobe = {light_, point.light, point.frame, lobe_, point.lobe, parts_};

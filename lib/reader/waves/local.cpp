@@ -68,7 +68,7 @@ bool serves_waves(const AcdfLocal& local) {
 }
 bool serves_waves(const AcdfLocalPoint& point) {
     return (point.what == ACDF_LOCAL_BLEND || point.what == ACDF_LOCAL_FAST) && point.mix.count == kRows &&
-           point.visibility.count == 0 && point.windows.count == 0;
+           point.visibility.count == 0 && point.visible_portals.count == 0;
 }
 
 #if ACDF_WAVEFRONT_X86

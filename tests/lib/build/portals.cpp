@@ -266,11 +266,11 @@ TEST(PortalFiles, AreThoseOfTheScenesOwnCoordinates) {
     const float there[3] = {2.0f * (1.0f - point.position[0]), 2.0f * point.position[1], 2.0f * point.position[2]};
     const AcdfLocalPoint a = windowed().view().at(point.position, point.normal),
                          b = other.view().at(there, point.normal);
-    ASSERT_EQ(a.windows.count, 1);
-    ASSERT_EQ(b.windows.count, 1);
+    ASSERT_EQ(a.visible_portals.count, 1);
+    ASSERT_EQ(b.visible_portals.count, 1);
     for (int k = 0; k < 2; ++k) {
-        EXPECT_NEAR(a.windows.window[0].low[k], b.windows.window[0].low[k], 1e-5);
-        EXPECT_NEAR(a.windows.window[0].high[k], b.windows.window[0].high[k], 1e-5);
+        EXPECT_NEAR(a.visible_portals.visible_portal[0].low[k], b.visible_portals.visible_portal[0].low[k], 1e-5);
+        EXPECT_NEAR(a.visible_portals.visible_portal[0].high[k], b.visible_portals.visible_portal[0].high[k], 1e-5);
     }
 }
 
