@@ -78,7 +78,7 @@ int make(const tools::LoadedScene& scene, const std::string& kind, const char* b
     options.goal = builder::Goal::of_budget(std::strtoull(bytes, nullptr, 10));
     if (kind != "local") options.visibility = visibility_of(measure::visibility_scene(scene.scene.geometry));
     for (std::size_t i = 0; kind == "portals" && i < scene.scene.geometry.portals.size(); ++i)
-        options.visibility.portals.push_back(tools::told_portal(options.visibility, scene.scene.geometry.portals[i]));
+        options.visibility.portals.push_back(tools::portal_of(options.visibility, scene.scene.geometry.portals[i]));
     builder::Local made;
     if (const builder::Status status = builder::local(rows.finish(), options, made); !status.ok())
         throw std::runtime_error(status.message);

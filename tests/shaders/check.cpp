@@ -99,7 +99,7 @@ int check(const acdf::File& file, std::size_t count, const std::string& folder, 
     }
     const double own = found.own * 0x1p24;
     std::printf(
-        "%zu draws: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not tell, "
+        "%zu draws: %zu of another cell, the others at most %.2g off; %zu whose density the reader does not have, "
         "%zu by more than is rounded; own density off by %.1f steps of 2^-24\n%zu directions: %zu of another "
         "density\n",
         found.drawn, found.other_cells, found.farthest, found.not_told, found.rounded, own, count,

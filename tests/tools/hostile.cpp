@@ -179,7 +179,7 @@ TEST_F(Hostile, CommandsThatFailLeaveNoFolder) {
         "image": {"width": 2, "height": 2}, "light": {"built_in": "sky"},
         "objects": [{"sphere": {"centre": [0, 0, 0], "radius": 1}, "brdf": "lambert"}],
         "samples": 1, "samplers": ["portals"]})";
-    expect_failure({"render", "--scene", scene, "-o", out, "-q"}, 1, "the scene tells no portals");
+    expect_failure({"render", "--scene", scene, "-o", out, "-q"}, 1, "the scene has no portals");
     expect_failure({"sweep", probe, "-o", out, "--kind", "brdf", "-q"}, 1, "it is no BRDF file");
     EXPECT_EQ(folder.entries(), 2u); // the probe and the scene
     ASSERT_EQ(mkdir((folder / "a").c_str(), 0700), 0);

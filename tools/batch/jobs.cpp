@@ -178,7 +178,7 @@ std::string add_bytes(const std::string& path, std::uint64_t& bytes) {
 /// Adds the size of the source, or tells what is wrong with it.
 std::string check_source(BatchJob& job) {
     if (find_non_utf8(job.source) != std::string::npos)
-        return "the name of the source is not UTF-8, which files tell it in; rename it";
+        return "the name of the source is not UTF-8, which files store it in; rename it";
     if (job.kind == find_kind("brdf") && input::is_model(job.source)) return "";
     job.bytes = 0;
     for (const std::string& file : input::probe_files(job.source))

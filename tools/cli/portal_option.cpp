@@ -95,8 +95,8 @@ void PortalOption::tell(builder::Visibility& visibility) const {
     const std::vector<std::uint8_t> bytes = read_bytes(path, kMostSceneBytes);
     try {
         const std::vector<measure::Portal> portals = parse_scene({bytes.begin(), bytes.end()}).geometry.portals;
-        if (portals.empty()) throw SceneError("the scene tells no portals");
-        for (const measure::Portal& portal : portals) visibility.portals.push_back(told_portal(visibility, portal));
+        if (portals.empty()) throw SceneError("the scene has no portals");
+        for (const measure::Portal& portal : portals) visibility.portals.push_back(portal_of(visibility, portal));
     } catch (const SceneError& error) {
         throw input::Error(path + ": " + error.what());
     }

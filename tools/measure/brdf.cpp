@@ -110,7 +110,7 @@ void print_text(const std::string& path, const File& file, const std::string& so
 void measure_brdf(const std::string& path, const File& file, const std::string& source, std::uint32_t view_count,
                   bool json, bool quiet) {
     const std::unique_ptr<input::Brdf> brdf = input::open_brdf(source);
-    if (!quiet) tell_of_another(path, file, source, brdf->sha256);
+    if (!quiet) note_another(path, file, source, brdf->sha256);
     const AcdfDescription& d = file.description();
     const compress::Reflected reflected =
         build::reflected_light(*brdf, static_cast<AcdfChannels>(d.channels),

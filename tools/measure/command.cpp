@@ -152,7 +152,7 @@ void run(const MeasureArguments& options) {
         throw Failure(
             options.file + ": its density is 0 where " + options.source +
             ", as it is read here, has light; measure with the options that it was made with, which `acdf "
-            "info` tells");
+            "info` prints");
 }
 
 } // namespace
@@ -190,7 +190,7 @@ void add_measure(CLI::App& program, int& exit_code) {
     command
         .add_option("--scene", options->mesh,
                     "Of a file that stores visibility cells: the mesh (.obj, .ply, .instances) to look from, usually "
-                    "the one it was made for; its variance there is told, beside that of its normals alone. Of "
+                    "the one it was made for; its variance there is printed beside that of its normals alone. Of "
                     "other local files: what acdf local takes, to measure by the normals of a scene alone")
         ->type_name("FILE")
         ->group("Input");

@@ -102,18 +102,18 @@ input::NpyArray read_source(const std::string& path, const File& file, const std
 void measure_table(const std::string& path, const File& file, const std::string& source, const std::string& other,
                    bool json, bool quiet) {
     if (file.partner() && other.empty())
-        throw Failure(path + ": it was made to be combined with another table; tell which (--mis OTHER.npy)");
+        throw Failure(path + ": it was made to be combined with another table; name it (--mis OTHER.npy)");
     if (!file.partner() && !other.empty())
         throw CLI::ValidationError("--mis", "is for tables with an MIS partner, which " + path + " is not");
     const input::NpyArray array = read_source(path, file, source);
     const std::string sha256 = input::file_sha256(source);
-    if (!quiet) tell_of_another(path, file, source, sha256);
+    if (!quiet) note_another(path, file, source, sha256);
     const std::vector<compress::Grid> bins = build::table_grids(array, file.table().indexed_count());
     try {
         build::TableAccuracy accuracy;
         if (file.partner()) {
             const input::NpyArray beside = read_source(path, file, other);
-            if (!quiet) tell_of_another(path, file, other, input::file_sha256(other), "partner.sha256");
+            if (!quiet) note_another(path, file, other, input::file_sha256(other), "partner.sha256");
             accuracy = build::summary(
                 build::measure_bins_beside(file, bins, build::table_grids(beside, file.table().indexed_count())));
             accuracy.combined = true;

@@ -6,7 +6,7 @@
 
 namespace acdf::tools {
 
-builder::Portal told_portal(const builder::Visibility& visibility, const measure::Portal& portal) {
+builder::Portal portal_of(const builder::Visibility& visibility, const measure::Portal& portal) {
     builder::Portal out;
     const auto turn_back = [&visibility](const measure::Vec3& v, float(&told)[3]) { // the transform only turns
         for (std::size_t i = 0; i < 3; ++i) {

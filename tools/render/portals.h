@@ -8,6 +8,6 @@
 namespace acdf::tools {
 
 /// A rectangle in the frame of directions as one in the scene's own coordinates, which `visibility` tells.
-builder::Portal told_portal(const builder::Visibility& visibility, const measure::Portal& portal);
+builder::Portal portal_of(const builder::Visibility& visibility, const measure::Portal& portal);
 
 } // namespace acdf::tools

@@ -80,7 +80,7 @@ Table visibility_table(const builder::Target& target, const measure::Geometry& g
     const compress::VisibilityScene scene = measure::visibility_scene(geometry);
     if (geometry.turned) turn_from_y_up(options.visibility);
     for (std::size_t i = 0; portals && i < geometry.portals.size(); ++i)
-        options.visibility.portals.push_back(told_portal(options.visibility, geometry.portals[i]));
+        options.visibility.portals.push_back(portal_of(options.visibility, geometry.portals[i]));
     options.visibility.point = [&](std::uint64_t index, builder::VisibilityPoint& out) {
         compress::VisibilityPoint point;
         if (!scene.points(index, point)) return false;
@@ -182,7 +182,7 @@ struct SamplerBuilder::Store {
         case SamplerKind::visibility_portals:
             if (!geometry) fail_without_scene(spec);
             if (geometry->portals.empty())
-                throw SpecError("sampler '" + spec.text + "': the scene tells no portals");
+                throw SpecError("sampler '" + spec.text + "': the scene has no portals");
             return visibility_table(fitted, *geometry, spec.bytes, true);
         case SamplerKind::brdf:
             return brdf_table(*brdfs[material], spec.bytes);

@@ -188,7 +188,7 @@ void add_findings(const Sweep& sweep, Advice& advice) {
         advice.findings.push_back(
             "All of this is under light that is the same from everywhere. Under other light mix with samples of "
             "the "
-            "light, by the exact densities that each file tells; `acdf render` shows it on scenes.");
+            "light, by the exact densities that each file stores; `acdf render` shows it on scenes.");
     else if (sweep.kind == SweepKind::visibility)
         advice.findings.push_back(
             "All of this is on the scene as the file knows it, matte, with points all over it: `acdf render` shows "
@@ -198,7 +198,7 @@ void add_findings(const Sweep& sweep, Advice& advice) {
         advice.findings.push_back(
             "All of this is without occluders. Where what is brightest is hidden, samplers that follow the light "
             "closely lose most of their lead over a plain CDF: mix with cosine or BRDF samples there, by the exact "
-            "densities that each file tells; `acdf render` shows it on scenes.");
+            "densities that each file stores; `acdf render` shows it on scenes.");
 }
 
 } // namespace

@@ -93,7 +93,7 @@ void check_columns(const Payload& payload, const AcdfVisibility& h, const std::u
             if (columns[i] != next++ && wrong == tile_splits) wrong = i;
         }
         if (wrong == tile_splits && next == h.column_count) continue;
-        report.add(7013, payload.at(columns_at(h)), "%u columns are there in set %u, %u are told", next, set,
+        report.add(7013, payload.at(columns_at(h)), "%u columns are there in set %u, the header says %u", next, set,
                    h.column_count);
         return;
     }

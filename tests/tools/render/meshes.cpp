@@ -367,7 +367,7 @@ TEST(MeshVisibility, MistakesAreOneLine) {
     const Result shut = folder.render("shut.json", "out");
     EXPECT_EQ(shut.code, 1);
     EXPECT_EQ(lines_in(shut.err), 1u) << shut.err;
-    EXPECT_NE(shut.err.find("tells no portals"), std::string::npos) << shut.err;
+    EXPECT_NE(shut.err.find("has no portals"), std::string::npos) << shut.err;
 }
 
 } // namespace

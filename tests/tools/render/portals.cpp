@@ -124,7 +124,7 @@ TEST(MeshPortals, MistakesAreOneLine) {
     write_text(folder / "bad.json", "{}");
     refused({"--visibility", "--portals", folder / "bad.json"}, 1, "bad.json");
     write_text(folder / "bad.json", small_scene("\"cosine\""));
-    refused({"--visibility", "--portals", folder / "bad.json"}, 1, "bad.json: the scene tells no portals");
+    refused({"--visibility", "--portals", folder / "bad.json"}, 1, "bad.json: the scene has no portals");
 }
 
 } // namespace
