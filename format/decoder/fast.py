@@ -112,7 +112,7 @@ class FastTiles(Splits):
             low, high = box[axis]
             box[axis] = [low + i * 2**k, min(high, low + (i + 1) * 2**k)]
 
-    def draw_within(self, tree, tile, p, u, box, s):
+    def sample_within(self, tree, tile, p, u, box, s):
         _, lines, cells = self.grids[tile]
         line, u[1] = drawn(lines, u[1])
         column, u[0] = drawn(cells[line], u[0])

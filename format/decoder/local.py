@@ -172,12 +172,12 @@ class Local:
                 x, k = x - point.weights[k], shining.pop(0)
             u[0] = clamp(x / point.weights[k], 0, 1)
             p = max(point.weights[k] / point.S, LEAST)
-            return self.tiles.draw_within(self.tree, self.lights[k].tile, p, u, box, s)
+            return self.tiles.sample_within(self.tree, self.lights[k].tile, p, u, box, s)
         u[0] = clamp((x - point.light_sum) / (point.S - point.light_sum), 0, 1)
         tile, q = (self.visibility.draw(point.mixture, point.cells, u) if point.cells else
                    self.tiles.draw(point.mixture, u))
         p = max(point.row_sum / point.S * q, LEAST)
-        return self.tiles.draw_within(self.tree, tile, p, u, box, s)
+        return self.tiles.sample_within(self.tree, tile, p, u, box, s)
 
     def find(self, point, square, box, s):
         """The cell of a direction."""
@@ -234,15 +234,15 @@ class Local:
     def draw_light(self, point, u):
         """By rows or through visible_portals: a direction and its p_L."""
         if point.visible_portals is None:
-            return self.draw_row(point, u)
+            return self.sample_row(point, u)
         share = point.visible_portals.share
         if u[0] < share:
-            v = self.draw_row(point, [clamp(u[0] / share, 0, 1), u[1]])[:3]
+            v = self.sample_row(point, [clamp(u[0] / share, 0, 1), u[1]])[:3]
         else:
             v = point.visible_portals.draw([clamp((u[0] - share) / (1 - share), 0, 1), u[1]])
         return (*v, self.light_pdf(point, v))
 
-    def draw_row(self, point, u):
+    def sample_row(self, point, u):
         box, s = self.sphere.whole()
         p = (self.draw(point, u, box, s) if point.mixture is not None else
              self.tree.draw(point.tree, u, box, s))

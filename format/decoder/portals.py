@@ -192,7 +192,7 @@ def inside(t, low, high):
     return clamp(t, low + away, high - away) if high - low > 2 * away else 0.5 * (low + high)
 
 
-def draw_part(weights, u):
+def sample_part(weights, u):
     """The number of a part, and what is left of u."""
     x, parts = u * sum_of(weights), [i for i, w in enumerate(weights) if w > 0]
     for i in parts:
@@ -218,9 +218,9 @@ class VisiblePortals:
 
     def draw(self, u):
         u = list(u)
-        number, u[0] = draw_part([visible_portal.weight for visible_portal in self.seen], u[0])
+        number, u[0] = sample_part([visible_portal.weight for visible_portal in self.seen], u[0])
         visible_portal = self.seen[number]
         K = range(visible_portal.portals.K)
-        x, u[0] = draw_part([sum_of([visible_portal.w[i, j] for j in K]) for i in K], u[0])
-        y, u[1] = draw_part([visible_portal.w[x, j] for j in K], u[1])
+        x, u[0] = sample_part([sum_of([visible_portal.w[i, j] for j in K]) for i in K], u[0])
+        y, u[1] = sample_part([visible_portal.w[x, j] for j in K], u[1])
         return visible_portal.draw(x, y, u)

@@ -2,7 +2,7 @@
 import math
 
 from .sphere import clamp, random_number
-from .tree import fraction_drawn, slope
+from .tree import fraction_sampled, slope
 
 LEAST, MOST = 2.2250738585072014e-308, 1.7976931348623157e+308
 
@@ -38,7 +38,7 @@ class Table:
         for k in range(first, len(self.axes)):
             axis, (x0, x1) = self.axes[k], box[k]
             b = 2.0**-48 * max(abs(axis.low), abs(axis.high)) * axis.resolution / abs(axis.high - axis.low)
-            position = clamp(x0 + fraction_drawn(left[k], s[k]) * (x1 - x0), x0 + b, x1 - b)
+            position = clamp(x0 + fraction_sampled(left[k], s[k]) * (x1 - x0), x0 + b, x1 - b)
             out.append(axis.low + (axis.high - axis.low) * (position / axis.resolution))
         return out, self.density(p, box, s, [self.position(axis, x) for axis, x in zip(self.sampled, out)])
 

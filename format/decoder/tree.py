@@ -130,7 +130,7 @@ class Tree:
             unit += curve.child(i)
 
 
-def fraction_drawn(u, s):
+def fraction_sampled(u, s):
     """t of §6.2."""
     return u if s == 0 else 2 * u / ((1 - s) + math.sqrt((1 - s) * (1 - s) + 4 * s * u))
 

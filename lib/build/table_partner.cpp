@@ -22,7 +22,7 @@ std::size_t count_of(const Grid& grid) {
 }
 
 /// Numbers over their mean: a density with the whole bin as unit of volume. Empty without energy.
-std::vector<double> density_of(const Grid& grid) {
+std::vector<double> pdf_of(const Grid& grid) {
     std::vector<double> out(grid.values, grid.values + count_of(grid));
     compress::Sum sum;
     for (const double value : out) sum.add(value);
@@ -66,7 +66,7 @@ struct Densities {
     std::uint64_t cells = 0;
 
     Densities(const File& file, std::uint32_t bin, const Grid& grid, const Grid& other)
-        : f(density_of(grid)), p(f.size(), 0.0), b(density_of(other)) {
+        : f(pdf_of(grid)), p(f.size(), 0.0), b(pdf_of(other)) {
         if (b.empty()) b.assign(f.size(), 0.0);
         if (f.empty() || !(file.bin(bin).share > 0.0f)) return;
         for_each_table_cell(file, file.bin(bin).root, [&](const TableCell& cell) {
@@ -119,7 +119,7 @@ TablePartner::TablePartner(const std::vector<Grid>& bins, const std::vector<Grid
       filling_(std::make_shared<const compress::Filling>(partner.heuristic)) {
     if (!partner) return;
     compress::parallel_for(std::size_t{0}, bins.size(), [&](std::size_t k) {
-        const std::vector<double> f = density_of(bins[k]), b = density_of(others[k]);
+        const std::vector<double> f = pdf_of(bins[k]), b = pdf_of(others[k]);
         if (f.empty()) return;
         const double nu = solve_threshold(f, b, *filling_, partner.light / partner.other);
         const double mean = compress::integral(bins[k]);

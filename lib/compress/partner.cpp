@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kCosines = 64;
 
 /// Density of light that a GGX lobe draws for a view: visible normals (Heitz, JCGT 2018), reflected.
-double ggx_density(double alpha, const std::array<double, 3>& wo, const std::array<double, 3>& wi) {
+double ggx_pdf(double alpha, const std::array<double, 3>& wo, const std::array<double, 3>& wi) {
     std::array<double, 3> h{};
     double length = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -42,7 +42,7 @@ double brdf_density(double cosine) {
             for (std::size_t k = 0; k < azimuths; ++k) {
                 double s, c;
                 acdf_sincospi((double(k) + 0.5) / double(azimuths), &s, &c);
-                sum += weight * ggx_density(alpha, wo, {sine * c, sine * s, cosine});
+                sum += weight * ggx_pdf(alpha, wo, {sine * c, sine * s, cosine});
             }
         }
     return sum;

@@ -124,9 +124,9 @@ py::tuple OpenFile::sample(const py::object& condition, const py::object& given,
         const py::gil_scoped_release release;
         const AcdfBrdfWaves* fast = kind == ACDF_KIND_BRDF ? waves(u.count) : nullptr;
         if (fast) acdf_brdf_waves_draw(fast, from, at.each, numbers, u.count, w, p);
-        else if (kind == ACDF_KIND_BRDF) acdf_draw_brdf_array(file(), from, at.each, numbers, u.count, w, p);
-        else if (kind == ACDF_KIND_LOCAL) acdf_draw_local_array(file(), from, at.each, numbers, u.count, w, p);
-        else acdf_draw_environment_array(file(), numbers, u.count, w, p);
+        else if (kind == ACDF_KIND_BRDF) acdf_sample_brdf_array(file(), from, at.each, numbers, u.count, w, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_sample_local_array(file(), from, at.each, numbers, u.count, w, p);
+        else acdf_sample_environment_array(file(), numbers, u.count, w, p);
     }
     return py::make_tuple(directions, pdfs);
 }
@@ -141,7 +141,7 @@ py::tuple OpenFile::sample_table(const py::object& condition, const py::object& 
     const double* numbers = u.data();
     {
         const py::gil_scoped_release release;
-        acdf_draw_table_array(file(), at.data, at.each, numbers, u.count, x, p);
+        acdf_sample_table_array(file(), at.data, at.each, numbers, u.count, x, p);
     }
     return py::make_tuple(points, pdfs);
 }
@@ -156,7 +156,7 @@ py::array OpenFile::pdf(const py::object& condition, const py::object& given, co
         const double* points = x.data();
         {
             const py::gil_scoped_release release;
-            acdf_density_table_array(file(), at.data, at.each, points, x.count, p);
+            acdf_pdf_table_array(file(), at.data, at.each, points, x.count, p);
         }
         return std::move(pdfs);
     }
@@ -170,9 +170,9 @@ py::array OpenFile::pdf(const py::object& condition, const py::object& given, co
         const py::gil_scoped_release release;
         const AcdfBrdfWaves* fast = kind == ACDF_KIND_BRDF ? waves(w.count) : nullptr;
         if (fast) acdf_brdf_waves_density(fast, from, at.each, directions, w.count, p);
-        else if (kind == ACDF_KIND_BRDF) acdf_density_brdf_array(file(), from, at.each, directions, w.count, p);
-        else if (kind == ACDF_KIND_LOCAL) acdf_density_local_array(file(), from, at.each, directions, w.count, p);
-        else acdf_density_environment_array(file(), directions, w.count, p);
+        else if (kind == ACDF_KIND_BRDF) acdf_pdf_brdf_array(file(), from, at.each, directions, w.count, p);
+        else if (kind == ACDF_KIND_LOCAL) acdf_pdf_local_array(file(), from, at.each, directions, w.count, p);
+        else acdf_pdf_environment_array(file(), directions, w.count, p);
     }
     return std::move(pdfs);
 }

@@ -64,16 +64,16 @@ void put_numbers(bool found, int axes, double* u) {
 
 } // namespace
 
-float acdf_draw_environment(const AcdfFile* file, double u0, double u1, float direction[3]) {
+float acdf_sample_environment(const AcdfFile* file, double u0, double u1, float direction[3]) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0.0f;
     return keep(acdf_environment_sample(&file->environment, u0, u1), direction);
 }
 
-float acdf_density_environment(const AcdfFile* file, const float direction[3]) {
+float acdf_pdf_environment(const AcdfFile* file, const float direction[3]) {
     return file->file.kind() == ACDF_KIND_ENVIRONMENT ? acdf_environment_pdf(&file->environment, direction) : 0.0f;
 }
 
-int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
+int acdf_sample_environment_array(const AcdfFile* file, const double* u, size_t count, float* directions,
                                 float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
     for (size_t i = 0; i < count; ++i)
@@ -81,7 +81,7 @@ int acdf_draw_environment_array(const AcdfFile* file, const double* u, size_t co
     return 1;
 }
 
-int acdf_density_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
+int acdf_pdf_environment_array(const AcdfFile* file, const float* directions, size_t count, float* pdfs) {
     if (file->file.kind() != ACDF_KIND_ENVIRONMENT) return 0;
     for (size_t i = 0; i < count; ++i) pdfs[i] = acdf_environment_pdf(&file->environment, directions + 3 * i);
     return 1;
@@ -94,16 +94,16 @@ int acdf_invert_environment_array(const AcdfFile* file, const float* directions,
     return 1;
 }
 
-float acdf_draw_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]) {
+float acdf_sample_local(const AcdfFile* file, const float normal[3], double u0, double u1, float direction[3]) {
     if (file->file.kind() != ACDF_KIND_LOCAL) return 0.0f;
     return keep(acdf_local_sample(&file->local, normal, u0, u1), direction);
 }
 
-float acdf_density_local(const AcdfFile* file, const float normal[3], const float direction[3]) {
+float acdf_pdf_local(const AcdfFile* file, const float normal[3], const float direction[3]) {
     return file->file.kind() == ACDF_KIND_LOCAL ? acdf_local_pdf(&file->local, normal, direction) : 0.0f;
 }
 
-int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
+int acdf_sample_local_array(const AcdfFile* file, const float* normals, size_t each, const double* u, size_t count,
                           float* directions, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     if (each == 1) {
@@ -125,7 +125,7 @@ int acdf_draw_local_array(const AcdfFile* file, const float* normals, size_t eac
     return 1;
 }
 
-int acdf_density_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
+int acdf_pdf_local_array(const AcdfFile* file, const float* normals, size_t each, const float* directions,
                              size_t count, float* pdfs) {
     if (!serves(file, ACDF_KIND_LOCAL, each)) return 0;
     if (each == 1) {
@@ -147,16 +147,16 @@ int acdf_irradiance_local_array(const AcdfFile* file, const float* normals, size
     return 1;
 }
 
-float acdf_draw_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]) {
+float acdf_sample_brdf(const AcdfFile* file, const float wo[3], double u0, double u1, float wi[3]) {
     if (file->file.kind() != ACDF_KIND_BRDF) return 0.0f;
     return keep(acdf_brdf_sample(&file->brdf, wo, u0, u1), wi);
 }
 
-float acdf_density_brdf(const AcdfFile* file, const float wo[3], const float wi[3]) {
+float acdf_pdf_brdf(const AcdfFile* file, const float wo[3], const float wi[3]) {
     return file->file.kind() == ACDF_KIND_BRDF ? acdf_brdf_pdf(&file->brdf, wo, wi) : 0.0f;
 }
 
-int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
+int acdf_sample_brdf_array(const AcdfFile* file, const float* wo, size_t each, const double* u, size_t count,
                          float* wi, float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each, [&](size_t j, size_t i) {
@@ -165,7 +165,7 @@ int acdf_draw_brdf_array(const AcdfFile* file, const float* wo, size_t each, con
     return 1;
 }
 
-int acdf_density_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
+int acdf_pdf_brdf_array(const AcdfFile* file, const float* wo, size_t each, const float* wi, size_t count,
                             float* pdfs) {
     if (!serves(file, ACDF_KIND_BRDF, each)) return 0;
     for_each_item(count, each,
@@ -275,17 +275,17 @@ uint32_t acdf_table_sampled_axes(const AcdfFile* file) {
 }
 uint32_t acdf_table_indexed_axes(const AcdfFile* file) { return file->table.indexed_count; }
 
-double acdf_draw_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x) {
+double acdf_sample_table(const AcdfFile* file, const uint32_t* index, const double* u, double* x) {
     if (file->file.kind() != ACDF_KIND_TABLE || !has_index(file->table, index)) return 0.0;
     return acdf_table_sample(&file->table, index, u, x);
 }
 
-double acdf_density_table(const AcdfFile* file, const uint32_t* index, const double* x) {
+double acdf_pdf_table(const AcdfFile* file, const uint32_t* index, const double* x) {
     if (file->file.kind() != ACDF_KIND_TABLE || !has_index(file->table, index)) return 0.0;
     return acdf_table_pdf(&file->table, index, x);
 }
 
-int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
+int acdf_sample_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* u, size_t count,
                           double* x, double* pdfs) {
     if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;
@@ -297,7 +297,7 @@ int acdf_draw_table_array(const AcdfFile* file, const uint32_t* index, size_t ea
     return 1;
 }
 
-int acdf_density_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
+int acdf_pdf_table_array(const AcdfFile* file, const uint32_t* index, size_t each, const double* x,
                              size_t count, double* pdfs) {
     if (!serves(file, ACDF_KIND_TABLE, each) || !has_index(file->table, index)) return 0;
     const AcdfTable& table = file->table;

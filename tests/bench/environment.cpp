@@ -72,7 +72,7 @@ std::vector<float> numbers(bool coherent) {
     return u;
 }
 
-Directions drawn_directions(const EnvironmentView& view, const std::vector<float>& u) {
+Directions sampled_directions(const EnvironmentView& view, const std::vector<float>& u) {
     Directions out(kNumbers);
     for (std::size_t i = 0; i < kNumbers; ++i)
         std::memcpy(out[i].data(), view.sample(u[2 * i], u[2 * i + 1]).direction, sizeof out[i]);
@@ -137,7 +137,7 @@ void run(const compress::Target& target) {
         "\n| ns a call (of the full table's) | full table | alias table | hierarchical warp | 64 KiB | 16 KiB "
         "| 64 KiB, no lookup grid |\n|---|---|---|---|---|---|---|\n");
     const std::vector<float> u = numbers(false), coherent = numbers(true);
-    const Directions drawn = drawn_directions(plain, u), uniform = uniform_directions(kNumbers, 9);
+    const Directions drawn = sampled_directions(plain, u), uniform = uniform_directions(kNumbers, 9);
     const auto samples = [&](const std::vector<float>& given) {
         return std::vector<Candidate>{draws("full", full, given), draws("alias", alias, given),
                                       draws("warp", warp, given), draws("64", at_64, given),

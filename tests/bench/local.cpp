@@ -70,7 +70,7 @@ Candidate each(const LocalEnvironmentView& view, const Questions& q, std::size_t
 }
 
 /// Draws at a normal that serves once.
-Candidate draw_each(const LocalEnvironmentView& view, const Questions& q) {
+Candidate sample_each(const LocalEnvironmentView& view, const Questions& q) {
     return {"", [&](std::size_t first, std::size_t count) {
                 for (std::size_t i = first; i < first + count; ++i)
                     keep(view.sample(q.normals[i].data(), q.u[i][0], q.u[i][1]));
@@ -78,7 +78,7 @@ Candidate draw_each(const LocalEnvironmentView& view, const Questions& q) {
 }
 
 /// Densities at a normal that serves once.
-Candidate density_each(const LocalEnvironmentView& view, const Questions& q, const Directions& directions) {
+Candidate pdf_each(const LocalEnvironmentView& view, const Questions& q, const Directions& directions) {
     return {"", [&](std::size_t first, std::size_t count) {
                 for (std::size_t i = first; i < first + count; ++i)
                     keep(view.pdf(q.normals[i].data(), directions[i].data()));
@@ -157,31 +157,31 @@ bool run(const char* path) {
     const auto drawn = [&q](const auto& view, const AcdfLocalPoint& point, std::size_t k) {
         keep(view.pdf(point, q.drawn[k].data()));
     };
-    const auto full_draw_of = [&full](const Questions& of) {
+    const auto full_sample_of = [&full](const Questions& of) {
         return [&](std::size_t i) { keep(full.sample(of.u[i][0], of.u[i][1])); };
     };
-    const auto full_draw = full_draw_of(q);
+    const auto full_sample = full_sample_of(q);
     const auto full_anywhere = [&](std::size_t i) { keep(full.pdf(q.anywhere[i].data())); };
-    const auto full_drawn = [&](std::size_t i) { keep(full.pdf(q.drawn[i].data())); };
+    const auto full_sampled = [&](std::size_t i) { keep(full.pdf(q.drawn[i].data())); };
     std::vector<DirectionSample> samples(kWave);
     std::vector<float> densities(kWave);
     const auto* normals = reinterpret_cast<const float(*)[3]>(q.normals.data());
     const auto* u = reinterpret_cast<const double(*)[2]>(q.wide.data());
-    const auto* directions_drawn = reinterpret_cast<const float(*)[3]>(q.drawn.data());
-    const auto draws_of = [&samples](const Questions& asked) -> Wave {
+    const auto* directions_sampled = reinterpret_cast<const float(*)[3]>(q.drawn.data());
+    const auto samples_of = [&samples](const Questions& asked) -> Wave {
         return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
             wavefront.sample(reinterpret_cast<const float(*)[3]>(asked.normals.data()) + first,
                              reinterpret_cast<const double(*)[2]>(asked.wide.data()) + first, n, samples.data());
         };
     };
-    const Wave draws = draws_of(q);
-    const Wave shared_draws = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+    const Wave draws = samples_of(q);
+    const Wave shared_samples = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
         for (std::size_t i = first; i < first + n; i += kShared)
             wavefront.sample(fast.at(normals[i]), u + i, kShared, &samples[i - first]);
     };
-    const Wave shared_densities = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
+    const Wave shared_pdfs = [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
         for (std::size_t i = first; i < first + n; i += kShared)
-            wavefront.pdf(fast.at(normals[i]), directions_drawn + i, kShared, &densities[i - first]);
+            wavefront.pdf(fast.at(normals[i]), directions_sampled + i, kShared, &densities[i - first]);
     };
     const auto of = [&](const Directions& directions) -> Wave {
         return [&](const LocalWavefront& wavefront, std::size_t first, std::size_t n) {
@@ -190,32 +190,32 @@ bool run(const char* path) {
         };
     };
     const auto full_both = [&](std::size_t i) {
-        full_draw(i);
+        full_sample(i);
         full_anywhere(i);
     };
     const auto at_points = [&](std::size_t shared, const auto& ask) {
         return [&q, shared, ask](const LocalEnvironmentView& view) { return each(view, q, shared, ask); };
     };
-    const auto draw_once = [](const Questions& of) {
-        return [&of](const LocalEnvironmentView& view) { return draw_each(view, of); };
+    const auto sample_once = [](const Questions& of) {
+        return [&of](const LocalEnvironmentView& view) { return sample_each(view, of); };
     };
     const auto once = [&q](const Directions& directions) {
-        return [&](const LocalEnvironmentView& view) { return density_each(view, q, directions); };
+        return [&](const LocalEnvironmentView& view) { return pdf_each(view, q, directions); };
     };
-    report("shading point (full table: a draw)", all, at_points(1, nothing), full_draw, nullptr);
-    report("draw at a normal of its own", all, draw_once(q), full_draw, draws);
-    report("one of 16 draws at a point", all, at_points(kShared, draw), full_draw, shared_draws);
+    report("shading point (full table: a draw)", all, at_points(1, nothing), full_sample, nullptr);
+    report("draw at a normal of its own", all, sample_once(q), full_sample, draws);
+    report("one of 16 draws at a point", all, at_points(kShared, draw), full_sample, shared_samples);
     report("density of a uniform direction at a normal of its own", all, once(q.anywhere), full_anywhere,
            of(q.anywhere));
-    report("density of a drawn direction at a normal of its own", all, once(q.drawn), full_drawn, of(q.drawn));
-    report("one of 16 densities at a point", all, at_points(kShared, drawn), full_drawn, shared_densities);
+    report("density of a drawn direction at a normal of its own", all, once(q.drawn), full_sampled, of(q.drawn));
+    report("one of 16 densities at a point", all, at_points(kShared, drawn), full_sampled, shared_pdfs);
     report("shading point, draw, and density of another direction (full table: both)", all, at_points(1, both),
            full_both, nullptr);
     const Questions coherent(plain, true);
-    report("draw, coherent normals and numbers", all, draw_once(coherent), full_draw_of(coherent),
-           draws_of(coherent));
+    report("draw, coherent normals and numbers", all, sample_once(coherent), full_sample_of(coherent),
+           samples_of(coherent));
     all.evicted = true;
-    report("draw at a normal of its own, caches evicted", all, draw_once(q), full_draw, draws);
+    report("draw at a normal of its own, caches evicted", all, sample_once(q), full_sample, draws);
     report("density of a uniform direction at a normal of its own, caches evicted", all, once(q.anywhere),
            full_anywhere, of(q.anywhere));
     return true;

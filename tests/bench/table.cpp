@@ -204,7 +204,7 @@ bool run(const std::vector<std::uint32_t>& sides) {
             drawn.narrow[i][axis] = std::min(static_cast<float>(drawn.wide[i][axis]),
                                              static_cast<float>(sides[axis]) * (1.0f - 0x1p-24f));
     }
-    const auto ours_draws = [&u](const acdf::TableView& of) -> Candidate {
+    const auto ours_samples = [&u](const acdf::TableView& of) -> Candidate {
         return {"", [&](std::size_t first, std::size_t count) {
                     double x[3];
                     for (std::size_t i = first; i < first + count; ++i) {
@@ -227,7 +227,7 @@ bool run(const std::vector<std::uint32_t>& sides) {
                 made.accuracy.relative_variance, 2 * 4 * values.size());
     for (const bool evicted : {false, true}) {
         report(evicted ? "draw, caches evicted" : "draw",
-               {draws(full, u), draws(alias, u), ours_draws(view), ours_draws(walk)}, evicted);
+               {draws(full, u), draws(alias, u), ours_samples(view), ours_samples(walk)}, evicted);
         report(evicted ? "density of uniform points, caches evicted" : "density of uniform points",
                {densities(full, anywhere), densities(alias, anywhere), ours(view, anywhere), ours(walk, anywhere)},
                evicted);

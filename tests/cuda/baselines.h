@@ -143,7 +143,7 @@ public:
         make_alias(mass, densities);
         make_warp(mass, target);
     }
-    FullTable full() const { return {grid_, marginal_->data(), conditional_->data(), densities_->data()}; }
+    FullTable full() const { return {grid_, marginal_->data(), conditional_->data(), pdfs_->data()}; }
     AliasTable alias() const { return {grid_, entries_->data()}; }
     WarpTable warp() const { return {grid_, quads_->data(), solid_angle_->data(), levels_}; }
 
@@ -167,7 +167,7 @@ private:
         }
         marginal_ = to_device(marginal);
         conditional_ = to_device(conditional);
-        densities_ = to_device(densities);
+        pdfs_ = to_device(densities);
     }
     void make_alias(std::vector<double> mass, const std::vector<float>& densities) {
         for (double& m : mass) m *= static_cast<double>(mass.size());
@@ -216,7 +216,7 @@ private:
 
     TexelGrid grid_;
     std::uint32_t levels_ = 0;
-    std::unique_ptr<DeviceArray<float>> marginal_, conditional_, densities_, solid_angle_;
+    std::unique_ptr<DeviceArray<float>> marginal_, conditional_, pdfs_, solid_angle_;
     std::unique_ptr<DeviceArray<float4>> entries_, quads_;
 };
 

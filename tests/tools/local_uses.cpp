@@ -167,7 +167,7 @@ TEST_F(LocalCommands, WhatDoesNotFitIsRefused) {
 
 // ---- plots ---------------------------------------------------------------------------------------------
 
-TEST_F(LocalCommands, PlotHoldsTheReadersDensities) {
+TEST_F(LocalCommands, PlotHoldsTheReadersPdfs) {
     const std::string exr = folder / "up.exr";
     for (const std::string& path : {shared, grid}) {
         const Result result = run_acdf({"plot", path, "-f", "-o", exr, "--width", "60", "--normal", "-1,2,0.5"});

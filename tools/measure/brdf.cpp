@@ -39,7 +39,7 @@ Baselines baselines(const compress::Reflected& reflected, const input::Brdf& brd
     out.table_bytes = mean.bytes();
     out.ggx_alpha = measure::best_ggx(reflected, views).alpha;
     const measure::GgxSampler ggx(out.ggx_alpha);
-    const std::vector<build::ViewDensity> densities = {
+    const std::vector<build::ViewPdf> densities = {
         [&](const double wo[3], const double wi[3]) { return mean.pdf(wo, wi); },
         [&](const double wo[3], const double wi[3]) { return centre.pdf(wo, wi); },
         [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }, measure::CosineSampler::pdf};

@@ -119,7 +119,7 @@ std::vector<Drawing> draw_all(const PlotArguments& options, const Plotted& sourc
     for (const NamedNormal& named : panel_normals) {
         Plotted panel;
         panel.local.emplace(PlottedNormal{source.local->local, named.normal, source.local->position});
-        panel.density = density_of(*panel.local);
+        panel.density = pdf_of(*panel.local);
         panel.columns = source.columns;
         panel.rows = source.rows;
         panel.panels = true;

@@ -21,7 +21,7 @@ struct PlottedNormal {
 };
 
 /// The stored density, exactly. The view's File must outlive the result.
-Density density_of(const PlottedNormal& plotted);
+Density pdf_of(const PlottedNormal& plotted);
 
 /// The borders of cells, as of environments.
 std::vector<float> knot_opacity(const PlottedNormal& plotted, const PlotMap& map,

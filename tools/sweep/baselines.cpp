@@ -122,7 +122,7 @@ std::vector<Candidate> environment_baselines(const Target& target, const SweepOp
             measure::downsampled_cdf_sampler(target, 2 * rows, rows)));
     }
     for (Candidate& candidate : out) {
-        const LightAccuracy accuracy = light_accuracy(target, texel_densities(target, *candidate.sampler));
+        const LightAccuracy accuracy = light_accuracy(target, texel_pdfs(target, *candidate.sampler));
         candidate.row.relative_variance = accuracy.relative_variance;
         candidate.row.max_weight = accuracy.max_weight;
         candidate.row.rms = accuracy.rms;
@@ -145,7 +145,7 @@ std::vector<Candidate> local_baselines(const Target& target, const std::vector<b
         return over_normals(normals, [&sampler](const float n[3]) { return sampler.relative_variance(n); });
     };
     const auto in_partner = [&](const LightSampler& sampler) {
-        return summary(point_variances(target, texel_densities(target, sampler), in_the_open(normals)), Scale::own)
+        return summary(point_variances(target, texel_pdfs(target, sampler), in_the_open(normals)), Scale::own)
             .partner;
     };
     const Lit of_full = each(full);

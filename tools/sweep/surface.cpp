@@ -21,7 +21,7 @@ std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t 
     return {static_cast<float>(middle[0]), static_cast<float>(middle[1]), static_cast<float>(middle[2])};
 }
 
-std::vector<float> texel_densities(const compress::Target& target, const measure::LightSampler& sampler) {
+std::vector<float> texel_pdfs(const compress::Target& target, const measure::LightSampler& sampler) {
     std::vector<float> out(target.values.size());
     compress::parallel_for(0u, target.rows, [&](std::uint32_t r) {
         const std::unique_ptr<measure::PointSampler> point = sampler.point_sampler();

@@ -19,7 +19,7 @@ std::array<float, 3> texel_middle(const compress::Target& target, std::uint32_t 
 
 /// The density of a sampler that does not know the normal, in sr^-1, in the middle of each texel (its z halves the
 /// texel's solid angle).
-std::vector<float> texel_densities(const compress::Target& target, const measure::LightSampler& sampler);
+std::vector<float> texel_pdfs(const compress::Target& target, const measure::LightSampler& sampler);
 
 /// Where light is gathered: a unit normal, and what is hidden from there.
 struct SurfacePoint {

@@ -31,7 +31,7 @@ struct BrdfAccuracy : builder::BrdfAccuracy {
 };
 
 /// What p is asked of: the density of wi for wo, in sr^-1. Called by several threads at once.
-using ViewDensity = std::function<double(const double wo[3], const double wi[3])>;
+using ViewPdf = std::function<double(const double wo[3], const double wi[3])>;
 
 /// `count` views with cos(theta_o) stratified and uniform in [low, high] and azimuths as random as a hash makes
 /// them: not those that are stored. The same for the same arguments.
@@ -44,7 +44,7 @@ std::vector<compress::View> random_views(std::uint32_t count, bool isotropic, do
 ///
 /// The defaults are the one grid of all figures that are told: of those in files, of `acdf brdf`, `measure` and
 /// `sweep`.
-std::vector<ViewAccuracy> measure_views(const ViewDensity& density, const compress::Reflected& reflected,
+std::vector<ViewAccuracy> measure_views(const ViewPdf& density, const compress::Reflected& reflected,
                                         const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                         std::uint32_t rows = 601);
 
@@ -59,7 +59,7 @@ std::vector<ViewAccuracy> measure_views(const File& file, const compress::Reflec
 
 /// summary(measure_views(density, ...)).relative_variance of several densities, which throws alike: what is
 /// reflected is looked up once for all of them.
-std::vector<double> relative_variances(const std::vector<ViewDensity>& densities,
+std::vector<double> relative_variances(const std::vector<ViewPdf>& densities,
                                        const compress::Reflected& reflected,
                                        const std::vector<compress::View>& views, std::uint32_t columns = 251,
                                        std::uint32_t rows = 601);
@@ -71,7 +71,7 @@ public:
     ReflectedViews(const compress::Reflected& reflected, const std::vector<compress::View>& views,
                    std::uint32_t columns, std::uint32_t rows, std::size_t most_kept = std::size_t{1} << 25);
     /// That of summary(measure_views(density, ...)), which throws alike.
-    double relative_variance(const ViewDensity& density) const;
+    double relative_variance(const ViewPdf& density) const;
 
 private:
     compress::Reflected reflected_;

@@ -115,14 +115,14 @@ private:
     }
     /// w_i / (n_i p_i).
     double weight(const Part& own, const AcdfDirectionSample& s) const {
-        const double own_density = own.n * s.pdf;
+        const double own_pdf = own.n * s.pdf;
         double others = 0.0; // relative to the sample's own, so that squares stay in range
         for (const Part& part : parts_) {
             if (&part == &own) continue;
-            const double ratio = part.n * part.sampler->pdf(s.direction) / own_density;
+            const double ratio = part.n * part.sampler->pdf(s.direction) / own_pdf;
             others += power_ ? ratio * ratio : ratio;
         }
-        return 1.0 / (own_density * (1.0 + others));
+        return 1.0 / (own_pdf * (1.0 + others));
     }
 
     std::vector<Part> parts_;

@@ -43,17 +43,17 @@ ACDF_FN double acdf_brdf_fraction(const AcdfRange* range, double position) {
 }
 
 /* Density of wi: that of its place in a cell of probability p (0: none), and the cosine's share. */
-ACDF_FN float acdf_brdf_density(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
+ACDF_FN float acdf_brdf_cell_pdf(const AcdfBrdf* brdf, double p, const AcdfRange range[2],
                                 const AcdfBrdfPosition* place, const float wi[3]) {
     const double floor = (double)brdf->views->diffuse_share;
     double pdf = 0.0;
     int axis;
     if (p > 0.0) {
         const double area = (double)(range[0].high - range[0].low) * (double)(range[1].high - range[1].low);
-        pdf = acdf_brdf_mean_density(brdf, p, area, place);
+        pdf = acdf_brdf_mean_pdf(brdf, p, area, place);
         for (axis = 0; axis < 2; ++axis)
             if (range[axis].tilt != 0.0)
-                pdf *= acdf_tilt_density(range[axis].tilt, acdf_brdf_fraction(&range[axis], place->position[axis]));
+                pdf *= acdf_tilt_pdf(range[axis].tilt, acdf_brdf_fraction(&range[axis], place->position[axis]));
     }
     if (floor > 0.0) pdf = (1.0 - floor) * pdf + (wi[2] > 0.0f ? floor / ACDF_PI * (double)wi[2] : 0.0);
     else if (!(p > 0.0)) return 0.0f;
@@ -68,7 +68,7 @@ ACDF_FN float acdf_brdf_view_pdf(const AcdfBrdf* brdf, const AcdfBrdfView* view,
     if (brdf->tables && brdf->tables->grid) return acdf_brdf_pair_pdf(brdf, view, wi);
     if (!acdf_brdf_half_position(brdf, view, wi, &place, &sign)) return 0.0f;
     p = acdf_brdf_find(brdf, view, &place, range, 0);
-    return acdf_brdf_density(brdf, p, range, &place, wi);
+    return acdf_brdf_cell_pdf(brdf, p, range, &place, wi);
 }
 
 /* The same by vectors of this process's processor, which the linked library has: files that it opens name them. Of
@@ -172,7 +172,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
         acdf_brdf_half(view, out.direction, half, &place)) {
         place.position[0] = position[0];
         place.position[1] = position[1];
-        out.pdf = acdf_brdf_density(brdf, p, range, &place, out.direction);
+        out.pdf = acdf_brdf_cell_pdf(brdf, p, range, &place, out.direction);
         return out;
     }
     /* Near the border rounding wi to float may carry it over: then it moves towards the middle, so that pdf() finds
@@ -186,7 +186,7 @@ ACDF_FN AcdfDirectionSample acdf_brdf_end(const AcdfBrdf* brdf, const AcdfBrdfVi
         acdf_brdf_reflect(brdf, view, position, sign, out.direction, reach);
         if (acdf_brdf_half_position(brdf, view, out.direction, &place, &side) &&
             acdf_brdf_inside(range, place.position, nothing)) {
-            out.pdf = acdf_brdf_density(brdf, p, range, &place, out.direction);
+            out.pdf = acdf_brdf_cell_pdf(brdf, p, range, &place, out.direction);
             return out;
         }
     }

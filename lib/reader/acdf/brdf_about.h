@@ -140,7 +140,7 @@ ACDF_OUTLINE_ON_CPU void acdf_brdf_view_pdfs_about(const AcdfBrdf* brdf, const A
         acdf_about_halves(view, wi + first, (uint32_t)some, &a);
         acdf_about_positions(brdf, view, (uint32_t)some, &a);
         acdf_about_cells(brdf, view, (uint32_t)some, &a);
-        for (i = 0; i < some; ++i) { /* as acdf_brdf_mean_density */
+        for (i = 0; i < some; ++i) { /* as acdf_brdf_mean_pdf */
             const float pdf = scale * a.share[i] * a.length[i] / (a.dot[i] * a.area[i]);
             const float positive = pdf > 0.0f ? pdf : 0.0f; /* NaN is not */
             out[first + i] = positive < 1e30f ? positive : 1e30f;

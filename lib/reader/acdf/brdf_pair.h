@@ -34,7 +34,7 @@ ACDF_INLINE float acdf_brdf_pair_found(const AcdfBrdf* brdf, const AcdfBrdfView*
                                        const AcdfBrdfPosition* place) {
     double p = acdf_brdf_pair_share(brdf, view, cell); /* NaN where no view weighs anything */
     if (!(p > 0.0)) return 0.0f;
-    p = acdf_brdf_mean_density(brdf, acdf_positive(p), acdf_brdf_area(brdf->tables, cell), place);
+    p = acdf_brdf_mean_pdf(brdf, acdf_positive(p), acdf_brdf_area(brdf->tables, cell), place);
     return acdf_brdf_positive(p);
 }
 
@@ -145,7 +145,7 @@ ACDF_OUTLINE uint32_t acdf_brdf_pair_walk(const AcdfBrdf* brdf, const uint8_t* r
  * says, so that nothing waits for a comparison. Where one disagrees, the walk goes the other way, and then where
  * the cell across that side is. Returns the cell's probability; 0 where there is nothing to draw, and where all
  * that is left of the weight is below the random numbers. */
-ACDF_INLINE double acdf_brdf_pair_draw(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
+ACDF_INLINE double acdf_brdf_pair_sample_cell(const AcdfBrdf* brdf, const AcdfBrdfView* view, const double u[2],
                                        __m128d* left, const AcdfBrdfPath** drawn) {
     const AcdfBrdfTables* tables = brdf->tables;
     const double* codes = (const double*)acdf_brdf_words(tables, tables->codes);
@@ -214,7 +214,7 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
     u[0] = acdf_unit_interval(u0);
     u[1] = acdf_unit_interval(u1);
     if (acdf_brdf_mirrored(brdf)) sign = acdf_brdf_mirror(&u[0]);
-    p = acdf_brdf_pair_draw(brdf, view, u, &left, &path);
+    p = acdf_brdf_pair_sample_cell(brdf, view, u, &left, &path);
     if (!(p > 0.0)) return 0;
     low = acdf_pair_doubles(path->low);
     high = acdf_pair_doubles(path->high);
@@ -230,7 +230,7 @@ ACDF_INLINE int acdf_brdf_pair_sample(const AcdfBrdf* brdf, const AcdfBrdfView* 
     if (_mm_movemask_pd(_mm_cmpgt_pd(inside, reach)) != 3) return 0;
     if (!acdf_brdf_half(view, out->direction, half, &place)) return 0;
     wide = _mm_mul_sd(wide, _mm_unpackhi_pd(wide, wide));
-    out->pdf = acdf_brdf_positive(acdf_brdf_mean_density(brdf, p, _mm_cvtsd_f64(wide), &place));
+    out->pdf = acdf_brdf_positive(acdf_brdf_mean_pdf(brdf, p, _mm_cvtsd_f64(wide), &place));
     return 1;
 }
 
@@ -254,7 +254,7 @@ ACDF_INLINE int acdf_brdf_pair_about(const AcdfBrdf* brdf, const AcdfBrdfView* v
     acdf_brdf_reflect_at(brdf, view, part[0], part[1], sign, out->direction, &radius);
     p = acdf_brdf_pair_share(brdf, view, cell);
     if (!(p > 0.0) || !acdf_brdf_half(view, out->direction, half, &place)) return 0;
-    out->pdf = acdf_brdf_positive(acdf_brdf_mean_density(brdf, p, acdf_brdf_area(tables, cell), &place));
+    out->pdf = acdf_brdf_positive(acdf_brdf_mean_pdf(brdf, p, acdf_brdf_area(tables, cell), &place));
     return 1;
 }
 

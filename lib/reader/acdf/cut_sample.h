@@ -120,7 +120,7 @@ ACDF_FN uint32_t acdf_cut_sample_tile(const AcdfLocal* local, const AcdfLocalPoi
         const AcdfTileTables* tables = &local->tables->tiles;
         double from[2];
         const double whole = acdf_cut_of_all(mix, u, from);
-        const uint32_t tile = acdf_tile_draw(words, tables, mix, point->codes, part->entry, from, u, inside);
+        const uint32_t tile = acdf_tile_sample(words, tables, mix, point->codes, part->entry, from, u, inside);
         acdf_tile_range(acdf_tile_record(words, tables, tile), range);
         *inside = acdf_positive(*inside / whole);
         return tile;
@@ -153,7 +153,7 @@ ACDF_INLINE double acdf_cut_number(double u) {
 }
 
 /* Whether numbers in [0, 1) draw a part. */
-ACDF_INLINE int acdf_cut_draws(const AcdfCutPart* part, const double u[2]) {
+ACDF_INLINE int acdf_cut_samples(const AcdfCutPart* part, const double u[2]) {
     return (part->numbers[0][0] <= u[0]) & (u[0] < part->numbers[0][1]) & (part->numbers[1][0] <= u[1]) &
            (u[1] < part->numbers[1][1]);
 }
@@ -192,10 +192,10 @@ ACDF_INLINE int acdf_cut_guess(const AcdfCut* cut, const double u[2], int from) 
 
 /* Draws a part by numbers in [0, 1), where all before number `guess` are known not to be drawn: u becomes what is
  * left of the random numbers. */
-ACDF_INLINE const AcdfCutPart* acdf_cut_draw_guessed(const AcdfCut* cut, int guess, double u[2]) {
+ACDF_INLINE const AcdfCutPart* acdf_cut_sample_guessed(const AcdfCut* cut, int guess, double u[2]) {
     const AcdfCutPart* part = &cut->part[guess];
     int i;
-    while (!acdf_cut_draws(part, u) && guess + 1 < cut->count)
+    while (!acdf_cut_samples(part, u) && guess + 1 < cut->count)
         part = &cut->part[guess = acdf_cut_guess(cut, u, guess + 1)];
     for (i = 0; i < 2; ++i) {
         const double width = part->numbers[i][1] - part->numbers[i][0], x = u[i] - part->numbers[i][0];
@@ -211,19 +211,19 @@ ACDF_INLINE void acdf_cut_part_ahead(const AcdfCut* cut, int number) {
 }
 
 /* Draws a part. */
-ACDF_FN const AcdfCutPart* acdf_cut_draw(const AcdfCut* cut, double u[2]) {
+ACDF_FN const AcdfCutPart* acdf_cut_choose_part(const AcdfCut* cut, double u[2]) {
     const int number = acdf_cut_guess(cut, u, 0);
     acdf_cut_part_ahead(cut, number);
-    return acdf_cut_draw_guessed(cut, number, u);
+    return acdf_cut_sample_guessed(cut, number, u);
 }
 
 /* Whether u0 in [0, 1] draws a light of a part, not from its mixture. */
-ACDF_INLINE int acdf_cut_draws_light(const AcdfCutPart* part, double u0) {
+ACDF_INLINE int acdf_cut_samples_light(const AcdfCutPart* part, double u0) {
     return (part->lights > 0.0) & ((u0 * part->sum < part->lights) | !(part->sum > part->lights));
 }
 
 /* Draws that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
-ACDF_FN uint32_t acdf_cut_draw_light(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
+ACDF_FN uint32_t acdf_cut_sample_light(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
                                      AcdfRange* range, double* probability) {
     uint32_t k = part->first_light, chosen = part->end_light;
     double x = u[0] * part->sum, weight = 0.0;
@@ -258,15 +258,15 @@ ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint
                                     const AcdfCutPart* part, double* u, AcdfRange* range) {
     double probability;
     uint32_t tile;
-    if (acdf_cut_draws_light(part, u[0])) {
-        tile = acdf_cut_draw_light(local, cut, part, u, range, &probability);
+    if (acdf_cut_samples_light(part, u[0])) {
+        tile = acdf_cut_sample_light(local, cut, part, u, range, &probability);
     } else {
         const AcdfMixture mix = acdf_cut_mixture(point, part);
         u[0] = acdf_cut_number_of_mixture(part, u[0]);
         tile = acdf_cut_sample_tile(local, point, part, &mix, u, range, &probability);
         probability = acdf_cut_tile_probability(part, &mix, probability);
     }
-    return acdf_local_draw_inside(local, tile, probability, u, range);
+    return acdf_local_sample_inside(local, tile, probability, u, range);
 }
 
 /* The probability of a tile that is `inside` of the part's mixture; 0 where no sample can fall. */
@@ -333,7 +333,7 @@ ACDF_CALLED AcdfDirectionSample acdf_cut_sample(const AcdfLocal* local, const Ac
     if (cut->count == 0) return out;
     u[0] = acdf_cut_number(u0);
     u[1] = acdf_cut_number(u1);
-    part = acdf_cut_draw(cut, u);
+    part = acdf_cut_choose_part(cut, u);
     acdf_cut_range(part, range);
     p = acdf_cut_sample_part(local, point, cut, part, u, range);
     return acdf_cut_direction_sample(local, point, cut, &grid, range, u, p);

@@ -59,7 +59,7 @@ ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], u
         guess[i] = acdf_cut_guess(cut, lane[i].u, 0);
         acdf_cut_part_ahead(cut, guess[i]);
     }
-    for (i = 0; i < count; ++i) lane[i].part = acdf_cut_draw_guessed(cut, guess[i], lane[i].u);
+    for (i = 0; i < count; ++i) lane[i].part = acdf_cut_sample_guessed(cut, guess[i], lane[i].u);
 }
 
 /* Draws lights, and tells which lanes draw from the mixture of their part. */
@@ -69,11 +69,11 @@ ACDF_INLINE void acdf_cut_wave_lights(const AcdfLocal* local, const AcdfLocalPoi
     mixed->count = 0;
     for (i = 0; i < count; ++i) {
         AcdfCutLane* one = &lane[i];
-        const int lit = acdf_cut_draws_light(one->part, one->u[0]);
+        const int lit = acdf_cut_samples_light(one->part, one->u[0]);
         acdf_cut_range(one->part, one->range);
         for (k = 0; k < ACDF_CUT_WAVE_ROWS; ++k)
             ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
-        if (lit) one->tile = acdf_cut_draw_light(local, cut, one->part, one->u, one->range, &one->probability);
+        if (lit) one->tile = acdf_cut_sample_light(local, cut, one->part, one->u, one->range, &one->probability);
         mixed->lane[mixed->count] = i;
         mixed->count += (uint32_t)!lit;
     }
@@ -170,7 +170,7 @@ ACDF_INLINE void acdf_cut_wave_curves(const AcdfLocal* local, uint32_t count, co
             AcdfCutLane* one = &lane[number];
             const uint32_t link =
                 square ? acdf_curve_locate(tree, units, one->curve, square[number], one->range, &inside[number])
-                       : acdf_curve_draw(tree, units, one->curve, one->u, one->range, &inside[number]);
+                       : acdf_short_curve_sample(tree, units, one->curve, one->u, one->range, &inside[number]);
             one->curve += link;
             ACDF_PREFETCH(tree + 2 * (size_t)one->curve);
             on_way.lane[on_way.count] = number;

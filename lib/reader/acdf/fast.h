@@ -147,7 +147,7 @@ ACDF_INLINE void acdf_fast_narrow(AcdfRange* range, uint32_t i, uint32_t shift) 
 }
 
 /* One of a list of ends by a number; *steps becomes its probability times 255. */
-ACDF_INLINE uint32_t acdf_fast_draw_end(const uint8_t* ends, double* u, uint32_t* steps) {
+ACDF_INLINE uint32_t acdf_fast_sample_end(const uint8_t* ends, double* u, uint32_t* steps) {
     const double z = acdf_fast_scaled(*u, 255.0);
     const uint32_t i = acdf_fast_end_of(ends, z);
     uint32_t end;
@@ -159,10 +159,10 @@ ACDF_INLINE uint32_t acdf_fast_draw_end(const uint8_t* ends, double* u, uint32_t
 
 /* Draws a cell in a tile whose box is `range`, which becomes its own. Returns its probability there, of
  * ACDF_FAST_STEPS. */
-ACDF_INLINE double acdf_fast_draw_cell(const AcdfFastGrid* grid, double* u, AcdfRange* range) {
+ACDF_INLINE double acdf_fast_sample_cell(const AcdfFastGrid* grid, double* u, AcdfRange* range) {
     uint32_t of_line, in_line;
-    const uint32_t line = acdf_fast_draw_end(grid->ends, &u[1], &of_line);
-    const uint32_t cell = acdf_fast_draw_end(grid->ends + grid->count[1] + line * grid->count[0], &u[0], &in_line);
+    const uint32_t line = acdf_fast_sample_end(grid->ends, &u[1], &of_line);
+    const uint32_t cell = acdf_fast_sample_end(grid->ends + grid->count[1] + line * grid->count[0], &u[0], &in_line);
     acdf_fast_narrow(&range[0], cell, grid->shift[0]);
     acdf_fast_narrow(&range[1], line, grid->shift[1]);
     return (double)(int32_t)(of_line * in_line);

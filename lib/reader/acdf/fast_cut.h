@@ -161,7 +161,7 @@ ACDF_INLINE AcdfFastPart acdf_fast_cut_part(const int32_t* end, uint32_t i) {
 }
 
 /* Draws a tile of a group; *share, which is the group's, becomes the tile's. */
-ACDF_INLINE uint32_t acdf_fast_cut_draw_tile(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t number,
+ACDF_INLINE uint32_t acdf_fast_cut_sample_tile(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t number,
                                              double* u, AcdfFastShare* share) {
     const uint32_t first = ACDF_FAST_GROUP * number, list = cut->open[number];
     AcdfFastTile tile;
@@ -216,7 +216,7 @@ ACDF_INLINE AcdfFastShare acdf_fast_cut_find(const AcdfLocalPoint* point, const 
 }
 
 /* Draws a tile by two numbers; `left` becomes what is left of them, *share that of acdf_fast_cut_find. */
-ACDF_INLINE uint32_t acdf_fast_cut_draw(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
+ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfFastCut* cut,
                                         const double u[2], double left[2], AcdfFastShare* share) {
     const double x = acdf_fast_scaled(acdf_unit_interval(u[0]), (double)cut->whole);
     AcdfFastPart part;
@@ -230,7 +230,7 @@ ACDF_INLINE uint32_t acdf_fast_cut_draw(const AcdfLocal* local, const AcdfLocalP
     share->of = part.mass;
     share->all = (double)cut->whole;
     if (number < cut->lights) return local->lights[number].tile;
-    return acdf_fast_cut_draw_tile(point, cut, number - cut->lights, left, share);
+    return acdf_fast_cut_sample_tile(point, cut, number - cut->lights, left, share);
 }
 
 /* Density per steradian with which acdf_fast_cut_sample draws `direction` (unit). */
@@ -247,7 +247,7 @@ ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint
     cells = acdf_local_fast_record(local, tile, range);
     share.of *= acdf_fast_find_cell(&cells, square, range);
     share.all *= ACDF_FAST_STEPS;
-    return acdf_local_fast_density(local, &grid, range, &share);
+    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 
 /* Draws a direction; u0 (axis 0) and u1 (axis 1) in [0, 1]; values outside are clamped, NaN counts as 0. pdf 0 (and
@@ -265,9 +265,9 @@ ACDF_CALLED AcdfDirectionSample acdf_fast_cut_sample(const AcdfLocal* local, con
     u[0] = u0;
     u[1] = u1;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    tile = acdf_fast_cut_draw(local, point, cut, u, left, &share);
+    tile = acdf_fast_cut_choose_part(local, point, cut, u, left, &share);
     cells = acdf_local_fast_record(local, tile, range);
-    share.of *= acdf_fast_draw_cell(&cells, left, range);
+    share.of *= acdf_fast_sample_cell(&cells, left, range);
     share.all *= ACDF_FAST_STEPS;
     return acdf_local_fast_direction_sample(local, &grid, range, left, &share);
 }

@@ -282,7 +282,7 @@ ACDF_INLINE AcdfFastShare acdf_fast_share(const AcdfFastMixture* mix, uint32_t t
 
 /* Draws a tile by x, below 32767 times the whole of the mixture, and u[1] in [0, 1]; u becomes what is left of the
  * random numbers. *share becomes that of acdf_fast_share. */
-ACDF_INLINE uint32_t acdf_fast_draw_tile(const AcdfFast* fast, const AcdfFastMixture* mix, double x, double* u,
+ACDF_INLINE uint32_t acdf_fast_sample_tile(const AcdfFast* fast, const AcdfFastMixture* mix, double x, double* u,
                                          AcdfFastShare* share) {
     const uint32_t number = acdf_fast_group_of(fast, mix, x);
     const AcdfFastGroup group = acdf_fast_find_group(mix, number);

@@ -30,7 +30,7 @@ ACDF_INLINE void acdf_local_of_mixture(const AcdfLocalPoint* point, const double
 }
 
 /* The range of a tile to which the mixture gives `given` of all; returns that as its share. */
-ACDF_INLINE double acdf_local_drawn_tile(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
+ACDF_INLINE double acdf_local_sampled_tile(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t tile,
                                          double given, AcdfRange* range) {
     acdf_tile_range(acdf_local_tile(local->tables, tile), range);
     return acdf_positive(given / acdf_mixture_sum(&point->mix));
@@ -43,20 +43,20 @@ ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLoc
     double from[2], given;
     uint32_t tile;
     acdf_local_of_mixture(point, u, from);
-    tile = acdf_tile_draw(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from, u,
+    tile = acdf_tile_sample(acdf_local_words(local->tables), tables, &point->mix, point->codes, tables->root, from, u,
                           &given);
-    *probability = acdf_local_drawn_tile(local, point, tile, given, range);
+    *probability = acdf_local_sampled_tile(local, point, tile, given, range);
     return tile;
 }
 
 /* Draws a cell of a tile of a probability; returns that of the cell. Roots alone are nearer than the tiles'
  * records, which not all draws have asked for. */
-ACDF_INLINE double acdf_local_draw_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
+ACDF_INLINE double acdf_local_sample_inside(const AcdfLocal* local, uint32_t tile, double probability, double* u,
                                           AcdfRange* range) {
     const uint32_t root = local->blend.roots ? local->blend.roots[tile] : ACDF_NO_ROOT;
     if (root == ACDF_NO_ROOT) return probability;
     return acdf_positive(probability *
-                         acdf_tree_draw(local->blend.tree, local->environment.tree_units, root, u, range));
+                         acdf_short_tree_sample(local->blend.tree, local->environment.tree_units, root, u, range));
 }
 
 /* Draws a cell of lights and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
@@ -64,8 +64,8 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
                                        AcdfRange* range) {
     double probability;
     uint32_t tile;
-    const int tabled = acdf_local_tabled(local, point) && acdf_local_draws_mixture(point, u[0]);
-    const AcdfLight* light = tabled ? 0 : acdf_local_draw_light(local, point, u, &probability);
+    const int tabled = acdf_local_tabled(local, point) && acdf_local_samples_mixture(point, u[0]);
+    const AcdfLight* light = tabled ? 0 : acdf_local_sample_light(local, point, u, &probability);
     if (light) {
         acdf_light_range(light, range);
         probability = acdf_positive(probability / point->sum);
@@ -75,7 +75,7 @@ ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPo
                       : acdf_local_sample_tile(local, point, u, range, &probability);
         probability = acdf_positive(acdf_mixture_sum(&point->mix) / point->sum * probability);
     }
-    return acdf_local_draw_inside(local, tile, probability, u, range);
+    return acdf_local_sample_inside(local, tile, probability, u, range);
 }
 
 /* The direction that what is left of the random numbers picks in a cell of probability p. */
@@ -116,7 +116,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_row_sample(const AcdfLocal* local, co
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     p = point->what == ACDF_LOCAL_BLEND
             ? acdf_local_blend_sample(local, point, u, range)
-            : acdf_tree_draw(local->environment.tree, local->environment.tree_units, point->root, u, range);
+            : acdf_short_tree_sample(local->environment.tree, local->environment.tree_units, point->root, u, range);
     return acdf_local_direction_sample(local, point, &grid, range, u, p);
 }
 
@@ -148,10 +148,10 @@ ACDF_OUTLINE_ON_CPU AcdfDirectionSample acdf_local_any_sample_at(const AcdfLocal
         out = point->visible_portals.count > 0 ? acdf_local_portal_sample(local, point, u)
                                        : acdf_local_row_sample(local, point, u);
     }
-    out.pdf = acdf_local_density(local, point, out.direction, out.pdf);
+    out.pdf = acdf_local_combined_pdf(local, point, out.direction, out.pdf);
     return acdf_returned(&out);
 }
-/* The latter; `weighed` as acdf_local_fast_draw has it. */
+/* The latter; `weighed` as acdf_local_fast_sample_cell has it. */
 ACDF_INLINE AcdfDirectionSample acdf_local_only_fast_sample(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                             const int weighed, double u0, double u1) {
     AcdfDirectionSample out;

@@ -23,7 +23,7 @@ ACDF_INLINE AcdfFastGrid acdf_local_fast_record(const AcdfLocal* local, uint32_t
 }
 
 /* The grid of a tile that was drawn, and its box. */
-ACDF_INLINE AcdfFastGrid acdf_local_fast_drawn(const AcdfLocal* local, uint32_t tile, AcdfRange* range) {
+ACDF_INLINE AcdfFastGrid acdf_local_fast_sampled(const AcdfLocal* local, uint32_t tile, AcdfRange* range) {
     uint32_t node = acdf_blend_root(&local->blend), before = 0;
     if (local->tables) return acdf_local_fast_record(local, tile, range);
     /* Splits and tiles are numbered as the walk meets them; a part has a tile more than splits. */
@@ -74,15 +74,15 @@ ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
 }
 
 /* A light that is drawn: its number, its weight, and the sum of those before it. */
-typedef struct AcdfDrawnLight {
+typedef struct AcdfSampledLight {
     uint32_t number;
     double weight, before;
-} AcdfDrawnLight;
+} AcdfSampledLight;
 
 /* Of those that a point has weighed the one that x of their sum draws. */
-ACDF_INLINE AcdfDrawnLight acdf_local_fast_light(const AcdfLocalPoint* point, double x) {
+ACDF_INLINE AcdfSampledLight acdf_local_fast_light(const AcdfLocalPoint* point, double x) {
     uint32_t i = acdf_local_fast_passed(point, x);
-    AcdfDrawnLight out;
+    AcdfSampledLight out;
     while (i >= point->lit || !(point->light[i] > 0.0)) --i; /* x is the whole of them, or rounded to it */
     out.number = acdf_local_lit(point, i);
     out.weight = point->light[i];
@@ -93,11 +93,11 @@ ACDF_INLINE AcdfDrawnLight acdf_local_fast_light(const AcdfLocalPoint* point, do
 /* The same where they are not weighed, but their facet is known: the first one that takes the sum of
  * acdf_local_tabled_lights above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes that.
  */
-ACDF_INLINE AcdfDrawnLight acdf_local_facet_light(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
+ACDF_INLINE AcdfSampledLight acdf_local_facet_light(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
                                                   double* whole) {
     const AcdfLightPair* pairs = acdf_local_lights(local->tables);
     uint32_t left = point->facet->seen;
-    AcdfDrawnLight out = {0, 0.0, 0.0};
+    AcdfSampledLight out = {0, 0.0, 0.0};
 #ifdef ACDF_SSE2
     const AcdfHorizon horizon = acdf_horizon(point);
     const __m128d inverse = _mm_set1_pd(1.0 / point->length), zero = _mm_setzero_pd(), at = _mm_set1_pd(x);
@@ -142,9 +142,9 @@ ACDF_INLINE AcdfDrawnLight acdf_local_facet_light(const AcdfLocal* local, const 
 
 /* The light that x of the sum of weights draws at a point, of which none is known but a facet if `weighed` is 0;
  * what is left of x as a number in [0, 1]. */
-ACDF_INLINE AcdfDrawnLight acdf_local_draw_fast_light(const AcdfLocal* local, const AcdfLocalPoint* point,
+ACDF_INLINE AcdfSampledLight acdf_local_sample_fast_light(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                       const int weighed, double x, double* u) {
-    AcdfDrawnLight out;
+    AcdfSampledLight out;
     double whole = 0.0;
     if (weighed) out = acdf_local_fast_light(point, x);
     else {
@@ -157,26 +157,26 @@ ACDF_INLINE AcdfDrawnLight acdf_local_draw_fast_light(const AcdfLocal* local, co
 
 /* Draws a cell; u and range as in acdf_tree_sample. Returns its probability. `weighed`: whether the point has the
  * weight of each light, or a facet. */
-ACDF_INLINE AcdfFastShare acdf_local_fast_draw(const AcdfLocal* local, const AcdfLocalPoint* point,
+ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                const int weighed, double* u, AcdfRange* range) {
     const double x = u[0] * point->sum;
     AcdfFastShare share;
     AcdfFastGrid grid;
     uint32_t tile;
     if (x < point->lights || point->mix.count == 0) {
-        const AcdfDrawnLight light = acdf_local_draw_fast_light(local, point, weighed, x, u);
+        const AcdfSampledLight light = acdf_local_sample_fast_light(local, point, weighed, x, u);
         tile = local->lights[light.number].tile;
         share.of = light.weight;
         share.all = point->sum * ACDF_FAST_STEPS;
     } else {
         const double most = 32767.0 * point->fast.whole * (1.0 - 0x1p-53);
         const double of_mixture = (x - point->lights) * point->step;
-        tile = acdf_fast_draw_tile(&local->fast, &point->fast, of_mixture < most ? of_mixture : most, u, &share);
+        tile = acdf_fast_sample_tile(&local->fast, &point->fast, of_mixture < most ? of_mixture : most, u, &share);
         share.of *= point->unit;
         share.all *= ACDF_FAST_STEPS;
     }
-    grid = acdf_local_fast_drawn(local, tile, range);
-    share.of *= acdf_fast_draw_cell(&grid, u, range);
+    grid = acdf_local_fast_sampled(local, tile, range);
+    share.of *= acdf_fast_sample_cell(&grid, u, range);
     return share;
 }
 
@@ -219,7 +219,7 @@ ACDF_INLINE float acdf_local_fast_at_least(const AcdfLocal* local, const AcdfGri
 }
 /* Of any such cell: 0 where its probability is, which that of half of all directions is. Nobody guesses it, and to
  * know it all the rest is waited for: so no branch asks. */
-ACDF_INLINE float acdf_local_fast_density(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
+ACDF_INLINE float acdf_local_fast_cell_pdf(const AcdfLocal* local, const AcdfGrid* grid, const AcdfRange range[2],
                                           const AcdfFastShare* share) {
     const double huge = share->of * 0x1p1000;
     return acdf_local_fast_at_least(local, grid, range, share, huge < 1.17549435e-38 ? huge : 1.17549435e-38);
@@ -243,7 +243,7 @@ ACDF_INLINE AcdfDirectionSample acdf_local_fast_sample(const AcdfLocal* local, c
     AcdfRange range[2];
     AcdfFastShare share;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
-    share = acdf_local_fast_draw(local, point, weighed, u, range);
+    share = acdf_local_fast_sample_cell(local, point, weighed, u, range);
     return acdf_local_fast_direction_sample(local, &grid, range, u, &share);
 }
 

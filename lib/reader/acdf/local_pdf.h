@@ -149,7 +149,7 @@ ACDF_INLINE float acdf_local_fast_pdf(const AcdfLocal* local, const AcdfLocalPoi
     if (!acdf_local_square(&grid, direction, square)) return 0.0f;
     acdf_sphere_ranges(grid.columns, grid.rows, range);
     share = acdf_local_fast_find(local, point, acdf_local_fast_tile(local, square, range), square, range);
-    return acdf_local_fast_density(local, &grid, range, &share);
+    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 
 /* The cell of a grid square that rows, or a tree, draw at a point, which becomes `range`, and its probability: 0
@@ -191,7 +191,7 @@ ACDF_FN float acdf_local_light_pdf(const AcdfLocal* local, const AcdfLocalPoint*
 }
 
 /* Both parts together: `light` is that of the light, the other one is that of the cosine to the normal. */
-ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
+ACDF_FN float acdf_local_combined_pdf(const AcdfLocal* local, const AcdfLocalPoint* point, const float direction[3],
                                  float light) {
     const double x = point->surface[0], y = point->surface[1], z = point->surface[2];
     const double share = local->cosine_share;
@@ -214,7 +214,7 @@ ACDF_FN float acdf_local_density(const AcdfLocal* local, const AcdfLocalPoint* p
 ACDF_OUTLINE_ON_CPU float acdf_local_any_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                 const float direction[3]) {
     if (point->what == ACDF_LOCAL_NOTHING) return 0.0f;
-    return acdf_local_density(local, point, direction, acdf_local_light_pdf(local, point, direction));
+    return acdf_local_combined_pdf(local, point, direction, acdf_local_light_pdf(local, point, direction));
 }
 ACDF_OUTLINE_ON_CPU float acdf_local_fast_pdf_at(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                  const float direction[3]) {
@@ -239,7 +239,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_pdf(const AcdfLocal* local, const float
     AcdfLocalPoint point;
     acdf_local_at(local, normal, &point);
     if (point.what == ACDF_LOCAL_NOTHING) return 0.0f;
-    return acdf_local_density(local, &point, direction, acdf_local_spot_pdf(local, &point, direction, &spot));
+    return acdf_local_combined_pdf(local, &point, direction, acdf_local_spot_pdf(local, &point, direction, &spot));
 }
 /* And of any file, by a point as others have it. */
 ACDF_OUTLINE_ON_CPU float acdf_local_any_new_pdf(const AcdfLocal* local, const float normal[3],
@@ -267,7 +267,7 @@ ACDF_OUTLINE_ON_CPU float acdf_local_new_fast_pdf(const AcdfLocal* local, const 
     acdf_local_fast_sum(local, 0, &point);
     if (point.what != ACDF_LOCAL_FAST) return 0.0f;
     share = acdf_local_fast_find(local, &point, tile, square, range);
-    return acdf_local_fast_density(local, &grid, range, &share);
+    return acdf_local_fast_cell_pdf(local, &grid, range, &share);
 }
 /* In any. */
 ACDF_FN float acdf_local_pdf(const AcdfLocal* local, const float normal[3], const float direction[3]) {

@@ -145,18 +145,18 @@ ACDF_FN void acdf_local_at_position(const AcdfLocal* local, const float position
 }
 
 /* Whether u0 in [0, 1] draws from the mixture, not a light. */
-ACDF_FN int acdf_local_draws_mixture(const AcdfLocalPoint* point, double u0) {
+ACDF_FN int acdf_local_samples_mixture(const AcdfLocalPoint* point, double u0) {
     return !(u0 * point->sum < point->lights || point->mix.count == 0);
 }
 
 /* The light that u[0] in [0, 1] draws, null where it draws from the mixture. *weight becomes its own. What is left
  * of u[0] takes its mixture. */
-ACDF_FN const AcdfLight* acdf_local_draw_light(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
+ACDF_FN const AcdfLight* acdf_local_sample_light(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                                double* weight) {
     const AcdfLight* light = 0;
     double x = u[0] * point->sum;
     uint32_t k;
-    if (acdf_local_draws_mixture(point, u[0])) {
+    if (acdf_local_samples_mixture(point, u[0])) {
         u[0] = acdf_unit_interval((x - point->lights) / (point->sum - point->lights));
         return 0;
     }

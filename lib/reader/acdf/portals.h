@@ -259,7 +259,7 @@ ACDF_FN int acdf_visible_portals_choose(const AcdfVisiblePortals* visible_portal
 }
 
 /* The one of `count` parts of weights, some > 0, that *u of all draws; what is left of it takes its mixture. */
-ACDF_FN uint32_t acdf_draw_part(const double* weight, uint32_t count, double* u) {
+ACDF_FN uint32_t acdf_sample_part(const double* weight, uint32_t count, double* u) {
     double x = 0.0;
     uint32_t i, last = 0;
     for (i = 0; i < count; ++i) x += weight[i];
@@ -384,12 +384,12 @@ ACDF_FN void acdf_visible_portals_sample(const AcdfVisiblePortals* visible_porta
     double weight[ACDF_MAX_PORTALS];
     uint32_t piece[2], i, j;
     for (i = 0; i < (uint32_t)visible_portals->count; ++i) weight[i] = visible_portals->visible_portal[i].weight;
-    visible_portal = &visible_portals->visible_portal[acdf_draw_part(weight, (uint32_t)visible_portals->count, &u[0])];
+    visible_portal = &visible_portals->visible_portal[acdf_sample_part(weight, (uint32_t)visible_portals->count, &u[0])];
     for (i = 0; i < pieces; ++i)
         for (weight[i] = 0.0, j = 0; j < pieces; ++j) weight[i] += (double)visible_portal->piece[i][j];
-    piece[0] = acdf_draw_part(weight, pieces, &u[0]);
+    piece[0] = acdf_sample_part(weight, pieces, &u[0]);
     for (j = 0; j < pieces; ++j) weight[j] = (double)visible_portal->piece[piece[0]][j];
-    piece[1] = acdf_draw_part(weight, pieces, &u[1]);
+    piece[1] = acdf_sample_part(weight, pieces, &u[1]);
     acdf_piece_sample(&visible_portals->table, visible_portal, piece, u, direction);
 }
 

@@ -101,11 +101,11 @@ private:
                                 float* out) const noexcept;
     ACDF_METHOD static float mixed(const Point& point, float light, float lobe) noexcept;
     /// Whether a cut is drawn from, and the lobe.
-    ACDF_METHOD static bool draws_both(const Point& point) noexcept {
-        return (point.light.what == ACDF_LOCAL_BLEND || draws_groups(point)) && point.share >= 0.0 &&
+    ACDF_METHOD static bool samples_both(const Point& point) noexcept {
+        return (point.light.what == ACDF_LOCAL_BLEND || samples_groups(point)) && point.share >= 0.0 &&
                point.share < 1.0;
     }
-    ACDF_METHOD static bool draws_groups(const Point& point) noexcept {
+    ACDF_METHOD static bool samples_groups(const Point& point) noexcept {
         return point.light.what == ACDF_LOCAL_FAST && point.fast.whole > 0;
     }
     ACDF_METHOD void sample_wave(const Point& point, std::size_t count, const double (*u)[2],
@@ -153,7 +153,7 @@ template <class AnyLobe>
 ACDF_METHOD float ProductSampler<AnyLobe>::light_pdf(const Point& point, const float direction[3]) const noexcept {
     if (!(point.share >= 0.0 && point.share < 1.0)) return 0.0f;
     if (point.light.what == ACDF_LOCAL_BLEND) return acdf_cut_pdf(&light_, &point.light, &point.cut, direction);
-    if (draws_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
+    if (samples_groups(point)) return acdf_fast_cut_pdf(&light_, &point.light, &point.fast, direction);
     return acdf_local_pdf_at(&light_, &point.light, direction);
 }
 
@@ -206,7 +206,7 @@ ACDF_METHOD ProductSample ProductSampler<AnyLobe>::sample(const Point& point, do
     const double rest = (u - point.share) / (1.0 - point.share);
     if (point.light.what == ACDF_LOCAL_BLEND) {
         out = acdf_cut_sample(&light_, &point.light, &point.cut, rest, u1);
-    } else if (draws_groups(point)) {
+    } else if (samples_groups(point)) {
         out = acdf_fast_cut_sample(&light_, &point.light, &point.fast, rest, u1);
     } else {
         out = acdf_local_sample_at(&light_, &point.light, rest, u1);
@@ -261,7 +261,7 @@ template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::sample(const Point& point, std::size_t count, const double (*u)[2],
                                                  ProductSample* out) const noexcept {
     constexpr std::size_t wave = ACDF_CUT_WAVE;
-    const bool both = draws_both(point);
+    const bool both = samples_both(point);
     for (std::size_t first = 0; both && first < count; first += wave)
         sample_wave(point, count - first < wave ? count - first : wave, u + first, out + first);
     for (std::size_t i = 0; !both && i < count; ++i) out[i] = sample(point, u[i][0], u[i][1]);
@@ -270,7 +270,7 @@ ACDF_METHOD void ProductSampler<AnyLobe>::sample(const Point& point, std::size_t
 template <class AnyLobe>
 ACDF_METHOD void ProductSampler<AnyLobe>::pdf(const Point& point, std::size_t count, const float (*directions)[3],
                                               float* out) const noexcept {
-    if (!draws_both(point)) {
+    if (!samples_both(point)) {
         for (std::size_t i = 0; i < count; ++i) out[i] = pdf(point, directions[i]);
         return;
     }

@@ -45,7 +45,7 @@ private:
 
     ACDF_METHOD int add(int number, int entry, float light, float solid_angle) noexcept;
     ACDF_METHOD void measure() noexcept;
-    ACDF_METHOD void draw_guides() noexcept;
+    ACDF_METHOD void sample_guides() noexcept;
     ACDF_METHOD std::uint32_t nearest_row() const noexcept;
     ACDF_METHOD void look_at_much() noexcept;
     ACDF_METHOD void look(const Looks& looks) noexcept;
@@ -107,16 +107,16 @@ ACDF_METHOD void GroupRating<AnyLobe>::measure() noexcept {
 
 /// Samples of the lobe's own sampler, and which light is there.
 template <class AnyLobe>
-ACDF_METHOD void GroupRating<AnyLobe>::draw_guides() noexcept {
+ACDF_METHOD void GroupRating<AnyLobe>::sample_guides() noexcept {
     const AcdfGrid grid = acdf_environment_grid(&of_.light.environment);
     float world[LobeGuides::most][3], light[LobeGuides::most];
-    of_.draw_guides(world, guides_);
+    of_.sample_guides(world, guides_);
     for (int i = 0; i < guides_.count; ++i) {
         const std::uint32_t square[2] = {guides_.square[0][i], guides_.square[1][i]};
         AcdfRange range[2];
         const std::uint32_t tile = acdf_local_fast_tile(&of_.light, square, range);
         const AcdfFastShare share = acdf_local_fast_find(&of_.light, &of_.at, tile, square, range);
-        light[i] = acdf_local_fast_density(&of_.light, &grid, range, &share);
+        light[i] = acdf_local_fast_cell_pdf(&of_.light, &grid, range, &share);
         guide_tile_[i] = acdf_local_light_of(&of_.light, tile) > 0 ? no_tile : static_cast<int>(tile);
     }
     guides_.weigh(light);
@@ -312,7 +312,7 @@ template <class AnyLobe>
 ACDF_METHOD double GroupRating<AnyLobe>::make(AcdfFastCut& cut) noexcept {
     float probability[room_for<float>(most)];
     measure();
-    draw_guides();
+    sample_guides();
     look_at_much();
     rate_groups();
     choose();

@@ -45,7 +45,7 @@ struct PointOfLobe {
 
     /// Adds samples of the lobe's own sampler, without weights, to none; their directions into `world`. In their
     /// place: what is written in pieces and copied at once would be waited for.
-    ACDF_METHOD void draw_guides(float (*world)[3], LobeGuides& out) const noexcept {
+    ACDF_METHOD void sample_guides(float (*world)[3], LobeGuides& out) const noexcept {
         const AcdfGrid grid = acdf_environment_grid(&light.environment);
         const int drawn = parts < 12 ? 2 : LobeGuides::most;
         out.drawn = drawn;

@@ -195,7 +195,7 @@ ACDF_FN4(AcdfVector, acdf_reflected, AcdfShaderView, view, ACDF_F32, azimuth, AC
 /* ---- densities of half-vectors ---------------------------------------------------------------------- */
 
 /* Density of a direction of height z where a walk ended: of the cell, and of the cosine's share. */
-ACDF_FN5(ACDF_F32, acdf_brdf_density_at, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
+ACDF_FN5(ACDF_F32, acdf_brdf_pdf_at, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
          spread, ACDF_F32, z) {
     ACDF_LET(ACDF_F32, lobe) =
         ACDF_MIN(end.given / view.sum * acdf_word_as_float(tables, end.leaf + 1u) * spread, 3.402823466e38f);
@@ -216,7 +216,7 @@ ACDF_FN5(ACDF_F32, acdf_brdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderView, view
     if (view.mix.root == ACDF_WALK_NONE) {
         return view.diffuse * ACDF_MAX(z, 0.0f) * 0.31830989f;
     }
-    return acdf_brdf_density_at(tables, view, acdf_walk_find(tables, view.mix, place.key0, place.key1),
+    return acdf_brdf_pdf_at(tables, view, acdf_walk_find(tables, view.mix, place.key0, place.key1),
                                 place.spread, z);
 }
 
@@ -240,7 +240,7 @@ ACDF_FN2(AcdfVector, acdf_as_returned, ACDF_TABLES, tables, AcdfVector, d) {
 
 /* Visibility a direction in the cell where a walk ended. Near its border rounding may carry it over: then it moves
  * towards the middle, so that its density is that of the cell. */
-ACDF_FN4(AcdfWalkSample, acdf_draw_in_cell, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
+ACDF_FN4(AcdfWalkSample, acdf_sample_in_cell, ACDF_TABLES, tables, AcdfShaderView, view, AcdfWalkEnd, end, ACDF_F32,
          side) {
     ACDF_VAR(ACDF_F32, part0) = acdf_walk_part(end.numbers.at0, end.numbers.width0);
     ACDF_VAR(ACDF_F32, part1) = acdf_walk_part(end.numbers.at1, end.numbers.width1);
@@ -254,13 +254,13 @@ ACDF_FN4(AcdfWalkSample, acdf_draw_in_cell, ACDF_TABLES, tables, AcdfShaderView,
         d = acdf_as_returned(tables, acdf_reflected(view, azimuth, cap, side));
         ACDF_LET(AcdfShaderHalf, place) = acdf_half_of(view, d.x, d.y, d.z);
         if (acdf_leaf_holds(tables, end.leaf, place) != 0u) {
-            return acdf_walk_drawn(d, acdf_brdf_density_at(tables, view, end, place.spread, d.z));
+            return acdf_walk_sampled(d, acdf_brdf_pdf_at(tables, view, end, place.spread, d.z));
         }
         part0 = 0.5f + 0.75f * (part0 - 0.5f);
         part1 = 0.5f + 0.75f * (part1 - 0.5f);
     }
     /* wo and wi nearly opposite: their half-vector is lost in rounding. */
-    return acdf_walk_drawn(d, ACDF_MAX(acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z), 1.1754944e-38f));
+    return acdf_walk_sampled(d, ACDF_MAX(acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z), 1.1754944e-38f));
 }
 
 /* Draws wi for a view and two random words: n0 / 2^32 (azimuth of the half-vector) and n1 / 2^32 (its height) are
@@ -274,17 +274,17 @@ ACDF_FN4(AcdfWalkSample, acdf_brdf_walk_sample, ACDF_TABLES, tables, AcdfShaderV
         ACDF_LET(AcdfVector, d) =
             acdf_walk_cosine(acdf_point_of_tree(0u), acdf_walk_part(numbers.at0, numbers.width0),
                              acdf_walk_part(numbers.at1, cosine));
-        return acdf_walk_drawn(d, acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z));
+        return acdf_walk_sampled(d, acdf_brdf_walk_pdf(tables, view, d.x, d.y, d.z));
     }
     if (view.mix.root == ACDF_WALK_NONE) {
-        return acdf_walk_drawn(acdf_vector(0.0f, 0.0f, 0.0f), 0.0f);
+        return acdf_walk_sampled(acdf_vector(0.0f, 0.0f, 0.0f), 0.0f);
     }
     numbers.at1 = numbers.at1 - cosine;
     numbers.width1 = numbers.width1 - cosine;
     if (view.mirrored != 0u) { /* both halves run through the same table */
         numbers.at0 = ACDF_SELECT((n0 >> 31u) != 0u, n0 - 0x80000000u, 0x7FFFFFFFu - n0);
     }
-    return acdf_draw_in_cell(tables, view, acdf_walk_draw(tables, view.mix, numbers), side);
+    return acdf_sample_in_cell(tables, view, acdf_walk_sample_leaf(tables, view.mix, numbers), side);
 }
 
 #ifdef __cplusplus

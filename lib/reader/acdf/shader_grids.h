@@ -239,7 +239,7 @@ ACDF_FN4(AcdfVector, acdf_tiles_sample, ACDF_TABLES, tables, AcdfWalkMixture, mi
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfTileSums, sums) = groups;
     ACDF_VAR(AcdfTileBox, box) = acdf_tiles_record(tables, 0u);
-    ACDF_VAR(AcdfTileDraw, drawn);
+    ACDF_VAR(AcdfTileSample, drawn);
     ACDF_VAR(ACDF_U32, count) = ACDF_WORD(tables, ACDF_TILES_GROUPS);
     ACDF_VAR(ACDF_U32, band) = 0u;
     ACDF_VAR(ACDF_U32, stage) = ACDF_SELECT(light == ACDF_WALK_ON_GRIDS, 0u, 2u);

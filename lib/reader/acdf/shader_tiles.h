@@ -91,15 +91,15 @@ ACDF_FN1(ACDF_U32, acdf_tiles_whole, AcdfTileSums, sums) {
 }
 
 /* Which number was drawn, and what is left of the random number. */
-ACDF_STRUCT_BEGIN(AcdfTileDraw)
+ACDF_STRUCT_BEGIN(AcdfTileSample)
 ACDF_FIELD(ACDF_U32, i)
 ACDF_FIELD(ACDF_U32, at)
 ACDF_FIELD(ACDF_U32, width)
-ACDF_STRUCT_END(AcdfTileDraw)
+ACDF_STRUCT_END(AcdfTileSample)
 
 /* The first one, of a random number of which nothing was used. */
-ACDF_FN2(AcdfTileDraw, acdf_tiles_chosen, ACDF_U32, at, ACDF_U32, width) {
-    ACDF_VAR(AcdfTileDraw, drawn);
+ACDF_FN2(AcdfTileSample, acdf_tiles_chosen, ACDF_U32, at, ACDF_U32, width) {
+    ACDF_VAR(AcdfTileSample, drawn);
     drawn.i = 0u;
     drawn.at = at;
     drawn.width = width;
@@ -107,9 +107,9 @@ ACDF_FN2(AcdfTileDraw, acdf_tiles_chosen, ACDF_U32, at, ACDF_U32, width) {
 }
 
 /* One of `count` from the first one on. */
-ACDF_FN4(AcdfTileDraw, acdf_tiles_choose, ACDF_TABLES, tables, AcdfTileSums, sums, ACDF_U32, count, AcdfTileDraw,
+ACDF_FN4(AcdfTileSample, acdf_tiles_choose, ACDF_TABLES, tables, AcdfTileSums, sums, ACDF_U32, count, AcdfTileSample,
          first) {
-    ACDF_VAR(AcdfTileDraw, drawn) = first;
+    ACDF_VAR(AcdfTileSample, drawn) = first;
     ACDF_VAR(ACDF_U32, last) = count;
     ACDF_VAR(ACDF_U32, low) = 0u;
     ACDF_VAR(ACDF_U32, high) = acdf_tiles_whole(sums);

@@ -151,7 +151,7 @@ ACDF_FIELD(ACDF_F32, pdf) /* sr^-1; 0: nothing was drawn */
 ACDF_STRUCT_END(AcdfWalkSample)
 
 /* A direction with its density. */
-ACDF_FN2(AcdfWalkSample, acdf_walk_drawn, AcdfVector, d, ACDF_F32, pdf) {
+ACDF_FN2(AcdfWalkSample, acdf_walk_sampled, AcdfVector, d, ACDF_F32, pdf) {
     ACDF_VAR(AcdfWalkSample, drawn);
     drawn.x = d.x;
     drawn.y = d.y;
@@ -203,7 +203,7 @@ ACDF_FN3(ACDF_U32, acdf_walk_border, ACDF_F32, lower, ACDF_F32, upper, ACDF_U32,
 }
 
 /* Leads numbers to a leaf. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_draw, ACDF_TABLES, tables, AcdfWalkMixture, given, AcdfWalkNumbers, numbers) {
+ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_leaf, ACDF_TABLES, tables, AcdfWalkMixture, given, AcdfWalkNumbers, numbers) {
     ACDF_LET(ACDF_U32, nodes) = ACDF_WORD(tables, ACDF_WALK_NODES);
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = given;

@@ -42,7 +42,7 @@ ACDF_FN3(ACDF_F32, acdf_walk_light_pdf, ACDF_TABLES, tables, AcdfShaderPoint, he
 }
 
 /* Both parts together: that of the light and that of the cosine to the normal. */
-ACDF_FN5(ACDF_F32, acdf_walk_density, AcdfShaderPoint, here, ACDF_F32, light, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
+ACDF_FN5(ACDF_F32, acdf_walk_combined_pdf, AcdfShaderPoint, here, ACDF_F32, light, ACDF_F32, x, ACDF_F32, y, ACDF_F32,
          z) {
     ACDF_LET(ACDF_F32, cosine) = ACDF_MAX(here.x * x + here.y * y + here.z * z, 0.0f);
     if (here.cosine == 0.0f) {
@@ -61,7 +61,7 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
         return 0.0f;
     }
     if (acdf_tiles_serve(tables, here) != 0u) {
-        return acdf_walk_density(here, acdf_tiles_pdf(tables, here, d), x, y, z);
+        return acdf_walk_combined_pdf(here, acdf_tiles_pdf(tables, here, d), x, y, z);
     }
     if (ACDF_WORD(tables, ACDF_WALK_OCTAHEDRAL) != 0u) {
         place = acdf_square_keys(d.x, d.y, d.z, d.sin2, d.length2);
@@ -71,7 +71,7 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
         place.key0 = (ACDF_WALK_SEAM - place.key0) & ACDF_DIRECTION_MASK;
         place.key1 = ACDF_SELECT((ACDF_BITS(z) >> 31u) != 0u, ACDF_WALK_SOUTH - cap, cap);
     }
-    return acdf_walk_density(
+    return acdf_walk_combined_pdf(
         here, acdf_walk_light_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x, y, z);
 }
 
@@ -115,7 +115,7 @@ ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF
 }
 
 /* Draws a light: its link becomes the end's leaf. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_draw_light, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
+ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_light, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkEnd, end);
     ACDF_VAR(ACDF_F32, rest) = here.light_sum;
     ACDF_VAR(ACDF_U32, light) = 0u;
@@ -143,7 +143,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_draw_light, ACDF_TABLES, tables, AcdfShaderPoint
 }
 
 /* Draws by lights and rows: where a walk ends; of the fast shape the tile of a light, or ACDF_WALK_ON_GRIDS. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_draw_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
+ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = here.mix;
     ACDF_VAR(AcdfWalkEnd, end);
@@ -151,7 +151,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_draw_row, ACDF_TABLES, tables, AcdfShaderPoint, 
     ACDF_LET(ACDF_U32, is_light) = ACDF_SELECT(left.at0 < lit, 1u, 0u);
     if (is_light != 0u) {
         left.width0 = lit;
-        end = acdf_walk_draw_light(tables, here, left);
+        end = acdf_walk_sample_light(tables, here, left);
         left = end.numbers;
         mix = acdf_mixture_below(end.leaf, 1.0f);
     } else {
@@ -159,7 +159,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_draw_row, ACDF_TABLES, tables, AcdfShaderPoint, 
         left.width0 = left.width0 - lit;
     }
     if (acdf_tiles_serve(tables, here) == 0u) {
-        end = acdf_walk_draw(tables, mix, left);
+        end = acdf_walk_sample_leaf(tables, mix, left);
     } else {
         end.leaf = mix.root;
         end.given = 0.0f;
@@ -178,7 +178,7 @@ ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint,
     ACDF_VAR(AcdfVector, d) = acdf_vector(0.0f, 0.0f, 0.0f);
     ACDF_VAR(ACDF_F32, light) = -1.0f; /* density of what follows the light, where it is known */
     if (here.mix.root == ACDF_WALK_NONE) {
-        return acdf_walk_drawn(d, 0.0f);
+        return acdf_walk_sampled(d, 0.0f);
     }
     ACDF_LET(ACDF_U32, cosine) = acdf_walk_border(here.cosine, 1.0f - here.cosine, numbers.width0);
     if (numbers.at0 < cosine) {
@@ -187,7 +187,7 @@ ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint,
     } else {
         numbers.at0 = numbers.at0 - cosine;
         numbers.width0 = numbers.width0 - cosine;
-        ACDF_LET(AcdfWalkEnd, end) = acdf_walk_draw_row(tables, here, numbers);
+        ACDF_LET(AcdfWalkEnd, end) = acdf_walk_sample_row(tables, here, numbers);
         if (acdf_tiles_serve(tables, here) != 0u) {
             d = acdf_tiles_sample(tables, here.mix, end.leaf, end.numbers);
         } else {
@@ -196,9 +196,9 @@ ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint,
         }
     }
     if (light < 0.0f) {
-        return acdf_walk_drawn(d, acdf_walk_pdf(tables, here, d.x, d.y, d.z));
+        return acdf_walk_sampled(d, acdf_walk_pdf(tables, here, d.x, d.y, d.z));
     }
-    return acdf_walk_drawn(d, acdf_walk_density(here, light, d.x, d.y, d.z));
+    return acdf_walk_sampled(d, acdf_walk_combined_pdf(here, light, d.x, d.y, d.z));
 }
 
 #ifdef __cplusplus

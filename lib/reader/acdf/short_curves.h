@@ -63,7 +63,7 @@ ACDF_INLINE __m128i acdf_short_curve_values(const AcdfShortCurve* curve) {
 }
 
 /* The segment that a number below `maximum` draws; *low and *width as acdf_short_curve_width tells them. */
-ACDF_INLINE uint32_t acdf_short_curve_drawn(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
+ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
                                             uint32_t* width) {
     const __m128i values = acdf_short_curve_values(curve);
     const uint32_t segment = acdf_first_above(values, number);
@@ -179,7 +179,7 @@ ACDF_INLINE uint32_t acdf_short_curve_width(const AcdfShortCurve* curve, uint32_
 }
 
 /* The segment that a number below `maximum` draws; *low and *width as acdf_short_curve_width tells them. */
-ACDF_INLINE uint32_t acdf_short_curve_drawn(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
+ACDF_INLINE uint32_t acdf_short_curve_sampled(const AcdfShortCurve* curve, uint32_t number, uint32_t* low,
                                             uint32_t* width) {
     const uint32_t segment = acdf_first_above(curve->cumulative, number, curve->inner);
     *width = acdf_short_curve_width(curve, segment, low);
@@ -199,7 +199,7 @@ ACDF_INLINE uint32_t acdf_short_curve_narrow(const AcdfShortCurve* curve, uint32
 
 /* Draws one segment, of whatever curve: as acdf_tree_sample does. Returns the distance to its child, 0 where it
  * ends. */
-ACDF_INLINE uint32_t acdf_curve_draw(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
+ACDF_INLINE uint32_t acdf_short_curve_sample(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
                                      double* probability) {
     AcdfShortCurve curve;
     uint32_t segment, low, width;
@@ -208,26 +208,26 @@ ACDF_INLINE uint32_t acdf_curve_draw(const uint8_t* tree, uint32_t units, uint32
     maximum = (double)(int32_t)curve.maximum;
     scaled = u[curve.axis] * maximum;
     if (scaled >= maximum) scaled = maximum * (1.0 - 0x1p-53);
-    segment = acdf_short_curve_drawn(&curve, (uint32_t)(int32_t)scaled, &low, &width);
+    segment = acdf_short_curve_sampled(&curve, (uint32_t)(int32_t)scaled, &low, &width);
     u[curve.axis] = (scaled - (double)(int32_t)low) / (double)(int32_t)width;
     *probability *= (double)(int32_t)width / maximum;
     return acdf_short_curve_narrow(&curve, segment, &range[curve.axis]);
 }
 
 /* acdf_tree_sample_on of a tree of `units`; 0: how many is not known. */
-ACDF_INLINE double acdf_tree_draw_on(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
+ACDF_INLINE double acdf_short_tree_sample_on(const uint8_t* tree, uint32_t units, uint32_t at, double* u, AcdfRange* range,
                                      double probability) {
     uint32_t link;
     do {
-        link = acdf_curve_draw(tree, units, at, u, range, &probability);
+        link = acdf_short_curve_sample(tree, units, at, u, range, &probability);
         at += link;
     } while (link != 0);
     return acdf_positive(probability);
 }
 
 /* acdf_tree_sample of such a tree. */
-ACDF_INLINE double acdf_tree_draw(const uint8_t* tree, uint32_t units, uint32_t root, double* u, AcdfRange* range) {
-    return acdf_tree_draw_on(tree, units, root, u, range, 1.0);
+ACDF_INLINE double acdf_short_tree_sample(const uint8_t* tree, uint32_t units, uint32_t root, double* u, AcdfRange* range) {
+    return acdf_short_tree_sample_on(tree, units, root, u, range, 1.0);
 }
 
 /* Finds one segment, of whatever curve: as acdf_tree_find does. Returns the distance to its child, 0 where it ends.

@@ -89,7 +89,7 @@ ACDF_FN AcdfDirectionSample acdf_sphere_position_between(uint32_t columns, const
     out.direction[1] = (float)(sin_theta * sine);
     out.direction[2] = (float)z;
     out.pdf = acdf_cell_pdf(p, range[0].high - range[0].low, columns, z0 - z1,
-                            acdf_tilt_density(range[0].tilt, tx) * acdf_tilt_density(range[1].tilt, tz));
+                            acdf_tilt_pdf(range[0].tilt, tx) * acdf_tilt_pdf(range[1].tilt, tz));
     return out;
 }
 

@@ -102,14 +102,14 @@ ACDF_FN void acdf_table_whole(const AcdfTable* table, AcdfRange* range) {
 
 /* Density of a place in a cell of probability p: the same for acdf_table_sample and acdf_table_pdf, bit for bit,
  * because both come here with the same cell and the same position. */
-ACDF_FN double acdf_table_density(const AcdfTable* table, double p, const AcdfTablePosition* place) {
+ACDF_FN double acdf_table_cell_pdf(const AcdfTable* table, double p, const AcdfTablePosition* place) {
     uint32_t axis;
     for (axis = table->indexed_count; axis < table->axis_count; ++axis) {
         const AcdfAxis* a = &table->axes[axis];
         const AcdfRange* range = &place->range[axis];
         p *= (double)a->resolution / (fabs(a->high - a->low) * (double)(range->high - range->low));
         if (range->tilt != 0.0)
-            p *= acdf_tilt_density(range->tilt, acdf_table_fraction(range, place->position[axis]));
+            p *= acdf_tilt_pdf(range->tilt, acdf_table_fraction(range, place->position[axis]));
     }
     return acdf_clamp(p, ACDF_DOUBLE_MIN, ACDF_DOUBLE_MAX);
 }
@@ -134,14 +134,14 @@ ACDF_INLINE double acdf_table_entry_sample(const AcdfTable* table, const AcdfEnt
     for (axis = first; axis < table->axis_count; ++axis) left[axis] = acdf_unit_interval(u[axis - first]);
     curve = acdf_entry_of_numbers(table->entries, grids, count, left + first);
     acdf_entry_ranges(curve, count, place.range + first);
-    p = acdf_tree_draw_on(table->tree, table->tree_units, curve->at, left, place.range, curve->probability);
+    p = acdf_short_tree_sample_on(table->tree, table->tree_units, curve->at, left, place.range, curve->probability);
     for (axis = first; axis < table->axis_count; ++axis) {
         const double low = (double)place.range[axis].low, high = (double)place.range[axis].high;
         const double border = grids->axes[axis - first].border, position = low + left[axis] * (high - low);
         x[axis - first] =
             acdf_table_coordinate(&table->axes[axis], acdf_clamp(position, low + border, high - border));
     }
-    return acdf_table_density(table, p, &place);
+    return acdf_table_cell_pdf(table, p, &place);
 }
 
 /* Draws a point. index[indexed_count] as in acdf_table_bin; u[sampled count] in [0, 1], clamped, NaN counts as 0.
@@ -171,7 +171,7 @@ ACDF_FN double acdf_table_sample(const AcdfTable* table, const uint32_t* index, 
             a, acdf_clamp(position, (double)range->low + border, (double)range->high - border));
         place.position[axis] = acdf_table_position(a, x[axis - first]);
     }
-    return acdf_table_density(table, p, &place);
+    return acdf_table_cell_pdf(table, p, &place);
 }
 
 /* Where x[sampled count] lies: its position, and the step of the grid on each sampled axis. Returns 0 for NaN and
@@ -216,7 +216,7 @@ ACDF_INLINE double acdf_table_entry_pdf(const AcdfTable* table, const AcdfEntryB
     curve = acdf_entry_curve(table->entries, entry);
     acdf_entry_ranges(curve, count, place.range + first);
     p = acdf_tree_locate_on(table->tree, table->tree_units, curve->at, step, place.range, curve->probability);
-    return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
+    return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 
 /* Density with which acdf_table_sample draws x in the bin of `index`; 0 where none falls. */
@@ -227,7 +227,7 @@ ACDF_FN double acdf_table_pdf(const AcdfTable* table, const uint32_t* index, con
     double p;
     if (grids) return acdf_table_entry_pdf(table, grids, x);
     p = acdf_table_find(table, index, x, &place, 0);
-    return p > 0.0 ? acdf_table_density(table, p, &place) : 0.0;
+    return p > 0.0 ? acdf_table_cell_pdf(table, p, &place) : 0.0;
 }
 
 /* The random numbers u[sampled count] for which acdf_table_sample returns x. Returns 1, or 0 (and u unset) where

@@ -51,7 +51,7 @@ typedef struct AcdfEntries {
     uint32_t curves;      /* AcdfEntryCurve */
     uint32_t curve_words; /* from one to the next */
     uint32_t steps;       /* AcdfEntryStep */
-    uint32_t densities;   /* f64: of each cell, as acdf_table_density tells it */
+    uint32_t densities;   /* f64: of each cell, as acdf_table_cell_pdf tells it */
     uint32_t reserved[10];
 } AcdfEntries;
 ACDF_STATIC_ASSERT(sizeof(AcdfEntries) % 64 == 0); /* arrays are aligned */

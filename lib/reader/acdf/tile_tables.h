@@ -261,7 +261,7 @@ ACDF_INLINE uint32_t acdf_tile_walk_end(const AcdfTileWalk* walk, const AcdfMixt
 #endif
 
 /* Draws a tile below split `node`: u and *given as acdf_tile_walk_end sets them. */
-ACDF_INLINE uint32_t acdf_tile_draw_rows(const uint32_t* words, const AcdfTileTables* tables,
+ACDF_INLINE uint32_t acdf_tile_sample_rows(const uint32_t* words, const AcdfTileTables* tables,
                                          const AcdfMixture* mix, const uint8_t* const* row, const int rows,
                                          uint32_t node, const double* from, double* u, double* given) {
     AcdfTileWalk walk;
@@ -282,7 +282,7 @@ ACDF_INLINE double acdf_tile_share(const uint32_t* words, const AcdfTileTables* 
         return acdf_tile_share_rows(words, tables, mix, row, mix->count, tile, first);
     }
 }
-ACDF_INLINE uint32_t acdf_tile_draw(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
+ACDF_INLINE uint32_t acdf_tile_sample(const uint32_t* words, const AcdfTileTables* tables, const AcdfMixture* mix,
                                     const uint8_t* const* row, uint32_t node, const double* from, double* u,
                                     double* given) {
     int i;
@@ -293,11 +293,11 @@ ACDF_INLINE uint32_t acdf_tile_draw(const uint32_t* words, const AcdfTileTables*
     }
     switch (mix->count) {
     case 1:
-        return acdf_tile_draw_rows(words, tables, mix, row, 1, node, from, u, given);
+        return acdf_tile_sample_rows(words, tables, mix, row, 1, node, from, u, given);
     case 2:
-        return acdf_tile_draw_rows(words, tables, mix, row, 2, node, from, u, given);
+        return acdf_tile_sample_rows(words, tables, mix, row, 2, node, from, u, given);
     default:
-        return acdf_tile_draw_rows(words, tables, mix, row, 3, node, from, u, given);
+        return acdf_tile_sample_rows(words, tables, mix, row, 3, node, from, u, given);
     }
 }
 

@@ -230,7 +230,7 @@ ACDF_FN double acdf_tilt_sample(double tilt, double u) {
     return tilt == 0.0 ? u : 2.0 * u / (a + sqrt(a * a + 4.0 * tilt * u));
 }
 ACDF_FN double acdf_tilt_cdf(double tilt, double t) { return t + tilt * (t * t - t); }
-ACDF_FN double acdf_tilt_density(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
+ACDF_FN double acdf_tilt_pdf(double tilt, double t) { return 1.0 + tilt * (2.0 * t - 1.0); }
 
 /* The random number in [0, 1] that a cell's stratum has at t of the cell: never more than 1 by rounding. */
 ACDF_FN double acdf_stratum_number(const AcdfStratum* stratum, const AcdfRange* range, double t) {

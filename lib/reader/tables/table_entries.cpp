@@ -56,7 +56,7 @@ public:
     EntriesMaker(const AcdfTable& table, u32 bin_count, std::size_t most_bytes, Scratch* scratch)
         : table_(table), bin_count_(bin_count), most_bytes_(most_bytes), first_axis_(table.indexed_count),
           axes_(acdf_table_sampled_count(&table)), widths_(scratch), bins_(scratch), grids_(scratch),
-          curves_(scratch), steps_(scratch), densities_(scratch) {}
+          curves_(scratch), steps_(scratch), pdfs_(scratch) {}
 
     /// False where there can be none.
     bool measure(const TreeSurvey& survey);
@@ -94,7 +94,7 @@ private:
     Growable<AcdfEntryBin> bins_;
     Growable<u32> grids_, curves_; ///< curves: curve_words() each
     Growable<AcdfEntryStep> steps_;
-    Growable<double> densities_;
+    Growable<double> pdfs_;
     AcdfEntryStep path_[kMostPath];
     u32 path_at_[kMostPath + 1];        ///< where so many of them stand
     const AcdfEntryBin* bin_ = nullptr; ///< that is entered
@@ -217,14 +217,14 @@ bool EntriesMaker::add_curve(u32 at, const Reached& reached, Found found, u32 de
 // A cell in which entries lie.
 bool EntriesMaker::add_cell(const Reached& reached) {
     fill(kPositions, reached, 0, reached.side[first_axis_].positions,
-         static_cast<u32>(densities_.size()) | ACDF_ENTRY_CELL);
+         static_cast<u32>(pdfs_.size()) | ACDF_ENTRY_CELL);
     AcdfTablePosition place = {};
     for (u32 axis = first_axis_; axis < table_.axis_count; ++axis) {
         place.range[axis].low = reached.side[axis].first;
         place.range[axis].high = reached.side[axis].last;
     }
-    densities_.add(reached.probability > 0.0 ? acdf_table_density(&table_, reached.probability, &place) : 0.0);
-    return !densities_.failed();
+    pdfs_.add(reached.probability > 0.0 ? acdf_table_cell_pdf(&table_, reached.probability, &place) : 0.0);
+    return !pdfs_.failed();
 }
 
 // A curve that is reached by so many steps, in what it divides entries lie, and what is below it. Each entry is
@@ -293,7 +293,7 @@ bool EntriesMaker::make() {
     entries_a_cell_ = kEntriesACell;
     while (about(entries_a_cell_) > most) entries_a_cell_ /= 2.0;
     const std::size_t some = cells_ / 4; // curves, usually
-    if (!curves_.reserve(some * curve_words()) || !steps_.reserve(2 * some) || !densities_.reserve(some))
+    if (!curves_.reserve(some * curve_words()) || !steps_.reserve(2 * some) || !pdfs_.reserve(some))
         return false;
     if (!bins_.add(bin_count_, AcdfEntryBin{}) || !grids_.add(16, 0)) return false; // so that none begins at 0
     for (u32 bin = 0; bin < bin_count_; ++bin) {
@@ -313,7 +313,7 @@ bool EntriesMaker::make() {
 
 std::size_t EntriesMaker::words() const {
     return sizeof(AcdfEntries) / 4 + whole_lines(bins_.bytes() / 4) + whole_lines(curves_.size()) +
-           whole_lines(steps_.bytes() / 4) + whole_lines(densities_.bytes() / 4) + whole_lines(grids_.size());
+           whole_lines(steps_.bytes() / 4) + whole_lines(pdfs_.bytes() / 4) + whole_lines(grids_.size());
 }
 
 AcdfEntries* EntriesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& block) const {
@@ -327,7 +327,7 @@ AcdfEntries* EntriesMaker::assemble(const AcdfAllocator& allocator, AcdfBlock& b
     out->curves = copy_lines(curves_, tables, at);
     out->curve_words = static_cast<u32>(curve_words());
     out->steps = copy_lines(steps_, tables, at);
-    out->densities = copy_lines(densities_, tables, at);
+    out->densities = copy_lines(pdfs_, tables, at);
     const u32 grids = copy_lines(grids_, tables, at);
     auto* const bins = reinterpret_cast<AcdfEntryBin*>(tables + out->bins);
     for (u32 bin = 0; bin < bin_count_; ++bin)

@@ -27,7 +27,7 @@ std::size_t inner_bytes(const AcdfLocal& local) {
 void WalkTiles::add(const AcdfLocal& local, u32 tile) noexcept {
     AcdfRange box[2];
     acdf_sphere_ranges(local.environment.columns, local.environment.rows, box);
-    const AcdfFastGrid grid = acdf_local_fast_drawn(&local, tile, box);
+    const AcdfFastGrid grid = acdf_local_fast_sampled(&local, tile, box);
     Record record;
     record.lows = box[0].low | box[1].low << 16;
     record.sides = (box[0].high - box[0].low - 1) | (box[1].high - box[1].low - 1) << 16;

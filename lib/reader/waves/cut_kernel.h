@@ -32,7 +32,7 @@ ACDF_LANE void pairs_of(const T* array, Integer number, std::size_t place, Vecto
     gather_pairs(from, out);
 }
 
-/* acdf_cut_draw of some lanes. */
+/* acdf_cut_choose_part of some lanes. */
 ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::size_t count, DrawnParts* drawn) {
     double u[ACDF_CUT_WAVE][2];
     int guess[ACDF_CUT_WAVE];
@@ -42,7 +42,7 @@ ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::siz
         acdf_cut_part_ahead(&cut, guess[i]);
     }
     for (std::size_t i = 0; i < count; ++i) {
-        drawn->part[i] = acdf_cut_draw_guessed(&cut, guess[i], u[i]) - cut.part;
+        drawn->part[i] = acdf_cut_sample_guessed(&cut, guess[i], u[i]) - cut.part;
         for (int axis = 0; axis < 2; ++axis) drawn->u[axis][i] = u[i][axis];
     }
     for (std::size_t i = count; i % ACDF_WIDTH != 0; ++i) {
@@ -53,7 +53,7 @@ ACDF_LANE void find_parts(const AcdfCut& cut, const double (*given)[2], std::siz
 
 // ---- lights and mixtures ---------------------------------------------------------------------------------------
 
-/* acdf_cut_draw_light of the lanes of a mask, into cells. */
+/* acdf_cut_sample_light of the lanes of a mask, into cells. */
 ACDF_LANE void draw_cut_lights(const AcdfLocal& local, const AcdfCut& cut, const DrawnParts& drawn, std::size_t at,
                                unsigned mask, Cells* cells) {
     for (; mask; mask &= mask - 1) {
@@ -61,13 +61,13 @@ ACDF_LANE void draw_cut_lights(const AcdfLocal& local, const AcdfCut& cut, const
         double u[2] = {drawn.u[0][lane], drawn.u[1][lane]};
         AcdfRange range[2];
         cells->tile[to] =
-            acdf_cut_draw_light(&local, &cut, &cut.part[drawn.part[lane]], u, range, &cells->probability[to]);
+            acdf_cut_sample_light(&local, &cut, &cut.part[drawn.part[lane]], u, range, &cells->probability[to]);
         for (int axis = 0; axis < 2; ++axis) cells->u[axis][to] = u[axis];
         cells->lane[to] = (long long)lane;
     }
 }
 
-/* acdf_cut_draws_light, and what draws from a part's mixture begins its walk. Returns the lanes that neither does:
+/* acdf_cut_samples_light, and what draws from a part's mixture begins its walk. Returns the lanes that neither does:
  * those of mixtures without weight. */
 ACDF_LANE unsigned enter_parts(const AcdfLocal& local, const AcdfLocalPoint& point, const AcdfCut& cut,
                                const DrawnParts& drawn, std::size_t at, unsigned there, CutWalks* walks,

@@ -129,7 +129,7 @@ ACDF_LANE void search_tiles(const AcdfLocal& local, FastDraws* d) {
     }
 }
 
-/* acdf_fast_draw_tile of all lanes; of those that draw a light it is told before. */
+/* acdf_fast_sample_tile of all lanes; of those that draw a light it is told before. */
 ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* d) {
     alignas(64) double y[kRoom];
     search_groups(d);
@@ -163,7 +163,7 @@ ACDF_LANE void draw_tiles(const AcdfLocal& local, std::size_t count, FastDraws* 
 
 // ---- cells -----------------------------------------------------------------------------------------------------
 
-/* acdf_fast_draw_cell of all lanes, but for what they share with densities. */
+/* acdf_fast_sample_cell of all lanes, but for what they share with densities. */
 ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* d) {
     FastCells& c = d->cells;
     alignas(64) double z[2][kRoom];
@@ -197,7 +197,7 @@ ACDF_LANE void draw_cells(const AcdfLocal& local, std::size_t count, FastDraws* 
 
 // ---- directions ------------------------------------------------------------------------------------------------
 
-/* Half of some directions up to where floats go on; densities as acdf_local_fast_density has them. */
+/* Half of some directions up to where floats go on; densities as acdf_local_fast_cell_pdf has them. */
 ACDF_LANE Vector begin_directions(const AcdfLocal& local, const FastDraws& d, std::size_t at, int half,
                                   Drawn* out) {
     const FastCells& c = d.cells;
@@ -231,7 +231,7 @@ ACDF_LANE void end_draws(const AcdfLocal& local, FastDraws* d, std::uint64_t los
         AcdfDirectionSample last[kLanes];
         for (int half = 0; half < 2; ++half)
             pdf[half] = begin_directions(local, *d, first + ACDF_WIDTH * (std::size_t)half, half, &drawn);
-        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, drawn, direction);
+        const std::uint32_t refused = sampled_directions(local.tables->octahedral != 0, drawn, direction);
         store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), more < kLanes ? last : out + first);
         if (more < kLanes) std::memcpy(out + first, last, more * sizeof *out);
         lost |= (std::uint64_t)refused << first;

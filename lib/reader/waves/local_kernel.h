@@ -28,7 +28,7 @@ struct Walks {
 
 // ---- numbers ---------------------------------------------------------------------------------------------------
 
-/* acdf_local_draw_light of the lanes of a mask, into cells; of tiles the numbers of the lights. */
+/* acdf_local_sample_light of the lanes of a mask, into cells; of tiles the numbers of the lights. */
 ACDF_LANE void draw_lights(const AcdfLocal& local, const Points<true>& p, const Vector u[2], unsigned mask,
                            Integer lane, Cells* cells) {
     Vector x = u[0] * p.sum, weight = all(0.0), number = all(0.0);
@@ -162,7 +162,7 @@ ACDF_LANE void walk(const AcdfLocalTables& tables, const Rows& rows, Walks* w) {
     }
 }
 
-/* acdf_tile_walk_end, acdf_local_drawn_tile and acdf_local_tile_probability of all lanes, into cells behind others;
+/* acdf_tile_walk_end, acdf_local_sampled_tile and acdf_local_tile_probability of all lanes, into cells behind others;
  * `scaled(at, of_all)`: the probabilities of a vector of tiles that are such a part of all. */
 template <class Scaled>
 ACDF_LANE void end_walks(const AcdfLocal& local, const Walks& w, const Scaled& scaled, Cells* cells) {
@@ -227,7 +227,7 @@ ACDF_LANE std::uint64_t place_cells(const AcdfLocal& local, const Cells& cells, 
             pdf[half] = local.tables->octahedral ? fold_place(local, cells, done, at, half, &d)
                                                  : row_place(local, cells, done, at, half, &d);
         }
-        const std::uint32_t refused = drawn_directions(local.tables->octahedral != 0, d, direction);
+        const std::uint32_t refused = sampled_directions(local.tables->octahedral != 0, d, direction);
         store_samples(direction, to_floats((Doubles)pdf[0], (Doubles)pdf[1]), drawn);
         for (std::size_t i = 0; i < kLanes && first + i < done.count; ++i) {
             const std::size_t lane = (std::size_t)cells.lane[first + i];

@@ -64,7 +64,7 @@ struct Lamp {
 /// Sums see a sixty-fourth of a texel. Where that alone is above the horizon, it is as little of a cell.
 constexpr double kMost = 150.0;
 
-void expect_lamps_are_drawn(const std::vector<Lamp>& lamps, bool square, std::uint32_t columns, std::uint32_t rows,
+void expect_lamps_are_sampled(const std::vector<Lamp>& lamps, bool square, std::uint32_t columns, std::uint32_t rows,
                             double brightness) {
     const compress::Target latlong = acdf_test::texel_target(columns, rows, [&](std::uint32_t c, std::uint32_t r) {
         const bool lit =
@@ -84,24 +84,24 @@ void expect_lamps_are_drawn(const std::vector<Lamp>& lamps, bool square, std::ui
 }
 
 TEST(PartnerAtTheHorizon, TexelsAcrossTheEquatorOfTheSquare) {
-    expect_lamps_are_drawn({{31, 16}}, true, 32, 32, 1e6);
+    expect_lamps_are_sampled({{31, 16}}, true, 32, 32, 1e6);
     if (acdf_test::kSanitized) return;
-    expect_lamps_are_drawn({{20, 27}}, true, 32, 32, 1e6);
-    expect_lamps_are_drawn({{64, 127}}, true, 128, 128, 1e6);
+    expect_lamps_are_sampled({{20, 27}}, true, 32, 32, 1e6);
+    expect_lamps_are_sampled({{64, 127}}, true, 128, 128, 1e6);
 }
 
 TEST(PartnerAtTheHorizon, TexelsNextToTheEquator) {
-    expect_lamps_are_drawn({{20, 15}}, false, 64, 32, 1e6);
+    expect_lamps_are_sampled({{20, 15}}, false, 64, 32, 1e6);
     if (acdf_test::kSanitized) return;
-    expect_lamps_are_drawn({{20, 16}}, false, 64, 32, 1e6);
-    expect_lamps_are_drawn({{80, 64}}, false, 256, 128, 1e6);
-    expect_lamps_are_drawn({{7, 8}}, false, 31, 17, 1e6); // across it
+    expect_lamps_are_sampled({{20, 16}}, false, 64, 32, 1e6);
+    expect_lamps_are_sampled({{80, 64}}, false, 256, 128, 1e6);
+    expect_lamps_are_sampled({{7, 8}}, false, 31, 17, 1e6); // across it
 }
 
 TEST(PartnerAtTheHorizon, LampsOfWhichABinSeesOne) {
     ACDF_NOT_SANITIZED();
-    expect_lamps_are_drawn({{9, 12}, {41, 19}}, false, 64, 32, 1e6);
-    expect_lamps_are_drawn({{3, 16}, {25, 4}}, true, 32, 32, 1e6);
+    expect_lamps_are_sampled({{9, 12}, {41, 19}}, false, 64, 32, 1e6);
+    expect_lamps_are_sampled({{3, 16}, {25, 4}}, true, 32, 32, 1e6);
 }
 
 } // namespace

@@ -62,7 +62,7 @@ protected:
     std::vector<Line> lines_;
 };
 
-TEST_P(GoldenFile, DrawsTheSameSamples) {
+TEST_P(GoldenFile, SamplesTheSameSamples) {
     for (const Line& line : lines_) {
         const auto s = file_.environment().sample(line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
@@ -70,7 +70,7 @@ TEST_P(GoldenFile, DrawsTheSameSamples) {
     }
 }
 
-TEST_P(GoldenFile, HasThatDensityThere) {
+TEST_P(GoldenFile, HasThatPdfThere) {
     const bool tilted = file_.description().fit == ACDF_FIT_PDF;
     for (const Line& line : lines_) {
         const float pdf = file_.environment().pdf(line.direction);

@@ -13,14 +13,14 @@ namespace {
 
 const std::string kGoldenLocal = ACDF_TEST_DIR "/golden/v1.0/";
 
-class GoldenLocal : public acdf_test::GoldenDraws {};
+class GoldenLocal : public acdf_test::GoldenSamples {};
 
-TEST_P(GoldenLocal, DrawsTheSameSamples) {
+TEST_P(GoldenLocal, SamplesTheSameSamples) {
     acdf::LoadOptions options; // as SPEC.md says it, to the last bit
     options.tables = false;
     acdf::File walked;
     ASSERT_TRUE(acdf::File::open((kGoldenLocal + GetParam() + ".acdf").c_str(), walked, options).ok());
-    for (const acdf_test::GoldenDraw& line : lines_) {
+    for (const acdf_test::GoldenSample& line : lines_) {
         const auto s = walked.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_EQ(s.direction[i], line.direction[i]);
         EXPECT_EQ(s.pdf, line.pdf);
@@ -28,7 +28,7 @@ TEST_P(GoldenLocal, DrawsTheSameSamples) {
 }
 
 TEST_P(GoldenLocal, DrawsTheSameSamplesByRuntimeTables) { // but for the rounding of floats
-    for (const acdf_test::GoldenDraw& line : lines_) {
+    for (const acdf_test::GoldenSample& line : lines_) {
         const auto s = file_.local().sample(line.given, line.u[0], line.u[1]);
         for (int i = 0; i < 3; ++i) EXPECT_NEAR(s.direction[i], line.direction[i], 4e-7);
         EXPECT_EQ(file_.local().pdf(line.given, s.direction), s.pdf);
@@ -37,9 +37,9 @@ TEST_P(GoldenLocal, DrawsTheSameSamplesByRuntimeTables) { // but for the roundin
     }
 }
 
-TEST_P(GoldenLocal, HasThatDensityThere) {
+TEST_P(GoldenLocal, HasThatPdfThere) {
     int drawn = 0;
-    for (const acdf_test::GoldenDraw& line : lines_) {
+    for (const acdf_test::GoldenSample& line : lines_) {
         EXPECT_EQ(file_.local().pdf(line.given, line.direction), line.pdf);
         drawn += line.pdf > 0.0f;
     }

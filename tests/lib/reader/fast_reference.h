@@ -168,14 +168,14 @@ private:
 
 public:
     /// Draws a cell in the tile whose box `cell` is, or finds that of a square: its probability there.
-    double draw_in_grid(std::size_t tile, double (&u)[2], Cell& cell) const {
+    double sample_in_grid(std::size_t tile, double (&u)[2], Cell& cell) const {
         const Grid grid = grid_of(tile, cell);
-        const auto draw_end = [&](double& x, std::size_t list, std::size_t count) {
+        const auto sample_end = [&](double& x, std::size_t list, std::size_t count) {
             return drawn(x, 255.0, count, [&](std::size_t i) { return end_steps(list, i); });
         };
-        const std::size_t line = draw_end(u[1], grid.at + 2, grid.count[1]);
+        const std::size_t line = sample_end(u[1], grid.at + 2, grid.count[1]);
         const std::size_t list = grid.at + 2 + grid.count[1] + line * grid.count[0];
-        const std::size_t column = draw_end(u[0], list, grid.count[0]);
+        const std::size_t column = sample_end(u[0], list, grid.count[0]);
         narrow(cell, 0, column, grid.step[0]);
         narrow(cell, 1, line, grid.step[1]);
         return end_steps(grid.at + 2, line) * end_steps(list, column) / 65025.0;

@@ -32,14 +32,14 @@ std::vector<std::array<double, Count>> golden_numbers(const std::string& path) {
 }
 
 /// A draw for a normal or a view: `given  u0 u1  direction  pdf` on a line.
-struct GoldenDraw {
+struct GoldenSample {
     float given[3];
     double u[2];
     float direction[3], pdf;
 };
 
 /// A golden file, named by the parameter, and the 96 draws beside it.
-class GoldenDraws : public ::testing::TestWithParam<const char*> {
+class GoldenSamples : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
         const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
@@ -54,7 +54,7 @@ protected:
     }
 
     acdf::File file_;
-    std::vector<GoldenDraw> lines_;
+    std::vector<GoldenSample> lines_;
 };
 
 } // namespace acdf_test

@@ -231,7 +231,7 @@ TEST(LocalView, whatIsStoredIsTold) {
 }
 
 // By hand: at +x row 1 rules, of codes 200 and 255: columns [0, 3) have 200/255 of all, the rest is in tile 1.
-TEST(LocalView, handMadeDensities) {
+TEST(LocalView, handMadePdfs) {
     LocalSpec spec = shared_local();
     spec.tile_curves.clear(); // all tiles are cells
     spec.tree = {{CurveSpec{}}, {}};

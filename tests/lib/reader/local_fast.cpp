@@ -138,7 +138,7 @@ TEST(FastShape, IntegratesToOne) {
 }
 
 // By hand: at +x row 1 alone, 200 of 255 in tile 0; there 110 of 255 in line 2, the second cell of which has 80.
-TEST(FastShape, HandMadeDensities) {
+TEST(FastShape, HandMadePdfs) {
     const FastFile loaded(fast_local(), true);
     const acdf::LocalEnvironmentView view = loaded.file.local();
     const float x[3] = {7.0f, 0.0f, 0.0f};
@@ -264,7 +264,7 @@ TEST(FastShape, StrataStayStrata) {
         const double whole = 32767.0 * point.fast.whole;
         AcdfFastShare share;
         const std::uint32_t tile =
-            acdf_fast_draw_tile(&view.data().fast, &point.fast, acdf_fast_scaled(i / 100000.0, whole), u, &share);
+            acdf_fast_sample_tile(&view.data().fast, &point.fast, acdf_fast_scaled(i / 100000.0, whole), u, &share);
         ASSERT_GE(double(tile / ACDF_FAST_GROUP), before);
         ASSERT_GE(u[0], 0.0);
         ASSERT_LE(u[0], 1.0);

@@ -109,7 +109,7 @@ public:
             walk_from(source.root, s.cell, [&](const Curve& c) { return draw(c, u); });
             s.cell.p = std::max(s.cell.p, std::ldexp(1.0, -1000));
         } else {
-            draw_blend(source, u, s.cell);
+            sample_blend(source, u, s.cell);
         }
         place(s, u);
         return s;
@@ -203,10 +203,10 @@ private:
     }
 
     // p times that of the cell within the tile.
-    void draw_in_tile(std::size_t tile, double (&u)[2], Cell& cell) const {
+    void sample_in_tile(std::size_t tile, double (&u)[2], Cell& cell) const {
         const double least = std::ldexp(1.0, -1000), p = std::max(cell.p, least);
         if (!sums_.empty()) {
-            cell.p = std::max(p * fast().draw_in_grid(tile, u, cell), least);
+            cell.p = std::max(p * fast().sample_in_grid(tile, u, cell), least);
             return;
         }
         cell.p = 1.0;
@@ -243,7 +243,7 @@ private:
         return out;
     }
 
-    void draw_blend(const Source& source, double (&u)[2], Cell& cell) const {
+    void sample_blend(const Source& source, double (&u)[2], Cell& cell) const {
         double x = u[0] * source.sum;
         if (x < source.lights || source.w.empty()) {
             std::size_t k = 0;
@@ -258,13 +258,13 @@ private:
             u[0] = std::min(std::max((x - before) / source.light[k], 0.0), 1.0);
             cell = light_box(k);
             cell.p = source.light[k] / source.sum;
-            draw_in_tile(number(local_, light_at(k) + 20, 4), u, cell);
+            sample_in_tile(number(local_, light_at(k) + 20, 4), u, cell);
             return;
         }
         u[0] = std::min(std::max((x - source.lights) / (source.sum - source.lights), 0.0), 1.0);
         if (!sums_.empty()) {
             const std::size_t tile = fast().draw(source.row, source.w, u, cell);
-            draw_in_tile(tile, u, cell);
+            sample_in_tile(tile, u, cell);
             cell.p = std::max(total_of(source.w) / source.sum * cell.p, std::ldexp(1.0, -1000));
             return;
         }
@@ -285,7 +285,7 @@ private:
             node = s.child[up];
         }
         cell.p = std::max(p / whole, std::ldexp(1.0, -1000));
-        draw_in_tile(node - 0x8000, u, cell);
+        sample_in_tile(node - 0x8000, u, cell);
         cell.p = std::max(whole / source.sum * cell.p, std::ldexp(1.0, -1000));
     }
 

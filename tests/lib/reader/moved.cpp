@@ -96,7 +96,7 @@ void expect_the_same_moved(std::optional<acdf::File>& file, std::vector<std::uin
     for (std::size_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(told(moved, numbers[i]), before[i]) << i;
 }
 
-TEST(MovedViews, DrawWhatTheyDrew) {
+TEST(MovedViews, SampleWhatTheyDrew) {
     int kinds[8] = {};
     const auto expect = [&](const std::vector<std::uint8_t>& golden) {
         for (const bool tables : {true, false}) {

@@ -22,7 +22,7 @@ using namespace acdf_test::products;
 namespace {
 
 // To the bit, with and without slopes in cells, for random numbers of every kind.
-TEST(Product, DensityIsExactlyThatOfTheSamples) {
+TEST(Product, PdfIsExactlyThatOfTheSamples) {
     const double edges[] = {0.0, 1.0, 0.5, 1.0 - 0x1p-24, 1.0 - 0x1p-53, 0x1p-30, 0x1p-1000, NAN, -1.0, 2.0};
     int drawn = 0, all = 0;
     for (const bool tilts : {false, true})

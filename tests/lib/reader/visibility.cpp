@@ -147,7 +147,7 @@ TEST(Visibility, CellsAreMixedWithoutAJump) {
 
 class GoldenVisibility : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(GoldenVisibility, DrawTheSameSamples) {
+TEST_P(GoldenVisibility, SampleTheSameSamples) {
     const std::string path = std::string(ACDF_TEST_DIR "/golden/v1.0/") + GetParam();
     acdf::File file;
     acdf::LoadOptions walked; // what is drawn by runtime tables differs as floats round

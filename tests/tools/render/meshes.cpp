@@ -69,12 +69,12 @@ TEST(MeshVisibility, AreDrawnFromInPictures) {
     EXPECT_EQ(measured.at("support_violations"), 0);
     EXPECT_FALSE(measured.contains("visibility"));
 
-    std::vector<std::string> drawn_from{"--sampler", "local:64KiB", "--sampler", "file:room.acdf"};
-    if (!acdf_test::kSanitized) drawn_from.insert(drawn_from.end(), {"--sampler", "visibility:64KiB"});
-    const Result result = folder.render("scene.json", "out", drawn_from);
+    std::vector<std::string> sampled_from{"--sampler", "local:64KiB", "--sampler", "file:room.acdf"};
+    if (!acdf_test::kSanitized) sampled_from.insert(sampled_from.end(), {"--sampler", "visibility:64KiB"});
+    const Result result = folder.render("scene.json", "out", sampled_from);
     ASSERT_EQ(result.code, 0) << result.err;
     const Json samplers = Json::parse(result.out).at("samplers");
-    ASSERT_EQ(samplers.size(), drawn_from.size() / 2);
+    ASSERT_EQ(samplers.size(), sampled_from.size() / 2);
     for (const Json& one : samplers) {
         EXPECT_LT(std::fabs(double(one.at("bias_standard_errors"))), 4.0) << one;
         if (one.at("sampler") == "local:64KiB") continue;

@@ -6,7 +6,7 @@
 #include "tools/render/scene_file.h"
 #include "tools/sweep/occluders.h"
 #include "tools/sweep/surface.h"
-#include "tools/sweep/surface_draws.h"
+#include "tools/sweep/surface_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ TEST(SweepSurface, AgreesWithTheClosedFormsOfBaselines) {
     const std::vector<build::Normal> normals = build::random_normals(5);
     const measure::LocalFullCdf full(target);
     const auto sampler = measure::full_cdf_sampler(target);
-    const std::vector<float> density = texel_densities(target, *sampler);
+    const std::vector<float> density = texel_pdfs(target, *sampler);
     const SurfaceVariances got = summary(point_variances(target, density, in_the_open(normals)), Scale::own);
     std::vector<double> each;
     for (const build::Normal& n : normals) each.push_back(full.relative_variance(n.data()));
@@ -46,7 +46,7 @@ TEST(SweepSurface, AgreesWithTheClosedFormsOfBaselines) {
 TEST(SweepSurface, WhatIsHiddenDoesNotCount) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);
-    const std::vector<float> density = texel_densities(target, *sampler);
+    const std::vector<float> density = texel_pdfs(target, *sampler);
     SurfacePoint point;
     const PointVariance open = point_variances(target, density, {point}).front();
     point.hidden.assign(density.size(), false);
@@ -112,16 +112,16 @@ TEST(SweepSurface, DrawnVariancesAreThoseOfTheSums) {
     const compress::Target target = acdf_test::noise_target(48, 24, 5, 1.0, 0.1);
     const auto sampler = measure::full_cdf_sampler(target);
     const std::vector<SurfacePoint> points = behind_occluders(target, 12);
-    const auto exact = point_variances(target, texel_densities(target, *sampler), points);
+    const auto exact = point_variances(target, texel_pdfs(target, *sampler), points);
     const SurfaceVariances sums = summary(exact, Scale::picture);
-    const DrawnVariances two = sobol_variances(target, *sampler, points, exact, Scale::picture, 2, 1500);
+    const SampledVariances two = sobol_variances(target, *sampler, points, exact, Scale::picture, 2, 1500);
     // Of two Sobol' points: less than of two independent ones; with an MIS partner a set of one each: exactly those.
     EXPECT_LT(two.alone, sums.alone.mean);
     EXPECT_NEAR(two.partner, sums.partner.mean, 0.1 * sums.partner.mean);
-    const DrawnVariances many = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
+    const SampledVariances many = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
     EXPECT_LT(many.alone, 0.7 * sums.alone.mean);
     EXPECT_LT(many.partner, 0.7 * sums.partner.mean);
-    const DrawnVariances again = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
+    const SampledVariances again = sobol_variances(target, *sampler, points, exact, Scale::picture, 64, 100);
     EXPECT_EQ(many.alone, again.alone);
     EXPECT_EQ(many.partner, again.partner);
 }

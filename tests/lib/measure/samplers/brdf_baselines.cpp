@@ -14,7 +14,7 @@ using namespace acdf::build;
 using namespace acdf::measure;
 using acdf::compress::Reflected;
 using acdf::compress::View;
-using acdf_test::expect_samples_as_its_density;
+using acdf_test::expect_samples_as_its_pdf;
 using acdf_test::view_at;
 
 constexpr double cosines[] = {1.0, 0.7, 0.5, 0.1, 1e-3};
@@ -45,7 +45,7 @@ TEST(MeasureBrdfBaselines, VariancesAreTheSameHoweverLightIsLookedUp) {
     const Reflected light = light_of(*brdf);
     const std::vector<View> views = random_views(3, true);
     const GgxSampler ggx(0.4);
-    const std::vector<ViewDensity> densities = {
+    const std::vector<ViewPdf> densities = {
         CosineSampler::pdf, [&](const double wo[3], const double wi[3]) { return ggx.pdf(wo, wi); }};
     const std::vector<double> together = relative_variances(densities, light, views, 20, 30);
     ASSERT_EQ(together.size(), 2u);
@@ -59,7 +59,7 @@ TEST(MeasureBrdfBaselines, VariancesAreTheSameHoweverLightIsLookedUp) {
 }
 
 TEST(MeasureBrdfBaselines, CosineSamplesAsItsDensity) {
-    for (const double c : cosines) expect_samples_as_its_density(CosineSampler{}, view_at(c), at("cosine", c));
+    for (const double c : cosines) expect_samples_as_its_pdf(CosineSampler{}, view_at(c), at("cosine", c));
     const double wo[3] = {0.0, 0.0, 1.0}, u[2] = {0.25, 0.36};
     const BrdfSample s = CosineSampler::sample(wo, u);
     EXPECT_NEAR(s.wi[0], 0.0, 1e-15);
@@ -69,9 +69,9 @@ TEST(MeasureBrdfBaselines, CosineSamplesAsItsDensity) {
 
 TEST(MeasureBrdfBaselines, GgxSamplesAsItsDensity) {
     for (const double c : cosines) {
-        expect_samples_as_its_density(GgxSampler(0.1), view_at(c), at("0.1", c), 48);
-        expect_samples_as_its_density(GgxSampler(0.8), view_at(c), at("0.8", c));
-        expect_samples_as_its_density(GgxSampler(0.15, 0.5), view_at(c), at("0.15, 0.5", c), 48);
+        expect_samples_as_its_pdf(GgxSampler(0.1), view_at(c), at("0.1", c), 48);
+        expect_samples_as_its_pdf(GgxSampler(0.8), view_at(c), at("0.8", c));
+        expect_samples_as_its_pdf(GgxSampler(0.15, 0.5), view_at(c), at("0.15, 0.5", c), 48);
     }
 }
 
@@ -115,7 +115,7 @@ TEST(MeasureBrdfBaselines, RglSamplesAsItsDensity) {
         const acdf::test::Bytes file = parts.bytes();
         const auto brdf = acdf::input::parse_rgl("t", file.data(), file.size());
         for (const double c : {1.0, 0.6, 0.1})
-            expect_samples_as_its_density(RglSampler(*brdf), view_at(c, -1.3), at(isotropic ? "iso" : "aniso", c),
+            expect_samples_as_its_pdf(RglSampler(*brdf), view_at(c, -1.3), at(isotropic ? "iso" : "aniso", c),
                                           32);
         // Three floats a number of vndf and of luminance, but for the marginals.
         const std::size_t slices = parts.slices();
@@ -154,7 +154,7 @@ TEST(MeasureBrdfBaselines, RglOfRealMaterials) {
         EXPECT_LT(accuracy.relative_variance, 0.032) << name;
         EXPECT_EQ(accuracy.support_violations, 0u) << name;
         EXPECT_GT(accuracy.share_above_horizon, 0.97) << name;
-        expect_samples_as_its_density(sampler, view_at(0.6), name, 40, 20000);
+        expect_samples_as_its_pdf(sampler, view_at(0.6), name, 40, 20000);
     }
 }
 
@@ -168,9 +168,9 @@ TEST(MeasureBrdfBaselines, TablesSampleAsTheirDensity) {
         turned.phi_o = 1;
         const TabulatedBrdf c(light_of(*iso), true, kind, turned);
         for (const double cosine : {1.0, 0.1}) {
-            expect_samples_as_its_density(a, view_at(cosine), at("isotropic", cosine), 48);
-            expect_samples_as_its_density(b, view_at(cosine), at("anisotropic", cosine), 48);
-            expect_samples_as_its_density(c, view_at(cosine), at("turned", cosine), 48);
+            expect_samples_as_its_pdf(a, view_at(cosine), at("isotropic", cosine), 48);
+            expect_samples_as_its_pdf(b, view_at(cosine), at("anisotropic", cosine), 48);
+            expect_samples_as_its_pdf(c, view_at(cosine), at("turned", cosine), 48);
         }
     }
 }

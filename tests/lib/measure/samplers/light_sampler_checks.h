@@ -71,7 +71,7 @@ struct SamplerCheck {
 };
 
 /// What is drawn in vain has an outcome of its own: what the integral of the density lacks of 1.
-inline void expect_samples_as_its_density(const acdf::measure::LightSampler& sampler,
+inline void expect_samples_as_its_pdf(const acdf::measure::LightSampler& sampler,
                                           const acdf::measure::ShadingPoint& at, const SphereBins& bins,
                                           const std::string& name, const SamplerCheck& check = {},
                                           double integral = 1.0) {

@@ -36,7 +36,7 @@ protected:
     const Target& target() const { return GetParam().target; }
 };
 
-TEST_P(TexelSamplers, DrawByTheirDensity) {
+TEST_P(TexelSamplers, SampleByTheirPdf) {
     const Target& t = target();
     const std::vector<Normal> normals = awkward_normals();
     for (const NamedSampler& each : samplers_of(t))
@@ -44,7 +44,7 @@ TEST_P(TexelSamplers, DrawByTheirDensity) {
             const auto point = each.sampler->point_sampler();
             point->move_to(facing(normals[i]));
             const bool drawn = point->sample(0.5, 0.5).pdf > 0.0f; // else tiles see no light
-            expect_samples_as_its_density(*each.sampler, facing(normals[i]), {t.columns, t.rows, 1, is_square(t)},
+            expect_samples_as_its_pdf(*each.sampler, facing(normals[i]), {t.columns, t.rows, 1, is_square(t)},
                                           each.name, {}, drawn ? 1.0 : 0.0);
         }
 }
@@ -164,13 +164,13 @@ TEST(TexelSamplersOf, BlackAndFilteredProbesAreRefused) {
     EXPECT_THROW(alias_sampler(filtered), std::invalid_argument);
 }
 
-TEST(SurfaceSamplers, DrawByTheirDensity) {
+TEST(SurfaceSamplers, SampleByTheirPdf) {
     std::mt19937_64 random(17);
     for (const Normal& n : awkward_normals()) {
         SamplerCheck check;
         check.tolerance = 2e-3; // the hemisphere's border crosses bins
         check.disagreeing = 1e-3;
-        expect_samples_as_its_density(*cosine_sampler(), facing(n), {24, 12, 16}, "cosine", check);
+        expect_samples_as_its_pdf(*cosine_sampler(), facing(n), {24, 12, 16}, "cosine", check);
         Normal wo = random_direction(random);
         const double side = dot(n.data(), wo.data());
         // Where half-vectors are visible but light would come from below nothing is drawn: no integral is known.
@@ -186,7 +186,7 @@ TEST(SurfaceSamplers, DrawByTheirDensity) {
             drawn += point->sample(u0, u1).pdf > 0.0f;
         }
         check.tolerance = 0.015; // of the share that was counted
-        expect_samples_as_its_density(*ggx, at, {24, 12, 16}, "ggx", check, drawn / 20000.0);
+        expect_samples_as_its_pdf(*ggx, at, {24, 12, 16}, "ggx", check, drawn / 20000.0);
 
         const float below[3] = {-wo[0], -wo[1], -wo[2]};
         point->move_to(shading_point(n.data(), below));

@@ -57,8 +57,8 @@ TEST(Portals, AreDrawnFromByTheirDensity) {
     const LightSamplerPtr uniform = uniform_portal_sampler(portals(), false),
                           windowed = windowed_portal_sampler(target, portals(), false, 96);
     for (const Vec3& position : kPositions) {
-        expect_samples_as_its_density(*uniform, point_at(position), kBins, "uniform", kCheck);
-        expect_samples_as_its_density(*windowed, point_at(position), kBins, "windowed", kCheck);
+        expect_samples_as_its_pdf(*uniform, point_at(position), kBins, "uniform", kCheck);
+        expect_samples_as_its_pdf(*windowed, point_at(position), kBins, "windowed", kCheck);
     }
 }
 
@@ -164,7 +164,7 @@ TEST(Visibility, IsKnownAtCachePoints) {
     double seen = 0.0, hidden = 0.0;
     for (std::size_t i = 0; i < yard.points.size(); i += 40) {
         const ScenePoint& point = yard.points[i];
-        expect_samples_as_its_density(*with, point.shading(), SphereBins{64, 32, 4}, "visibility",
+        expect_samples_as_its_pdf(*with, point.shading(), SphereBins{64, 32, 4}, "visibility",
                                       SamplerCheck{4000, 1e-4, 0.0, 1e-4});
         a->move_to(point.shading());
         b->move_to(point.shading());

@@ -46,7 +46,7 @@ void expect_same(const LocalPair& pair, const AcdfLocalPoint points[2], const fl
 
 /// Whether two draws are of one cell and at one place but for the rounding of floats. (Where a share is drawn
 /// around the normal the density depends on the place.)
-bool same_draw(const acdf::DirectionSample& a, const acdf::DirectionSample& b, double most) {
+bool same_sample(const acdf::DirectionSample& a, const acdf::DirectionSample& b, double most) {
     for (int i = 0; i < 3; ++i)
         if (!(std::fabs(double{a.direction[i]} - b.direction[i]) <= most)) return false;
     return std::fabs(double{a.pdf} - b.pdf) <= 1e-5 * b.pdf;
@@ -54,16 +54,16 @@ bool same_draw(const acdf::DirectionSample& a, const acdf::DirectionSample& b, d
 
 /// A draw is the walk's but next to borders, where it is that of numbers 2^-24 away. Its density is what the same
 /// view tells of it, where that holds of the walk: cells without tilts.
-void expect_same_draw(const LocalPair& pair, const AcdfLocalPoint points[2], const double u[2]) {
+void expect_same_sample(const LocalPair& pair, const AcdfLocalPoint points[2], const double u[2]) {
     const acdf::DirectionSample a = pair.fast.local().sample(points[0], u[0], u[1]);
     const acdf::DirectionSample b = pair.plain.local().sample(points[1], u[0], u[1]);
     if (a.pdf > 0.0f && same_bits(b.pdf, pair.plain.local().pdf(points[1], b.direction))) {
         ASSERT_TRUE(same_bits(a.pdf, pair.fast.local().pdf(points[0], a.direction))) << u[0] << ' ' << u[1];
     }
-    if (same_draw(a, b, 4e-7)) return;
+    if (same_sample(a, b, 4e-7)) return;
     bool near = false;
     for (int k = 0; k < 9 && !near; ++k)
-        near = same_draw(
+        near = same_sample(
             a, pair.plain.local().sample(points[1], u[0] + 0x1p-24 * (k % 3 - 1), u[1] + 0x1p-24 * (k / 3 - 1)),
             1e-4);
     ASSERT_TRUE(near) << u[0] << ' ' << u[1] << ' ' << a.pdf;
@@ -77,7 +77,7 @@ void expect_same(const LocalPair& pair, const float normal[3], std::mt19937_64& 
     for (int i = 0; i < 8 && !testing::Test::HasFatalFailure(); ++i) {
         const double u0 = uniform(random), u1 = uniform(random);
         const double u[2] = {i == 0 ? 0.0 : u0, i == 1 ? 1.0 : u1};
-        expect_same_draw(pair, points, u);
+        expect_same_sample(pair, points, u);
         const acdf::DirectionSample a = pair.fast.local().sample(points[0], u0, u1);
         if (a.pdf > 0.0f) expect_same(pair, points, a.direction, served);
         const Normal any = random_direction(random);

@@ -1,10 +1,10 @@
-#include "tools/sweep/surface_draws.h"
+#include "tools/sweep/surface_samples.h"
 
 #include "compress/parallel.h"
 #include "measure/random.h"
 #include "measure/samplers/local_baselines.h"
 #include "measure/samplers/probe_grid.h"
-#include "tools/sweep/pixel_draws.h"
+#include "tools/sweep/pixel_samples.h"
 
 #include <algorithm>
 
@@ -40,7 +40,7 @@ public:
     }
 
     double alone(measure::Random& random, std::uint32_t samples) const {
-        return drawn_mean(sampler_, random, samples, [this](const float wi[3]) { return integrand(wi); });
+        return sampled_mean(sampler_, random, samples, [this](const float wi[3]) { return integrand(wi); });
     }
     double partner(measure::Random& random, std::uint32_t samples) {
         double sum = 0.0;
@@ -75,7 +75,7 @@ private:
 
 } // namespace
 
-DrawnVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
+SampledVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
                                const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
                                Scale scale, std::uint32_t samples, std::uint32_t seeds) {
     samples += samples % 2;
@@ -100,7 +100,7 @@ double sobol_variance(const compress::Target& target, const measure::LightSample
                       const std::vector<SurfacePoint>& points, const std::vector<double>& irradiances,
                       std::uint32_t samples, std::uint32_t seeds) {
     const measure::ProbeGrid grid(target);
-    std::vector<DrawnPoint> drawn;
+    std::vector<SampledPoint> drawn;
     for (std::size_t i = 0; i < points.size(); ++i) drawn.push_back({shading_of(points[i]), irradiances[i]});
     return sobol_variance(
         sampler, drawn, [&](std::size_t i, const float wi[3]) { return lit_texel(target, grid, points[i], wi); },

@@ -1,11 +1,11 @@
-#include "tools/sweep/pixel_draws.h"
+#include "tools/sweep/pixel_samples.h"
 #include "compress/parallel.h"
 
 #include <memory>
 
 namespace acdf::tools {
 
-double drawn_mean(const measure::PointSampler& sampler, measure::Random& random, std::uint32_t samples,
+double sampled_mean(const measure::PointSampler& sampler, measure::Random& random, std::uint32_t samples,
                   const std::function<double(const float wi[3])>& integrand) {
     random.begin_set();
     double sum = 0.0;
@@ -25,8 +25,8 @@ double unbiased_variance(const std::vector<double>& values) {
     return square / (n - 1.0);
 }
 
-double sobol_variance(const measure::LightSampler& sampler, const std::vector<DrawnPoint>& points,
-                      const DrawnIntegrand& integrand, std::uint32_t samples, std::uint32_t seeds) {
+double sobol_variance(const measure::LightSampler& sampler, const std::vector<SampledPoint>& points,
+                      const SampledIntegrand& integrand, std::uint32_t samples, std::uint32_t seeds) {
     std::vector<double> relative(points.size(), 0.0);
     compress::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const double integral = points[i].integral;
@@ -37,7 +37,7 @@ double sobol_variance(const measure::LightSampler& sampler, const std::vector<Dr
         std::vector<double> estimates(seeds);
         for (double& estimate : estimates)
             estimate =
-                drawn_mean(*own, random, samples, [&](const float wi[3]) { return integrand(i, wi); }) / integral;
+                sampled_mean(*own, random, samples, [&](const float wi[3]) { return integrand(i, wi); }) / integral;
         relative[i] = unbiased_variance(estimates) * samples;
     });
     double mean = 0.0;

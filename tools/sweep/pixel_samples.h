@@ -12,16 +12,16 @@
 namespace acdf::tools {
 
 /// Where samples are drawn, and the integral of what is reflected there, by summation; 0: nothing is.
-struct DrawnPoint {
+struct SampledPoint {
     measure::ShadingPoint shading;
     double integral = 0.0;
 };
 
 /// What a point, by its number, reflects of the light from wi. Called by several threads at once.
-using DrawnIntegrand = std::function<double(std::size_t point, const float wi[3])>;
+using SampledIntegrand = std::function<double(std::size_t point, const float wi[3])>;
 
 /// The mean of f/p over a new set of `samples`.
-double drawn_mean(const measure::PointSampler& sampler, measure::Random& random, std::uint32_t samples,
+double sampled_mean(const measure::PointSampler& sampler, measure::Random& random, std::uint32_t samples,
                   const std::function<double(const float wi[3])>& integrand);
 
 /// Without bias, of at least two numbers.
@@ -30,7 +30,7 @@ double unbiased_variance(const std::vector<double>& values);
 /// The variance of an estimate of `samples` scrambled Sobol' points times their number, over the squared integral,
 /// mean over points, of which those without light have 0; from `seeds` (at least 2) estimates. With independent
 /// numbers it is the relative variance of one sample. The same for any number of threads.
-double sobol_variance(const measure::LightSampler& sampler, const std::vector<DrawnPoint>& points,
-                      const DrawnIntegrand& integrand, std::uint32_t samples, std::uint32_t seeds);
+double sobol_variance(const measure::LightSampler& sampler, const std::vector<SampledPoint>& points,
+                      const SampledIntegrand& integrand, std::uint32_t samples, std::uint32_t seeds);
 
 } // namespace acdf::tools

@@ -8,7 +8,7 @@
 
 namespace acdf::tools {
 
-struct DrawnVariances {
+struct SampledVariances {
     double alone = 0.0, partner = 0.0;
 };
 
@@ -16,7 +16,7 @@ struct DrawnVariances {
 /// `summary` scales it, mean over points: with independent numbers those of `exact`, which is of the same points;
 /// here of scrambled Sobol' points. Over `seeds` (at least 2) estimates. With an MIS partner half of the samples are the
 /// cosine's. The same for any number of threads.
-DrawnVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
+SampledVariances sobol_variances(const compress::Target& target, const measure::LightSampler& sampler,
                                const std::vector<SurfacePoint>& points, const std::vector<PointVariance>& exact,
                                Scale scale, std::uint32_t samples, std::uint32_t seeds);
 
