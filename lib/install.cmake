@@ -40,7 +40,7 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_corners.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_fast_point.h
-    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_lights.h
+    ${PROJECT_SOURCE_DIR}/lib/reader/acdf/bright_tiles.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_parts.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_pdf.h
     ${PROJECT_SOURCE_DIR}/lib/reader/acdf/local_position.h

@@ -149,7 +149,7 @@ Json local_json(const File& file) {
     report["tiles"] = local.blend.tiles ? local.blend.tiles->tile_count : 0;
     if (is_fast(file)) report["shape"] = "fast"; // the usual one is not told
     report["rows"] = local.blend.tiles ? local.blend.tiles->row_count : 0;
-    report["lights"] = local.light_count;
+    report["bright_tiles"] = local.bright_tile_count;
     report["cosine_share"] = local.cosine_share;
     if (const AcdfVisibility* visibility = local.visibility.header)
         report["visibility"] = {{"cells", visibility->split_count + 1},
@@ -246,7 +246,7 @@ std::string local_text(const Json& local) {
     const std::string shared = local["tiles"] == 0
                                    ? "a tree each"
                                    : text_of(local["tiles"]) + " tiles shared by " + text_of(local["rows"]) +
-                                         " rows, " + text_of(local["lights"]) + " lights" +
+                                         " rows, " + text_of(local["bright_tiles"]) + " bright tiles" +
                                          (local.contains("shape") ? "; shape " + text_of(local["shape"]) : "");
     const std::string visibility = local.contains("visibility")
                                    ? "; " + text_of(local["visibility"]["cells"]) + " visibility cells from " +

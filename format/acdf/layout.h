@@ -221,21 +221,21 @@ typedef struct AcdfSplit {
 #define ACDF_FAST_WHOLE 32767u /* the last cumulative value of groups */
 #define ACDF_FAST_MOST_SHIFT 30u
 
-/* Chunk LOCL, of local environments: this, then its lights. */
+/* Chunk LOCL, of local environments: this, then its bright tiles. */
 typedef struct AcdfLocalHeader {
     float cosine_share; /* in [0, 1): of samples drawn around the normal with density cos / pi */
-    uint32_t light_count;
+    uint32_t bright_tile_count;
 } AcdfLocalHeader;
 
 /* A tile so small and bright that its weight is worked out for each normal (SPEC.md §6.7). */
-typedef struct AcdfLight {
+typedef struct AcdfBrightTile {
     float direction[3]; /* unit, to its middle */
     float radius;       /* no point of it is farther from `direction`, > 0 */
     float share;        /* of `total`, > 0 */
     uint32_t tile;      /* its number; ascending */
     uint32_t low[2];    /* its box: positions on the axes 0 and 1 */
     uint32_t high[2];
-} AcdfLight;
+} AcdfBrightTile;
 
 /* Chunk COMP of a file that is not to be used alone: this, then `record_count` records (0, or one a bin). */
 typedef struct AcdfPartner {
@@ -255,7 +255,7 @@ typedef struct AcdfPartnerRecord {
 /* Chunk PLAC, of local environments: what of the light reaches a position (SPEC.md §5.9). This, then `split_count`
  * splits, then 1 + `further_sets` sets of columns, a uint16 for each split of TILE, its column in a row or
  * ACDF_NO_COLUMN, then, where there are further sets, a uint16 for each row, its set, then `row_count` rows of
- * 1 + lights + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
+ * 1 + bright tiles + `column_count` bytes: codes of visibility of the mixture and of each light, and of odds. */
 typedef struct AcdfVisibility {
     uint32_t split_count;
     uint32_t row_count;
@@ -312,7 +312,7 @@ typedef struct AcdfPortalMap {
 #define ACDF_TILE_FLAG 0x8000u
 #define ACDF_MAX_TILES 32768u
 #define ACDF_MAX_SPLITS_DEEP 48u /* on a path, so that no product of weights underflows */
-#define ACDF_MAX_LIGHTS 64u
+#define ACDF_MAX_BRIGHT_TILES 64u
 
 /* Chunk VIEW of a BRDF (SPEC.md §6.8): this, then `theta_count` f32, sqrt(1 - cos(theta_o)) of the stored views. */
 typedef struct AcdfViews {
@@ -345,7 +345,7 @@ ACDF_STATIC_ASSERT(sizeof(AcdfPlanes) == 44);
 ACDF_STATIC_ASSERT(sizeof(AcdfTiles) == 528);
 ACDF_STATIC_ASSERT(sizeof(AcdfSplit) == 8);
 ACDF_STATIC_ASSERT(sizeof(AcdfLocalHeader) == 8);
-ACDF_STATIC_ASSERT(sizeof(AcdfLight) == 40);
+ACDF_STATIC_ASSERT(sizeof(AcdfBrightTile) == 40);
 ACDF_STATIC_ASSERT(sizeof(AcdfViews) == 16);
 ACDF_STATIC_ASSERT(sizeof(AcdfPartner) == 24);
 ACDF_STATIC_ASSERT(sizeof(AcdfPartnerRecord) == 8);

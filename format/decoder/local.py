@@ -20,22 +20,22 @@ class Light:
 
 
 def read_local_chunk(data, tiles, bins):
-    """§5.7. Returns the cosine's share and the lights."""
+    """§5.7. Returns the cosine's share and the bright tiles."""
     require(data is not None and len(data) >= 8, 7005)
     sigma, count = struct.unpack_from("<fI", data)
     require(count <= 64 and len(data) == 8 + 40 * count, 7005)
     require(0 <= sigma < 1, 7005)
-    lights = [Light(data[8 + 40 * k:48 + 40 * k]) for k in range(count)]
-    for k, light in enumerate(lights):
+    bright_tiles = [Light(data[8 + 40 * k:48 + 40 * k]) for k in range(count)]
+    for k, light in enumerate(bright_tiles):
         square = sum_of([x * x for x in light.direction])
         require(tiles is not None and light.tile < tiles.count, 7006)
-        require(k == 0 or light.tile > lights[k - 1].tile, 7006)
+        require(k == 0 or light.tile > bright_tiles[k - 1].tile, 7006)
         require(abs(square - 1) < 0.001 and 0 < light.radius <= 2, 7006)
         require(0 < light.share < math.inf and light.box == tiles.boxes[light.tile], 7006)
         for root, share in bins:
             if root != NOT_STORED and share > 0:
                 require(tiles.is_dark(root, light.tile), 7007)
-    return sigma, lights
+    return sigma, bright_tiles
 
 
 def read_normals(axes, bin_count):
@@ -91,7 +91,7 @@ def octahedral_bins(N, n):
 
 
 class Point:
-    """What a normal draws from: `tree` (a root), or `mixture` and `lights` (weights), or nothing."""
+    """What a normal draws from: `tree` (a root), or `mixture` and `bright tiles` (weights), or nothing."""
 
     tree = mixture = None
     cells = ()  # of its position
@@ -102,11 +102,11 @@ class Local:
     def __init__(self, tree, d, tiles, chunk, visibility=None, portals=None):
         check_sphere_axes(d)
         self.N, self.grid = read_normals(d.axes, d.bin_count)
-        self.sigma, self.lights = read_local_chunk(chunk, tiles, d.bins)
+        self.sigma, self.bright_tiles = read_local_chunk(chunk, tiles, d.bins)
         self.tree, self.tiles, self.bins = tree, tiles, d.bins
         self.environment = Environment(tree, 0, grid_of(d))
         self.sphere = self.environment.sphere
-        self.visibility = None if visibility is None else Visibility(visibility, tiles, len(self.lights))
+        self.visibility = None if visibility is None else Visibility(visibility, tiles, len(self.bright_tiles))
         self.portals = None if portals is None else Portals(portals, self.visibility)
 
     def point(self, normal, position=None):
@@ -152,7 +152,7 @@ class Local:
         factor = self.N / (abs(n[0]) + abs(n[1]) + abs(n[2])) if self.N else 1 / length
         scaled = [factor * x for x in n]
         weights = []
-        for light in self.lights:
+        for light in self.bright_tiles:
             h = sum_of([x * d for x, d in zip(scaled, light.direction)])
             reach = light.radius * (factor * length)
             weights.append(light.share * h if h >= reach else 0.0 if h <= -reach else
@@ -163,7 +163,7 @@ class Local:
             out.mixture, out.weights = mixture, weights
 
     def draw(self, point, u, box, s):
-        """Drawing from lights and mixture."""
+        """Drawing from bright tiles and mixture."""
         x = u[0] * point.S
         if x < point.light_sum or not point.mixture:
             shining = [k for k, w in enumerate(point.weights) if w > 0]
@@ -172,7 +172,7 @@ class Local:
                 x, k = x - point.weights[k], shining.pop(0)
             u[0] = clamp(x / point.weights[k], 0, 1)
             p = max(point.weights[k] / point.S, LEAST)
-            return self.tiles.sample_within(self.tree, self.lights[k].tile, p, u, box, s)
+            return self.tiles.sample_within(self.tree, self.bright_tiles[k].tile, p, u, box, s)
         u[0] = clamp((x - point.light_sum) / (point.S - point.light_sum), 0, 1)
         tile, q = (self.visibility.draw(point.mixture, point.cells, u) if point.cells else
                    self.tiles.draw(point.mixture, u))
@@ -186,7 +186,7 @@ class Local:
         if q > 0:
             p = max(point.row_sum / point.S * q, LEAST)
         else:
-            weight = sum_of([w for w, light in zip(point.weights, self.lights) if light.tile == tile])
+            weight = sum_of([w for w, light in zip(point.weights, self.bright_tiles) if light.tile == tile])
             if not weight > 0:
                 return 0.0
             p = max(weight / point.S, LEAST)

@@ -22,10 +22,10 @@ class Row:
 
 
 class Visibility:
-    def __init__(self, data, tiles, light_count):
+    def __init__(self, data, tiles, bright_tile_count):
         require(tiles is not None and len(data) >= 88, 7009)
         split_count, row_count, column_count, further = struct.unpack_from("<4I", data)
-        of_tiles, width = tiles.count - 1, 1 + light_count + column_count
+        of_tiles, width = tiles.count - 1, 1 + bright_tile_count + column_count
         require(1 <= row_count < ROW and split_count < ROW and column_count <= of_tiles and further < 65536, 7009)
         at = 88 + 16 * split_count
         sets = 2 * row_count if further else 0
@@ -45,7 +45,7 @@ class Visibility:
         require(max(set_of_row) <= further, 7015)
         at += sets
         rows = [data[at + width * r:at + width * (r + 1)] for r in range(row_count)]
-        self.odds_at, self.tiles = 1 + light_count, tiles
+        self.odds_at, self.tiles = 1 + bright_tile_count, tiles
         require(all(0 < code < 255 for row in rows for code in row[self.odds_at:]), 7014)
         self.rows = [Row(row, columns[s]) for row, s in zip(rows, set_of_row)]
 

@@ -101,7 +101,7 @@ LocalDraft shared_draft(const compress::LocalFit& fit, const compress::Target& t
     LocalDraft draft{fit.tree, description_of(target, source, options, bins, {})};
     draft.description.shares = fit.shares;
     draft.description.chunks = compress::shared_chunks(fit.shared);
-    draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.lights));
+    draft.description.chunks.push_back(compress::local_chunk(static_cast<float>(options.cosine_share), fit.bright_tiles));
     if (options.mis)
         draft.description.chunks.push_back(
             compress::partner_chunk(options.mis, mean_share(fit.records, bins), fit.records));
@@ -258,7 +258,7 @@ Local build_plain(const compress::Target& target, const Source& source, const Lo
         compress::LocalFit fit = fitter->outlined(size.inside_bytes);
         LocalDraft draft = shared_draft(fit, target, source, options, bins);
         const std::uint64_t bytes = bytes_of(draft);
-        // What lights and packing take is known now; once is enough but where tiles or curves run out.
+        // What bright tiles and packing take is known now; once is enough but where tiles or curves run out.
         const bool fits = bytes <= budget, full = bytes >= budget - budget / 50;
         const bool checked = tree == compress::WholeTree::of_tiles && !options.visibility.scene;
         if (fits && checked && !tried.alone.is_matched(fit.tree, all))

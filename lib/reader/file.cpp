@@ -136,7 +136,7 @@ File& File::operator=(File&& other) noexcept {
     blend_ = std::exchange(other.blend_, AcdfBlend{});
     fast_ = std::exchange(other.fast_, AcdfFast{});
     local_ = std::exchange(other.local_, nullptr);
-    lights_ = std::exchange(other.lights_, nullptr);
+    bright_tiles_ = std::exchange(other.bright_tiles_, nullptr);
     partner_ = std::exchange(other.partner_, nullptr);
     visibility_ = std::exchange(other.visibility_, AcdfVisibilityTable{});
     portals_ = std::exchange(other.portals_, AcdfPortalTable{});
@@ -195,7 +195,7 @@ Status File::from_memory(const void* data, std::size_t size, File& file, const L
     loaded.blend_ = {parts.tiles, parts.splits, parts.tile_roots, parts.rows, parts.tree};
     loaded.fast_ = parts.fast;
     loaded.local_ = parts.local;
-    loaded.lights_ = parts.lights;
+    loaded.bright_tiles_ = parts.bright_tiles;
     loaded.partner_ = parts.partner;
     loaded.visibility_ = parts.visibility;
     loaded.portals_ = parts.portals;
@@ -280,8 +280,8 @@ LocalEnvironmentView File::local() const noexcept {
                          tree_units_};
     local.partner = partner_;
     local.bins = bins_;
-    local.lights = lights_;
-    local.light_count = local_->light_count;
+    local.bright_tiles = bright_tiles_;
+    local.bright_tile_count = local_->bright_tile_count;
     local.cosine_share = static_cast<double>(local_->cosine_share);
     local.tables = local_tables_;
     local.visibility = visibility_;

@@ -80,7 +80,7 @@ inline std::vector<std::uint8_t> local_bytes(const acdf::compress::Target& targe
         LocalFit fit = fit_local(target, bins, options.size);
         description.shares = std::move(fit.shares);
         description.chunks = shared_chunks(fit.shared);
-        description.chunks.push_back(local_chunk(cosine, fit.lights));
+        description.chunks.push_back(local_chunk(cosine, fit.bright_tiles));
         return store(fit.tree, description, options.codec);
     }
     FitOptions each;

@@ -131,8 +131,8 @@ private:
         std::vector<double> out(boxes_.size());
         if (source.what == ACDF_LOCAL_FAST) spread_sums(source, out);
         else spread(boxes_.size() > 1 ? 0 : ACDF_TILE_FLAG, source.mix, source.sum, out);
-        for (std::uint32_t k = 0; k < local_.light_count; ++k)
-            out[local_.lights[k].tile] = acdf_light_weight(&local_.lights[k], &source) / source.sum;
+        for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
+            out[local_.bright_tiles[k].tile] = acdf_bright_tile_weight(&local_.bright_tiles[k], &source) / source.sum;
         return out;
     }
 

@@ -64,7 +64,7 @@ struct TileSplit {
 
 class Divider {
 public:
-    Divider(const Target& target, const Worth& worth, const LightRule& rule)
+    Divider(const Target& target, const Worth& worth, const BrightTileRule& rule)
         : target_(target), worth_(worth), rule_(rule), sphere_(sphere_of(target)) {}
 
     TileTree run(std::uint32_t count) {
@@ -172,7 +172,7 @@ private:
         const Node& n = nodes_[node];
         if (n.first_child == 0) {
             tree.tiles.push_back(n.box);
-            tree.lights += n.light;
+            tree.bright_tiles += n.light;
             return TileTree::tile | static_cast<std::uint32_t>(tree.tiles.size() - 1);
         }
         const std::size_t index = tree.splits.size();
@@ -186,7 +186,7 @@ private:
 
     const Target& target_;
     const Worth& worth_;
-    const LightRule rule_;
+    const BrightTileRule rule_;
     Sphere sphere_;
     std::array<std::vector<Light>, 2> lines_;
     std::vector<Light> after_;
@@ -196,7 +196,7 @@ private:
 
 } // namespace
 
-TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count, const LightRule& rule) {
+TileTree divide_tiles(const Target& target, const Worth& worth, std::uint32_t count, const BrightTileRule& rule) {
     return Divider(target, worth, rule).run(count);
 }
 

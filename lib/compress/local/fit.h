@@ -43,12 +43,12 @@ struct LocalFit {
     Cascade cascade;   ///< root 0: the environment as a whole
     EncodedTree tree;  ///< roots: one a bin, its row or ACDF_NO_ROOT where it is not stored
     StoredRows shared; ///< tiles, and a row for each bin
-    std::vector<AcdfLight> lights;
-    std::vector<float> shares; ///< one a bin: its irradiance, lights excepted, over the integral of the probe
+    std::vector<AcdfBrightTile> bright_tiles;
+    std::vector<float> shares; ///< one a bin: its irradiance, bright tiles excepted, over the integral of the probe
     std::vector<AcdfPartnerRecord> records; ///< beside an MIS partner: one a bin
 };
 
-/// Fits tiles, what is in them, lights, and the rows of all bins that occur. Deterministic for any number of
+/// Fits tiles, what is in them, bright tiles, and the rows of all bins that occur. Deterministic for any number of
 /// threads.
 ///
 /// Beside an MIS partner a share is the flux that is left to the file, rows are 0 where the partner covers a tile, and
@@ -99,7 +99,7 @@ private:
     std::optional<LocalPartner> beside_;
     Target filled_; ///< what is left of the target beside an MIS partner
     TileTree tiles_;
-    LightRule rule_;
+    BrightTileRule rule_;
     std::vector<double> worth_of_tiles_;
     // Of the fit that was outlined last:
     std::optional<TileCurves> tile_curves_;

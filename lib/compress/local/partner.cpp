@@ -104,11 +104,11 @@ double LocalPartner::share(std::size_t bin, double cosine, double alone, double 
 }
 
 FilledTiles::FilledTiles(const Target& target, const TileTree& tiles, const TileCurves& curves,
-                         const TileCascade& cascade, const std::vector<AcdfLight>& lights,
+                         const TileCascade& cascade, const std::vector<AcdfBrightTile>& bright_tiles,
                          const LocalPartner& partner, const NormalBins& bins)
-    : target_(target), lights_(lights), partner_(partner), bins_(bins), is_light_(tiles.tiles.size(), false),
+    : target_(target), bright_tiles_(bright_tiles), partner_(partner), bins_(bins), is_light_(tiles.tiles.size(), false),
       pieces_(tiles.tiles.size()) {
-    for (const AcdfLight& light : lights) is_light_[light.tile] = true;
+    for (const AcdfBrightTile& light : bright_tiles) is_light_[light.tile] = true;
     parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t t) {
         double shares = 0.0, costs = 0.0;
         const Filling* filling = curves.partition(t).grid().filling;
@@ -148,7 +148,7 @@ float FilledTiles::recommended_light_share(std::size_t bin, std::vector<double> 
         double square, ours, partner;
     };
     double sum = 0.0;
-    for (const AcdfLight& light : lights_) {
+    for (const AcdfBrightTile& light : bright_tiles_) {
         const Direction d{double{light.direction[0]}, double{light.direction[1]}, double{light.direction[2]}};
         shares[light.tile] = double{light.share} * std::max(0.0, dot(d, bins_.normals[bin]));
     }

@@ -46,9 +46,9 @@ private:
 class FilledTiles {
 public:
     FilledTiles(const Target& target, const TileTree& tiles, const TileCurves& curves, const TileCascade& cascade,
-                const std::vector<AcdfLight>& lights, const LocalPartner& partner, const NormalBins& bins);
+                const std::vector<AcdfBrightTile>& bright_tiles, const LocalPartner& partner, const NormalBins& bins);
 
-    /// The share of each tile for a bin; 0 for lights, and where the partner covers all.
+    /// The share of each tile for a bin; 0 for bright tiles, and where the partner covers all.
     std::vector<double> shares(std::size_t bin) const;
     /// What of the samples ours should be, in (0, 1): least noise of both together, by the second moment.
     float recommended_light_share(std::size_t bin, std::vector<double> shares) const;
@@ -74,7 +74,7 @@ private:
     }
 
     const Target& target_;
-    const std::vector<AcdfLight>& lights_;
+    const std::vector<AcdfBrightTile>& bright_tiles_;
     const LocalPartner& partner_;
     const NormalBins& bins_;
     std::vector<bool> is_light_;

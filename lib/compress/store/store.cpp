@@ -190,10 +190,10 @@ std::vector<Chunk> shared_chunks(const StoredRows& rows) {
     return {std::move(tiles), {ACDF_CHUNK_SUMS, rows.sums}, {ACDF_CHUNK_GRID, rows.grid}};
 }
 
-Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights) {
+Chunk local_chunk(float cosine_share, const std::vector<AcdfBrightTile>& bright_tiles) {
     Chunk chunk{ACDF_CHUNK_LOCAL, {}};
-    append(chunk.bytes, AcdfLocalHeader{cosine_share, static_cast<std::uint32_t>(lights.size())});
-    for (const AcdfLight& light : lights) append(chunk.bytes, light);
+    append(chunk.bytes, AcdfLocalHeader{cosine_share, static_cast<std::uint32_t>(bright_tiles.size())});
+    for (const AcdfBrightTile& light : bright_tiles) append(chunk.bytes, light);
     return chunk;
 }
 

@@ -80,7 +80,7 @@ struct StoredRows {
 std::vector<Chunk> shared_chunks(const StoredRows& rows);
 
 /// Chunk LOCL.
-Chunk local_chunk(float cosine_share, const std::vector<AcdfLight>& lights);
+Chunk local_chunk(float cosine_share, const std::vector<AcdfBrightTile>& bright_tiles);
 
 /// Chunk COMP. `records`: none, or one a bin.
 Chunk partner_chunk(const Partner& partner, float recommended_light_share, const std::vector<AcdfPartnerRecord>& records);

@@ -189,7 +189,7 @@ std::vector<Chunk> fit_visibility(const AcdfLocal& local, std::uint32_t bins, co
     const PortalSet* portals = scene.portals.get();
     const std::uint32_t usual = portals ? kColumnsBesidePortals : kColumns;
     const VisibilityParts coarse(local, bins, size.columns > 0 ? size.columns : usual);
-    const std::uint64_t width = 1 + local.light_count + coarse.column_count();
+    const std::uint64_t width = 1 + local.bright_tile_count + coarse.column_count();
     const Counts counts = portals ? counts_for(size.bytes - std::min<std::uint64_t>(size.bytes, portals->bytes()),
                                                width + portals->row_bytes(), splits_of_tiles)
                                   : counts_for(size.bytes, width, splits_of_tiles);

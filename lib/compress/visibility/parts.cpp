@@ -173,10 +173,10 @@ void VisibilityParts::aim() {
             directions_.push_back(place(own[at], acdf_clamp(inside, 0.0, 1.0), reversed(i) + 0.5 / directions));
         }
     }
-    for (std::uint32_t k = 0; k < local_.light_count; ++k)
+    for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
         for (std::uint32_t i = 0; i < directions; ++i)
             directions_.push_back(
-                place(local_.lights[k].tile, (i + 0.5) / directions, reversed(i) + 0.5 / directions));
+                place(local_.bright_tiles[k].tile, (i + 0.5) / directions, reversed(i) + 0.5 / directions));
 }
 
 void VisibilityParts::weigh(const AcdfLocalPoint& point, float* out) const {
@@ -194,8 +194,8 @@ void VisibilityParts::weigh(const AcdfLocalPoint& point, float* out) const {
             else mixes[child] = sides[k];
         }
     }
-    for (std::uint32_t k = 0; k < local_.light_count; ++k)
-        out[box_count_ + k] = static_cast<float>(acdf_light_weight(&local_.lights[k], &point));
+    for (std::uint32_t k = 0; k < local_.bright_tile_count; ++k)
+        out[box_count_ + k] = static_cast<float>(acdf_bright_tile_weight(&local_.bright_tiles[k], &point));
 }
 
 std::vector<std::array<double, 2>> VisibilityParts::sides(const double* amount) const {

@@ -1,4 +1,4 @@
-// The parts of the sphere that visibility cells weigh: boxes of tiles, and lights.
+// The parts of the sphere that visibility cells weigh: boxes of tiles, and bright tiles.
 #pragma once
 
 #include <acdf/local.h>
@@ -10,7 +10,7 @@
 namespace acdf::compress {
 
 /// A local environment with tiles, cut where positions may see one side and not the other. Parts are numbered in the
-/// order of a walk; behind them come the lights.
+/// order of a walk; behind them come the bright tiles.
 class VisibilityParts {
 public:
     static constexpr std::uint32_t directions = 64; ///< of a part: where its light comes from
@@ -23,7 +23,7 @@ public:
 
     const AcdfLocal& local() const { return local_; }
     std::size_t boxes() const { return box_count_; }
-    std::size_t count() const { return box_count_ + local_.light_count; }
+    std::size_t count() const { return box_count_ + local_.bright_tile_count; }
     /// One a split of tiles: its column, or ACDF_NO_COLUMN.
     const std::vector<std::uint16_t>& columns() const { return columns_; }
     std::uint32_t column_count() const { return static_cast<std::uint32_t>(cuts_.size()); }

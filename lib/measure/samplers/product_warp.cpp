@@ -104,20 +104,20 @@ public:
     }
 
 private:
-    /// Lights come before the mixture in u[0] (acdf_local_sample_light).
+    /// Lights come before the mixture in u[0] (acdf_local_sample_bright_tile).
     bool find(const std::uint32_t* square, AcdfRange* range, AcdfStratum* strata) const {
         double probability;
         const std::uint32_t tile =
             acdf_blend_find_tile(&local_.blend, &point_.mix, square, range, strata, &probability);
         if (probability > 0.0) {
-            const double share = point_.lights / point_.sum;
+            const double share = point_.bright_tiles / point_.sum;
             strata[0] = {share + (1.0 - share) * strata[0].low, (1.0 - share) * strata[0].width};
         } else {
             double below = 0.0, weight = 0.0;
             std::uint32_t k = 0;
-            for (; k < local_.light_count && local_.lights[k].tile != tile; ++k)
-                below += std::max(0.0, acdf_light_weight(&local_.lights[k], &point_));
-            if (k < local_.light_count) weight = acdf_light_weight(&local_.lights[k], &point_);
+            for (; k < local_.bright_tile_count && local_.bright_tiles[k].tile != tile; ++k)
+                below += std::max(0.0, acdf_bright_tile_weight(&local_.bright_tiles[k], &point_));
+            if (k < local_.bright_tile_count) weight = acdf_bright_tile_weight(&local_.bright_tiles[k], &point_);
             if (!(weight > 0.0)) return false;
             strata[0] = {below / point_.sum, weight / point_.sum};
             strata[1] = {0.0, 1.0};

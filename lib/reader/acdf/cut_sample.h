@@ -218,12 +218,12 @@ ACDF_FN const AcdfCutPart* acdf_cut_choose_part(const AcdfCut* cut, double u[2])
 }
 
 /* Whether u0 in [0, 1] draws a light of a part, not from its mixture. */
-ACDF_INLINE int acdf_cut_samples_light(const AcdfCutPart* part, double u0) {
-    return (part->lights > 0.0) & ((u0 * part->sum < part->lights) | !(part->sum > part->lights));
+ACDF_INLINE int acdf_cut_samples_bright_tile(const AcdfCutPart* part, double u0) {
+    return (part->bright_tiles > 0.0) & ((u0 * part->sum < part->bright_tiles) | !(part->sum > part->bright_tiles));
 }
 
 /* Draws that light; u[0] becomes what is left of it, *probability that of the light. Returns its tile. */
-ACDF_FN uint32_t acdf_cut_sample_light(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
+ACDF_FN uint32_t acdf_cut_sample_bright_tile(const AcdfLocal* local, const AcdfCut* cut, const AcdfCutPart* part, double* u,
                                      AcdfRange* range, double* probability) {
     uint32_t k = part->first_light, chosen = part->end_light;
     double x = u[0] * part->sum, weight = 0.0;
@@ -236,16 +236,16 @@ ACDF_FN uint32_t acdf_cut_sample_light(const AcdfLocal* local, const AcdfCut* cu
     }
     u[0] = acdf_unit_interval(x / weight);
     for (k = 0; k < 2; ++k) {
-        range[k].low = local->lights[chosen].low[k];
-        range[k].high = local->lights[chosen].high[k];
+        range[k].low = local->bright_tiles[chosen].low[k];
+        range[k].high = local->bright_tiles[chosen].high[k];
     }
     *probability = acdf_positive(part->probability * (weight / part->sum));
-    return local->lights[chosen].tile;
+    return local->bright_tiles[chosen].tile;
 }
 
 /* u0 as a number of the part's mixture alone, where it draws from that. */
 ACDF_INLINE double acdf_cut_number_of_mixture(const AcdfCutPart* part, double u0) {
-    return acdf_unit_interval((u0 * part->sum - part->lights) / (part->sum - part->lights));
+    return acdf_unit_interval((u0 * part->sum - part->bright_tiles) / (part->sum - part->bright_tiles));
 }
 
 /* The probability of a tile that is `inside` of the part's mixture. */
@@ -258,8 +258,8 @@ ACDF_FN double acdf_cut_sample_part(const AcdfLocal* local, const AcdfLocalPoint
                                     const AcdfCutPart* part, double* u, AcdfRange* range) {
     double probability;
     uint32_t tile;
-    if (acdf_cut_samples_light(part, u[0])) {
-        tile = acdf_cut_sample_light(local, cut, part, u, range, &probability);
+    if (acdf_cut_samples_bright_tile(part, u[0])) {
+        tile = acdf_cut_sample_bright_tile(local, cut, part, u, range, &probability);
     } else {
         const AcdfMixture mix = acdf_cut_mixture(point, part);
         u[0] = acdf_cut_number_of_mixture(part, u[0]);
@@ -276,8 +276,8 @@ ACDF_FN double acdf_cut_found_probability(const AcdfLocal* local, const AcdfCut*
     if (!(part->probability > 0.0)) return 0.0;
     if (inside > 0.0) return acdf_cut_tile_probability(part, mix, inside);
     /* No row gives a light any probability. */
-    while (light < part->end_light && local->lights[light].tile < tile) ++light;
-    if (light == part->end_light || local->lights[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
+    while (light < part->end_light && local->bright_tiles[light].tile < tile) ++light;
+    if (light == part->end_light || local->bright_tiles[light].tile != tile || !(cut->light[light] > 0.0)) return 0.0;
     return acdf_positive(part->probability * (cut->light[light] / part->sum));
 }
 

@@ -62,18 +62,18 @@ ACDF_INLINE void acdf_cut_wave_parts(const AcdfCut* cut, const double (*u)[2], u
     for (i = 0; i < count; ++i) lane[i].part = acdf_cut_sample_guessed(cut, guess[i], lane[i].u);
 }
 
-/* Draws lights, and tells which lanes draw from the mixture of their part. */
+/* Draws bright tiles, and tells which lanes draw from the mixture of their part. */
 ACDF_INLINE void acdf_cut_wave_lights(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfCut* cut,
                                       uint32_t count, AcdfCutLane* lane, AcdfCutLanes* mixed) {
     uint32_t i, k;
     mixed->count = 0;
     for (i = 0; i < count; ++i) {
         AcdfCutLane* one = &lane[i];
-        const int lit = acdf_cut_samples_light(one->part, one->u[0]);
+        const int lit = acdf_cut_samples_bright_tile(one->part, one->u[0]);
         acdf_cut_range(one->part, one->range);
         for (k = 0; k < ACDF_CUT_WAVE_ROWS; ++k)
             ACDF_PREFETCH(point->codes[k] + (one->part->entry & ~ACDF_TILE_FLAG));
-        if (lit) one->tile = acdf_cut_sample_light(local, cut, one->part, one->u, one->range, &one->probability);
+        if (lit) one->tile = acdf_cut_sample_bright_tile(local, cut, one->part, one->u, one->range, &one->probability);
         mixed->lane[mixed->count] = i;
         mixed->count += (uint32_t)!lit;
     }

@@ -3,7 +3,7 @@
  * (acdf/product.h). One freestanding header over acdf/local.h, valid C99, C++17 and CUDA/HIP/SYCL.
  *
  * In groups that are not open, tiles get what the rows give to them, and in tiles cells what the file does: light
- * times cosine. Probabilities of lights, groups and tiles are integers, as those of rows are: draws and densities
+ * times cosine. Probabilities of bright tiles, groups and tiles are integers, as those of rows are: draws and densities
  * agree to the last bit. */
 #ifndef ACDF_FAST_CUT_H
 #define ACDF_FAST_CUT_H
@@ -16,7 +16,7 @@ extern "C" {
 
 enum {
     ACDF_FAST_CUT_GROUPS = 448, /* at most: files with more are not cut */
-    ACDF_FAST_CUT_PARTS = ACDF_MAX_LIGHTS + 16 + ACDF_FAST_CUT_GROUPS,
+    ACDF_FAST_CUT_PARTS = ACDF_MAX_BRIGHT_TILES + 16 + ACDF_FAST_CUT_GROUPS,
     ACDF_FAST_CUT_UPPER = (ACDF_FAST_CUT_PARTS / 16 + 15) / 16 * 16,
     ACDF_FAST_CUT_OPEN = 16 /* groups whose tiles have probabilities of their own */
 };
@@ -27,7 +27,7 @@ enum {
 /* Lights, at least one part that is none up to a multiple of sixteen, and groups are parts. */
 typedef struct AcdfFastCut {
     int32_t whole;                      /* the last end; 0: there is nothing to draw */
-    uint32_t lights;                    /* how many parts are lights: a multiple of 16 */
+    uint32_t bright_tiles;                    /* how many parts are bright tiles: a multiple of 16 */
     uint32_t count;                     /* of parts; a multiple of 16 */
     int32_t upper[ACDF_FAST_CUT_UPPER]; /* every sixteenth end, and all ones behind them */
     int32_t end[ACDF_FAST_CUT_PARTS];   /* cumulative weights */
@@ -40,8 +40,8 @@ ACDF_INLINE int acdf_fast_cut_serves(const AcdfLocal* local) {
     return local->tables && local->tables->group_hearts;
 }
 
-/* How many parts stand before those of groups: lights, and at least one that is none. */
-ACDF_INLINE uint32_t acdf_fast_cut_lights(const AcdfLocal* local) { return (local->light_count + 16u) & ~15u; }
+/* How many parts stand before those of groups: bright tiles, and at least one that is none. */
+ACDF_INLINE uint32_t acdf_fast_cut_bright_tiles(const AcdfLocal* local) { return (local->bright_tile_count + 16u) & ~15u; }
 
 /* ---- what a cut is made of -------------------------------------------------------------------------- */
 
@@ -207,7 +207,7 @@ ACDF_INLINE void acdf_fast_cut_find_tile(const AcdfLocalPoint* point, const Acdf
 /* The share of a tile, whose light has number `light` - 1; 0: it has none. */
 ACDF_INLINE AcdfFastShare acdf_fast_cut_find(const AcdfLocalPoint* point, const AcdfFastCut* cut, uint32_t tile,
                                              uint32_t light) {
-    const uint32_t part = light > 0 ? light - 1 : cut->lights + tile / ACDF_FAST_GROUP;
+    const uint32_t part = light > 0 ? light - 1 : cut->bright_tiles + tile / ACDF_FAST_GROUP;
     AcdfFastShare share;
     share.of = acdf_fast_cut_part(cut->end, part).mass;
     share.all = (double)cut->whole;
@@ -229,8 +229,8 @@ ACDF_INLINE uint32_t acdf_fast_cut_choose_part(const AcdfLocal* local, const Acd
     left[1] = acdf_unit_interval(u[1]);
     share->of = part.mass;
     share->all = (double)cut->whole;
-    if (number < cut->lights) return local->lights[number].tile;
-    return acdf_fast_cut_sample_tile(point, cut, number - cut->lights, left, share);
+    if (number < cut->bright_tiles) return local->bright_tiles[number].tile;
+    return acdf_fast_cut_sample_tile(point, cut, number - cut->bright_tiles, left, share);
 }
 
 /* Density per steradian with which acdf_fast_cut_sample draws `direction` (unit). */
@@ -243,7 +243,7 @@ ACDF_CALLED float acdf_fast_cut_pdf(const AcdfLocal* local, const AcdfLocalPoint
     uint32_t square[2], tile;
     if (cut->whole == 0 || !acdf_local_square(&grid, direction, square)) return 0.0f;
     tile = acdf_local_fast_tile(local, square, range);
-    share = acdf_fast_cut_find(point, cut, tile, acdf_local_light_of(local, tile));
+    share = acdf_fast_cut_find(point, cut, tile, acdf_local_bright_tile_of(local, tile));
     cells = acdf_local_fast_record(local, tile, range);
     share.of *= acdf_fast_find_cell(&cells, square, range);
     share.all *= ACDF_FAST_STEPS;

@@ -23,9 +23,9 @@ ACDF_FN uint32_t acdf_local_sample_tile(const AcdfLocal* local, const AcdfLocalP
     return acdf_blend_sample_tile(&local->blend, &point->mix, u, range, probability);
 }
 
-/* What random numbers of lights and mixture are of all that the mixture gives. */
+/* What random numbers of bright tiles and mixture are of all that the mixture gives. */
 ACDF_INLINE void acdf_local_of_mixture(const AcdfLocalPoint* point, const double* u, double from[2]) {
-    from[0] = u[0] * point->sum - point->lights;
+    from[0] = u[0] * point->sum - point->bright_tiles;
     from[1] = u[1] * acdf_mixture_sum(&point->mix);
 }
 
@@ -36,7 +36,7 @@ ACDF_INLINE double acdf_local_sampled_tile(const AcdfLocal* local, const AcdfLoc
     return acdf_positive(given / acdf_mixture_sum(&point->mix));
 }
 
-/* acdf_local_sample_tile by tables; u[0] is that of lights and mixture. */
+/* acdf_local_sample_tile by tables; u[0] is that of bright tiles and mixture. */
 ACDF_INLINE uint32_t acdf_local_table_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                            AcdfRange* range, double* probability) {
     const AcdfTileTables* tables = &local->tables->tiles;
@@ -59,13 +59,13 @@ ACDF_INLINE double acdf_local_sample_inside(const AcdfLocal* local, uint32_t til
                          acdf_short_tree_sample(local->blend.tree, local->environment.tree_units, root, u, range));
 }
 
-/* Draws a cell of lights and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
+/* Draws a cell of bright tiles and mixture; u and range as in acdf_tree_sample. Returns its probability, > 0. */
 ACDF_FN double acdf_local_blend_sample(const AcdfLocal* local, const AcdfLocalPoint* point, double* u,
                                        AcdfRange* range) {
     double probability;
     uint32_t tile;
     const int tabled = acdf_local_tabled(local, point) && acdf_local_samples_mixture(point, u[0]);
-    const AcdfLight* light = tabled ? 0 : acdf_local_sample_light(local, point, u, &probability);
+    const AcdfBrightTile* light = tabled ? 0 : acdf_local_sample_bright_tile(local, point, u, &probability);
     if (light) {
         acdf_light_range(light, range);
         probability = acdf_positive(probability / point->sum);

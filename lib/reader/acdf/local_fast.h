@@ -52,7 +52,7 @@ ACDF_INLINE uint32_t acdf_local_fast_tile(const AcdfLocal* local, const uint32_t
     return node & ~ACDF_TILE_FLAG;
 }
 
-/* How many sums up to lights are not above x. */
+/* How many sums up to bright tiles are not above x. */
 ACDF_INLINE uint32_t acdf_local_fast_passed(const AcdfLocalPoint* point, double x) {
     uint32_t i;
 #ifdef ACDF_SSE2
@@ -74,15 +74,15 @@ ACDF_INLINE uint32_t acdf_local_lit(const AcdfLocalPoint* point, uint32_t i) {
 }
 
 /* A light that is drawn: its number, its weight, and the sum of those before it. */
-typedef struct AcdfSampledLight {
+typedef struct AcdfSampledBrightTile {
     uint32_t number;
     double weight, before;
-} AcdfSampledLight;
+} AcdfSampledBrightTile;
 
 /* Of those that a point has weighed the one that x of their sum draws. */
-ACDF_INLINE AcdfSampledLight acdf_local_fast_light(const AcdfLocalPoint* point, double x) {
+ACDF_INLINE AcdfSampledBrightTile acdf_local_fast_bright_tile(const AcdfLocalPoint* point, double x) {
     uint32_t i = acdf_local_fast_passed(point, x);
-    AcdfSampledLight out;
+    AcdfSampledBrightTile out;
     while (i >= point->lit || !(point->light[i] > 0.0)) --i; /* x is the whole of them, or rounded to it */
     out.number = acdf_local_lit(point, i);
     out.weight = point->light[i];
@@ -91,13 +91,13 @@ ACDF_INLINE AcdfSampledLight acdf_local_fast_light(const AcdfLocalPoint* point, 
 }
 
 /* The same where they are not weighed, but their facet is known: the first one that takes the sum of
- * acdf_local_tabled_lights above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes that.
+ * acdf_local_tabled_bright_tiles above x. Weight 0 where x is the whole of them, or rounded to it: *whole becomes that.
  */
-ACDF_INLINE AcdfSampledLight acdf_local_facet_light(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
+ACDF_INLINE AcdfSampledBrightTile acdf_local_facet_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point, double x,
                                                   double* whole) {
-    const AcdfLightPair* pairs = acdf_local_lights(local->tables);
+    const AcdfBrightTilePair* pairs = acdf_local_bright_tiles(local->tables);
     uint32_t left = point->facet->seen;
-    AcdfSampledLight out = {0, 0.0, 0.0};
+    AcdfSampledBrightTile out = {0, 0.0, 0.0};
 #ifdef ACDF_SSE2
     const AcdfHorizon horizon = acdf_horizon(point);
     const __m128d inverse = _mm_set1_pd(1.0 / point->length), zero = _mm_setzero_pd(), at = _mm_set1_pd(x);
@@ -142,14 +142,14 @@ ACDF_INLINE AcdfSampledLight acdf_local_facet_light(const AcdfLocal* local, cons
 
 /* The light that x of the sum of weights draws at a point, of which none is known but a facet if `weighed` is 0;
  * what is left of x as a number in [0, 1]. */
-ACDF_INLINE AcdfSampledLight acdf_local_sample_fast_light(const AcdfLocal* local, const AcdfLocalPoint* point,
+ACDF_INLINE AcdfSampledBrightTile acdf_local_sample_fast_bright_tile(const AcdfLocal* local, const AcdfLocalPoint* point,
                                                       const int weighed, double x, double* u) {
-    AcdfSampledLight out;
+    AcdfSampledBrightTile out;
     double whole = 0.0;
-    if (weighed) out = acdf_local_fast_light(point, x);
+    if (weighed) out = acdf_local_fast_bright_tile(point, x);
     else {
-        out = acdf_local_facet_light(local, point, x, &whole);
-        if (!(out.weight > 0.0)) out = acdf_local_facet_light(local, point, whole * (1.0 - 0x1p-53), &whole);
+        out = acdf_local_facet_bright_tile(local, point, x, &whole);
+        if (!(out.weight > 0.0)) out = acdf_local_facet_bright_tile(local, point, whole * (1.0 - 0x1p-53), &whole);
     }
     *u = acdf_unit_interval((x - out.before) / out.weight);
     return out;
@@ -163,14 +163,14 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, co
     AcdfFastShare share;
     AcdfFastGrid grid;
     uint32_t tile;
-    if (x < point->lights || point->mix.count == 0) {
-        const AcdfSampledLight light = acdf_local_sample_fast_light(local, point, weighed, x, u);
-        tile = local->lights[light.number].tile;
+    if (x < point->bright_tiles || point->mix.count == 0) {
+        const AcdfSampledBrightTile light = acdf_local_sample_fast_bright_tile(local, point, weighed, x, u);
+        tile = local->bright_tiles[light.number].tile;
         share.of = light.weight;
         share.all = point->sum * ACDF_FAST_STEPS;
     } else {
         const double most = 32767.0 * point->fast.whole * (1.0 - 0x1p-53);
-        const double of_mixture = (x - point->lights) * point->step;
+        const double of_mixture = (x - point->bright_tiles) * point->step;
         tile = acdf_fast_sample_tile(&local->fast, &point->fast, of_mixture < most ? of_mixture : most, u, &share);
         share.of *= point->unit;
         share.all *= ACDF_FAST_STEPS;
@@ -181,7 +181,7 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_sample_cell(const AcdfLocal* local, co
 }
 
 /* The weight of the light that has a number and 1; of 0 of any. Without tables points have all. */
-ACDF_INLINE double acdf_local_fast_light_of(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t light) {
+ACDF_INLINE double acdf_local_fast_bright_tile_of(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t light) {
     const uint32_t k = light - (uint32_t)(light > 0);
     return local->tables ? acdf_tabled_weight(local, point, k) : point->light[k];
 }
@@ -192,11 +192,11 @@ ACDF_INLINE AcdfFastShare acdf_local_fast_find(const AcdfLocal* local, const Acd
     const AcdfFastGrid grid = local->tables ? acdf_local_fast_record(local, tile, range)
                                             : acdf_fast_grid(&local->fast, local->blend.roots[tile], range);
     const double inside = acdf_fast_find_cell(&grid, square, range);
-    const uint32_t light = acdf_local_light_of(local, tile);
+    const uint32_t light = acdf_local_bright_tile_of(local, tile);
     AcdfFastShare share = acdf_fast_share(&point->fast, tile);
     share.of *= point->unit;
     if (light > 0) { /* no row gives it any */
-        share.of = acdf_local_fast_light_of(local, point, light);
+        share.of = acdf_local_fast_bright_tile_of(local, point, light);
         share.all = point->sum;
     }
     share.of *= inside;

@@ -72,7 +72,7 @@ ACDF_INLINE AcdfLocalSpot acdf_local_spot(const AcdfLocal* local, const AcdfLoca
     return out;
 }
 
-/* The cell of a square in the mixture of lights and rows, which becomes `range`, as acdf_tree_find does. Returns
+/* The cell of a square in the mixture of bright tiles and rows, which becomes `range`, as acdf_tree_find does. Returns
  * its probability, 0 where no sample can fall. */
 ACDF_FN double acdf_local_blend_find(const AcdfLocal* local, const AcdfLocalPoint* point, const AcdfLocalSpot* spot,
                                      AcdfRange* range) {

@@ -61,7 +61,7 @@ static inline void acdf_move_local(AcdfLocal* local, const AcdfMove* moves, int 
     acdf_move_blend(&local->blend, moves, count);
     acdf_move_environment(&local->environment, moves, count);
     ACDF_MOVE(AcdfBin, local->bins);
-    ACDF_MOVE(AcdfLight, local->lights);
+    ACDF_MOVE(AcdfBrightTile, local->bright_tiles);
     ACDF_MOVE(AcdfLocalTables, local->tables);
     ACDF_MOVE(AcdfPartner, local->partner);
     ACDF_MOVE(AcdfVisibility, local->visibility.header);

@@ -38,7 +38,7 @@ struct LobeGuides {
     }
 
     /// Relative variance of one sample of the lobe's own sampler, as the guides tell, and what they have missed
-    /// where the parts expect a larger mean: small lights in a lobe make it large.
+    /// where the parts expect a larger mean: small bright tiles in a lobe make it large.
     ACDF_METHOD double variance(double expected) const noexcept {
         constexpr double of_missed = 2.0, unknown = 100.0;
         if (!(weights > 0.0)) return unknown;

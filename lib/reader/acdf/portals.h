@@ -92,7 +92,7 @@ ACDF_FN const uint32_t* acdf_portal_map_sums(const AcdfPortalTable* table, uint3
 ACDF_FN const uint8_t* acdf_portal_row(const AcdfPortalTable* table, const AcdfVisibilityTable* visibility,
                                        const uint8_t* row) {
     const AcdfPortals* header = table->header;
-    const size_t of_cell = (size_t)1 + visibility->light_count + visibility->header->column_count;
+    const size_t of_cell = (size_t)1 + visibility->bright_tile_count + visibility->header->column_count;
     const size_t own = (size_t)1 + (size_t)header->portal_count * header->pieces * header->pieces;
     return table->rows + (size_t)(row - visibility->rows) / of_cell * own;
 }

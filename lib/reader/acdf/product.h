@@ -38,13 +38,13 @@ struct ProductPoint {
     AcdfLocalPoint light; ///< what serves the normal
     union {               // empty where the light's own density is used as it is, or not at all
         AcdfCut cut;
-        AcdfFastCut fast; ///< of lights of the fast shape
+        AcdfFastCut fast; ///< of bright tiles of the fast shape
     };
     LobePoint lobe;
     double share; ///< of the samples that the BRDF's own sampler draws; below 0: nothing is drawn
 };
 
-/// Made of the light, of a local environment file or of an environment file, and a lobe. Draws from lights that
+/// Made of the light, of a local environment file or of an environment file, and a lobe. Draws from bright tiles that
 /// shared tiles describe follow the product; all others mix those of the light's own density and of the BRDF's half
 /// and half. Holds views: valid while their files live. All functions are const, thread-safe, allocate and throw
 /// nothing.
@@ -83,7 +83,7 @@ public:
     /// Density in sr^-1 of a unit direction; exactly that of `sample` for what it returned. Positive wherever that
     /// of the lobe's own sampler is.
     ACDF_METHOD float pdf(const Point& point, const float direction[3]) const noexcept;
-    /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of lights.
+    /// The same of directions[i] into out[i], i < count, to the bit: in less time, as for samples of bright tiles.
     ACDF_METHOD void pdf(const Point& point, std::size_t count, const float (*directions)[3],
                          float* out) const noexcept;
 

@@ -150,7 +150,7 @@ private:
     AcdfBlend blend_ = {};
     AcdfFast fast_ = {};
     const AcdfLocalHeader* local_ = nullptr;
-    const AcdfLight* lights_ = nullptr;
+    const AcdfBrightTile* bright_tiles_ = nullptr;
     const AcdfPartner* partner_ = nullptr;
     AcdfVisibilityTable visibility_ = {};
     AcdfPortalTable portals_ = {};

@@ -1,6 +1,6 @@
 /* Draws and densities of BRDF files for shaders, as acdf/brdf.h says (SPEC.md 6.8), in floats, over the words that
  * acdf::ShaderTables::make_walk (acdf/shader_tables.h) makes. One text for processors and for shaders of every
- * language (acdf/dialect.h), in which acdf/shader_walk.h stands, too: a shader has lights and surfaces.
+ * language (acdf/dialect.h), in which acdf/shader_walk.h stands, too: a shader has bright tiles and surfaces.
  *
  * Trees (acdf/shader_tree.h) divide the square of half-vectors, and leaves are its cells. A draw has the density
  * that its direction has at its own place in the cell, as the reader's has.

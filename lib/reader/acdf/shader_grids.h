@@ -201,7 +201,7 @@ ACDF_FN3(AcdfVector, acdf_tiles_direction, ACDF_TABLES, tables, AcdfTileCell, ce
 
 /* ---- draws and densities ---------------------------------------------------------------------------- */
 
-/* 1: lights and rows of grids serve a point. A compiler that knows the tables leaves them out where there are none.
+/* 1: bright tiles and rows of grids serve a point. A compiler that knows the tables leaves them out where there are none.
  */
 ACDF_FN2(ACDF_U32, acdf_tiles_serve, ACDF_TABLES, tables, AcdfShaderPoint, here) {
     return ACDF_SELECT(here.mix.root == ACDF_WALK_ON_GRIDS, ACDF_WORD(tables, ACDF_WALK_FAST), 0u);
@@ -210,7 +210,7 @@ ACDF_FN2(ACDF_U32, acdf_tiles_serve, ACDF_TABLES, tables, AcdfShaderPoint, here)
 /* The probability of a tile at a point. */
 ACDF_FN4(ACDF_F32, acdf_tiles_given, ACDF_TABLES, tables, AcdfShaderPoint, here, ACDF_U32, tile, ACDF_U32, light) {
     if (light != 0u) { /* no row gives it any */
-        return acdf_point_light(tables, here, light - 1u) / here.sum;
+        return acdf_point_bright_tile(tables, here, light - 1u) / here.sum;
     }
     return acdf_mixture_weight(here.mix) / here.sum * acdf_tiles_share(tables, here.mix, tile);
 }

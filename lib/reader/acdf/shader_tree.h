@@ -33,8 +33,8 @@ extern "C" {
     11u /* f32, 256 pairs: what parts a code gives to the lower and to the upper half of a split */
 #define ACDF_WALK_CODE_ROWS 12u /* bytes, a code a split: `stride` of them a row */
 #define ACDF_WALK_STRIDE 13u
-#define ACDF_WALK_LIGHTS 14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
-#define ACDF_WALK_LIGHT_COUNT 15u
+#define ACDF_WALK_BRIGHT_TILES 14u /* 8 words each: direction (3), radius, share (f32), link, and two of no meaning */
+#define ACDF_WALK_BRIGHT_TILE_COUNT 15u
 #define ACDF_WALK_COSINE 16u     /* f32: share of a cosine lobe about the normal */
 #define ACDF_WALK_VIEWS 17u      /* of BRDFs, 4 words each (acdf/shader_brdf.h) */
 #define ACDF_WALK_VIEW_COUNT 18u /* elevations */

@@ -31,11 +31,11 @@ extern "C" {
 /* ---- densities -------------------------------------------------------------------------------------- */
 
 /* Density of what follows the light, sr^-1, where a walk ended: in the tile of a light that of the light. */
-ACDF_FN3(ACDF_F32, acdf_walk_light_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkEnd, end) {
+ACDF_FN3(ACDF_F32, acdf_walk_bright_tile_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkEnd, end) {
     ACDF_LET(ACDF_U32, light) = ACDF_WORD(tables, end.leaf) >> 3u;
     ACDF_VAR(ACDF_F32, given) = end.given;
-    if (given == 0.0f && light != 0u && here.lights != 0u) {
-        given = acdf_point_light(tables, here, light - 1u);
+    if (given == 0.0f && light != 0u && here.bright_tiles != 0u) {
+        given = acdf_point_bright_tile(tables, here, light - 1u);
     }
     ACDF_LET(ACDF_F32, pdf) = given / here.sum * acdf_word_as_float(tables, end.leaf + 1u);
     return ACDF_MIN(pdf, 3.402823466e38f);
@@ -72,7 +72,7 @@ ACDF_FN5(ACDF_F32, acdf_walk_pdf, ACDF_TABLES, tables, AcdfShaderPoint, here, AC
         place.key1 = ACDF_SELECT((ACDF_BITS(z) >> 31u) != 0u, ACDF_WALK_SOUTH - cap, cap);
     }
     return acdf_walk_combined_pdf(
-        here, acdf_walk_light_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x, y, z);
+        here, acdf_walk_bright_tile_pdf(tables, here, acdf_walk_find(tables, here.mix, place.key0, place.key1)), x, y, z);
 }
 
 /* ---- draws ------------------------------------------------------------------------------------------ */
@@ -115,15 +115,15 @@ ACDF_FN3(AcdfVector, acdf_walk_cosine, AcdfShaderPoint, here, ACDF_F32, u0, ACDF
 }
 
 /* Draws a light: its link becomes the end's leaf. */
-ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_light, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
+ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_bright_tile, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkEnd, end);
     ACDF_VAR(ACDF_F32, rest) = here.light_sum;
     ACDF_VAR(ACDF_U32, light) = 0u;
     ACDF_VAR(ACDF_U32, k) = 0u;
     ACDF_VAR(ACDF_U32, found) = 0u;
     end.numbers = numbers;
-    for (k = 0u; k < here.lights && found == 0u; k = k + 1u) {
-        ACDF_LET(ACDF_F32, weight) = acdf_point_light(tables, here, k);
+    for (k = 0u; k < here.bright_tiles && found == 0u; k = k + 1u) {
+        ACDF_LET(ACDF_F32, weight) = acdf_point_bright_tile(tables, here, k);
         if (weight > 0.0f) {
             rest = ACDF_MAX(rest - weight, 0.0f);
             light = k;
@@ -137,12 +137,12 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_light, ACDF_TABLES, tables, AcdfShaderPoi
             }
         }
     }
-    end.leaf = ACDF_WORD(tables, ACDF_WORD(tables, ACDF_WALK_LIGHTS) + 8u * light + 5u);
+    end.leaf = ACDF_WORD(tables, ACDF_WORD(tables, ACDF_WALK_BRIGHT_TILES) + 8u * light + 5u);
     end.given = 0.0f; /* by the mixture */
     return end;
 }
 
-/* Draws by lights and rows: where a walk ends; of the fast shape the tile of a light, or ACDF_WALK_ON_GRIDS. */
+/* Draws by bright tiles and rows: where a walk ends; of the fast shape the tile of a light, or ACDF_WALK_ON_GRIDS. */
 ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint, here, AcdfWalkNumbers, numbers) {
     ACDF_VAR(AcdfWalkNumbers, left) = numbers;
     ACDF_VAR(AcdfWalkMixture, mix) = here.mix;
@@ -151,7 +151,7 @@ ACDF_FN3(AcdfWalkEnd, acdf_walk_sample_row, ACDF_TABLES, tables, AcdfShaderPoint
     ACDF_LET(ACDF_U32, is_light) = ACDF_SELECT(left.at0 < lit, 1u, 0u);
     if (is_light != 0u) {
         left.width0 = lit;
-        end = acdf_walk_sample_light(tables, here, left);
+        end = acdf_walk_sample_bright_tile(tables, here, left);
         left = end.numbers;
         mix = acdf_mixture_below(end.leaf, 1.0f);
     } else {
@@ -192,7 +192,7 @@ ACDF_FN4(AcdfWalkSample, acdf_walk_sample, ACDF_TABLES, tables, AcdfShaderPoint,
             d = acdf_tiles_sample(tables, here.mix, end.leaf, end.numbers);
         } else {
             d = acdf_walk_direction(tables, end);
-            light = acdf_walk_light_pdf(tables, here, end);
+            light = acdf_walk_bright_tile_pdf(tables, here, end);
         }
     }
     if (light < 0.0f) {

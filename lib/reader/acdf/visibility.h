@@ -1,7 +1,7 @@
 /* Only the light that a mixture can see: one freestanding header over acdf/blend.h, valid C99, C++17 and
  * CUDA/HIP/SYCL, with the same contract (SPEC.md §5.9).
  *
- * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the lights, of the
+ * Positions and normals lie in the cells of a k-d tree. A cell has a row of bytes: how much of the bright tiles, of the
  * mixture as a whole and, at each split of tiles that counts in its region (a *column*), of its two parts reaches
  * it. Those *visibilities* multiply what rows of normals give to the two parts; the products are made to add up to
  * 1 again at each split, so that the density is exact whatever the bytes are. Near the border of two cells their
@@ -23,7 +23,7 @@ typedef struct AcdfVisibilityTable {
     const uint16_t* columns;      /* sets of one a split of tiles */
     const uint16_t* set_of_row;   /* null where there is but one set */
     const uint8_t* rows;
-    uint32_t light_count;
+    uint32_t bright_tile_count;
 } AcdfVisibilityTable;
 
 /* The rows of cells around a position, and their weights, whose sum is 1. None: there are no visibility cells. */
@@ -52,7 +52,7 @@ ACDF_FN double acdf_mixture_visibility(const AcdfVisibilityMixture* mixture, uin
     return sum;
 }
 
-/* Those of all lights. */
+/* Those of all bright tiles. */
 ACDF_FN void acdf_visibility_of_tiles(const AcdfVisibilityMixture* mixture, uint32_t count, double* out) {
     uint32_t k;
     int i;
@@ -92,7 +92,7 @@ ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_
     int i;
     out->count = 0;
     if (!table->header || !acdf_visibility_coordinates(table, position, normal, x)) return;
-    width = (size_t)1 + table->light_count + table->header->column_count;
+    width = (size_t)1 + table->bright_tile_count + table->header->column_count;
     node[0] = table->header->split_count > 0 ? 0 : ACDF_VISIBILITY_ROW;
     out->weight[0] = 1.0;
     out->count = 1;
@@ -129,7 +129,7 @@ ACDF_FN void acdf_visibility_at(const AcdfVisibilityTable* table, uint32_t tile_
 /* The odds of a split, out of 65535; below 0 where none of the cells has a column for it. */
 ACDF_INLINE double acdf_visibility_odds(const AcdfVisibilityTable* table, const uint16_t* codebook,
                                    const AcdfVisibilityMixture* mixture, const int visibility, uint32_t node) {
-    const uint32_t first = 1 + table->light_count;
+    const uint32_t first = 1 + table->bright_tile_count;
     double odds = 0.0;
     int i, known = 0;
     if (mixture->alike) {
@@ -203,7 +203,7 @@ ACDF_INLINE uint32_t acdf_visibility_find_rows(const AcdfVisibilityTable* table,
                                           const int visibility, uint32_t node, const uint32_t* square, AcdfRange* range,
                                           double* probability) {
     double weight[ACDF_MAX_ROWS_MIXED], lower[ACDF_MAX_ROWS_MIXED], part[2], p = 1.0;
-    int i, lit = rows > 0 && acdf_mixture_sum(mix) > 0.0; /* not within a light's own tile */
+    int i, lit = rows > 0 && acdf_mixture_sum(mix) > 0.0; /* not within a bright tile */
     for (i = 0; i < rows; ++i) weight[i] = mix->weight[i];
     while (!(node & ACDF_TILE_FLAG)) {
         const AcdfSplit* split = &blend->splits[node];

@@ -70,7 +70,7 @@ struct Parts {
     const std::uint8_t* rows = nullptr;        ///< tiles->row_count rows of tiles->tile_count - 1 codes
     AcdfFast fast = {};                        ///< of the fast shape, which has no rows; else null
     const AcdfLocalHeader* local = nullptr;    ///< of local environments
-    const AcdfLight* lights = nullptr;         ///< local->light_count
+    const AcdfBrightTile* bright_tiles = nullptr;         ///< local->bright_tile_count
     const AcdfPartner* partner = nullptr;      ///< null where the file is to be used alone
     AcdfVisibilityTable visibility = {};                ///< of local environments; its header is null where absent
     AcdfPortalTable portals = {};              ///< beside visibility cells; its header is null where absent

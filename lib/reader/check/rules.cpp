@@ -156,12 +156,12 @@ const Rule rules[] = {
      "A local environment has the axes of an environment, and one or two of normals as in §6.7."},
     {7004, error, malformed, "normal-bins", "A local environment has as many bins as its normals' axes make."},
     {7005, error, malformed, "local-chunk",
-     "A local environment has LOCL, as long as its count of lights says, at most 64; `cosine_share` is in [0, "
+     "A local environment has LOCL, as long as its count of bright tiles says, at most 64; `cosine_share` is in [0, "
      "1)."},
-    {7006, error, malformed, "light",
+    {7006, error, malformed, "bright-tile",
      "A light is a tile, in ascending order, with the tile's box, a unit direction, a radius in (0, 2] and a "
      "positive finite share."},
-    {7007, error, malformed, "light-row",
+    {7007, error, malformed, "bright-tile-row",
      "In the row of a bin of positive share a light's tile has probability 0."},
     {7008, error, malformed, "environment-share", "The share of an environment's bin is 1."},
     {7009, error, malformed, "visibility",

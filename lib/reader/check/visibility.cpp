@@ -24,7 +24,7 @@ u64 rows_at(const AcdfVisibility& header, u32 tile_splits) {
            (header.further_sets > 0 ? u64{header.row_count} * sizeof(std::uint16_t) : 0);
 }
 
-bool check_size(const Payload& payload, u32 lights, u32 tile_splits, Report& report) {
+bool check_size(const Payload& payload, u32 bright_tiles, u32 tile_splits, Report& report) {
     if (payload.size < sizeof(AcdfVisibility)) {
         report.add(7009, payload.at(0), "PLAC has %llu bytes", static_cast<ull>(payload.size));
         return false;
@@ -36,7 +36,7 @@ bool check_size(const Payload& payload, u32 lights, u32 tile_splits, Report& rep
                    h.row_count, h.column_count, h.further_sets);
         return false;
     }
-    const u64 size = rows_at(h, tile_splits) + u64{h.row_count} * (1 + lights + h.column_count);
+    const u64 size = rows_at(h, tile_splits) + u64{h.row_count} * (1 + bright_tiles + h.column_count);
     if (payload.size != size)
         report.add(7009, payload.at(0), "PLAC has %llu bytes instead of %llu", static_cast<ull>(payload.size),
                    static_cast<ull>(size));
@@ -111,7 +111,7 @@ bool check_sets(const Payload& payload, const AcdfVisibility& h, const std::uint
 
 void check_odds(const Payload& payload, const AcdfVisibilityTable& table, u32 tile_splits, Report& report) {
     const AcdfVisibility& h = *table.header;
-    const u64 first = 1 + u64{table.light_count}, width = first + h.column_count;
+    const u64 first = 1 + u64{table.bright_tile_count}, width = first + h.column_count;
     for (u32 row = 0; row < h.row_count; ++row)
         for (u64 i = first; i < width; ++i) {
             const u8 code = table.rows[row * width + i];
@@ -130,7 +130,7 @@ void check_visibility(const Payload& payload, Report& report, Parts& parts) noex
         return;
     }
     const u32 tile_splits = parts.tiles->tile_count - 1;
-    if (!check_size(payload, parts.local->light_count, tile_splits, report)) return;
+    if (!check_size(payload, parts.local->bright_tile_count, tile_splits, report)) return;
     const auto* header = reinterpret_cast<const AcdfVisibility*>(payload.data);
     const auto* splits = reinterpret_cast<const AcdfVisibilitySplit*>(header + 1);
     const auto* columns = reinterpret_cast<const std::uint16_t*>(splits + header->split_count);
@@ -140,7 +140,7 @@ void check_visibility(const Payload& payload, Report& report, Parts& parts) noex
                                columns,
                                header->further_sets > 0 ? sets : nullptr,
                                payload.data + rows_at(*header, tile_splits),
-                               parts.local->light_count};
+                               parts.local->bright_tile_count};
     check_bounds(payload, *header, report);
     const bool split = check_splits(payload, *header, splits, report);
     const bool right = check_sets(payload, *header, table.set_of_row, tile_splits, report) && split;

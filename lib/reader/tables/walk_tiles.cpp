@@ -32,7 +32,7 @@ void WalkTiles::add(const AcdfLocal& local, u32 tile) noexcept {
     record.lows = box[0].low | box[1].low << 16;
     record.sides = (box[0].high - box[0].low - 1) | (box[1].high - box[1].low - 1) << 16;
     record.ends = static_cast<u32>(grid.ends - local.fast.grid);
-    record.rest = grid.shift[0] | grid.shift[1] << 8 | acdf_local_light_of(&local, tile) << 16;
+    record.rest = grid.shift[0] | grid.shift[1] << 8 | acdf_local_bright_tile_of(&local, tile) << 16;
     records_.add(record);
     grid_bytes_ =
         std::max(grid_bytes_, std::size_t{record.ends} + grid.count[1] * (std::size_t{grid.count[0]} + 1));

@@ -56,7 +56,7 @@ TEST(GoldenLocalContents, EachFileHasWhatItIsFor) {
     ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local.acdf").c_str(), local).ok());
     ASSERT_TRUE(acdf::File::open((kGoldenLocal + "local_grid.acdf").c_str(), grid).ok());
     EXPECT_EQ(local.local().data().subdivisions, 2u);
-    EXPECT_EQ(local.local().data().light_count, 1u);
+    EXPECT_EQ(local.local().data().bright_tile_count, 1u);
     EXPECT_EQ(local.local().data().cosine_share, 0.25);
     EXPECT_EQ(local.bin(7).root, ACDF_NO_ROOT);
     EXPECT_EQ(grid.local().data().columns, 3u);

@@ -16,7 +16,7 @@ struct SplitSpec {
     std::uint32_t child[2]; ///< a split, or tile_flag | a tile
 };
 
-struct LightSpec {
+struct BrightTileSpec {
     float direction[3] = {0.6f, 0.0f, 0.8f};
     float radius = 2.0f, share = 0.25f;
     std::uint32_t tile = 0;
@@ -75,7 +75,7 @@ struct LocalSpec {
     std::vector<Bytes> codes;                    ///< rows of one byte a split
     std::optional<FastSpec> fast;                ///< instead of these and of curves in tiles
     std::vector<BinSpec> bins;                   ///< root: the row, or a curve of `tree`; no_root: not stored
-    std::vector<LightSpec> lights;
+    std::vector<BrightTileSpec> bright_tiles;
     float cosine_share = 0.0f;
     std::optional<VisibilitySpec> visibility;
     std::optional<PortalsSpec> portals;
@@ -127,8 +127,8 @@ struct LocalSpec {
     Bytes local_chunk() const {
         Bytes out;
         put_float(out, cosine_share);
-        put32(out, static_cast<std::uint32_t>(lights.size()));
-        for (const LightSpec& light : lights) {
+        put32(out, static_cast<std::uint32_t>(bright_tiles.size()));
+        for (const BrightTileSpec& light : bright_tiles) {
             for (float x : light.direction) put_float(out, x);
             put_float(out, light.radius);
             put_float(out, light.share);
@@ -204,10 +204,10 @@ inline LocalSpec fast_local() {
 inline LocalSpec fast_lit_local() {
     LocalSpec spec = fast_local();
     spec.fast->rows[0].tiles = {100, 100, 255};
-    spec.lights.resize(1);
-    spec.lights[0].tile = 1;
-    spec.lights[0].low = {3, 0};
-    spec.lights[0].high = {8, 2};
+    spec.bright_tiles.resize(1);
+    spec.bright_tiles[0].tile = 1;
+    spec.bright_tiles[0].low = {3, 0};
+    spec.bright_tiles[0].high = {8, 2};
     return spec;
 }
 
@@ -215,10 +215,10 @@ inline LocalSpec fast_lit_local() {
 inline LocalSpec lit_local() {
     LocalSpec spec = shared_local();
     spec.codes = {{100, 0}, {255, 77}}; // at the last split; at the one above it
-    spec.lights.resize(1);
-    spec.lights[0].tile = 1;
-    spec.lights[0].low = {3, 0};
-    spec.lights[0].high = {8, 2};
+    spec.bright_tiles.resize(1);
+    spec.bright_tiles[0].tile = 1;
+    spec.bright_tiles[0].low = {3, 0};
+    spec.bright_tiles[0].high = {8, 2};
     return spec;
 }
 

@@ -226,7 +226,7 @@ TEST(FastShape, TablesFindTheTilesOfSquaresThatAreAllCut) {
     find_tiles_where_all_is_cut(127, 101, 1);
 }
 
-// A draw for a normal that serves once is that at its point, to the bit: also where lights end.
+// A draw for a normal that serves once is that at its point, to the bit: also where bright tiles end.
 TEST(FastShape, DrawsOfANormalAreThoseOfItsPoint) {
     int lit = 0;
     for (std::uint32_t seed = 0; seed < kFastFiles; ++seed) {
@@ -236,9 +236,9 @@ TEST(FastShape, DrawsOfANormalAreThoseOfItsPoint) {
         for (int i = 0; i < 60; ++i) {
             const Normal normal = normal_of_any_length(rng);
             const AcdfLocalPoint point = view.at(normal.data());
-            const double border = point.sum > 0.0 ? point.lights / point.sum : 0.5;
+            const double border = point.sum > 0.0 ? point.bright_tiles / point.sum : 0.5;
             double below = border;
-            lit += point.lights > 0.0;
+            lit += point.bright_tiles > 0.0;
             for (const double u0 :
                  {0.0, 1.0, border, below = std::nextafter(below, 0.0), below = std::nextafter(below, 0.0),
                                     uniform(rng) * border, uniform(rng)}) {

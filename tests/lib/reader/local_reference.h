@@ -65,7 +65,7 @@ public:
         std::vector<std::size_t> row; // of the mixture
         std::vector<double> w;
         std::vector<double> light; // weights
-        double lights = 0.0, sum = 0.0, length = 1.0;
+        double bright_tiles = 0.0, sum = 0.0, length = 1.0;
     };
 
     Source source(const Vector& n) const {
@@ -92,9 +92,9 @@ public:
             out.w.push_back(w);
         }
         out.length = std::hypot(served.n[0], served.n[1], served.n[2]);
-        for (std::size_t k = 0; k < light_count(); ++k) out.light.push_back(light_weight(k, served.n, out.length));
-        for (const double v : out.light) out.lights += v;
-        out.sum = out.lights + total_of(out.w);
+        for (std::size_t k = 0; k < bright_tile_count(); ++k) out.light.push_back(light_weight(k, served.n, out.length));
+        for (const double v : out.light) out.bright_tiles += v;
+        out.sum = out.bright_tiles + total_of(out.w);
         if (out.sum == 0.0) out.what = Source::nothing;
         return out;
     }
@@ -169,7 +169,7 @@ private:
 
     bool stored(std::size_t bin) const { return number(bins_, 8 * bin, 4) != 0xFFFFFFFF; }
     double share(std::size_t bin) const { return f32(bins_, 8 * bin + 4); }
-    std::size_t light_count() const { return number(local_, 4, 4); }
+    std::size_t bright_tile_count() const { return number(local_, 4, 4); }
     static std::size_t light_at(std::size_t k) { return 8 + 40 * k; }
 
     static double total_of(const std::vector<double>& w) {
@@ -245,7 +245,7 @@ private:
 
     void sample_blend(const Source& source, double (&u)[2], Cell& cell) const {
         double x = u[0] * source.sum;
-        if (x < source.lights || source.w.empty()) {
+        if (x < source.bright_tiles || source.w.empty()) {
             std::size_t k = 0;
             double before = 0.0;
             for (std::size_t i = 0; i < source.light.size(); ++i) {
@@ -261,7 +261,7 @@ private:
             sample_in_tile(number(local_, light_at(k) + 20, 4), u, cell);
             return;
         }
-        u[0] = std::min(std::max((x - source.lights) / (source.sum - source.lights), 0.0), 1.0);
+        u[0] = std::min(std::max((x - source.bright_tiles) / (source.sum - source.bright_tiles), 0.0), 1.0);
         if (!sums_.empty()) {
             const std::size_t tile = fast().draw(source.row, source.w, u, cell);
             sample_in_tile(tile, u, cell);

@@ -43,7 +43,7 @@ TEST(Product, PdfIsExactlyThatOfTheSamples) {
     EXPECT_GT(drawn, all * 0.98); // the rest: views and light nearly opposite, whose half-vector is lost
 }
 
-// Where a part is a light's own tile, no row of visibility cells gives it anything.
+// Where a part is a bright tile, no row of visibility cells gives it anything.
 TEST(Product, PdfIsThatOfTheSamplesAtPositions) {
     int drawn = 0, of_lights = 0;
     for (const LocalSpec& spec : {visibility_local(), regional_local(), windowed_local()}) {
@@ -173,11 +173,11 @@ TEST(Product, SeveralSamplesOfFaintPartsAreThoseOfSingleCalls) {
             const double scales[] = {1.0, 0.0, 0x1p-1074, 0x1p-1060, 0x1p-1000};
             for (int i = 0; i < point.cut.count; ++i) {
                 AcdfCutPart& part = point.cut.part[i];
-                const double rows = scales[rng() % 5], lights = scales[rng() % 5];
+                const double rows = scales[rng() % 5], bright_tiles = scales[rng() % 5];
                 for (double& weight : part.weight) weight *= rows;
-                for (std::uint32_t k = part.first_light; k < part.end_light; ++k) point.cut.light[k] *= lights;
-                part.lights = acdf_cut_lights(&point.cut, part.first_light, part.end_light);
-                part.sum = part.lights + ((part.weight[0] + part.weight[1]) + part.weight[2]);
+                for (std::uint32_t k = part.first_light; k < part.end_light; ++k) point.cut.light[k] *= bright_tiles;
+                part.bright_tiles = acdf_cut_bright_tiles(&point.cut, part.first_light, part.end_light);
+                part.sum = part.bright_tiles + ((part.weight[0] + part.weight[1]) + part.weight[2]);
                 part.probability *= scales[rng() % 5];
             }
             acdf_cut_finish(&point.cut);
@@ -241,9 +241,9 @@ TEST(Product, NothingIsLeftOut) {
 // Where no light arrives the lobe's own sampler draws all: its samples count as 0, and the density is still right.
 TEST(Product, HemispheresWithoutLightAreTheLobes) {
     LocalSpec spec = random_local(1, false);
-    for (auto& light : spec.lights) light.share = 1e-30f;
+    for (auto& light : spec.bright_tiles) light.share = 1e-30f;
     for (auto& bin : spec.bins) bin.share = 0.0f;
-    spec.lights.clear();
+    spec.bright_tiles.clear();
     const LoadedLocal loaded(std::move(spec));
     const TestLobe lobe{0.1};
     const Sampler sampler(loaded.light(), lobe);

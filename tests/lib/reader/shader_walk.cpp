@@ -79,7 +79,7 @@ public:
     }
     /// What is rounded of a density, sr^-1: cosines to the normal, and of a light that no more than touches the
     /// horizon.
-    double faint() const { return 2e-7 * cosine_share() + (shader_.lights > 0 ? 1e-6 : 1e-30); }
+    double faint() const { return 2e-7 * cosine_share() + (shader_.bright_tiles > 0 ? 1e-6 : 1e-30); }
     double cosine_share() const { return double{shader_.cosine}; }
     /// Whether the two differ in what serves the normal: on a border between bins that are served differently.
     bool differs() const {

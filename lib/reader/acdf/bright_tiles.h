@@ -1,6 +1,6 @@
-/* Weights of the lights of a local environment map at a point (SPEC.md §6.7). Part of acdf/local.h. */
-#ifndef ACDF_LOCAL_LIGHTS_H
-#define ACDF_LOCAL_LIGHTS_H
+/* Weights of the bright tiles of a local environment map at a point (SPEC.md §6.7). Part of acdf/local.h. */
+#ifndef ACDF_BRIGHT_TILES_H
+#define ACDF_BRIGHT_TILES_H
 
 #include <acdf/local_parts.h>
 
@@ -18,12 +18,12 @@ ACDF_INLINE double acdf_cap_weight(const AcdfLocalPoint* point, double x, double
     if (fabs(height) < radius) return share * ((height + radius) * (height + radius) / (4.0 * radius));
     return share * (0.5 * (height + fabs(height))); /* 0 below, exactly the height above */
 }
-ACDF_FN double acdf_light_weight(const AcdfLight* light, const AcdfLocalPoint* point) {
+ACDF_FN double acdf_bright_tile_weight(const AcdfBrightTile* light, const AcdfLocalPoint* point) {
     return acdf_cap_weight(point, (double)light->direction[0], (double)light->direction[1],
                            (double)light->direction[2], (double)light->radius, (double)light->share);
 }
 
-/* What weights of lights need of a point, and those of two lights. */
+/* What weights of bright tiles need of a point, and those of two bright tiles. */
 #ifdef ACDF_SSE2
 typedef __m128d AcdfTwoWeights;
 typedef struct AcdfHorizon {
@@ -37,7 +37,7 @@ ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
     out.length = _mm_set1_pd(point->length);
     return out;
 }
-ACDF_INLINE AcdfTwoWeights acdf_light_pair_weights(const AcdfLightPair* pair, const AcdfHorizon* horizon) {
+ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair, const AcdfHorizon* horizon) {
     const __m128d height = _mm_add_pd(_mm_add_pd(_mm_mul_pd(horizon->normal[0], _mm_loadu_pd(pair->direction[0])),
                                                  _mm_mul_pd(horizon->normal[1], _mm_loadu_pd(pair->direction[1]))),
                                       _mm_mul_pd(horizon->normal[2], _mm_loadu_pd(pair->direction[2])));
@@ -63,7 +63,7 @@ ACDF_INLINE AcdfHorizon acdf_horizon(const AcdfLocalPoint* point) {
     out.point = point;
     return out;
 }
-ACDF_INLINE AcdfTwoWeights acdf_light_pair_weights(const AcdfLightPair* pair, const AcdfHorizon* horizon) {
+ACDF_INLINE AcdfTwoWeights acdf_bright_tile_pair_weights(const AcdfBrightTilePair* pair, const AcdfHorizon* horizon) {
     AcdfTwoWeights out;
     int i;
     for (i = 0; i < 2; ++i)
@@ -78,27 +78,27 @@ ACDF_INLINE void acdf_store_weights(AcdfTwoWeights weights, double out[2]) {
 #endif
 
 /* The same of light `k` as its place sees it. */
-ACDF_FN double acdf_local_light_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
-    const double weight = acdf_light_weight(&local->lights[k], point);
+ACDF_FN double acdf_local_bright_tile_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
+    const double weight = acdf_bright_tile_weight(&local->bright_tiles[k], point);
     return point->visibility.count > 0 ? weight * acdf_mixture_visibility(&point->visibility, 1 + k) : weight;
 }
 
-/* Two lights, from number k on, for those who have no tables. */
-ACDF_FN void acdf_local_light_pair(const AcdfLocal* local, uint32_t k, AcdfLightPair* out) {
+/* Two bright tiles, from number k on, for those who have no tables. */
+ACDF_FN void acdf_local_bright_tile_pair(const AcdfLocal* local, uint32_t k, AcdfBrightTilePair* out) {
     uint32_t i;
     int axis;
     for (i = 0; i < 2; ++i) {
-        const AcdfLight* light = &local->lights[k + i < local->light_count ? k + i : k];
+        const AcdfBrightTile* light = &local->bright_tiles[k + i < local->bright_tile_count ? k + i : k];
         for (axis = 0; axis < 3; ++axis) out->direction[axis][i] = (double)light->direction[axis];
         out->radius[i] = (double)light->radius;
-        out->share[i] = k + i < local->light_count ? (double)light->share : 0.0;
+        out->share[i] = k + i < local->bright_tile_count ? (double)light->share : 0.0;
         out->quarter[i] = out->share[i] / (4.0 * out->radius[i]);
     }
 }
 
 /* acdf_cap_weight of light i of two without a quotient, as the fast shape has it; `inverse` is that of the point's
  * length. */
-ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfLightPair* pair, uint32_t i,
+ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfBrightTilePair* pair, uint32_t i,
                                     double inverse) {
     const double height = point->normal[0] * pair->direction[0][i] + point->normal[1] * pair->direction[1][i] +
                           point->normal[2] * pair->direction[2][i];
@@ -108,7 +108,7 @@ ACDF_INLINE double acdf_pair_weight(const AcdfLocalPoint* point, const AcdfLight
 }
 #ifdef ACDF_SSE2
 /* That of both. */
-ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfLightPair* pair, __m128d inverse) {
+ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfBrightTilePair* pair, __m128d inverse) {
     const __m128d height = _mm_add_pd(_mm_add_pd(_mm_mul_pd(horizon->normal[0], _mm_loadu_pd(pair->direction[0])),
                                                  _mm_mul_pd(horizon->normal[1], _mm_loadu_pd(pair->direction[1]))),
                                       _mm_mul_pd(horizon->normal[2], _mm_loadu_pd(pair->direction[2])));
@@ -123,7 +123,7 @@ ACDF_INLINE __m128d acdf_pair_weights(const AcdfHorizon* horizon, const AcdfLigh
 
 /* The same of light k by tables, without a branch. */
 ACDF_INLINE double acdf_tabled_weight(const AcdfLocal* local, const AcdfLocalPoint* point, uint32_t k) {
-    const AcdfLightPair* pair = acdf_local_lights(local->tables) + k / 2;
+    const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables) + k / 2;
 #ifdef ACDF_SSE2
     const uint32_t i = k % 2;
     const double height = point->normal[0] * pair->direction[0][i] + point->normal[1] * pair->direction[1][i] +
@@ -139,14 +139,14 @@ ACDF_INLINE double acdf_tabled_weight(const AcdfLocal* local, const AcdfLocalPoi
 #endif
 }
 
-/* The sum of the weights of the lights that are above all horizons in the facet of a normal. */
+/* The sum of the weights of the bright tiles that are above all horizons in the facet of a normal. */
 ACDF_INLINE double acdf_facet_whole(const AcdfLocalPoint* point) {
     const double* whole = point->facet->whole;
     return point->normal[0] * whole[0] + point->normal[1] * whole[1] + point->normal[2] * whole[2];
 }
-/* The sum of the weights of all lights at a normal whose facet is known. */
-ACDF_INLINE double acdf_facet_lights(const AcdfLocal* local, const AcdfLocalPoint* point) {
-    const AcdfLightPair* pair = acdf_local_lights(local->tables);
+/* The sum of the weights of all bright tiles at a normal whose facet is known. */
+ACDF_INLINE double acdf_facet_bright_tiles(const AcdfLocal* local, const AcdfLocalPoint* point) {
+    const AcdfBrightTilePair* pair = acdf_local_bright_tiles(local->tables);
     const double inverse = 1.0 / point->length;
     uint32_t left = point->facet->others;
 #ifdef ACDF_SSE2
@@ -158,7 +158,7 @@ ACDF_INLINE double acdf_facet_lights(const AcdfLocal* local, const AcdfLocalPoin
 #else
     double sum[2] = {0.0, 0.0};
     for (; left; left &= left - 1) {
-        const AcdfLightPair* of = pair + acdf_lowest_bit(left);
+        const AcdfBrightTilePair* of = pair + acdf_lowest_bit(left);
         sum[0] += acdf_pair_weight(point, of, 0, inverse);
         sum[1] += acdf_pair_weight(point, of, 1, inverse);
     }
